@@ -13,7 +13,7 @@ from engines import Engine
 from reference.scene import Scene
 from reports.model.cells import Cell
 from reports.model.tasks import Answer, Motion
-from reports.site.live.sliders import Live, Name, Point
+from reports.site.live.sliders import Live, Look, Name
 from reports.site.packages import Registry
 
 FRAMES = 100  # of a moving picture, at most: what an eye can tell in six seconds
@@ -21,22 +21,15 @@ FOLDER = Path(__file__).parent / "lessons"
 
 
 @dataclass(frozen=True)
-class Take:
+class Take(Look):
     """One motion that a picture shows: the truth of a scene, and methods over it.
 
-    methods: (how it is called in the legend, engine, steps between samples). samples: of the scene unless given. ends:
-    points of bodies [m] that are drawn beside their joints. traces: (body, point) whose paths are drawn. centre: the
-    body whose instant centre can be shown. curves: closed or open lines in a body's frame, or the ground's (None).
+    methods: (how it is called in the legend, engine, steps between samples). samples: of the scene unless given.
     """
 
     scene: Scene
     methods: tuple[tuple[str, Engine, int], ...] = ()
     samples: int | None = None
-    ends: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
-    traces: tuple[tuple[str, Point], ...] = ()
-    centre: str | None = None
-    curves: tuple[tuple[str | None, tuple[Point, ...]], ...] = ()
-    axle: float = 0.0  # m: half of it, where a skate is drawn as an axle with two wheels
 
     @property
     def sample_count(self) -> int:

@@ -31,7 +31,7 @@ from reports.site.folder import compressed_size, refuse_strangers, write_site
 from reports.site.lecture import html as lecture_html
 from reports.site.lesson import Part, Source, part_of
 from reports.site.lessons import LESSONS, take_like
-from reports.site.markdown import Formulas, html, section
+from reports.site.markdown import html, section
 from reports.site.packages import NotFetched, Package, Registry
 from reports.site.rows import explored
 from tests import ROOT
@@ -143,29 +143,33 @@ def test_nothing_is_fetched_from_elsewhere_when_a_page_is_read(files):
 def test_without_npm_the_site_says_what_is_missing(files):
     about = files["about.html"].decode()
     assert "npm is not installed" in about
-    assert "Formulas are shown as TeX, since node is not installed." in about
-    assert '<code class="tex' in files["results/four_bar.html"].decode()
     assert json.loads(files[MARKER])["troubles"]
 
 
 def test_a_notebook_becomes_a_page_with_what_its_cells_print_and_draw():
     codes = ["import matplotlib.pyplot as plt\nplt.plot([1, 2])\nprint('a <b>')", "1 / 0"]
     cells = [{"cell_type": "markdown", "source": ["# A $x$"]}, *({"cell_type": "code", "source": [c]} for c in codes)]
-    formulas = Formulas()
-    page = lecture_html(json.dumps({"cells": cells[:2]}), formulas)
-    assert list(formulas.found) == [("x", False)]
+    page = lecture_html(json.dumps({"cells": cells[:2]}))
     assert page.index("plt.plot") < page.index('<pre class="printed">a &lt;b&gt;') < page.index("<svg")
     assert page.endswith("</details>")  # the last cell has the solutions
     with pytest.raises(NotFetched, match="a cell fails: ZeroDivisionError"):
-        lecture_html(json.dumps({"cells": cells}), formulas)
+        lecture_html(json.dumps({"cells": cells}))
 
 
-def test_formulas_are_found_outside_of_code_alone_and_keep_their_place():
-    formulas = Formulas()
-    html("A $x^2$ and $$\\frac{a}\n{b}$$ and `$HOME` costs 3 $ or 4 $.\n\n```\n$y$\n```\n", formulas)
-    assert set(formulas.found) == {("x^2", False), ("\\frac{a} {b}", True)}
-    text = html("$b$ then $a$ then $b$", Formulas())
-    assert markdown.with_formulas(text, ["(B)", "(A)"]) == "<p>(B) then (A) then (B)</p>\n"
+def test_formulas_are_found_outside_of_code_alone_and_are_drawn_by_the_browser():
+    pytest.importorskip("latex2mathml", reason="latex2mathml is not installed: pip install '.[site]'")
+    page = html("A $x^2$ and $$\\frac{a}\n{b}$$ and `$HOME` costs 3 $ or 4 $.\n\n```\n$y$\n```\n")
+    assert re.findall(r'<math.*? display="(\w+)">', page) == ["inline", "block"]
+    assert page.index("<msup>") < page.index("<mfrac>")
+    with pytest.raises(ValueError, match="a command that latex2mathml does not know"):
+        html("$\\nothing$")
+
+
+def test_formulas_are_written_as_tex_where_nothing_draws_them(monkeypatch):
+    monkeypatch.setitem(sys.modules, "latex2mathml.converter", None)  # as if it were not installed
+    markdown.mathml.cache_clear()
+    assert html("$$a<b$$") == '<p><code class="tex displayed">a&lt;b</code></p>\n'
+    markdown.mathml.cache_clear()
 
 
 def test_a_package_of_another_digest_is_refused(tmp_path):

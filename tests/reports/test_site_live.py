@@ -31,7 +31,6 @@ from reports.site.embed import forces
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders
 from reports.site.live.data import data as live_data
-from reports.site.live.data import template
 from reports.site.live.models import Part, changes, plan_of, text_of
 from reports.site.live.sliders import Live
 
@@ -50,8 +49,9 @@ def test_the_scene_itself_is_a_place_of_its_sliders(name):
     live = LIVE[name]
     index = 0
     for slider in live.sliders:
-        index = index * len(slider.values) + slider.start(live.scene)
-        assert len(slider.told()) == len(slider.values)
+        control = slider.control(live.scene)
+        index = index * len(slider.values) + control.start
+        assert len(control.texts) == len(slider.values)
     assert list(live.places())[index] == live.scene
     assert live.steps[live.start] % live.frames == 0
 
@@ -66,7 +66,7 @@ def test_experiments_set_controls_that_are_there_and_have_their_words(lesson):
         # A change has a claim that is measured, but where it is the exact motion that changes.
         assert each.claims or not set(each.after) - {slider.field for slider in live.sliders}, part.heading
         numbers = re.findall(r"{(\w+)}", part.text + part.after)
-        assert set(numbers) <= set(live.texts()), part.heading
+        assert set(numbers) <= set(live.controls()), part.heading
 
 
 def test_sliders_that_do_not_fit_are_refused():
@@ -116,16 +116,10 @@ def test_a_method_that_our_code_helps_is_no_model_of_a_page():
         plan_of(replace(pymunk_engine.DEFAULT, roll="pivot"), RollingDisc().mechanism(), 1.0)
 
 
-def test_a_template_differs_in_numbers_alone():
-    parts, numbers = template(['<a x="1.5" y="-2e-3 4"/>', '<a x="3" y="5 6"/>'])
-    assert (parts, numbers) == (['<a x="', '" y="', " ", '"/>'], ["1.5,-2e-3,4", "3,5,6"])
-    with pytest.raises(ValueError, match="differ in more than numbers"):
-        template(['<a x="1"/>', '<b x="1"/>'])
-
-
 def test_what_munk2d_is_given_is_what_pymunk_holds():
     scene = DrivenFourBar()
-    plan = plan_of(pymunk_engine.DEFAULT, scene.mechanism(), scene.duration)
+    told = plan_of(pymunk_engine.DEFAULT, scene.mechanism(), scene.duration)
+    plan = told.numbers
     mechanism = scene.mechanism()
     assert plan[5:8] == (10, pymunk_engine.SHIPPED_ERROR_BIAS, 0)
     bodies = np.reshape(plan[8:41], (3, 11))
@@ -137,11 +131,12 @@ def test_what_munk2d_is_given_is_what_pymunk_holds():
     records = np.reshape(plan[41:], (-1, 8))
     assert records[:, :2].tolist() == [[Part.PIVOT, 6]] * 3
     assert records[:, 2:4].tolist() == [[0, 1], [1, 2], [-1, 2]]
+    assert (told.impulses, told.idle) == ((-1, 0, 1, 2), ())
 
 
 def test_a_plan_says_what_each_shape_and_each_hand_is():
     def parts(engine: Any, scene: Any) -> list[int]:
-        plan = plan_of(engine, scene.mechanism(), scene.duration)
+        plan = plan_of(engine, scene.mechanism(), scene.duration).numbers
         place, found = 8 + 11 * int(plan[4]), []
         while place < len(plan):
             found.append(int(plan[place]))
@@ -166,7 +161,7 @@ def test_a_live_scene_holds_the_truth_of_every_place():
         motion = scene.motion(frames * (scene.duration / live.frames))
         assert np.array_equal(truth, np.concatenate([motion.pose, motion.twist], axis=-1))
     assert held["native"]["munk"] == [None] * len(live.munk)
-    assert held["munk"][0] == {"why": "pymunk as shipped has no joint for a skate"}
+    assert held["munk"][0]["why"] == "pymunk as shipped has no joint for a skate"
     assert held["measure"] == "position"
 
 

@@ -5,10 +5,10 @@ import { motion, released } from "./exact.js";
 
 /**
  * @typedef {import("./motion.js").Joint} Joint
- * @typedef {{parts: string[], numbers: number[][], changes: number[][], velocity: number[], bodies: number[],
- *   turns: number[][], links: number[][], springs: boolean}} Texts
- * @typedef {{plans: number[]}} Plans
- * @typedef {{why: string}} Missing
+ * @typedef {{texts: number[][], changes: number[][], velocity: number[], bodies: number[], links: number[][],
+ *   idle: string[]}} Texts
+ * @typedef {{plans: number[], idle: string[], impulses: number[]}} Plans
+ * @typedef {{why: string, idle: string[]}} Missing
  * @typedef {{box: string, ground: string, bodies: string[], size: number}} Drawing
  * @typedef {"munk"|"mujoco"} Name
  * @typedef {{word: string, scene: string, measure: "angle"|"position", frames: number, window: [number, number],
@@ -50,7 +50,7 @@ export function mechanismOf(run) {
 
 /** The exact motion at the samples: as the reference computed it, or else by the page. `missed`: by how much the page's
  * own moves when its steps are halved. @param {Run} run
- * @returns {{pose: Float64Array, twist: Float64Array, forces: Float64Array[], missed: number|null}} */
+ * @returns {{pose: Float64Array, twist: Float64Array, forces: import("./motion.js").Force[], missed: number|null}} */
 export function truth(run) {
   const { scene, place, start, samples } = run;
   const kept = scene.truth[place];
@@ -81,19 +81,8 @@ export function split(states) {
   return { pose, twist };
 }
 
-/** MJCF as the Python adapter writes it. @param {Run} run @param {Texts} texts */
-export function mjcf(run, texts) {
-  const numbers = /** @type {string} */ (run.scene.pool[ofStep(run, texts.numbers)]).split(",");
-  return texts.parts.map((part, index) => part + (numbers[index] ?? "")).join("");
-}
-
-/** What the adapter changes in MuJoCo's compiled model. @param {Run} run @param {Texts} texts */
-export const changesOf = (run, texts) => /** @type {[string, number[]][]} */ (run.scene.pool[ofStep(run, texts.changes)]);
-
-/** @param {Run} run @param {number[][]} table by place, and by step where it depends on that */
-function ofStep({ place, stepPlace }, table) {
-  return table[place][Math.min(stepPlace, table[place].length - 1)];
-}
+/** @template T @param {Run} run @param {number[][]} table by place, and by step where it depends on that @returns {T} */
+export const ofStep = ({ scene, place, stepPlace }, table) => /** @type {T} */ (scene.pool[table[place][Math.min(stepPlace, table[place].length - 1)]]);
 
 /** Why an engine can't run what is chosen, or an empty text. @param {Scene} scene @param {Setting} setting @param {Name} engine */
 export function whyNot(scene, setting, engine) {

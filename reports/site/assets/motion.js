@@ -92,20 +92,6 @@ export function slip({ body, point, angle }, pose, twist, bodies, frame) {
   return [across * nx, across * ny];
 }
 
-/** The largest gap of any pin or slot over all instants [m].
- * @param {Joint[]} joints @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frames */
-export function largestGap(joints, pose, bodies, frames) {
-  let largest = 0;
-  for (const joint of joints) {
-    for (let frame = 0; frame < frames; frame++) {
-      const [[ax, ay], [bx, by]] = ends(joint, pose, bodies, frame);
-      const gap = Math.hypot(bx - ax, by - ay);
-      if (gap > largest) largest = gap;
-    }
-  }
-  return largest;
-}
-
 /** The point about which a body turns at an instant, for its pose and twist; null where it does not turn.
  * @param {number[]} pose @param {number[]} twist @returns {Point|null} */
 export function instantCentre([x, y], [vx, vy, rate]) {

@@ -28,7 +28,6 @@
         // Without a store the choice holds for this page.
       }
       name();
-      dispatchEvent(new Event("scheme"));
     });
   });
 })();

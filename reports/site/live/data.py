@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import base64
 import json
-import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from typing import Any
@@ -18,23 +17,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Unsupported
+from engines import Unsupported
 from engines.mujoco.stiffness import Shipped
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
-from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.model.tasks import Answer, Motion
 from reports.site import drawn
 from reports.site.drawn import index_of, joints_of, loose, measure_of
-from reports.site.embed import forces, picture, shown
-from reports.site.lesson import Lesson, Source, Take
+from reports.site.embed import forces
 from reports.site.live.models import plan_of, text_of
 from reports.site.live.sliders import ENGINES, Live, Name, Point
-from reports.site.munk2d import compiled
-from reports.site.packages import MUJOCO, NotFetched
 
-NUMBER = re.compile(r"(?<=[\" ])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?=[\" ])")
 PACKAGES = {"munk": ("pymunk", "pymunk"), "mujoco": ("MuJoCo", "mujoco-core")}  # its name, and that of its package
 
 
@@ -70,8 +64,7 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
     truth = live.scene.motion(times)
     stored = live.stored()
     ways: dict[Name, list[dict[str, Any]]] = {
-        "mujoco": [_or_why(lambda own=own: _texts(own, live, mechanisms, pool), own) for _, own in live.mujoco],
-        "munk": [_or_why(lambda own=own: _plans(own, live, mechanisms, pool), own) for _, own in live.munk],
+        name: [_model(name, engine, live, mechanisms, pool) for _, engine in live.ways(name)] for name in ENGINES
     }
     points = [[(body, point) for body, point in live.traces] or _blades(each) for each in mechanisms]
     return {
@@ -91,8 +84,8 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
             for one, each in zip(mechanisms, motions, strict=True)
         ],
         "drawings": [
-            pool.number(_drawing(live, scene, one, truth.pose if each is None else each.pose))
-            for scene, one, each in zip(places, mechanisms, motions, strict=True)
+            pool.number(drawing(live, one, truth.pose if each is None else each.pose))
+            for one, each in zip(mechanisms, motions, strict=True)
         ],
         "joints": [pool.number(joints_of(each)) for each in mechanisms],
         "blades": [pool.number(_edges(each)) for each in mechanisms],
@@ -161,16 +154,6 @@ def native_version(engine: str) -> str:
     return f"{name} {version(package)}"
 
 
-def _or_why(make: Callable[[], dict[str, Any]], engine: Engine | str) -> dict[str, Any]:
-    """What is made, or the sentence that says why it can't be."""
-    if isinstance(engine, str):
-        return {"why": engine}
-    try:
-        return make()
-    except Unsupported as reason:
-        return {"why": str(reason)}
-
-
 def _native(answer: Answer | None, way: Mapping[str, Any]) -> list[str] | None:
     """The poses that Python's engine gave, and where the page has no engine for this the twists."""
     if answer is None or not answer.finished:
@@ -185,7 +168,11 @@ def packed(values: NDArray[np.float64]) -> str:
 
 def _plans(engine: Any, live: Live, mechanisms: Sequence[Mechanism], pool: Pool) -> dict[str, Any]:
     plans = [plan_of(engine, mechanism, live.scene.duration) for mechanism in mechanisms]
-    return {"plans": [pool.number(packed(np.array(plan))) for plan in plans]}
+    return {
+        "plans": [pool.number(packed(np.array(plan.numbers))) for plan in plans],
+        "idle": plans[0].idle,
+        "impulses": plans[0].impulses,
+    }
 
 
 def _texts(engine: Any, live: Live, mechanisms: Sequence[Mechanism], pool: Pool) -> dict[str, Any]:
@@ -195,66 +182,52 @@ def _texts(engine: Any, live: Live, mechanisms: Sequence[Mechanism], pool: Pool)
     by_step = [[text_of(engine, mechanism, step) for step in known] for mechanism in mechanisms]
     texts = [each[0] for each in by_step]
     first = texts[0]
-    if any((each.bodies, each.turns, each.springs) != (first.bodies, first.turns, first.springs) for each in texts):
+    if any((each.bodies, each.links, each.idle) != (first.bodies, first.links, first.idle) for each in texts):
         raise ValueError("the trees of a slider's places differ")
-    parts, numbers = template([each.text for told in by_step for each in told])
     return {
-        "parts": parts,
-        "numbers": [list(map(pool.number, numbers[at : at + len(known)])) for at in range(0, len(numbers), len(known))],
+        "texts": [[pool.number(each.text) for each in told] for told in by_step],
         "changes": [[pool.number(each.changes) for each in told] for told in by_step],
         "velocity": [pool.number(each.velocity) for each in texts],
         "bodies": first.bodies,
-        "turns": first.turns,
         "links": first.links,
-        "springs": first.springs,
+        "idle": first.idle,
     }
 
 
-def template(texts: Sequence[str]) -> tuple[list[str], list[str]]:
-    """What stands between the numbers of all texts, and the numbers of each, between commas. Raises ValueError."""
-    parts = [NUMBER.split(text) for text in texts]
-    if any(each != parts[0] for each in parts):
-        raise ValueError("the models of a slider's places differ in more than numbers")
-    return parts[0], [",".join(NUMBER.findall(text)) for text in texts]
+def _model(name: Name, engine: Any, *given: Any) -> dict[str, Any]:
+    """What the page's engine is given, or the sentence that says why it can't be: all sliders then act on nothing."""
+    try:
+        if isinstance(engine, str):
+            raise Unsupported(engine)
+        return _plans(engine, *given) if name == "munk" else _texts(engine, *given)
+    except Unsupported as reason:
+        return {"why": str(reason), "idle": list(ENGINES[name])}
 
 
-def _drawing(live: Live, scene: Scene, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict[str, Any]:
-    take = Take(scene, ends=live.ends, curves=live.curves, axle=live.axle)
-    left, bottom, width, height = drawn.box(mechanism, take, pose)
+def drawing(live: Live, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict[str, Any]:
+    """The parts of a picture as SVG; `pose` (times, bodies, 3), the truth."""
+    left, bottom, width, height = drawn.box(mechanism, live, pose)
     return {
         "box": " ".join(drawn.number(value) for value in (left, -bottom - height, width, height)),
-        "ground": drawn.ground(mechanism, take, pose),
-        "bodies": [drawn.body_shape(mechanism, take, body.name) for body in mechanism.bodies],
+        "ground": drawn.ground(mechanism, live, pose),
+        "bodies": [drawn.body_shape(mechanism, live, body.name) for body in mechanism.bodies],
         "size": mechanism.length_scale,
     }
 
 
 def first_picture(live: Live) -> str:
     """The exact motion at its start with its paths, for who has no script."""
-    take = Take(live.scene, samples=live.frames, ends=live.ends, traces=live.traces, curves=live.curves, axle=live.axle)
-    return picture(shown(take, {}), f"The mechanism: {live.word}")
-
-
-MUNK = "packages/munk2d.js"
-ENGINE_FILES = {MUNK: "munk2d", "packages/mujoco.js": "mujoco"}
-
-
-def engine_files(source: Source, lessons: Iterable[Lesson]) -> tuple[dict[str, bytes], list[str]]:
-    """The engines' files and the data of all live scenes, and a sentence for each engine that is missing."""
-    files: dict[str, bytes] = {}
-    missing = []
-    try:
-        content = source.registry.fetched(MUJOCO)
-        files |= {name: content[path] for path, name in MUJOCO.files}
-    except NotFetched as reason:
-        missing.append(f"This site was built without MuJoCo: {reason}.")
-    try:
-        files[MUNK] = compiled(source.cache)
-    except NotFetched as reason:
-        missing.append(f"This site was built without Munk2D, the engine in pymunk: {reason}.")
-    source.troubles += missing
-    known = {live.key: live for lesson in lessons for live in lesson.scenes}
-    for key, live in known.items():
-        told = json.dumps(data(live, source.answers), separators=(",", ":"), allow_nan=False)
-        files[f"live/{key}.json"] = told.encode()
-    return files, missing
+    mechanism = live.scene.mechanism()
+    pose = live.scene.motion(np.linspace(0.0, live.scene.duration, live.frames + 1)).pose
+    parts = drawing(live, mechanism, pose)
+    paths = (drawn.path(drawn.point_path(pose[:, mechanism.body_index(body)], point)) for body, point in live.traces)
+    traces = "".join(f'<path class="trace" d="{path}"/>' for path in paths)
+    bodies = "".join(
+        f'<g class="body" transform="{drawn.placed(where)}">{shape}</g>'
+        for where, shape in zip(pose[0], parts["bodies"], strict=True)
+    )
+    return (
+        f'<svg class="stage" viewBox="{parts["box"]}" role="img" aria-label="The mechanism: {live.word}">'
+        f'<g class="world" transform="scale(1 -1)"><g class="ground">{parts["ground"]}</g>'
+        f'<g class="motion truth"><g class="traces">{traces}</g>{bodies}</g><g class="overlay"></g></g></svg>'
+    )

@@ -14,7 +14,7 @@ from typing import Any
 import mujoco
 import numpy as np
 import pymunk as pymunk_package
-from pymunk.constraints import GearJoint, GrooveJoint, PinJoint, PivotJoint, SimpleMotor
+from pymunk.constraints import GrooveJoint, PivotJoint
 
 from engines import Unsupported
 from engines.mujoco import MuJoCo
@@ -22,8 +22,10 @@ from engines.mujoco.model import Model as TreeModel
 from engines.pymunk import Pymunk
 from engines.pymunk.joints.skate import AimedGroove, Zeroed
 from engines.pymunk.model import Model
-from reference.joints import Skate
+from reference.joints import Pin, Skate, Slot
 from reference.mechanism import Mechanism
+from reports.site.drawn import index_of
+from reports.site.live.sliders import ENGINES
 
 PARTS = ("", "opt", "stat")
 OWN = ("opt.timestep",)  # set by the page
@@ -37,11 +39,9 @@ class Text:
     changes: tuple[tuple[str, tuple[float, ...]], ...]
     velocity: tuple[float, ...]  # qvel at the start
     bodies: tuple[int, ...]  # MuJoCo's number of each body of the mechanism
-    turns: tuple[tuple[int, ...], ...]  # for each body: the places in qpos whose sum is its rotation since the start
-    links: tuple[
-        tuple[float, ...], ...
-    ]  # body, parent (-1: ground), places in qpos of its rotation and its slide (-1: none), the slide's direction
-    springs: bool  # whether solref and solimp act on anything
+    # Parents first: body, parent (-1: ground), places in qpos of rotation and slide (-1: none), the slide's direction.
+    links: tuple[tuple[float, ...], ...]
+    idle: tuple[str, ...]  # sliders of the engine that act on nothing
 
 
 def text_of(engine: MuJoCo, mechanism: Mechanism, step: float) -> Text:
@@ -58,14 +58,14 @@ def text_of(engine: MuJoCo, mechanism: Mechanism, step: float) -> Text:
     assert model.written_as is not None
     text = model.written_as.text()
     start = model.start()
+    springs = model.compiled.neq or model.compiled.npair
     return Text(
         text,
         tuple(changes(mujoco.MjModel.from_xml_string(text), model.compiled)),
         tuple(start.qvel.tolist()),
         tuple(int(model.compiled.body(f"body {number}").id) for number in range(len(mechanism.bodies))),
-        turns(model),
         links(model),
-        bool(model.compiled.neq or model.compiled.npair),
+        () if springs else tuple(name for name in ENGINES["mujoco"] if name != "integrator"),
     )
 
 
@@ -86,17 +86,8 @@ def changes(plain: Any, changed: Any) -> list[tuple[str, tuple[float, ...]]]:
     return found
 
 
-def turns(model: TreeModel) -> tuple[tuple[int, ...], ...]:
-    """For each body the places in qpos of the rotations from the ground to it."""
-    found: dict[int, tuple[int, ...]] = {}
-    for link in model.tree.links:  # parents first
-        own = () if link.rotation is None else (model.address[link.rotation],)
-        found[link.body] = (() if link.parent is None else found[link.parent]) + own
-    return tuple(found[number] for number in range(len(found)))
-
-
 def links(model: TreeModel) -> tuple[tuple[float, ...], ...]:
-    """Of each body that hangs on a hinge or slides in a slot what a page needs to let it start elsewhere."""
+    """Of each body, parents first, how its pose follows from qpos, as `Text` has it."""
     found = []
     for link in model.tree.links:
         rotation = -1 if link.rotation is None else model.address[link.rotation]
@@ -111,15 +102,24 @@ STEP = 1e-3  # s: told in seconds, nothing of these models depends on it
 class Part(IntEnum):
     """What a record of the plan is, as munk2d.c has it."""
 
-    PIVOT, GROOVE, MOTOR, PIN, GEAR, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED = range(1, 11)
+    PIVOT, GROOVE, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED = range(1, 8)
 
 
 Indexed = Callable[[Any], int]
 
 
-def plan_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> tuple[float, ...]:
-    """Gravity; collision slop and bias; the number of bodies; iterations; error_bias; 1 if that is what is left after
-    a step, 0 after a second; bodies; records. For a motion of `duration` [s]. Raises Unsupported.
+@dataclass(frozen=True)
+class Plan:
+    """A space for the page: its numbers; sliders that act on nothing; of each pin and slot the place of its impulse."""
+
+    numbers: tuple[float, ...]
+    idle: tuple[str, ...]
+    impulses: tuple[int, ...]  # -1 where no constraint of pymunk holds the joint
+
+
+def plan_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> Plan:
+    """The numbers: gravity; collision slop and bias; the number of bodies; iterations; error_bias; 1 if that is what is
+    left after a step, 0 after a second; bodies; records. For a motion of `duration` [s]. Raises Unsupported.
 
     A body: kind (0 dynamic, 1 kinematic), mass, moment, x, y, angle, vx, vy, rate, and its origin in our frame. A
     record: what it is, how many numbers follow, and these. Bodies are counted from 0, -1 is the ground, and records
@@ -133,20 +133,28 @@ def plan_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> tuple[floa
         return places.get(body, -1)
 
     constraints = _in_order(space)
-    biases = {each.error_bias for each in constraints if not any(each is aim.constraint for aim in _grooves(model))}
+    # Of a groove that is aimed nothing is closed, whatever the others' error_bias.
+    aimed = [aim.constraint for aim in model.aims if isinstance(aim, AimedGroove)]
+    biases = {each.error_bias for each in constraints if each not in aimed}
     gravity = (each / unit**2 for each in space.gravity)
     head = (*gravity, space.collision_slop, space.collision_bias, len(model.bodies), space.iterations)
     head += (max(biases, default=1.0), float(unit != 1))
-    records = [_constraint(each, index, unit) for each in constraints]
+    records = [_constraint(each, index) for each in constraints]
     records += [_shape(each, index) for each in space.shapes]
     records += _by_hand(model, mechanism)
     flat = [head, *_bodies(model), *((part, len(numbers), *numbers) for part, numbers in records)]
-    return tuple(map(float, chain(*flat)))
-
-
-def _grooves(model: Model) -> list[AimedGroove]:
-    """Those that are aimed: nothing of their gap is closed, whatever the others' error_bias."""
-    return [aim for aim in model.aims if isinstance(aim, AimedGroove)]
+    idle = {"iterations": not (constraints or space.shapes), "bias": not biases}
+    held = [(index(each.a), index(each.b)) for each in constraints]
+    pairs = [
+        (index_of(mechanism, joint.first), index_of(mechanism, joint.second))
+        for joint in mechanism.joints
+        if isinstance(joint, Pin | Slot)
+    ]
+    return Plan(
+        tuple(map(float, chain(*flat))),
+        tuple(name for name in idle if idle[name]),
+        tuple(held.index(pair) if pair in held else -1 for pair in pairs),
+    )
 
 
 def _in_order(space: Any) -> list[Any]:
@@ -164,19 +172,13 @@ def _bodies(model: Model) -> list[tuple[float, ...]]:
     return told
 
 
-def _constraint(each: Any, index: Indexed, unit: float) -> tuple[Part, tuple[float, ...]]:
+def _constraint(each: Any, index: Indexed) -> tuple[Part, tuple[float, ...]]:
     between = (index(each.a), index(each.b))
     match each:
         case PivotJoint():
             return Part.PIVOT, (*between, *each.anchor_a, *each.anchor_b)
         case GrooveJoint():
             return Part.GROOVE, (*between, *each.groove_a, *each.groove_b, *each.anchor_b)
-        case SimpleMotor():
-            return Part.MOTOR, (*between, each.rate / unit)
-        case PinJoint():
-            return Part.PIN, (*between, *each.anchor_a, *each.anchor_b, each.distance)
-        case GearJoint():
-            return Part.GEAR, (*between, each.phase, each.ratio)
         case _:
             raise Unsupported(f"the page knows no {type(each).__name__}")
 
