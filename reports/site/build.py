@@ -66,11 +66,10 @@ def lesson_page(lesson: Lesson, source: Source, names: Mapping[str, str], elsewh
         before = live.located(each.before)
         told = {name: each.texts[before.get(name, each.start)] for name, each in live.controls().items()}
         more = None
-        page, heading = each.section or ("", "")
-        there = markdown.section(source.pages.get(f"{page}.md", ""), heading) if page else None
+        there = markdown.section(source.pages.get(f"{lesson.page}.md", ""), each.section)
         if there is not None:  # a page made of few rows lacks some parts
-            href = f"../results/{page}.html#{markdown.slug(heading)}"
-            more = {"heading": heading, "href": href, "body": quoted(there)}
+            href = f"../results/{lesson.page}.html#{markdown.slug(each.section)}"
+            more = {"heading": each.section, "href": href, "body": quoted(there)}
 
         def dragged(text: str, told: Mapping[str, str] = told) -> Markup:
             html = markdown.html(text)
@@ -87,7 +86,7 @@ def lesson_page(lesson: Lesson, source: Source, names: Mapping[str, str], elsewh
                 "scene": lesson.scenes.index(live),
                 "before": before,
                 "after": live.located(each.after),
-                "shown": " ".join(sorted(each.shown)),
+                "shown": " ".join(("paths", *each.shown)),
                 "more": more,
             }
         )

@@ -49,6 +49,11 @@ class Stroke:
     points: Array
     closed: bool = False
 
+    @property
+    def outline(self) -> Array:
+        """The points, the first one at the end too if it is closed."""
+        return np.vstack([self.points, self.points[:1]]) if self.closed else self.points
+
     def svg(self) -> str:
         """As an element."""
         return f'<path class="{self.kind}" d="{path(self.points, self.closed)}"/>'

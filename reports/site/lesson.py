@@ -13,11 +13,13 @@ from engines import Engine
 from reference.scene import Scene
 from reports.model.cells import Cell
 from reports.model.tasks import Answer, Motion
-from reports.site.live.sliders import Live, Look, Name
+from reports.site.live.sliders import DOCUMENTED, ENGINES, Live, Look, Name
 from reports.site.packages import Registry
 
 FRAMES = 100  # of a moving picture, at most: what an eye can tell in six seconds
 FOLDER = Path(__file__).parent / "lessons"
+BOTH: dict[str, Any] = dict.fromkeys(ENGINES, DOCUMENTED)
+FORCES, CENTRE = ("reactions",), ("centre",)  # overlays
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ class Experiment:
 
     `before`, `after`: values of the controls of the scene called `scene`, the others as they come; `after` is a change
     of `before`. claims: of the errors after, in those before. causes: further changes with what they do to the error
-    after, so that a sentence that names a cause can be checked by switching it off. shown: overlays.
+    after, so that a sentence that names a cause can be checked by switching it off. shown: overlays beside the paths.
     """
 
     scene: str
@@ -72,8 +74,8 @@ class Experiment:
     after: Mapping[str, Any] = field(default_factory=dict)
     claims: tuple[Claim, ...] = ()
     causes: tuple[tuple[Mapping[str, Any], Claim], ...] = ()
-    shown: frozenset[str] = frozenset({"paths"})
-    section: tuple[str, str] | None = None  # (page, heading) of the Markdown page that says more
+    shown: tuple[str, ...] = ()
+    section: str = ""  # the heading of what the Markdown page of the same mechanism says of it
 
 
 @dataclass(frozen=True)

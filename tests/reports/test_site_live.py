@@ -157,7 +157,7 @@ def test_a_live_scene_holds_the_truth_of_every_place():
     held = json.loads(json.dumps(live_data(live, {}), allow_nan=False))
     frames = np.arange(live.frames + 1)
     for index, scene in enumerate(live.places()):
-        truth = np.frombuffer(base64.b64decode(held["pool"][held["truth"][index]]), dtype="<f8").reshape(-1, 1, 6)
+        truth = np.frombuffer(base64.b64decode(held["places"][index]["truth"]), dtype="<f8").reshape(-1, 1, 6)
         motion = scene.motion(frames * (scene.duration / live.frames))
         assert np.array_equal(truth, np.concatenate([motion.pose, motion.twist], axis=-1))
     assert held["native"]["munk"] == [None] * len(live.munk)

@@ -1,26 +1,26 @@
 // @ts-check
 /** The engines themselves: MuJoCo and Munk2D in WebAssembly, run as the Python adapters run them. */
 
-import { doubles, mechanismOf, ofStep, split, truth } from "./live_data.js";
+import { doubles, mechanismOf, modelOf, split, truth } from "./live_data.js";
 
 /** @typedef {import("./live_data.js").Run} Run
- * @typedef {import("./live_data.js").Texts} Texts @typedef {import("./live_data.js").Plans} Plans */
+ * @typedef {import("./live_data.js").Text} Text @typedef {import("./live_data.js").Plan} Plan */
 
 const HEAD = 8; // numbers of a plan before its bodies, see live/models.py
 const BODY = 11; // numbers of a body
 
 /** Poses and twists at the samples by MuJoCo, and the springs of its rows there. @param {any} mujoco @param {Run} run */
 export function runMujoco(mujoco, run) {
-  const texts = /** @type {Texts} */ (run.scene.mujoco[run.mujoco]);
-  const model = mujoco.MjModel.from_xml_string(ofStep(run, texts.texts));
+  const told = /** @type {Text} */ (modelOf(run, "mujoco"));
+  const model = mujoco.MjModel.from_xml_string(told.text);
   const data = new mujoco.MjData(model);
   try {
-    change(model, ofStep(run, texts.changes));
+    change(model, told.changes);
     set(model, run);
-    data.qvel.set(run.scene.pool[texts.velocity[run.place]]);
-    if (run.start) begin(run, texts, data);
+    data.qvel.set(told.velocity);
+    if (run.start) begin(run, told, data);
     mujoco.mj_forward(model, data);
-    return { ...states(run, texts, mujoco, model, data), spring: springOf(data) };
+    return { ...states(run, told, mujoco, model, data), spring: springOf(data) };
   } finally {
     data.delete();
     model.delete();
@@ -53,11 +53,11 @@ function set(model, run) {
   }
 }
 
-/** Start where the reader let go: hinges and slides from the poses of bodies. @param {Run} run @param {Texts} texts @param {any} data */
-function begin(run, texts, data) {
+/** Start where the reader let go: hinges and slides from the poses of bodies. @param {Run} run @param {Text} told @param {any} data */
+function begin(run, told, data) {
   const now = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
   const old = /** @type {import("./exact.js").Mechanism} */ (mechanismOf({ ...run, start: null }));
-  for (const [body, parent, rotation, slide, dx, dy] of texts.links) {
+  for (const [body, parent, rotation, slide, dx, dy] of told.links) {
     const moved = (/** @type {number} */ own, /** @type {number} */ axis) => (own < 0 ? 0 : now.pose[3 * own + axis] - old.pose[3 * own + axis]);
     const rate = (/** @type {number} */ own) => (own < 0 ? 0 : now.twist[3 * own + 2]);
     if (rotation >= 0) {
@@ -78,8 +78,8 @@ function springOf(data) {
   return { k, b, impedance };
 }
 
-/** @param {Run} run @param {Texts} texts @param {any} mujoco @param {any} model @param {any} data */
-function states(run, texts, mujoco, model, data) {
+/** @param {Run} run @param {Text} told @param {any} mujoco @param {any} model @param {any} data */
+function states(run, told, mujoco, model, data) {
   const { samples, every, step } = run;
   const compiled = { ...run, start: null };
   const first = mechanismOf(compiled)?.pose ?? truth(compiled).pose; // models in tree coordinates tell changes of angles
@@ -89,8 +89,8 @@ function states(run, texts, mujoco, model, data) {
     const { xpos, qpos, cvel, subtree_com: com } = data;
     /** @type {number[]} */
     const turned = [];
-    for (const [body, parent, rotation] of texts.links) turned[body] = (turned[parent] ?? 0) + (rotation < 0 ? 0 : qpos[rotation]);
-    return texts.bodies.flatMap((own, body) => {
+    for (const [body, parent, rotation] of told.links) turned[body] = (turned[parent] ?? 0) + (rotation < 0 ? 0 : qpos[rotation]);
+    return told.bodies.flatMap((own, body) => {
       const [x, y] = [xpos[3 * own], xpos[3 * own + 1]];
       const [rate, vx, vy] = cvel.subarray(6 * own + 2, 6 * own + 5); // of the point at the centre of mass of the tree
       const root = 3 * model.body_rootid[own];
@@ -105,15 +105,14 @@ function states(run, texts, mujoco, model, data) {
     if (!(Math.abs(data.time - sample * every * step) < step / 2)) break;
     found.push(state());
   }
-  while (found.length <= samples) found.push(new Array(6 * texts.bodies.length).fill(NaN));
+  while (found.length <= samples) found.push(new Array(6 * told.bodies.length).fill(NaN));
   return split(found);
 }
 
 /** Poses and twists at the samples by Munk2D; with `last`, after `samples` a step more of so many iterations, and each
  * joint's impulse after it [N s]. @param {any} munk @param {Run} run @param {number} last */
 export function runMunk(munk, run, last = 0) {
-  const plans = /** @type {Plans} */ (run.scene.munk[run.munk]);
-  const plan = doubles(/** @type {string} */ (run.scene.pool[plans.plans[run.place]]));
+  const plan = doubles(/** @type {Plan} */ (modelOf(run, "munk")).numbers);
   const bodies = plan[HEAD - 4];
   if (run.start) place(run, plan);
   const iterations = run.iterations ?? plan[HEAD - 3];

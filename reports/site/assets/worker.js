@@ -1,7 +1,7 @@
 // @ts-check
 /** Runs the engines beside the page, so that the page never waits: a setting comes in, motions go out. */
 
-import { doubles, mechanismOf, pooled, runOf, truth, whyNot } from "./live_data.js";
+import { doubles, mechanismOf, modelOf, runOf, truth } from "./live_data.js";
 import { load, runMujoco, runMunk } from "./live_engines.js";
 import { errors, finite } from "./motion.js";
 
@@ -36,7 +36,7 @@ async function answer(setting, engines) {
   /** @type {Record<string, string>} */
   const lost = {};
   for (const name of /** @type {Name[]} */ (["munk", "mujoco"])) {
-    const why = whyNot(scene, setting, name) || (engines[name] ? "" : "this site was built without it");
+    const why = modelOf(run, name).why || (engines[name] ? "" : "this site was built without it");
     const kept = stored(scene, setting, name);
     if (why && !kept) {
       lost[name] = why;
@@ -57,12 +57,11 @@ async function answer(setting, engines) {
     measure, bodies, centre, versions, exact, motions, lost,
     window: window.map((frame) => Math.round(frame * stretch)),
     t: Float64Array.from({ length: run.samples + 1 }, (_, index) => index * run.every * run.step),
-    drawing: pooled(run, scene.drawings), joints: pooled(run, scene.joints), blades: pooled(run, scene.blades),
-    traces: pooled(run, scene.traces),
-    forces: exact.missed === null ? pooled(run, /** @type {number[]} */ (scene.forces)) : exact.forces,
+    drawing: run.at.drawing, joints: run.at.joints, blades: run.at.blades, traces: run.at.traces,
+    forces: exact.missed === null ? run.at.forces : exact.forces,
     mechanism: mechanismOf(run), release: engines.mujoco?.mj_versionString() ?? "",
     // What acts on nothing in this model: its sliders are not to be moved.
-    idle: [...scene.munk[setting.munk].idle, ...scene.mujoco[setting.mujoco].idle],
+    idle: [...modelOf(run, "munk").idle, ...modelOf(run, "mujoco").idle],
   };
 }
 
@@ -80,7 +79,7 @@ async function sweeps(setting, frame) {
     const width = 3 * scene.bodies.length;
     found.push({ pose: pose.slice(2 * width), twist: twist.slice(2 * width), impulses, left });
   }
-  return { found, whole, which: /** @type {import("./live_data.js").Plans} */ (scene.munk[setting.munk]).impulses, step: run.step };
+  return { found, whole, which: modelOf(run, "munk").impulses, step: run.step };
 }
 
 onmessage = async ({ data: { id, kind, setting, frame, packages, wanted, folder: where } }) => {
