@@ -34,7 +34,7 @@ KEYS = 60  # instants of an SVG that are told apart; between them the pose goes 
 RATE = 25  # frames a second, of a film; a GIF's frames last whole hundredths of a second, as these do
 INCHES = (12.8, 5.6)
 DOTS = 100  # an inch of a film: 1280 points wide
-LOOKS = (("first", 7.0, ""), ("second", 5.0, "10 5"), ("fourth", 4.0, "3 5"), ("sixth", 4.0, "12 4 2 4"))
+LOOKS = ((7.0, ""), (5.0, "10 5"), (4.0, "3 5"), (4.0, "12 4 2 4"))  # width and dashes of motions [pt]
 DECADES = 8  # of the scale of errors, at most
 
 
@@ -86,9 +86,7 @@ def _keyframes(label: str, places: Array) -> str:
 
 def roles_of(shown: Shown) -> list[str]:
     """The colour of each motion: that of its engine, as in all charts; variants differ by their lines."""
-    engines = {words: engine.name for words, engine, _ in shown.take.methods}
-    usual = zip(shown.motions, LOOKS, strict=False)
-    return [role(family_of(engines[name])) if name in engines else other for name, (other, _, _) in usual]
+    return [role(family_of(engine.name)) for words, engine, _ in shown.take.methods if words in shown.motions]
 
 
 def decades(errors: Sequence[Array]) -> tuple[int, int]:
@@ -182,7 +180,7 @@ def _stage(panel: Axes, shown: Shown, theme: Theme) -> Moving:
     for fixed in drawn.ground_lines(shown.mechanism, shown.take, shown.truth.pose):
         panel.plot(*fixed.outline.T, color=theme.quiet, linewidth=1.0)
     out: Moving = []
-    widths = (width for _, width, _ in LOOKS)
+    widths = (width for width, _ in LOOKS)
     looks = [(getattr(theme, own), width) for own, width in zip(roles_of(shown), widths, strict=False)]
     looks.append((theme.ink, 2.0))
     for motion, ((colour, thick), pose) in enumerate(
@@ -208,7 +206,7 @@ def _chart(panel: Axes, shown: Shown, theme: Theme) -> Growing:
     panel.tick_params(labelsize=11)
     panel.set_title("largest error of an angle [rad]", fontsize=12, color=theme.ink, loc="left")
     out: Growing = []
-    for own, (_, _, dash), (name, pose) in zip(roles_of(shown), LOOKS, shown.motions.items(), strict=False):
+    for own, (_, dash), (name, pose) in zip(roles_of(shown), LOOKS, shown.motions.items(), strict=False):
         error = np.abs(pose - shown.truth.pose)[..., 2].max(axis=1)
         error = np.where(error > 0, error, np.nan)
         style = (0, tuple(float(part) / 2 for part in dash.split())) if dash else "-"

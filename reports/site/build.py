@@ -46,18 +46,17 @@ def _variables(theme: Theme) -> str:
 
 
 OWN_FILE = re.compile(r'(href|src)="(?!https?:|#|mailto:|\.\./)([^"]+)"')
-Elsewhere = Callable[[str], str]
 
 
 DRAGGED = re.compile(r"\{(\w+)\}")  # a number in a lesson's words that moves a control
 
 
-def lesson_page(lesson: Lesson, source: Source, names: Mapping[str, str], elsewhere: Elsewhere) -> dict[str, object]:
-    """For lesson.html; `names`: pages by the Markdown file's name, `elsewhere`: where other files stand."""
+def lesson_page(lesson: Lesson, source: Source, names: Mapping[str, str]) -> dict[str, object]:
+    """For lesson.html; `names`: pages by the Markdown file's name."""
 
     def quoted(text: str) -> Markup:
         """A part of a page of results, without the anchors that it has there; its files stand in another folder."""
-        told = markdown.linked(re.sub(r' id="[^"]*"', "", markdown.html(text)), names, elsewhere)
+        told = markdown.linked(re.sub(r' id="[^"]*"', "", markdown.html(text)), names, _elsewhere)
         return Markup(OWN_FILE.sub(r'\1="../results/\2"', told))
 
     parts = []
@@ -125,7 +124,7 @@ Files = dict[str, bytes]
 
 def tasks(lessons: Iterable[Lesson] = LESSONS) -> tuple[Motion, ...]:
     """All motions that the lessons show, each once."""
-    return tuple(dict.fromkeys(task for lesson in lessons for task in lesson.tasks()))
+    return tuple(dict.fromkeys(task for lesson in lessons for live in lesson.scenes for task in live.stored().values()))
 
 
 def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
@@ -148,7 +147,13 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     for live in {live.key: live for lesson in lessons for live in lesson.scenes}.values():
         told = json.dumps(data(live, source.answers), separators=(",", ":"), allow_nan=False)
         files[f"live/{live.key}.json"] = told.encode()
-    environment = _environment()
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE / "templates"),
+        undefined=jinja2.StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
     names = {name.removesuffix(".md"): name.removesuffix(".md") + ".html" for name in source.pages}
     pages: list[str] = []
 
@@ -162,7 +167,7 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
         path = f"results/{names[name.removesuffix('.md')]}"
         write(path, "article.html", title=markdown.title(text) or name, body=Markup(body))
     for lesson in lessons:
-        told = lesson_page(lesson, source, names, _elsewhere)
+        told = lesson_page(lesson, source, names)
         engines = [name for name, path in ENGINE_FILES.items() if path in files]
         write(f"lessons/{lesson.name}.html", "lesson.html", **told, engines=engines)
     api = part("the reference", reference_pages) if source.api else {}
@@ -209,16 +214,6 @@ def _quoted(source: Source, part: str) -> str:
     if not source.contributing:
         return "The steps stand in CONTRIBUTING.md of the checkout."
     return markdown.section(source.contributing, part) or f"CONTRIBUTING.md has no part {part!r}."
-
-
-def _environment() -> jinja2.Environment:
-    return jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE / "templates"),
-        undefined=jinja2.StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
 
 
 def _elsewhere(name: str) -> str:

@@ -140,11 +140,6 @@ def ground_lines(mechanism: Mechanism, look: Look, pose: Array) -> list[Stroke]:
     return [*lines, *(Stroke("curve fixed", np.array(curve)) for owner, curve in look.curves if owner is None)]
 
 
-def ground(mechanism: Mechanism, look: Look, pose: Array) -> str:
-    """The same as SVG."""
-    return "".join(line.svg() for line in ground_lines(mechanism, look, pose))
-
-
 def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:
     """The part of the ground's curve on which a body rolls (points, 2) [m], or all of a closed one."""
     curve = joint.rolling.ground
@@ -156,25 +151,20 @@ def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:
     return curve.point(np.linspace(joint.rolling.ground_arc - reach, joint.rolling.ground_arc + reach, OUTLINE))
 
 
-def point_path(pose: Array, point: Point) -> Array:
+def point_path(pose: Array, point: Point | Array) -> Array:
     """Where a point of a body is (times, 2) [m], for its poses (times, 3)."""
     return pose[:, :2] + rotated(pose[:, 2], np.array(point))
 
 
 def box(mechanism: Mechanism, look: Look, pose: Array) -> tuple[float, float, float, float]:
     """Left, bottom, width and height [m] of what the truth passes through, with a margin."""
-    corners = []
-    for index, body in enumerate(mechanism.bodies):
-        points: list[Point] = [(0.0, 0.0), *look.ends.get(body.name, ())]
-        for joint in mechanism.joints:
-            for owner, attribute in ((joint.first, "first_point"), (joint.second, "second_point")):
-                if owner == body.name and hasattr(joint, attribute):
-                    points.append(getattr(joint, attribute))
-            if isinstance(joint, Roll):
-                for owner, curve in ((joint.first, joint.rolling.ground), (joint.second, joint.rolling.body)):
-                    if owner == body.name:
-                        points += [tuple(each) for each in curve.point(np.linspace(0, curve.length, 24))]
-        corners += [point_path(pose[:, index], point) for point in points]
+    corners = [
+        point_path(pose[:, index], point)
+        for index, body in enumerate(mechanism.bodies)
+        for line in body_lines(mechanism, look, body.name)
+        if line.kind != "curve"  # an instant centre goes far away
+        for point in line.points
+    ]
     fixed = [
         joint.first_point if joint.first is None else joint.second_point
         for joint in mechanism.joints

@@ -112,10 +112,6 @@ class Lesson:
             raise ValueError(f"lesson {self.name!r}: words for {len(parts)} of {len(self.experiments)} experiments")
         return parts
 
-    def tasks(self) -> tuple[Motion, ...]:
-        """All motions that Python has to run for it."""
-        return tuple(motion for live in self.scenes for motion in live.stored().values())
-
 
 def part_of(text: str) -> Part:
     """Read one: a heading, words, and perhaps a quotation: a question, a list of answers, the right one in bold."""

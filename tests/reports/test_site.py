@@ -283,7 +283,9 @@ def test_a_picture_is_xml_without_script_and_the_same_every_time(falling):
 def test_a_method_that_gave_up_stays_where_it_was(falling):
     pose = falling.motions["pymunk default"].copy()
     pose[40:] = np.nan
-    text = animation(Shown(falling.take, falling.mechanism, falling.t, falling.truth, {"one": pose}, {}), "Lost")
+    text = animation(
+        Shown(falling.take, falling.mechanism, falling.t, falling.truth, {"pymunk default": pose}, {}), "Lost"
+    )
     assert "nan" not in text
     found = keys(text, "m0b0")
     assert np.all(found[-5:, 1:] == found[-1, 1:])

@@ -30,7 +30,8 @@ let number = 0;
 let shown = null;
 /** @type {number[]|null} the pose at which the reader let go */
 let start = null;
-/** @type {{setting: Setting, play: boolean}|null} what is wanted next: of settings that wait, the last one */
+/** @type {{setting: Setting, play: boolean, ways: Record<string, string>}|null} what is wanted next: of settings that wait,
+ * the last one, with what each engine's way is called */
 let waiting = null;
 let busy = false;
 
@@ -65,18 +66,18 @@ function failed(reason) {
 
 /** Show what the form says; while one runs, of those that follow the last one wins. @param {boolean} play */
 function run(play) {
-  waiting = { setting: form.setting(start), play };
+  const ways = Object.fromEntries(Object.keys(NAMES).map((name) => [name, [form.words(name), ...form.changed(name)].join(", ")]));
+  waiting = { setting: form.setting(start), play, ways };
   if (!busy) requestAnimationFrame(next);
 }
 
 async function next() {
   if (!waiting || busy) return;
-  const { setting, play } = waiting;
+  const { setting, play, ways } = waiting;
   [waiting, busy] = [null, true];
   try {
     load();
-    const answer = await ask({ setting });
-    show(answer, play);
+    show(await ask({ setting }), play, ways);
   } catch (reason) {
     failed(reason);
   }
@@ -105,8 +106,8 @@ function pathOf(pose, bodies, body, point) {
   return path;
 }
 
-/** @param {Answer} answer @param {boolean} play */
-function show(answer, play) {
+/** @param {Answer} answer @param {boolean} play @param {Record<string, string>} ways */
+function show(answer, play, ways) {
   shown = answer;
   const { motions, exact, bodies, traces, lost } = answer;
   player.stop();
@@ -123,16 +124,14 @@ function show(answer, play) {
   });
   for (const name in NAMES) {
     const entry = find(`.legend .method-${MARKS[name]}`);
-    const way = [form.words(name), ...form.changed(name)].join(", ");
     const from = motions.find((/** @type {any} */ one) => one.name === name)?.from;
-    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${way}${from ? " (stored: run in Python)" : ""}`;
+    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${ways[name]}${from ? " (stored: run in Python)" : ""}`;
     entry.classList.toggle("lost", name in lost);
     if (name in lost) find(`.legend .method-${MARKS[name]} .figure`).textContent = lost[name];
   }
   form.label(answer.idle);
   find(".status").textContent = statusOf(answer);
   root.classList.add("ready");
-  root.dataset.errors = JSON.stringify(Object.fromEntries(motions.map((/** @type {any} */ { name, error }) => [name, error])));
   find(".next").hidden = !motions.some((/** @type {any} */ { name, impulses }) => name === "munk" && impulses) || !answer.joints.length;
   find(".sweeps").hidden = true;
   figure.classList.toggle("can-grab", Boolean(answer.mechanism));
@@ -144,20 +143,19 @@ function show(answer, play) {
 }
 
 /** What MuJoCo's loop is, by its own numbers. @param {any} spring @param {Answer} answer */
-function springWords(spring, { joints, blades, motions }) {
+function springWords(spring, { joints, blades, motions, forces }) {
   if (!(joints.length + blades.length) || !motions.some((/** @type {any} */ { name }) => name === "mujoco")) return "";
-  if (!spring) return "MuJoCo needs no spring here: its joints are hinges of a tree, which can't open.";
-  const { k, b, impedance } = spring;
-  return `MuJoCo holds this ${blades.length ? "contact" : "loop"} by a spring and a damper: a gap dies out in about ${told(2000 / b)} ms, and of an acceleration a that opens it (1 − d)/(d k) a stays: ${told((1 - impedance) / (impedance * k) * 1e6)} µm for each m/s².`;
+  const contact = blades.length || forces.some((/** @type {any} */ each) => each.contact);
+  if (!spring) return contact ? "" : "MuJoCo needs no spring here: its joints are hinges of a tree, which can't open.";
+  const [k, b, impedance] = spring; // of a unit of inertia: 1/s^2, 1/s, 1
+  return `MuJoCo holds this ${contact ? "contact" : "loop"} by a spring and a damper: a gap dies out in about ${told(2000 / b)} ms, and of an acceleration a that opens it (1 − d)/(d k) a stays: ${told((1 - impedance) / (impedance * k) * 1e6)} µm for each m/s².`;
 }
 
 /** @param {Answer} answer */
 function statusOf({ exact, motions, versions, release }) {
   const missed = exact.missed === null ? "" : `Here the page finds the exact motion itself, to ${told(Math.max(exact.missed, 1e-15))} m or rad. `;
-  const apart = motions.filter((/** @type {any} */ each) => each.apart !== null).map((/** @type {any} */ { name, apart: by }) => {
-    root.dataset[`apart_${name}`] = String(by);
-    return `${NAMES[name]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python are at most ${told(by)} m or rad apart.`;
-  });
+  const apart = motions.filter((/** @type {any} */ each) => each.apart !== null).map((/** @type {any} */ { name, apart: by }) =>
+    `${NAMES[name]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python are at most ${told(by)} m or rad apart.`);
   return missed + apart.join(" ");
 }
 

@@ -4,8 +4,7 @@
 import { motion, released } from "./exact.js";
 
 /**
- * @typedef {{text: string, changes: [string, number[]][], velocity: number[], bodies: number[], links: number[][],
- *   idle: string[]}} Text
+ * @typedef {{text: string, bodies: number[], links: number[][], idle: string[]}} Text
  * @typedef {{numbers: string, idle: string[], impulses: number[]}} Plan
  * @typedef {{why: string, idle: string[]}} Missing
  * @typedef {{box: string, ground: string, bodies: string[], size: number}} Drawing
@@ -70,13 +69,6 @@ export function truth(run) {
 
 /** Poses and twists apart. @param {ArrayLike<number>[]} states of every sample, six numbers a body */
 export function split(states) {
-  const bodies = states[0].length / 6;
-  const [pose, twist] = [new Float64Array(3 * bodies * states.length), new Float64Array(3 * bodies * states.length)];
-  states.forEach((state, sample) => {
-    for (let index = 0; index < 6 * bodies; index++) {
-      const at = 3 * (sample * bodies + Math.floor(index / 6)) + (index % 3);
-      (index % 6 < 3 ? pose : twist)[at] = state[index];
-    }
-  });
-  return { pose, twist };
+  const half = (/** @type {boolean} */ first) => Float64Array.from(states.flatMap((state) => Array.from(state).filter((_, index) => index % 6 < 3 === first)));
+  return { pose: half(true), twist: half(false) };
 }

@@ -9,31 +9,20 @@ import { doubles, mechanismOf, modelOf, split, truth } from "./live_data.js";
 const HEAD = 8; // numbers of a plan before its bodies, see live/models.py
 const BODY = 11; // numbers of a body
 
-/** Poses and twists at the samples by MuJoCo, and the springs of its rows there. @param {any} mujoco @param {Run} run */
+/** Poses and twists at the samples by MuJoCo, and the spring that its first row is at the end. @param {any} mujoco @param {Run} run */
 export function runMujoco(mujoco, run) {
   const told = /** @type {Text} */ (modelOf(run, "mujoco"));
   const model = mujoco.MjModel.from_xml_string(told.text);
   const data = new mujoco.MjData(model);
   try {
-    change(model, told.changes);
     set(model, run);
-    data.qvel.set(told.velocity);
+    mujoco.mj_resetDataKeyframe(model, data, 0);
     if (run.start) begin(run, told, data);
     mujoco.mj_forward(model, data);
-    return { ...states(run, told, mujoco, model, data), spring: springOf(data) };
+    return { ...states(run, told, mujoco, model, data), spring: data.nefc ? [...data.efc_KBIP.slice(0, 3)] : null };
   } finally {
     data.delete();
     model.delete();
-  }
-}
-
-/** What the adapter changes in the compiled model. @param {any} model @param {[string, number[]][]} changes */
-function change(model, changes) {
-  for (const [path, values] of changes) {
-    const [name, ...parts] = path.split(".").reverse();
-    const owner = parts.reverse().reduce((object, part) => object[part], model);
-    if (typeof owner[name] === "number") owner[name] = values[0];
-    else owner[name].set(values);
   }
 }
 
@@ -69,13 +58,6 @@ function begin(run, told, data) {
       data.qvel[slide] = dx * now.twist[3 * body] + dy * now.twist[3 * body + 1];
     }
   }
-}
-
-/** The stiffest-loaded row of a constraint as a spring of a unit of inertia: k [1/s^2], b [1/s], impedance. @param {any} data */
-function springOf(data) {
-  if (!data.nefc) return null;
-  const [k, b, impedance] = data.efc_KBIP;
-  return { k, b, impedance };
 }
 
 /** @param {Run} run @param {Text} told @param {any} mujoco @param {any} model @param {any} data */

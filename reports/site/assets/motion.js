@@ -22,10 +22,7 @@ export const UNITS = { angle: "rad", position: "m" };
  * @returns {[number, number, number]} */
 export function poseAt(pose, bodies, frame, body) {
   const start = 3 * (frame * bodies + body);
-  const read = (/** @type {number} */ index) => {
-    const value = pose[index];
-    return value ?? NaN;
-  };
+  const read = (/** @type {number} */ index) => pose[index] ?? NaN;
   return [read(start), read(start + 1), read(start + 2)];
 }
 

@@ -19,16 +19,6 @@ const DASHES = /** @type {Record<string, string>} */ ({ default: "2 3", tuned: "
 /** @type {Record<string, string>} */
 let headings = {};
 
-/** @returns {Promise<Row[]>} */
-async function read() {
-  const told = await (await fetch("rows.json")).json();
-  const { columns, rows } = told;
-  ({ looks, headings } = told);
-  return rows.map((/** @type {(string|number|null)[]} */ row) =>
-    Object.fromEntries(columns.map((/** @type {string} */ name, /** @type {number} */ i) => [name, row[i]])),
-  );
-}
-
 /** @param {string} name */
 const chosen = (name) => /** @type {HTMLSelectElement|HTMLInputElement} */ (form.elements.namedItem(name)).value;
 
@@ -106,7 +96,10 @@ function keep() {
 }
 
 async function begin() {
-  const rows = await read();
+  const told = await (await fetch("rows.json")).json();
+  ({ looks, headings } = told);
+  /** @type {Row[]} */
+  const rows = told.rows.map((/** @type {unknown[]} */ row) => Object.fromEntries(told.columns.map((/** @type {string} */ name, /** @type {number} */ i) => [name, row[i]])));
   const unique = (/** @type {string} */ name) => [...new Set(rows.map((row) => String(row[name])))].sort();
   fill(/** @type {HTMLSelectElement} */ (form.elements.namedItem("scene")), unique("scene"));
   fill(/** @type {HTMLSelectElement} */ (form.elements.namedItem("engine")), ["", ...unique("engine")]);

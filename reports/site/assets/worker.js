@@ -21,12 +21,6 @@ async function sceneOf(key) {
   return known;
 }
 
-/** What Python stored of a way, at the samples; null where there is none, or other settings. @param {Scene} scene @param {Setting} setting @param {Name} name */
-function stored(scene, setting, name) {
-  const kept = setting.own ? scene.native[name][setting[name]] : null;
-  return kept && !setting.start ? kept.map(doubles) : null;
-}
-
 /** All that a page shows of a setting. @param {Setting} setting @param {{mujoco: any, munk: any}} engines */
 async function answer(setting, engines) {
   const scene = await sceneOf(setting.key);
@@ -37,7 +31,7 @@ async function answer(setting, engines) {
   const lost = {};
   for (const name of /** @type {Name[]} */ (["munk", "mujoco"])) {
     const why = modelOf(run, name).why || (engines[name] ? "" : "this site was built without it");
-    const kept = stored(scene, setting, name);
+    const kept = setting.own ? scene.native[name][setting[name]]?.map(doubles) : null; // as Python stored it
     if (why && !kept) {
       lost[name] = why;
       continue;

@@ -24,9 +24,9 @@ from reports.site import drawn
 from reports.site.drawn import index_of, joints_of, loose, measure_of
 from reports.site.embed import forces
 from reports.site.live.models import plan_of, text_of
-from reports.site.live.sliders import ENGINES, Live, Name
+from reports.site.live.sliders import ENGINES, NAMES, Live, Name
 
-PACKAGES = {"munk": ("pymunk", "pymunk"), "mujoco": ("MuJoCo", "mujoco-core")}  # its name, and that of its package
+PACKAGES: dict[Name, str] = {"munk": "pymunk", "mujoco": "mujoco-core"}
 
 
 def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
@@ -55,7 +55,7 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
             name: [_native(stored.get((name, index)), way) for index, way in enumerate(each)]
             for name, each in ways.items()
         },
-        "versions": {name: native_version(name) for name in ENGINES},
+        "versions": {name: f"{NAMES[name]} {version(package)}" for name, package in PACKAGES.items()},
     }
 
 
@@ -104,12 +104,6 @@ def _equations(mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-def native_version(engine: str) -> str:
-    """Such as "MuJoCo 4.0.1": what Python runs."""
-    name, package = PACKAGES[engine]
-    return f"{name} {version(package)}"
-
-
 def _native(answer: Answer | None, way: Mapping[str, Any]) -> list[str] | None:
     """The poses that Python's engine gave, and where the page has no engine for this the twists."""
     if answer is None or not answer.finished:
@@ -145,7 +139,7 @@ def drawing(live: Live, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict
     left, bottom, width, height = drawn.box(mechanism, live, pose)
     return {
         "box": " ".join(drawn.number(value) for value in (left, -bottom - height, width, height)),
-        "ground": drawn.ground(mechanism, live, pose),
+        "ground": "".join(line.svg() for line in drawn.ground_lines(mechanism, live, pose)),
         "bodies": [drawn.body_shape(mechanism, live, body.name) for body in mechanism.bodies],
         "size": mechanism.length_scale,
     }

@@ -1,7 +1,4 @@
-"""What engines in the page are given: MuJoCo's model as text with our changes, pymunk's space as a list of numbers."""
-
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
+"""What engines in the page are given: MuJoCo's model as text, pymunk's space as a list of numbers."""
 
 from __future__ import annotations
 
@@ -11,14 +8,13 @@ from enum import IntEnum
 from itertools import chain
 from typing import Any
 
-import mujoco
-import numpy as np
 import pymunk as pymunk_package
 from pymunk.constraints import GrooveJoint, PivotJoint
 
 from engines import Unsupported
 from engines.mujoco import MuJoCo
 from engines.mujoco.model import Model as TreeModel
+from engines.mujoco.written_file import as_text
 from engines.pymunk import Pymunk
 from engines.pymunk.joints.skate import AimedGroove, Zeroed
 from engines.pymunk.model import Model
@@ -27,17 +23,12 @@ from reference.mechanism import Mechanism
 from reports.site.drawn import index_of
 from reports.site.live.sliders import ENGINES
 
-PARTS = ("", "opt", "stat")
-OWN = ("opt.timestep",)  # set by the page
-
 
 @dataclass(frozen=True)
 class Text:
-    """A model for the page: MJCF; changes to what is compiled of it, by path; its start; where our bodies are in it."""
+    """A model for the page: MJCF as `crosscheck export` writes it, and where our bodies are in it."""
 
     text: str
-    changes: tuple[tuple[str, tuple[float, ...]], ...]
-    velocity: tuple[float, ...]  # qvel at the start
     bodies: tuple[int, ...]  # MuJoCo's number of each body of the mechanism
     # Parents first: body, parent (-1: ground), places in qpos of rotation and slide (-1: none), the slide's direction.
     links: tuple[tuple[float, ...], ...]
@@ -50,40 +41,13 @@ def text_of(engine: MuJoCo, mechanism: Mechanism, step: float) -> Text:
     Raises Unsupported where our code helps while it is stepped: the page has none.
     """
     model = engine.model(mechanism, step, as_text=True)
-    hooks = model.hooks
-    if hooks.control or hooks.before or model.drive == "overwrite":
-        raise Unsupported("this method rewrites rows in each step by code of ours in Python, which the page has not")
-    if model.compiled.nu:
-        raise Unsupported("the page sets no actuators")
-    assert model.written_as is not None
-    text = model.written_as.text()
-    start = model.start()
     springs = model.compiled.neq or model.compiled.npair
     return Text(
-        text,
-        tuple(changes(mujoco.MjModel.from_xml_string(text), model.compiled)),
-        tuple(start.qvel.tolist()),
+        as_text(model, engine.stiffness.softening),
         tuple(int(model.compiled.body(f"body {number}").id) for number in range(len(mechanism.bodies))),
         links(model),
         () if springs else tuple(name for name in ENGINES["mujoco"] if name != "integrator"),
     )
-
-
-def changes(plain: Any, changed: Any) -> list[tuple[str, tuple[float, ...]]]:
-    """The numbers of a compiled model that differ from those of another, by path, such as ("opt.gravity", ...)."""
-    found = []
-    for part in PARTS:
-        first, second = (getattr(model, part) if part else model for model in (plain, changed))
-        for name in dir(first):
-            path = f"{part}.{name}".strip(".")
-            if name.startswith("_") or path in OWN:
-                continue
-            before, after = getattr(first, name), getattr(second, name)
-            if not isinstance(before, int | float | np.ndarray):
-                continue
-            if not np.array_equal(before, after):
-                found.append((path, tuple(np.asarray(after, dtype=float).ravel().tolist())))
-    return found
 
 
 def links(model: TreeModel) -> tuple[tuple[float, ...], ...]:
@@ -132,7 +96,7 @@ def plan_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> Plan:
     def index(body: Any) -> int:
         return places.get(body, -1)
 
-    constraints = _in_order(space)
+    constraints = list(space._constraints)  # the public property is a set
     # Of a groove that is aimed nothing is closed, whatever the others' error_bias.
     aimed = [aim.constraint for aim in model.aims if isinstance(aim, AimedGroove)]
     biases = {each.error_bias for each in constraints if each not in aimed}
@@ -155,10 +119,6 @@ def plan_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> Plan:
         tuple(name for name in idle if idle[name]),
         tuple(held.index(pair) if pair in held else -1 for pair in pairs),
     )
-
-
-def _in_order(space: Any) -> list[Any]:
-    return list(space._constraints)  # the public property is a set
 
 
 def _bodies(model: Model) -> list[tuple[float, ...]]:
@@ -198,7 +158,6 @@ def _shape(each: Any, index: Indexed) -> tuple[Part, tuple[float, ...]]:
 
 def _by_hand(model: Model, mechanism: Mechanism) -> list[tuple[Part, tuple[float, ...]]]:
     """What our adapter does before and after each step, of which the shim knows the two that hold skates."""
-    constraints = _in_order(model.space)
     skates = [mechanism.body_index(str(joint.second)) for joint in mechanism.joints if isinstance(joint, Skate)]
     records: list[tuple[Part, tuple[float, ...]]] = []
     for hands in (model.repairs, model.aims):
@@ -209,7 +168,7 @@ def _by_hand(model: Model, mechanism: Mechanism) -> list[tuple[Part, tuple[float
                 case Zeroed():
                     records.append((Part.ZEROED, (body, hand._angle, hand._arm, hand._push, hand._spin)))
                 case AimedGroove():
-                    row = constraints.index(hand.constraint)
+                    row = list(model.space._constraints).index(hand.constraint)
                     records.append((Part.AIMED, (body, row, hand._angle, hand._back, hand._front)))
                 case _:
                     raise Unsupported("this method aims rows by code of ours in Python, which the page has not")
