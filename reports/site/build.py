@@ -6,13 +6,15 @@ import json
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
+from functools import partial
 from html import escape
+from importlib.util import find_spec
 from pathlib import Path
 
 import jinja2
 from markupsafe import Markup
 
-from reports.model.tasks import Motion, trajectory_of
+from reports.model.tasks import Motion
 from reports.plots.theme import DARK, LIGHT, Theme
 from reports.site import markdown
 from reports.site.animated import animation
@@ -20,10 +22,10 @@ from reports.site.embed import shown
 from reports.site.lecture import html as lecture_html
 from reports.site.lesson import Lesson, Source
 from reports.site.lessons import LESSONS, take_like
-from reports.site.live.data import ENGINE_FILES, engine_files, first_picture
+from reports.site.live.data import data, first_picture
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED
-from reports.site.markdown import Formulas, rendered
-from reports.site.packages import D3, KATEX, MUJOCO, PLOT, NotFetched, Package
+from reports.site.munk2d import compiled
+from reports.site.packages import PACKAGES, NotFetched
 from reports.site.reference import reference_pages
 from reports.site.rows import explored
 
@@ -44,36 +46,32 @@ def _variables(theme: Theme) -> str:
 
 
 OWN_FILE = re.compile(r'(href|src)="(?!https?:|#|mailto:|\.\./)([^"]+)"')
-Elsewhere = Callable[[str], str]
 
 
 DRAGGED = re.compile(r"\{(\w+)\}")  # a number in a lesson's words that moves a control
 
 
-def lesson_page(
-    lesson: Lesson, source: Source, formulas: Formulas, names: Mapping[str, str], elsewhere: Elsewhere
-) -> dict[str, object]:
-    """For lesson.html; `names`: pages by the Markdown file's name, `elsewhere`: where other files stand."""
+def lesson_page(lesson: Lesson, source: Source, names: Mapping[str, str]) -> dict[str, object]:
+    """For lesson.html; `names`: pages by the Markdown file's name."""
 
     def quoted(text: str) -> Markup:
         """A part of a page of results, without the anchors that it has there; its files stand in another folder."""
-        told = markdown.linked(re.sub(r' id="[^"]*"', "", markdown.html(text, formulas)), names, elsewhere)
+        told = markdown.linked(re.sub(r' id="[^"]*"', "", markdown.html(text)), names, _elsewhere)
         return Markup(OWN_FILE.sub(r'\1="../results/\2"', told))
 
     parts = []
     for words, each in zip(lesson.parts, lesson.experiments, strict=True):
         live = lesson.scene(each.scene)
         before = live.located(each.before)
-        told = {name: texts[before.get(name, place)] for name, (texts, place) in live.texts().items()}
+        told = {name: each.texts[before.get(name, each.start)] for name, each in live.controls().items()}
         more = None
-        page, heading = each.section or ("", "")
-        there = markdown.section(source.pages.get(f"{page}.md", ""), heading) if page else None
+        there = markdown.section(source.pages.get(f"{lesson.page}.md", ""), each.section)
         if there is not None:  # a page made of few rows lacks some parts
-            href = f"../results/{page}.html#{markdown.slug(heading)}"
-            more = {"heading": heading, "href": href, "body": quoted(there)}
+            href = f"../results/{lesson.page}.html#{markdown.slug(each.section)}"
+            more = {"heading": each.section, "href": href, "body": quoted(there)}
 
         def dragged(text: str, told: Mapping[str, str] = told) -> Markup:
-            html = markdown.html(text, formulas)
+            html = markdown.html(text)
             number = r'<span class="drag" role="slider" tabindex="0" data-name="{0}" aria-label="{0}">{1}</span>'
             return Markup(DRAGGED.sub(lambda found: number.format(found[1], escape(told[found[1]])), html))
 
@@ -81,13 +79,13 @@ def lesson_page(
             {
                 "heading": words.heading,
                 "text": dragged(words.text),
-                "question": Markup(markdown.html(words.question, formulas).removeprefix("<p>").removesuffix("</p>\n")),
+                "question": Markup(markdown.html(words.question).removeprefix("<p>").removesuffix("</p>\n")),
                 "answers": words.answers,
                 "after_words": dragged(words.after),
                 "scene": lesson.scenes.index(live),
                 "before": before,
                 "after": live.located(each.after),
-                "shown": " ".join(sorted(each.shown)),
+                "shown": " ".join(("paths", *each.shown)),
                 "more": more,
             }
         )
@@ -99,21 +97,18 @@ def lesson_page(
         "scenes": [{"key": live.key, "fields": [slider.field for slider in live.sliders]} for live in lesson.scenes],
         "picture": Markup(first_picture(lesson.scene(lesson.experiments[0].scene))),
         "settings": ENGINES,
-        "told_steps": lambda live: live.texts()["steps"][0],
+        "names": NAMES,
     }
 
 
 def front_picture(source: Source) -> str:
     """A motion of the first lesson that moves without a script."""
-    live = next(live for live in LESSONS[0].scenes if live.word == "let go")
-    methods = tuple((f"{names} {SHIPPED}", live.stored()[name, 0]) for name, names in NAMES.items())
-    take = replace(take_like(live.scene, ()), samples=live.frames)
-    motions = {
-        words: trajectory_of(answer).pose
-        for words, task in methods
-        if (answer := source.answers.get(task)) and answer.finished
-    }
-    return animation(replace(shown(take, {}), motions=motions), "A four-bar linkage falls")
+    live = LESSONS[0].scene("let go")
+    stored = live.stored()
+    cells = {words: stored[name, 0].cell for name, words in NAMES.items()}
+    methods = tuple((f"{words} {SHIPPED}", cell.engine, cell.every) for words, cell in cells.items())
+    take = replace(take_like(live.scene, methods), samples=live.frames)
+    return animation(shown(take, source.answers), "A four-bar linkage falls")
 
 
 HERE = Path(__file__).parent
@@ -121,50 +116,61 @@ ASSETS = HERE / "assets"
 MARKER = "site.json"
 LINE = re.compile(r' (?:d|x|y)="[^"]*"')
 LONG = re.compile(r"-?\d+\.\d{2,}(?![\de])")
-CHART_TITLE = re.compile(r"<h1[^>]*>(.*?)</h1>", re.DOTALL)
+MUNK = "packages/munk2d.js"
+ENGINE_FILES = {"munk2d": MUNK, "mujoco": "packages/mujoco.js"}
 
 Files = dict[str, bytes]
 
 
 def tasks(lessons: Iterable[Lesson] = LESSONS) -> tuple[Motion, ...]:
     """All motions that the lessons show, each once."""
-    return tuple(dict.fromkeys(task for lesson in lessons for task in lesson.tasks()))
+    return tuple(dict.fromkeys(task for lesson in lessons for live in lesson.scenes for task in live.stored().values()))
 
 
 def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     """Every file of the site, by its path in it."""
     lessons = tuple(lessons)
-    formulas = Formulas()
-    taken = _packages((D3, PLOT), source)
-    running, missing = engine_files(source, lessons)
-    environment = _environment()
-    pages: dict[str, str] = {}
-    files: Files = {path.relative_to(ASSETS).as_posix(): path.read_bytes() for path in _assets()}
+    files: Files = {path.name: path.read_bytes() for path in sorted(ASSETS.iterdir())}
     files["colours.css"] = colours().encode()
-    files |= taken | running
+
+    def part(what: str, make: Callable[[], Files]) -> Files:
+        """A part of the site; where it can't be had nothing, and a sentence that says why."""
+        try:
+            return make()
+        except NotFetched as reason:
+            source.troubles.append(f"Built without {what}: {reason}.")
+            return {}
+
+    for package in PACKAGES:
+        files |= part(f"{package.name} ({package.use})", partial(source.registry.fetched, package))
+    files |= part("Munk2D (the engine in pymunk)", lambda: {MUNK: compiled(source.cache)})
+    for live in {live.key: live for lesson in lessons for live in lesson.scenes}.values():
+        told = json.dumps(data(live, source.answers), separators=(",", ":"), allow_nan=False)
+        files[f"live/{live.key}.json"] = told.encode()
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE / "templates"),
+        undefined=jinja2.StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
     names = {name.removesuffix(".md"): name.removesuffix(".md") + ".html" for name in source.pages}
+    pages: list[str] = []
 
     def write(path: str, template: str, **given: object) -> None:
-        up = "../" * path.count("/")
-        text = environment.get_template(template).render(
-            up=up, path=path, lessons=lessons, foot=source.foot, charts="packages/plot.min.js" in taken, **given
-        )
-        pages[path] = text
+        shared = {"up": "../" * path.count("/"), "lessons": lessons, "foot": source.foot}
+        files[path] = environment.get_template(template).render(**shared, **given).encode()
+        pages.append(path)
 
     for name, text in source.pages.items():
-        body = markdown.linked(markdown.html(text, formulas), names, _elsewhere)
-        title = CHART_TITLE.search(body)
-        title_text = re.sub(r"<[^>]+>", "", title[1]) if title else name
-        write(f"results/{names[name.removesuffix('.md')]}", "article.html", title=title_text, body=Markup(body))
+        body = markdown.linked(markdown.html(text), names, _elsewhere)
+        path = f"results/{names[name.removesuffix('.md')]}"
+        write(path, "article.html", title=markdown.title(text) or name, body=Markup(body))
     for lesson in lessons:
-        write(
-            f"lessons/{lesson.name}.html",
-            "lesson.html",
-            **lesson_page(lesson, source, formulas, names, _elsewhere),
-            engines=[word for path, word in ENGINE_FILES.items() if path in running],
-            missing=missing,
-        )
-    api = _reference(source)
+        told = lesson_page(lesson, source, names)
+        engines = [name for name, path in ENGINE_FILES.items() if path in files]
+        write(f"lessons/{lesson.name}.html", "lesson.html", **told, engines=engines)
+    api = part("the reference", reference_pages) if source.api else {}
     files |= api
     if api:
         modules = sorted(name.removesuffix(".html").partition("/")[2] for name in api if name.endswith(".html"))
@@ -175,32 +181,21 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     below = {f"../results/{name}": f"../results/{page}" for name, page in names.items()}
     for name, text in guides:
         told = environment.from_string(text).render(contributing=lambda part: Markup(_quoted(source, part)))
-        body = markdown.linked(markdown.html(told, formulas), below, _elsewhere)
+        body = markdown.linked(markdown.html(told), below, _elsewhere)
         write(f"howto/{name}.html", "article.html", title=markdown.title(text), body=Markup(body))
     titles = [(name, markdown.title(text)) for name, text in guides]
     write("howto/index.html", "howto.html", title="How to", guides=titles, api=bool(api))
-    write("results/rows.html", "explorer.html", title="All stored rows")
-    lecture = ""
-    if source.lecture:
-        try:
-            lecture = lecture_html(source.lecture, formulas)
-            write("lecture.html", "article.html", title="A lecture of 45 minutes", body=Markup(lecture))
-        except NotFetched as reason:
-            source.troubles.append(f"Built without the lecture: {reason}.")
-    shown_pages = [(name, markdown.title(text)) for name, text in source.pages.items() if not name.endswith("_data.md")]
-    write("index.html", "index.html", title="How far from ideal?", results=shown_pages, lecture=bool(lecture))
+    write("results/rows.html", "explorer.html", title="All stored rows", charts="packages/plot.min.js" in files)
+    given = source.lecture
+    lecture = part("the lecture", lambda: {"lecture.html": lecture_html(given).encode()}) if given else {}
+    for path, body in lecture.items():
+        write(path, "article.html", title="A lecture of 45 minutes", body=Markup(body.decode()))
+    results = [(name, markdown.title(text)) for name, text in source.pages.items()]
+    write("index.html", "index.html", title="How far from ideal?", results=results, lecture=bool(lecture))
     files["front.svg"] = front_picture(source).encode()
-    listed, why = rendered(formulas, source.registry)
-    if why:
-        source.troubles.append(f"Formulas are shown as TeX, since {why}.")
-    write(
-        "about.html",
-        "about.html",
-        title="About this site",
-        packages=(D3, PLOT, MUJOCO, KATEX),
-        troubles=source.troubles,
-    )
-    files |= {path: markdown.with_formulas(text, listed).encode() for path, text in pages.items()}
+    if find_spec("latex2mathml") is None:
+        source.troubles.append("Formulas are shown as TeX, since latex2mathml is not installed: pip install '.[site]'.")
+    write("about.html", "about.html", title="About this site", packages=PACKAGES, troubles=source.troubles)
     files |= {f"results/{name}": lighter(text).encode() for name, text in source.pictures.items()}
     files |= {f"results/{name}": text.encode() for name, text in source.tables.items()}
     csv = [source.tables.get(f"{name}.csv", "") for name in ("errors", "timings", "descriptions")]
@@ -214,47 +209,11 @@ def lighter(picture: str) -> str:
     return LINE.sub(lambda found: LONG.sub(lambda number: f"{float(number[0]):.1f}", found[0]), picture)
 
 
-def _packages(packages: Iterable[Package], source: Source) -> Files:
-    found: Files = {}
-    for package in packages:
-        try:
-            content = source.registry.fetched(package)
-        except NotFetched as reason:
-            source.troubles.append(f"Built without {package.name} ({package.use}): {reason}.")
-            continue
-        found |= {name: content[path] for path, name in package.files if name}
-    return found
-
-
-def _reference(source: Source) -> Files:
-    if not source.api:
-        return {}
-    try:
-        return reference_pages()
-    except NotFetched as reason:
-        source.troubles.append(f"Built without the reference: {reason}.")
-        return {}
-
-
 def _quoted(source: Source, part: str) -> str:
     """A part of CONTRIBUTING.md; where that is not there, a sentence that says so."""
     if not source.contributing:
         return "The steps stand in CONTRIBUTING.md of the checkout."
     return markdown.section(source.contributing, part) or f"CONTRIBUTING.md has no part {part!r}."
-
-
-def _assets() -> list[Path]:
-    return sorted(path for path in ASSETS.rglob("*") if path.is_file())
-
-
-def _environment() -> jinja2.Environment:
-    return jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE / "templates"),
-        undefined=jinja2.StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
 
 
 def _elsewhere(name: str) -> str:

@@ -13,8 +13,7 @@ from reference.joints import Joint, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.plane import rotated
 from reference.rolling.roll import Roll
-from reports.site.lesson import Take
-from reports.site.live.sliders import Point
+from reports.site.live.sliders import Look, Point
 
 Array = NDArray[np.float64]
 
@@ -50,15 +49,20 @@ class Stroke:
     points: Array
     closed: bool = False
 
+    @property
+    def outline(self) -> Array:
+        """The points, the first one at the end too if it is closed."""
+        return np.vstack([self.points, self.points[:1]]) if self.closed else self.points
+
     def svg(self) -> str:
         """As an element."""
         return f'<path class="{self.kind}" d="{path(self.points, self.closed)}"/>'
 
 
-def body_lines(mechanism: Mechanism, take: Take, name: str) -> list[Stroke]:
+def body_lines(mechanism: Mechanism, look: Look, name: str) -> list[Stroke]:
     """What is drawn of a body, in its own frame; its pins are `pins_of`."""
     size = mechanism.length_scale
-    points: list[Point] = list(take.ends.get(name, ()))
+    points: list[Point] = list(look.ends.get(name, ()))
     lines: list[Stroke] = []
     for joint in mechanism.joints:
         for owner, attribute in ((joint.first, "first_point"), (joint.second, "second_point")):
@@ -69,13 +73,13 @@ def body_lines(mechanism: Mechanism, take: Take, name: str) -> list[Stroke]:
                 points.append(point)
         if isinstance(joint, Skate) and joint.second == name:
             half = BLADE * size / 2 * np.array([np.cos(joint.angle), np.sin(joint.angle)])
-            across = take.axle * np.array([-half[1], half[0]]) / np.hypot(*half)
+            across = look.axle * np.array([-half[1], half[0]]) / np.hypot(*half)
             centre = np.array(joint.second_point)
             lines += [
                 Stroke("blade", np.array([wheel - half, wheel + half]))
                 for wheel in {(*(centre + across),): 0, (*(centre - across),): 0}
             ]
-            if take.axle:
+            if look.axle:
                 lines.append(Stroke("outline", np.array([centre - across, centre + across])))
             points.append((0.0, 0.0))
         if isinstance(joint, Roll):
@@ -83,7 +87,7 @@ def body_lines(mechanism: Mechanism, take: Take, name: str) -> list[Stroke]:
                 if owner == name:
                     outline = curve.point(np.linspace(0.0, curve.length, OUTLINE))
                     lines += [Stroke("outline", outline, True), Stroke("spoke", np.array([(0.0, 0.0), outline[0]]))]
-    lines += [Stroke("curve", np.array(curve)) for owner, curve in take.curves if owner == name]
+    lines += [Stroke("curve", np.array(curve)) for owner, curve in look.curves if owner == name]
     unique = sorted(dict.fromkeys(points))
     if len(unique) > 1:
         lines.append(Stroke("bar", np.array(unique)))
@@ -95,13 +99,13 @@ def body_lines(mechanism: Mechanism, take: Take, name: str) -> list[Stroke]:
     return lines
 
 
-def body_shape(mechanism: Mechanism, take: Take, name: str) -> str:
+def body_shape(mechanism: Mechanism, look: Look, name: str) -> str:
     """The same as SVG, with its pins."""
     radius = number(PIN * mechanism.length_scale)
     pins = [
         f'<circle class="pin" cx="{number(x)}" cy="{number(y)}" r="{radius}"/>' for x, y in pins_of(mechanism, name)
     ]
-    return "".join([line.svg() for line in body_lines(mechanism, take, name)] + pins)
+    return "".join([line.svg() for line in body_lines(mechanism, look, name)] + pins)
 
 
 def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
@@ -115,7 +119,7 @@ def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
     return list(dict.fromkeys(point for owner, point in sides if owner == name))
 
 
-def ground_lines(mechanism: Mechanism, take: Take, pose: Array) -> list[Stroke]:
+def ground_lines(mechanism: Mechanism, look: Look, pose: Array) -> list[Stroke]:
     """What does not move: supports, lines of slots, curves that are rolled on; `pose` (times, bodies, 3), the truth."""
     size = mechanism.length_scale
     lines = []
@@ -133,12 +137,7 @@ def ground_lines(mechanism: Mechanism, take: Take, pose: Array) -> list[Stroke]:
             lines.append(Stroke("rail", np.array([origin + along * end for end in ends])))
         if isinstance(joint, Roll) and joint.first is None:
             lines.append(Stroke("rail", rolled_on(joint, pose, mechanism)))
-    return [*lines, *(Stroke("curve fixed", np.array(curve)) for owner, curve in take.curves if owner is None)]
-
-
-def ground(mechanism: Mechanism, take: Take, pose: Array) -> str:
-    """The same as SVG."""
-    return "".join(line.svg() for line in ground_lines(mechanism, take, pose))
+    return [*lines, *(Stroke("curve fixed", np.array(curve)) for owner, curve in look.curves if owner is None)]
 
 
 def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:
@@ -152,31 +151,26 @@ def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:
     return curve.point(np.linspace(joint.rolling.ground_arc - reach, joint.rolling.ground_arc + reach, OUTLINE))
 
 
-def point_path(pose: Array, point: Point) -> Array:
+def point_path(pose: Array, point: Point | Array) -> Array:
     """Where a point of a body is (times, 2) [m], for its poses (times, 3)."""
     return pose[:, :2] + rotated(pose[:, 2], np.array(point))
 
 
-def box(mechanism: Mechanism, take: Take, pose: Array) -> tuple[float, float, float, float]:
+def box(mechanism: Mechanism, look: Look, pose: Array) -> tuple[float, float, float, float]:
     """Left, bottom, width and height [m] of what the truth passes through, with a margin."""
-    corners = []
-    for index, body in enumerate(mechanism.bodies):
-        points: list[Point] = [(0.0, 0.0), *take.ends.get(body.name, ())]
-        for joint in mechanism.joints:
-            for owner, attribute in ((joint.first, "first_point"), (joint.second, "second_point")):
-                if owner == body.name and hasattr(joint, attribute):
-                    points.append(getattr(joint, attribute))
-            if isinstance(joint, Roll):
-                for owner, curve in ((joint.first, joint.rolling.ground), (joint.second, joint.rolling.body)):
-                    if owner == body.name:
-                        points += [tuple(each) for each in curve.point(np.linspace(0, curve.length, 24))]
-        corners += [point_path(pose[:, index], point) for point in points]
+    corners = [
+        point_path(pose[:, index], point)
+        for index, body in enumerate(mechanism.bodies)
+        for line in body_lines(mechanism, look, body.name)
+        if line.kind != "curve"  # an instant centre goes far away
+        for point in line.points
+    ]
     fixed = [
         joint.first_point if joint.first is None else joint.second_point
         for joint in mechanism.joints
         if isinstance(joint, Pin) and None in (joint.first, joint.second)
     ]
-    fixed += [point for owner, curve in take.curves if owner is None for point in curve]
+    fixed += [point for owner, curve in look.curves if owner is None for point in curve]
     everything = np.concatenate([*corners, np.array(fixed, dtype=float).reshape(-1, 2)])
     low, high = everything.min(axis=0), everything.max(axis=0)
     margin = 0.09 * float((high - low).max())

@@ -1,10 +1,9 @@
-"""A take with its motions, the forces of the exact one, and its drawing."""
+"""A take with its motions, and the forces of the exact one."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,6 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
 from reports.model.tasks import Answer, trajectory_of
-from reports.site import drawn
 from reports.site.drawn import between, demanded, place_of
 from reports.site.lesson import Take
 
@@ -82,34 +80,3 @@ def _listed(values: Array, digits: int = DIGITS) -> list[float | None]:
     """All numbers one after another; None where there is none, since JSON has no NaN."""
     flat = np.asarray(values, dtype=float).ravel()
     return [round(value, digits) + 0.0 if np.isfinite(value) and abs(value) < 1e6 else None for value in flat.tolist()]
-
-
-def picture(shown: Shown, label: str) -> str:
-    """The drawing at the first instant, with the whole paths: an SVG that stands without any script."""
-    take, mechanism = shown.take, shown.mechanism
-    left, bottom, width, height = drawn.box(mechanism, take, shown.truth.pose)
-    box = " ".join(drawn.number(value) for value in (left, -bottom - height, width, height))
-    shapes = [drawn.body_shape(mechanism, take, body.name) for body in mechanism.bodies]
-    groups = []
-    everything = [*shown.motions.items(), ("truth", shown.truth.pose)]  # the truth last: it is drawn over the others
-    for index, (name, pose) in enumerate(everything):
-        kind = "truth" if name == "truth" else f"method method-{index + 1}"
-        paths = "".join(
-            f'<path class="trace" d="{_trace(pose[:, mechanism.body_index(body)], point)}"/>'
-            for body, point in take.traces
-        )
-        bodies = "".join(
-            f'<g class="body" transform="{drawn.placed(where)}">{shape}</g>'
-            for where, shape in zip(pose[0], shapes, strict=True)
-        )
-        groups.append(f'<g class="motion {kind}"><g class="traces">{paths}</g>{bodies}</g>')
-    return (
-        f'<svg class="stage" viewBox="{box}" role="img" aria-label="{escape(label)}">'
-        f'<g class="world" transform="scale(1 -1)"><g class="ground">{drawn.ground(mechanism, take, shown.truth.pose)}'
-        f'</g>{"".join(groups)}<g class="overlay"></g></g></svg>'
-    )
-
-
-def _trace(pose: Array, point: tuple[float, float]) -> str:
-    whole = pose[np.all(np.isfinite(pose), axis=-1)]
-    return drawn.path(drawn.point_path(whole, point)) if len(whole) else ""

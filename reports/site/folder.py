@@ -57,7 +57,6 @@ class Quiet(SimpleHTTPRequestHandler):
     extensions_map = {  # noqa: RUF012 (as the class above has it)
         **SimpleHTTPRequestHandler.extensions_map,
         ".js": "text/javascript",
-        ".mjs": "text/javascript",
         ".wasm": "application/wasm",
         ".svg": "image/svg+xml",
         ".html": "text/html; charset=utf-8",

@@ -11,13 +11,12 @@ from contextlib import redirect_stdout
 from html import escape
 
 from reports.site import markdown
-from reports.site.markdown import Formulas
 from reports.site.packages import NotFetched
 
 PATIENCE = 300  # s
 
 
-def html(notebook: str, formulas: Formulas) -> str:
+def html(notebook: str) -> str:
     """The cells of a notebook in their order; its last one, the solutions, is folded. Raises NotFetched, with why."""
     cells = json.loads(notebook)["cells"]
     sources = ["".join(cell["source"]) for cell in cells]
@@ -31,7 +30,7 @@ def html(notebook: str, formulas: Formulas) -> str:
     parts = []
     for cell, source in zip(cells, sources, strict=True):
         if cell["cell_type"] == "markdown":
-            parts.append(markdown.html(source, formulas))
+            parts.append(markdown.html(source))
             continue
         printed, pictures = next(made)
         parts.append(f"<pre><code>{escape(source)}</code></pre>")

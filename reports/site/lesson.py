@@ -13,30 +13,25 @@ from engines import Engine
 from reference.scene import Scene
 from reports.model.cells import Cell
 from reports.model.tasks import Answer, Motion
-from reports.site.live.sliders import Live, Name, Point
+from reports.site.live.sliders import DOCUMENTED, ENGINES, Live, Look, Name
 from reports.site.packages import Registry
 
 FRAMES = 100  # of a moving picture, at most: what an eye can tell in six seconds
 FOLDER = Path(__file__).parent / "lessons"
+BOTH: dict[str, Any] = dict.fromkeys(ENGINES, DOCUMENTED)
+FORCES, CENTRE = ("reactions",), ("centre",)  # overlays
 
 
 @dataclass(frozen=True)
-class Take:
+class Take(Look):
     """One motion that a picture shows: the truth of a scene, and methods over it.
 
-    methods: (how it is called in the legend, engine, steps between samples). samples: of the scene unless given. ends:
-    points of bodies [m] that are drawn beside their joints. traces: (body, point) whose paths are drawn. centre: the
-    body whose instant centre can be shown. curves: closed or open lines in a body's frame, or the ground's (None).
+    methods: (how it is called in the legend, engine, steps between samples). samples: of the scene unless given.
     """
 
     scene: Scene
     methods: tuple[tuple[str, Engine, int], ...] = ()
     samples: int | None = None
-    ends: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
-    traces: tuple[tuple[str, Point], ...] = ()
-    centre: str | None = None
-    curves: tuple[tuple[str | None, tuple[Point, ...]], ...] = ()
-    axle: float = 0.0  # m: half of it, where a skate is drawn as an axle with two wheels
 
     @property
     def sample_count(self) -> int:
@@ -71,7 +66,7 @@ class Experiment:
 
     `before`, `after`: values of the controls of the scene called `scene`, the others as they come; `after` is a change
     of `before`. claims: of the errors after, in those before. causes: further changes with what they do to the error
-    after, so that a sentence that names a cause can be checked by switching it off. shown: overlays.
+    after, so that a sentence that names a cause can be checked by switching it off. shown: overlays beside the paths.
     """
 
     scene: str
@@ -79,8 +74,8 @@ class Experiment:
     after: Mapping[str, Any] = field(default_factory=dict)
     claims: tuple[Claim, ...] = ()
     causes: tuple[tuple[Mapping[str, Any], Claim], ...] = ()
-    shown: frozenset[str] = frozenset({"paths"})
-    section: tuple[str, str] | None = None  # (page, heading) of the Markdown page that says more
+    shown: tuple[str, ...] = ()
+    section: str = ""  # the heading of what the Markdown page of the same mechanism says of it
 
 
 @dataclass(frozen=True)
@@ -116,10 +111,6 @@ class Lesson:
         if len(parts) != len(self.experiments):
             raise ValueError(f"lesson {self.name!r}: words for {len(parts)} of {len(self.experiments)} experiments")
         return parts
-
-    def tasks(self) -> tuple[Motion, ...]:
-        """All motions that Python has to run for it."""
-        return tuple(motion for live in self.scenes for motion in live.stored().values())
 
 
 def part_of(text: str) -> Part:

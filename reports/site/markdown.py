@@ -1,20 +1,14 @@
-"""The Markdown pages as HTML: links lead to the site's own files, and formulas are MathML, by KaTeX in Node."""
+"""The Markdown pages as HTML: links lead to the site's own files, and formulas are MathML."""
 
 from __future__ import annotations
 
-import json
 import re
-import shutil
-import subprocess
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from functools import cache
 from html import escape
-from pathlib import Path
 
 from markdown_it import MarkdownIt
 
-from reports.run.files import temporary_folder
-from reports.site.packages import KATEX, NotFetched, Registry
 from reports.write.templates import CODE, inert
 
 DISPLAYED = re.compile(r"\$\$(.+?)\$\$", re.DOTALL)
@@ -26,15 +20,20 @@ MARK = "\ue000{}\ue001"  # stands for a formula while Markdown is read: letters 
 MARKED = re.compile("\ue000([0-9]+)\ue001")
 
 
-@dataclass
-class Formulas:
-    """The formulas of all pages, in the order in which they were met, each with whether it is displayed."""
+@cache
+def mathml(formula: str, displayed: bool) -> str:
+    """A formula as browsers draw it by themselves; TeX as written where latex2mathml is not installed.
 
-    found: dict[tuple[str, bool], int] = field(default_factory=dict)
-
-    def mark(self, formula: str, displayed: bool) -> str:
-        """What stands for a formula until all are rendered."""
-        return MARK.format(self.found.setdefault((" ".join(formula.split()), displayed), len(self.found)))
+    Raises ValueError for a command that it does not know: it would be wrong on the Markdown page too.
+    """
+    try:
+        from latex2mathml.converter import convert  # pyright: ignore[reportMissingImports]
+    except ImportError:
+        return f'<code class="tex{" displayed" if displayed else ""}">{escape(formula)}</code>'
+    found = convert(formula, display="block" if displayed else "inline")
+    if "\\" in found:
+        raise ValueError(f"the formula {formula!r} has a command that latex2mathml does not know")
+    return found
 
 
 def slug(heading: str) -> str:
@@ -43,12 +42,16 @@ def slug(heading: str) -> str:
     return re.sub(r"[^\w\- ]", "", text.lower()).strip().replace(" ", "-")
 
 
-def html(text: str, formulas: Formulas) -> str:
-    """Markdown as HTML, with marks where formulas stand and anchors at headings."""
+def html(text: str) -> str:
+    """Markdown as HTML, with formulas and with anchors at headings."""
+    formulas: list[str] = []
+
+    def marked(found: re.Match[str]) -> str:
+        formulas.append(mathml(" ".join(found[1].split()), found.re is DISPLAYED))
+        return MARK.format(len(formulas) - 1)
+
     parts = CODE.split(text)
-    for index in range(0, len(parts), 2):  # what is between code
-        part = DISPLAYED.sub(lambda found: formulas.mark(found[1], True), parts[index])
-        parts[index] = INLINE.sub(lambda found: formulas.mark(found[1], False), part)
+    parts[::2] = (INLINE.sub(marked, DISPLAYED.sub(marked, part)) for part in parts[::2])  # what is between code
     reader = MarkdownIt("commonmark", {"html": True}).enable("table")
     for rule in ("html_block", "html_inline"):
         reader.add_render_rule(rule, lambda self, tokens, index, options, env: inert(tokens[index].content))
@@ -64,7 +67,7 @@ def html(text: str, formulas: Formulas) -> str:
     rendered = rendered.replace("<table>", '<div class="wide"><table class="sortable">').replace(
         "</table>", "</table></div>"
     )
-    return rendered
+    return MARKED.sub(lambda found: formulas[int(found[1])], rendered)
 
 
 def linked(text: str, known: Mapping[str, str], elsewhere: Callable[[str], str]) -> str:
@@ -98,46 +101,3 @@ def section(text: str, heading: str) -> str | None:
     if start is None:
         return None
     return "\n".join(lines[start:]).strip()
-
-
-def with_formulas(text: str, rendered: list[str]) -> str:
-    """The page with its formulas put in."""
-    return MARKED.sub(lambda found: rendered[int(found[1])], text)
-
-
-SCRIPT = Path(__file__).with_name("formulas.mjs")
-PATIENCE = 120  # s for all formulas
-
-
-def rendered(formulas: Formulas, registry: Registry) -> tuple[list[str], str]:
-    """The formulas in their order, and why they are TeX as written; empty if they are not.
-
-    Raises ValueError for a formula that KaTeX does not understand: it would be wrong on the Markdown page too.
-    """
-    asked = list(formulas.found)
-    node = shutil.which("node")
-    if node is None:
-        return _as_written(asked), "node is not installed"
-    try:
-        module = registry.fetched(KATEX)["dist/katex.mjs"]
-    except NotFetched as reason:
-        return _as_written(asked), str(reason)
-    with temporary_folder() as folder:
-        path = folder / "katex.mjs"
-        path.write_bytes(module)
-        ended = subprocess.run(
-            [node, str(SCRIPT), str(path)],
-            input=json.dumps(asked),
-            capture_output=True,
-            text=True,
-            timeout=PATIENCE,
-            encoding="utf-8",
-        )
-    if ended.returncode:
-        told = [line for line in ended.stderr.splitlines() if "Error" in line]
-        raise ValueError(f"KaTeX refuses a formula: {told[0] if told else ended.stderr[-200:]}")
-    return json.loads(ended.stdout), ""
-
-
-def _as_written(asked: list[tuple[str, bool]]) -> list[str]:
-    return [f'<code class="tex{" displayed" if displayed else ""}">{escape(each)}</code>' for each, displayed in asked]

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 enum { HEAD = 8, BODY = 11 };
-enum { PIVOT = 1, GROOVE, MOTOR, PIN, GEAR, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED };
+enum { PIVOT = 1, GROOVE, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED };
 
 typedef struct {
     cpSpace *space;
@@ -51,20 +51,12 @@ static void add_polygon(World *world, const double *own, int numbers)
 static void add_record(World *world, int part, const double *own, int numbers, double error_bias)
 {
     cpBody *first = body_of(world, own[0]);
-    cpBody *second = part <= GEAR ? body_of(world, own[1]) : NULL;
+    cpBody *second = part <= GROOVE ? body_of(world, own[1]) : NULL;
     cpVect one = numbers > 3 ? cpv(own[2], own[3]) : cpvzero;
     cpVect two = numbers > 5 ? cpv(own[4], own[5]) : cpvzero;
-    cpConstraint *joint;
     switch (part) {
     case PIVOT: add_joint(world, cpPivotJointNew2(first, second, one, two), error_bias); break;
     case GROOVE: add_joint(world, cpGrooveJointNew(first, second, one, two, cpv(own[6], own[7])), error_bias); break;
-    case MOTOR: add_joint(world, cpSimpleMotorNew(first, second, own[2] * world->unit), error_bias); break;
-    case PIN:
-        joint = cpPinJointNew(first, second, one, two);
-        cpPinJointSetDist(joint, own[6]);
-        add_joint(world, joint, error_bias);
-        break;
-    case GEAR: add_joint(world, cpGearJointNew(first, second, own[2], own[3]), error_bias); break;
     case CIRCLE: add_shape(world, cpCircleShapeNew(first, own[3], two), own); break;
     case SEGMENT: add_shape(world, cpSegmentShapeNew(first, two, cpv(own[6], own[7]), own[3]), own); break;
     case POLYGON: add_polygon(world, own, numbers); break;

@@ -1,16 +1,10 @@
-"""Munk2D, the engine inside pymunk, from pymunk's source package to one JavaScript file, where emscripten is installed.
-
-`python -m reports.site.munk2d FILE` does it by hand; `--install` first gets Debian's emscripten.
-"""
+"""Munk2D, the engine inside pymunk, from pymunk's source package to one JavaScript file, by emscripten."""
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import shutil
 import subprocess
-import sys
-import tempfile
 from importlib.metadata import version
 from pathlib import Path
 
@@ -61,24 +55,3 @@ def _compile(compiler: str, sources: Path, output: Path) -> Path:
     if ended.returncode:
         raise NotFetched(f"emscripten refuses Munk2D: {(ended.stderr.strip().splitlines() or ['no reason'])[-1]}")
     return output
-
-
-def main() -> int:
-    """Compile it; the exit status."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("file", type=Path)
-    parser.add_argument("--install", action="store_true", help="first install Debian's package emscripten, by apt-get")
-    given = parser.parse_args()
-    if given.install:
-        subprocess.run(["apt-get", "install", "--yes", "--no-install-recommends", "emscripten"], check=True)
-    with tempfile.TemporaryDirectory() as cache:
-        try:
-            given.file.write_bytes(compiled(Path(cache)))
-        except NotFetched as reason:
-            print(f"crosscheck: {reason}", file=sys.stderr)
-            return 2
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -23,9 +23,8 @@ ANSWERING = 8  # s in which a registry answers a short question: without one, a 
 
 @dataclass(frozen=True)
 class Package:
-    """A package of npm: its version, the digest that its archive must have, its licence, the files that are taken.
-
-    files: path in the archive -> name in the site; a name that ends in "/" is no file of the site, only for its build.
+    """A package of npm: its version, the digest that its archive must have, its licence, and by their paths in the
+    archive the names of the files in the site.
     """
 
     name: str
@@ -62,7 +61,7 @@ class Registry:
         return f"npm's registry does not answer ({_reason(ended.stderr)})" if ended.returncode else ""
 
     def fetched(self, package: Package) -> dict[str, bytes]:
-        """The package's files by their path in the archive, fetched once into `cache`. Raises NotFetched."""
+        """The package's files by their names in the site, fetched once into `cache`. Raises NotFetched."""
         path = self._path(package)
         if not path.is_file():
             if self.trouble:
@@ -73,7 +72,7 @@ class Registry:
             path.unlink()
             raise NotFetched(f"{package.name} {package.version} has another digest than the one that is known")
         with tarfile.open(path, encoding="utf-8") as archive:
-            return {name: archive.extractfile(f"package/{name}").read() for name, _ in package.files}  # type: ignore[union-attr]
+            return {name: archive.extractfile(f"package/{path}").read() for path, name in package.files}  # type: ignore[union-attr]
 
     def _path(self, package: Package) -> Path:
         return self.cache / f"{package.name.strip('@').replace('/', '-')}-{package.version}.tgz"
@@ -86,12 +85,9 @@ def _reason(told: str) -> str:
 
 
 def _fetch(package: Package, path: Path) -> None:
-    npm = shutil.which("npm")
-    if npm is None:
-        raise NotFetched("npm is not installed")
     path.parent.mkdir(parents=True, exist_ok=True)
     with temporary_folder(path.parent) as folder:
-        words = [npm, "pack", f"{package.name}@{package.version}", "--silent", "--ignore-scripts"]
+        words = ["npm", "pack", f"{package.name}@{package.version}", "--silent", "--ignore-scripts"]
         given: dict[str, Any] = {"cwd": folder, "capture_output": True, "encoding": "utf-8", "timeout": PATIENCE}
         try:
             ended = subprocess.run(words, **given)
@@ -103,14 +99,6 @@ def _fetch(package: Package, path: Path) -> None:
         found[0].replace(path)
 
 
-KATEX = Package(
-    "katex",
-    "0.19.1",
-    "jG8uKntjSEcm2EpQOh0XturpPuuC9r3Sq5HLHdsFdWZT27E672SF19QEi+of0/YeOy15lDgRhKvr5614uRrEfA==",
-    "MIT",
-    "turns formulas into MathML while the site is built; no part of it is in the site",
-    (("dist/katex.mjs", ""),),
-)
 D3 = Package(
     "d3",
     "7.9.2",
@@ -135,4 +123,4 @@ MUJOCO = Package(
     "the engine MuJoCo, compiled to WebAssembly by its maintainers",
     (("mujoco.js", "packages/mujoco.js"), ("mujoco.wasm", "packages/mujoco.wasm")),
 )
-PACKAGES = (D3, PLOT, KATEX, MUJOCO)
+PACKAGES = (D3, PLOT, MUJOCO)

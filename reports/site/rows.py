@@ -8,6 +8,7 @@ from typing import Any
 from engines.lagrange import Lagrange
 from reports.plots.looks import family_of, role
 from reports.write.csv_files import read_lines
+from reports.write.holders import VARIANTS
 
 COLUMNS = ("scene", "engine", "variant", "outcome", "settings", "step")
 NUMBERS = ("position", "angle", "velocity", "gap", "energy", "reaction")
@@ -18,7 +19,7 @@ def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
 
     `cpu` is CPU time per simulated second [s], from timings.csv; settings are told in words, from descriptions.csv.
     looks: the role of the colour of each engine, its place in the palette, and whether it solves the equations as they
-    are: such solvers are shown when they are asked for.
+    are: such solvers are shown when they are asked for. headings: what the variants are called.
     """
     key = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every")
     spent = {tuple(row[name] for name in key): row for row in read_lines(timings)[1]} if timings else {}
@@ -36,7 +37,8 @@ def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
         )
     names = sorted({row[1] for row in rows})
     looks = {name: {"role": role(family_of(name), names), "exact": name == Lagrange.name} for name in names}
-    return {"columns": [*COLUMNS, *NUMBERS, "cpu"], "rows": rows, "looks": looks}
+    headings = {name: column.value for name, column in VARIANTS.items()}
+    return {"columns": [*COLUMNS, *NUMBERS, "cpu"], "rows": rows, "looks": looks, "headings": headings}
 
 
 def _number(text: str) -> float | None:

@@ -49,10 +49,11 @@ export function errorChart(place, t, lines, measure) {
     chart.append(svg("line", { class: "axis", x1: LEFT, x2: width - 12, y1: y(power), y2: y(power) }));
     chart.append(svg("text", { x: LEFT - 8, y: y(power) + 4, "text-anchor": "end" }, `1e${power}`));
   }
-  for (let part = 0; part <= 4; part++) {
-    const time = first + ((last - first) * part) / 4;
-    const text = `${Number(time.toPrecision(3))}${part === 4 ? " s" : ""}`;
-    chart.append(svg("text", { x: x(time), y: HEIGHT - 10, "text-anchor": part === 4 ? "end" : "middle" }, text));
+  const parts = width < 400 ? 2 : 4; // numbers that have room beside each other
+  for (let part = 0; part <= parts; part++) {
+    const time = first + ((last - first) * part) / parts;
+    const text = `${Number(time.toPrecision(3))}${part === parts ? " s" : ""}`;
+    chart.append(svg("text", { x: x(time), y: HEIGHT - 10, "text-anchor": part === parts ? "end" : "middle" }, text));
   }
   for (const line of lines) {
     let path = "";

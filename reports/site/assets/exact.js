@@ -19,10 +19,10 @@ function arm(pose, body, point) {
   return body < 0 ? [0, 0] : placed([0, 0, pose[3 * body + 2]], point);
 }
 
-/** The equations of all joints at a pose. @param {Mechanism} mechanism @param {ArrayLike<number>} pose
+/** The equations of all joints at a pose. @param {Pick<Mechanism, "joints"|"drives">} mechanism @param {ArrayLike<number>} pose
  * @param {ArrayLike<number>} twist @param {number[]|null} offsets of drives [rad]; null: they are left out @returns {Row[]} */
 export function rows(mechanism, pose, twist, offsets) {
-  const width = mechanism.inertia.length;
+  const width = pose.length;
   const found = [];
   for (const { first, second, firstPoint, secondPoint, line } of mechanism.joints) {
     const [a, b] = [arm(pose, first, firstPoint), arm(pose, second, secondPoint)];
@@ -44,12 +44,12 @@ export function rows(mechanism, pose, twist, offsets) {
       found.push({ columns, gap, rate: 0, bias });
     }
   }
+  const angles = offsetsOf(mechanism, pose);
   (offsets ? mechanism.drives : []).forEach(({ first, second, rate }, index) => {
     const columns = new Array(width).fill(0);
-    const angle = (/** @type {number} */ body) => (body < 0 ? 0 : pose[3 * body + 2]);
     if (first >= 0) columns[3 * first + 2] = -1;
     if (second >= 0) columns[3 * second + 2] = 1;
-    found.push({ columns, gap: angle(second) - angle(first) - (offsets?.[index] ?? 0), rate, bias: 0 });
+    found.push({ columns, gap: angles[index] - (offsets?.[index] ?? 0), rate, bias: 0 });
   });
   return found;
 }
@@ -139,21 +139,21 @@ export function released(mechanism, pose) {
   return { ...mechanism, pose: [...place], twist: [...twist] };
 }
 
-/** Relative angles of drives at a pose. @param {Mechanism} mechanism @param {ArrayLike<number>} pose */
+/** Relative angles of drives at a pose. @param {Pick<Mechanism, "drives">} mechanism @param {ArrayLike<number>} pose */
 function offsetsOf({ drives }, pose) {
   const angle = (/** @type {number} */ body) => (body < 0 ? 0 : pose[3 * body + 2]);
   return drives.map(({ first, second }) => angle(second) - angle(first));
 }
 
-/** Poses and twists at so many intervals of `spacing` [s] and the forces of the joints' rows there; in steps of STEP or
- * less, `finer` times as many. @param {Mechanism} mechanism @param {number} samples @param {number} spacing @param {number} finer */
+/** Poses and twists at so many intervals of `spacing` [s] and the forces of joints on their second bodies there [N]; in
+ * steps of STEP or less, `finer` times as many. @param {Mechanism} mechanism @param {number} samples @param {number} spacing @param {number} finer */
 export function motion(mechanism, samples, spacing, finer = 1) {
   const width = mechanism.inertia.length;
   const pose = Float64Array.from(mechanism.pose);
   const twist = Float64Array.from(mechanism.twist);
   const start = offsetsOf(mechanism, pose);
   const offsets = (/** @type {number} */ t) => start.map((angle, index) => angle + mechanism.drives[index].rate * t);
-  const out = { pose: new Float64Array((samples + 1) * width), twist: new Float64Array((samples + 1) * width), forces: /** @type {Float64Array[]} */ ([]) };
+  const out = { pose: new Float64Array((samples + 1) * width), twist: new Float64Array((samples + 1) * width), forces: mechanism.joints.map(({ name }) => ({ name, at: /** @type {number[]} */ ([]), force: /** @type {number[]} */ ([]) })) };
   const steps = finer * Math.ceil(spacing / STEP);
   const h = spacing / steps;
   const moved = (/** @type {Float64Array} */ from, /** @type {ArrayLike<number>} */ by, /** @type {number} */ time) => from.map((value, k) => value + time * by[k]);
@@ -177,7 +177,13 @@ export function motion(mechanism, samples, spacing, finer = 1) {
     }
     out.pose.set(pose, sample * width);
     out.twist.set(twist, sample * width);
-    out.forces.push(acceleration(mechanism, pose, twist, start).forces);
+    const { forces } = acceleration(mechanism, pose, twist, start);
+    let row = 0;
+    mechanism.joints.forEach(({ second, secondPoint, line }, index) => {
+      out.forces[index].at.push(...placed([...pose.subarray(3 * second, 3 * second + 3)], secondPoint));
+      out.forces[index].force.push(...(line === null ? [forces[row], forces[row + 1]] : [-Math.sin(line) * forces[row], Math.cos(line) * forces[row]]));
+      row += line === null ? 2 : 1;
+    });
   }
   return out;
 }

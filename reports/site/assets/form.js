@@ -57,9 +57,7 @@ export class Form {
     const ways = ["munk", "mujoco"];
     return {
       key, place, start, stepPlace: this.place("steps"), steps: this.value("steps"), munk: this.place("munk"), mujoco: this.place("mujoco"),
-      integrator: this.value("integrator"), timeConstant: this.value("timeConstant"), impedance: this.value("impedance"),
-      solverIterations: this.value("solverIterations"), tolerance: this.value("tolerance"),
-      iterations: this.value("iterations"), bias: this.value("bias"),
+      .../** @type {any} */ (Object.fromEntries(this.inputs.filter(({ name }) => !name.includes(".")).map(({ name }) => [name, this.value(name)]))),
       own: !start && this.shown().every((input) => ways.some((way) => input.name.endsWith(`.${way}`)) || input.value === input.defaultValue),
     };
   }

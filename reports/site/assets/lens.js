@@ -2,7 +2,8 @@
 /** A magnifier on one joint: how it opens in each engine, and how one step of pymunk sweeps over the joints. */
 
 import { svg } from "./chart.js";
-import { ends, poseAt, slip, told } from "./motion.js";
+import { rows } from "./exact.js";
+import { ends, slip, told } from "./motion.js";
 
 /** @typedef {import("./motion.js").Take} Take */
 /** @typedef {{pose: Float64Array, twist: Float64Array, impulses: Float64Array, left: number}} Sweep */
@@ -112,11 +113,10 @@ export class Lens {
   sweep({ found, whole, which, step }, number, table) {
     const { take } = this;
     if (!take) return "";
-    const bodies = take.bodies.length;
     const held = take.joints.map((joint, index) => ({ joint, own: which[index] })).filter(({ own }) => own >= 0);
-    const worst = Math.max(...held.map(({ joint }) => remaining(joint, found[0], bodies, step)));
+    const worst = Math.max(...held.map(({ joint }) => remaining(joint, found[0], step)));
     table.replaceChildren(...held.map(({ joint, own }) => {
-      const now = remaining(joint, found[number], bodies, step);
+      const now = remaining(joint, found[number], step);
       const [before, after] = [number - 1, number].map((at) => found[at]?.impulses.slice(2 * own, 2 * own + 2) ?? [0, 0]);
       const row = document.createElement("tr");
       for (const text of [joint.name, number ? told(Math.hypot(after[0] - before[0], after[1] - before[1])) : "–", told(now)]) row.insertCell().textContent = text;
@@ -130,21 +130,11 @@ export class Lens {
   }
 }
 
-/** The speed with which a pin opens beyond what the solver asks for [m/s]. @param {import("./motion.js").Joint} joint
- * @param {Sweep} sweep @param {number} bodies @param {number} step */
-function remaining(joint, { pose, twist, left }, bodies, step) {
-  const [[ax, ay], [bx, by]] = ends(joint, pose, bodies, 0);
-  const speed = (/** @type {number} */ body, /** @type {number} */ x, /** @type {number} */ y) => {
-    if (body < 0) return [0, 0];
-    const [px, py] = poseAt(pose, bodies, 0, body);
-    const [vx, vy, rate] = poseAt(twist, bodies, 0, body);
-    return [vx - rate * (y - py), vy + rate * (x - px)];
-  };
-  const [first, second] = [speed(joint.first, ax, ay), speed(joint.second, bx, by)];
-  const closing = (1 - left) / step;
-  const [ox, oy] = [second[0] - first[0] + closing * (bx - ax), second[1] - first[1] + closing * (by - ay)];
-  if (joint.line === null) return Math.hypot(ox, oy);
-  return Math.abs(oy * Math.cos(joint.line) - ox * Math.sin(joint.line));
+/** The speed with which a joint opens beyond what the solver asks for [m/s]. @param {import("./motion.js").Joint} joint
+ * @param {Sweep} sweep @param {number} step */
+function remaining(joint, { pose, twist, left }, step) {
+  const equations = rows({ joints: [joint], drives: [] }, pose, twist, null);
+  return Math.hypot(...equations.map(({ columns, gap }) => ((1 - left) / step) * gap + columns.reduce((sum, value, k) => sum + value * twist[k], 0)));
 }
 
 /** A line between two points, drawn as a spring if it is one. @param {number} x1 @param {number} y1 @param {number} x2 @param {number} y2 @param {boolean} spring */

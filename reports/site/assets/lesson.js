@@ -10,7 +10,9 @@ import { Player } from "./player.js";
 /** @typedef {import("./live_data.js").Setting} Setting */
 /** @typedef {any} Answer what the worker tells of a setting, see worker.js */
 
+/** @type {Record<string, string>} */
 const NAMES = { munk: "pymunk", mujoco: "MuJoCo" };
+/** @type {Record<string, number>} */
 const MARKS = { munk: 1, mujoco: 2 };
 const root = /** @type {HTMLElement} */ (document.getElementById("lesson"));
 const find = (/** @type {string} */ name) => /** @type {HTMLElement} */ (root.querySelector(name));
@@ -28,7 +30,8 @@ let number = 0;
 let shown = null;
 /** @type {number[]|null} the pose at which the reader let go */
 let start = null;
-/** @type {{setting: Setting, play: boolean}|null} what is wanted next: of settings that wait, the last one */
+/** @type {{setting: Setting, play: boolean, ways: Record<string, string>}|null} what is wanted next: of settings that wait,
+ * the last one, with what each engine's way is called */
 let waiting = null;
 let busy = false;
 
@@ -63,18 +66,18 @@ function failed(reason) {
 
 /** Show what the form says; while one runs, of those that follow the last one wins. @param {boolean} play */
 function run(play) {
-  waiting = { setting: form.setting(start), play };
+  const ways = Object.fromEntries(Object.keys(NAMES).map((name) => [name, [form.words(name), ...form.changed(name)].join(", ")]));
+  waiting = { setting: form.setting(start), play, ways };
   if (!busy) requestAnimationFrame(next);
 }
 
 async function next() {
   if (!waiting || busy) return;
-  const { setting, play } = waiting;
+  const { setting, play, ways } = waiting;
   [waiting, busy] = [null, true];
   try {
     load();
-    const answer = await ask({ setting });
-    show(answer, play);
+    show(await ask({ setting }), play, ways);
   } catch (reason) {
     failed(reason);
   }
@@ -85,7 +88,7 @@ async function next() {
 /** The drawing of a place of the sliders: bodies of each run, and of the truth over them. @param {Answer} answer */
 function stage({ drawing, motions }) {
   const bodies = drawing.bodies.map((/** @type {string} */ shape) => `<g class="body">${shape}</g>`).join("");
-  const kinds = [...motions.map((/** @type {{name: "munk"|"mujoco"}} */ { name }) => `method method-${MARKS[name]}`), "truth"];
+  const kinds = [...motions.map((/** @type {any} */ { name }) => `method method-${MARKS[name]}`), "truth"];
   const groups = kinds.map((kind) => `<g class="motion ${kind}"><g class="traces"></g>${bodies}</g>`).join("");
   return (
     `<svg class="stage" viewBox="${drawing.box}" role="img" aria-label="The mechanism"><g class="world" ` +
@@ -103,24 +106,8 @@ function pathOf(pose, bodies, body, point) {
   return path;
 }
 
-/** Forces of joints from the multipliers of the page's own exact motion. @param {Answer} answer */
-function forcesOf({ exact, joints, bodies, forces }) {
-  if (forces || !exact.forces.length) return forces ?? [];
-  let row = 0;
-  return joints.map((/** @type {import("./motion.js").Joint} */ { name, second, secondPoint, line }) => {
-    const [at, force] = [/** @type {number[]} */ ([]), /** @type {number[]} */ ([])];
-    exact.forces.forEach((/** @type {Float64Array} */ own, /** @type {number} */ frame) => {
-      const pose = [...exact.pose.subarray(3 * (frame * bodies.length + second), 3 * (frame * bodies.length + second) + 3)];
-      at.push(...placed(pose, secondPoint));
-      force.push(...(line === null ? [own[row], own[row + 1]] : [-Math.sin(line) * own[row], Math.cos(line) * own[row]]));
-    });
-    row += line === null ? 2 : 1;
-    return { name, at, force };
-  });
-}
-
-/** @param {Answer} answer @param {boolean} play */
-function show(answer, play) {
+/** @param {Answer} answer @param {boolean} play @param {Record<string, string>} ways */
+function show(answer, play, ways) {
   shown = answer;
   const { motions, exact, bodies, traces, lost } = answer;
   player.stop();
@@ -132,22 +119,19 @@ function show(answer, play) {
   const spring = motions.find((/** @type {any} */ { name }) => name === "mujoco")?.spring;
   find(".springs").textContent = springWords(spring, answer);
   player.load({
-    ...answer, size: answer.drawing.size, truth: exact, forces: forcesOf(answer),
-    motions: motions.map((/** @type {any} */ motion) => ({ ...motion, name: NAMES[/** @type {"munk"|"mujoco"} */ (motion.name)], mark: MARKS[/** @type {"munk"|"mujoco"} */ (motion.name)] })),
+    ...answer, size: answer.drawing.size, truth: exact,
+    motions: motions.map((/** @type {any} */ motion) => ({ ...motion, name: NAMES[motion.name], mark: MARKS[motion.name] })),
   });
-  for (const name of /** @type {("munk"|"mujoco")[]} */ (["munk", "mujoco"])) {
+  for (const name in NAMES) {
     const entry = find(`.legend .method-${MARKS[name]}`);
-    const way = [form.words(name), ...form.changed(name)].join(", ");
     const from = motions.find((/** @type {any} */ one) => one.name === name)?.from;
-    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${way}${from ? " (stored: run in Python)" : ""}`;
+    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${ways[name]}${from ? " (stored: run in Python)" : ""}`;
     entry.classList.toggle("lost", name in lost);
     if (name in lost) find(`.legend .method-${MARKS[name]} .figure`).textContent = lost[name];
   }
   form.label(answer.idle);
   find(".status").textContent = statusOf(answer);
   root.classList.add("ready");
-  root.dataset.errors = JSON.stringify(Object.fromEntries(motions.map((/** @type {any} */ { name, error }) => [name, error])));
-  root.dataset.spent = String(motions.reduce((/** @type {number} */ sum, /** @type {any} */ { milliseconds }) => sum + milliseconds, 0));
   find(".next").hidden = !motions.some((/** @type {any} */ { name, impulses }) => name === "munk" && impulses) || !answer.joints.length;
   find(".sweeps").hidden = true;
   figure.classList.toggle("can-grab", Boolean(answer.mechanism));
@@ -159,20 +143,19 @@ function show(answer, play) {
 }
 
 /** What MuJoCo's loop is, by its own numbers. @param {any} spring @param {Answer} answer */
-function springWords(spring, { joints, blades, motions }) {
+function springWords(spring, { joints, blades, motions, forces }) {
   if (!(joints.length + blades.length) || !motions.some((/** @type {any} */ { name }) => name === "mujoco")) return "";
-  if (!spring) return "MuJoCo needs no spring here: its joints are hinges of a tree, which can't open.";
-  const { k, b, impedance } = spring;
-  return `MuJoCo holds this ${blades.length ? "contact" : "loop"} by a spring and a damper: a gap dies out in about ${told(2000 / b)} ms, and of an acceleration a that opens it (1 − d)/(d k) a stays: ${told((1 - impedance) / (impedance * k) * 1e6)} µm for each m/s².`;
+  const contact = blades.length || forces.some((/** @type {any} */ each) => each.contact);
+  if (!spring) return contact ? "" : "MuJoCo needs no spring here: its joints are hinges of a tree, which can't open.";
+  const [k, b, impedance] = spring; // of a unit of inertia: 1/s^2, 1/s, 1
+  return `MuJoCo holds this ${contact ? "contact" : "loop"} by a spring and a damper: a gap dies out in about ${told(2000 / b)} ms, and of an acceleration a that opens it (1 − d)/(d k) a stays: ${told((1 - impedance) / (impedance * k) * 1e6)} µm for each m/s².`;
 }
 
 /** @param {Answer} answer */
 function statusOf({ exact, motions, versions, release }) {
   const missed = exact.missed === null ? "" : `Here the page finds the exact motion itself, to ${told(Math.max(exact.missed, 1e-15))} m or rad. `;
-  const apart = motions.filter((/** @type {any} */ each) => each.apart !== null).map((/** @type {any} */ { name, apart: by }) => {
-    root.dataset[`apart_${name}`] = String(by);
-    return `${NAMES[/** @type {"munk"|"mujoco"} */ (name)]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python are at most ${told(by)} m or rad apart.`;
-  });
+  const apart = motions.filter((/** @type {any} */ each) => each.apart !== null).map((/** @type {any} */ { name, apart: by }) =>
+    `${NAMES[name]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python are at most ${told(by)} m or rad apart.`);
   return missed + apart.join(" ");
 }
 
@@ -211,7 +194,7 @@ function compared(before, after) {
   const unit = UNITS[/** @type {"angle"|"position"} */ (after.measure)];
   return after.motions.map((/** @type {any} */ { name, error }) => {
     const old = before.motions.find((/** @type {any} */ one) => one.name === name)?.error;
-    const own = NAMES[/** @type {"munk"|"mujoco"} */ (name)];
+    const own = NAMES[name];
     if (!(old > 0) || !(error > 0)) return `${own}: largest error ${told(error)} ${unit}.`;
     const ratio = Math.max(error / old, old / error);
     const times = Number(ratio.toPrecision(2)).toLocaleString("en");

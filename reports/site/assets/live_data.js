@@ -4,23 +4,22 @@
 import { motion, released } from "./exact.js";
 
 /**
- * @typedef {import("./motion.js").Joint} Joint
- * @typedef {{parts: string[], numbers: number[][], changes: number[][], velocity: number[], bodies: number[],
- *   turns: number[][], links: number[][], springs: boolean}} Texts
- * @typedef {{plans: number[]}} Plans
- * @typedef {{why: string}} Missing
+ * @typedef {{text: string, bodies: number[], links: number[][], idle: string[]}} Text
+ * @typedef {{numbers: string, idle: string[], impulses: number[]}} Plan
+ * @typedef {{why: string, idle: string[]}} Missing
  * @typedef {{box: string, ground: string, bodies: string[], size: number}} Drawing
+ * @typedef {{equations: Omit<import("./exact.js").Mechanism, "joints">|null, truth: string|null, drawing: Drawing,
+ *   forces: import("./motion.js").Force[]|null, joints: import("./motion.js").Joint[],
+ *   blades: import("./motion.js").Blade[], traces: {body: number, point: number[]}[]}} Place
  * @typedef {"munk"|"mujoco"} Name
- * @typedef {{word: string, scene: string, measure: "angle"|"position", frames: number, window: [number, number],
- *   steps: number[], duration: number, sliders: {name: string, size: number}[], bodies: string[],
- *   truth: (number|null)[], mechanisms: number[]|null, forces: (number|null)[], drawings: number[], joints: number[],
- *   blades: number[], traces: number[], centre: number|null, mujoco: (Texts|Missing)[], munk: (Plans|Missing)[],
- *   native: Record<Name, (string[]|null)[]>, versions: Record<Name, string>, pool: unknown[]}} Scene
+ * @typedef {{measure: "angle"|"position", frames: number, window: [number, number], duration: number, bodies: string[],
+ *   centre: number|null, places: Place[], mujoco: ({models: Text[][]}|Missing)[], munk: ({models: Plan[][]}|Missing)[],
+ *   native: Record<Name, (string[]|null)[]>, versions: Record<Name, string>}} Scene
  * @typedef {{key: string, place: number, stepPlace: number, steps: number, munk: number, mujoco: number,
  *   integrator: number|null, timeConstant: number|null, impedance: number|null, solverIterations: number|null,
  *   tolerance: number|null, iterations: number|null, bias: number|null, start: number[]|null, own: boolean}} Setting
  *   what the page asks for; start: poses at which the reader let go; own: whether all is as in the scene but the ways
- * @typedef {Setting & {scene: Scene, every: number, samples: number, step: number}} Run
+ * @typedef {Setting & {scene: Scene, at: Place, every: number, samples: number, step: number}} Run
  */
 
 /** Doubles as the site wrote them: base64, the lowest byte first. @param {string} text */
@@ -32,31 +31,31 @@ export function doubles(text) {
 /** @param {Setting} setting @param {Scene} scene @returns {Run} */
 export function runOf(setting, scene) {
   const every = Math.max(1, setting.steps / scene.frames);
-  return { ...setting, scene, every, samples: setting.steps / every, step: scene.duration / setting.steps };
+  return { ...setting, scene, at: scene.places[setting.place], every, samples: setting.steps / every, step: scene.duration / setting.steps };
 }
 
-/** @template T @param {Run} run @param {number[]} list @returns {T} */
-export const pooled = ({ scene, place }, list) => /** @type {T} */ (scene.pool[list[place]]);
+/** What an engine is given, or why it can't run what is chosen. @param {Run} run @param {Name} engine @returns {any} */
+export function modelOf({ scene, place, stepPlace, ...run }, engine) {
+  const way = scene[engine][run[engine]];
+  return "why" in way ? way : way.models[place][Math.min(stepPlace, way.models[place].length - 1)];
+}
 
 /** The equations of a pinned linkage, from where the reader let it go; null where it is no such linkage.
  * @param {Run} run @returns {import("./exact.js").Mechanism|null} */
 export function mechanismOf(run) {
-  const { scene, start } = run;
-  if (!scene.mechanisms) return null;
-  const told = /** @type {import("./exact.js").Mechanism} */ (pooled(run, scene.mechanisms));
-  const mechanism = { ...told, joints: /** @type {Joint[]} */ (pooled(run, scene.joints)) };
-  return start ? released(mechanism, start) : mechanism;
+  const { at: { equations, joints }, start } = run;
+  if (!equations) return null;
+  return start ? released({ ...equations, joints }, start) : { ...equations, joints };
 }
 
 /** The exact motion at the samples: as the reference computed it, or else by the page. `missed`: by how much the page's
  * own moves when its steps are halved. @param {Run} run
- * @returns {{pose: Float64Array, twist: Float64Array, forces: Float64Array[], missed: number|null}} */
+ * @returns {{pose: Float64Array, twist: Float64Array, forces: import("./motion.js").Force[], missed: number|null}} */
 export function truth(run) {
-  const { scene, place, start, samples } = run;
-  const kept = scene.truth[place];
-  if (kept !== null && !start) {
+  const { scene, at, start, samples } = run;
+  if (at.truth !== null && !start) {
     const width = 6 * scene.bodies.length;
-    const whole = doubles(/** @type {string} */ (scene.pool[kept]));
+    const whole = doubles(at.truth);
     const stride = (scene.frames / samples) * width;
     const states = Array.from({ length: samples + 1 }, (_, frame) => whole.subarray(frame * stride, frame * stride + width));
     return { ...split(states), forces: [], missed: null };
@@ -70,33 +69,6 @@ export function truth(run) {
 
 /** Poses and twists apart. @param {ArrayLike<number>[]} states of every sample, six numbers a body */
 export function split(states) {
-  const bodies = states[0].length / 6;
-  const [pose, twist] = [new Float64Array(3 * bodies * states.length), new Float64Array(3 * bodies * states.length)];
-  states.forEach((state, sample) => {
-    for (let index = 0; index < 6 * bodies; index++) {
-      const at = 3 * (sample * bodies + Math.floor(index / 6)) + (index % 3);
-      (index % 6 < 3 ? pose : twist)[at] = state[index];
-    }
-  });
-  return { pose, twist };
-}
-
-/** MJCF as the Python adapter writes it. @param {Run} run @param {Texts} texts */
-export function mjcf(run, texts) {
-  const numbers = /** @type {string} */ (run.scene.pool[ofStep(run, texts.numbers)]).split(",");
-  return texts.parts.map((part, index) => part + (numbers[index] ?? "")).join("");
-}
-
-/** What the adapter changes in MuJoCo's compiled model. @param {Run} run @param {Texts} texts */
-export const changesOf = (run, texts) => /** @type {[string, number[]][]} */ (run.scene.pool[ofStep(run, texts.changes)]);
-
-/** @param {Run} run @param {number[][]} table by place, and by step where it depends on that */
-function ofStep({ place, stepPlace }, table) {
-  return table[place][Math.min(stepPlace, table[place].length - 1)];
-}
-
-/** Why an engine can't run what is chosen, or an empty text. @param {Scene} scene @param {Setting} setting @param {Name} engine */
-export function whyNot(scene, setting, engine) {
-  const way = scene[engine][setting[engine]];
-  return "why" in way ? way.why : "";
+  const half = (/** @type {boolean} */ first) => Float64Array.from(states.flatMap((state) => Array.from(state).filter((_, index) => index % 6 < 3 === first)));
+  return { pose: half(true), twist: half(false) };
 }

@@ -1,40 +1,28 @@
 // @ts-check
 /** The engines themselves: MuJoCo and Munk2D in WebAssembly, run as the Python adapters run them. */
 
-import { changesOf, doubles, mechanismOf, mjcf, split } from "./live_data.js";
+import { doubles, mechanismOf, modelOf, split, truth } from "./live_data.js";
 
 /** @typedef {import("./live_data.js").Run} Run
- * @typedef {import("./live_data.js").Texts} Texts @typedef {import("./live_data.js").Plans} Plans */
+ * @typedef {import("./live_data.js").Text} Text @typedef {import("./live_data.js").Plan} Plan */
 
 const HEAD = 8; // numbers of a plan before its bodies, see live/models.py
 const BODY = 11; // numbers of a body
-const SMALL = 1e-6; // s: what a motion is moved by, to and fro, to read the velocities of bodies
 
-/** Poses and twists at the samples by MuJoCo, and the springs of its rows there. @param {any} mujoco @param {Run} run */
+/** Poses and twists at the samples by MuJoCo, and the spring that its first row is at the end. @param {any} mujoco @param {Run} run */
 export function runMujoco(mujoco, run) {
-  const texts = /** @type {Texts} */ (run.scene.mujoco[run.mujoco]);
-  const model = mujoco.MjModel.from_xml_string(mjcf(run, texts));
+  const told = /** @type {Text} */ (modelOf(run, "mujoco"));
+  const model = mujoco.MjModel.from_xml_string(told.text);
   const data = new mujoco.MjData(model);
   try {
-    change(model, changesOf(run, texts));
     set(model, run);
-    data.qvel.set(run.scene.pool[texts.velocity[run.place]]);
-    if (run.start) begin(run, texts, data);
+    mujoco.mj_resetDataKeyframe(model, data, 0);
+    if (run.start) begin(run, told, data);
     mujoco.mj_forward(model, data);
-    return { ...states(run, texts, mujoco, model, data), spring: springOf(data) };
+    return { ...states(run, told, mujoco, model, data), spring: data.nefc ? [...data.efc_KBIP.slice(0, 3)] : null };
   } finally {
     data.delete();
     model.delete();
-  }
-}
-
-/** What the adapter changes in the compiled model. @param {any} model @param {[string, number[]][]} changes */
-function change(model, changes) {
-  for (const [path, values] of changes) {
-    const [name, ...parts] = path.split(".").reverse();
-    const owner = parts.reverse().reduce((object, part) => object[part], model);
-    if (typeof owner[name] === "number") owner[name] = values[0];
-    else owner[name].set(values);
   }
 }
 
@@ -54,11 +42,11 @@ function set(model, run) {
   }
 }
 
-/** Start where the reader let go: hinges and slides from the poses of bodies. @param {Run} run @param {Texts} texts @param {any} data */
-function begin(run, texts, data) {
+/** Start where the reader let go: hinges and slides from the poses of bodies. @param {Run} run @param {Text} told @param {any} data */
+function begin(run, told, data) {
   const now = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
   const old = /** @type {import("./exact.js").Mechanism} */ (mechanismOf({ ...run, start: null }));
-  for (const [body, parent, rotation, slide, dx, dy] of texts.links) {
+  for (const [body, parent, rotation, slide, dx, dy] of told.links) {
     const moved = (/** @type {number} */ own, /** @type {number} */ axis) => (own < 0 ? 0 : now.pose[3 * own + axis] - old.pose[3 * own + axis]);
     const rate = (/** @type {number} */ own) => (own < 0 ? 0 : now.twist[3 * own + 2]);
     if (rotation >= 0) {
@@ -72,24 +60,23 @@ function begin(run, texts, data) {
   }
 }
 
-/** The stiffest-loaded row of a constraint as a spring of a unit of inertia: k [1/s^2], b [1/s], impedance. @param {any} data */
-function springOf(data) {
-  if (!data.nefc) return null;
-  const [k, b, impedance] = data.efc_KBIP;
-  return { k, b, impedance };
-}
-
-/** @param {Run} run @param {Texts} texts @param {any} mujoco @param {any} model @param {any} data */
-function states(run, texts, mujoco, model, data) {
-  const { samples, every, step, scene } = run;
-  const bodies = texts.bodies.length;
-  const start = run.start ? mechanismOf({ ...run, start: null })?.pose : firstPose(run);
-  const poses = () => {
-    mujoco.mj_kinematics(model, data); // a step leaves the places of bodies as they were before it
-    const { xpos, qpos } = data;
-    return texts.bodies.flatMap((own, body) => {
-      const turned = texts.turns[body].reduce((sum, place) => sum + qpos[place], 0);
-      return [xpos[3 * own], xpos[3 * own + 1], /** @type {number[]} */ (start)[3 * body + 2] + turned];
+/** @param {Run} run @param {Text} told @param {any} mujoco @param {any} model @param {any} data */
+function states(run, told, mujoco, model, data) {
+  const { samples, every, step } = run;
+  const compiled = { ...run, start: null };
+  const first = mechanismOf(compiled)?.pose ?? truth(compiled).pose; // models in tree coordinates tell changes of angles
+  const state = () => {
+    // A step leaves the places and velocities of bodies as they were before it.
+    for (const renew of ["mj_kinematics", "mj_comPos", "mj_comVel"]) mujoco[renew](model, data);
+    const { xpos, qpos, cvel, subtree_com: com } = data;
+    /** @type {number[]} */
+    const turned = [];
+    for (const [body, parent, rotation] of told.links) turned[body] = (turned[parent] ?? 0) + (rotation < 0 ? 0 : qpos[rotation]);
+    return told.bodies.flatMap((own, body) => {
+      const [x, y] = [xpos[3 * own], xpos[3 * own + 1]];
+      const [rate, vx, vy] = cvel.subarray(6 * own + 2, 6 * own + 5); // of the point at the centre of mass of the tree
+      const root = 3 * model.body_rootid[own];
+      return [x, y, first[3 * body + 2] + turned[body], vx - rate * (y - com[root + 1]), vy + rate * (x - com[root]), rate];
     });
   };
   /** @type {number[][]} */
@@ -98,36 +85,16 @@ function states(run, texts, mujoco, model, data) {
     for (let count = 0; sample > 0 && count < every; count++) mujoco.mj_step(model, data);
     // MuJoCo starts anew, its clock too, once numbers grow too large: what follows is no motion of this mechanism.
     if (!(Math.abs(data.time - sample * every * step) < step / 2)) break;
-    const now = poses();
-    const [qpos, qvel] = [Float64Array.from(data.qpos), Float64Array.from(data.qvel)];
-    const near = [-SMALL, SMALL].map((time) => {
-      data.qpos.set(qpos.map((value, index) => value + time * qvel[index]));
-      return poses();
-    });
-    data.qpos.set(qpos);
-    mujoco.mj_kinematics(model, data);
-    found.push(Array.from({ length: 6 * bodies }, (_, index) => {
-      const at = 3 * Math.floor(index / 6) + (index % 3);
-      return index % 6 < 3 ? now[at] : (near[1][at] - near[0][at]) / (2 * SMALL);
-    }));
+    found.push(state());
   }
-  while (found.length <= samples) found.push(new Array(6 * scene.bodies.length).fill(NaN));
+  while (found.length <= samples) found.push(new Array(6 * told.bodies.length).fill(NaN));
   return split(found);
-}
-
-/** Poses of the bodies at the start, of which models in tree coordinates tell the changes. @param {Run} run */
-function firstPose(run) {
-  const own = mechanismOf(run)?.pose;
-  if (own) return own;
-  const whole = doubles(/** @type {string} */ (run.scene.pool[/** @type {number} */ (run.scene.truth[run.place])]));
-  return [...split([whole.subarray(0, 6 * run.scene.bodies.length)]).pose];
 }
 
 /** Poses and twists at the samples by Munk2D; with `last`, after `samples` a step more of so many iterations, and each
  * joint's impulse after it [N s]. @param {any} munk @param {Run} run @param {number} last */
 export function runMunk(munk, run, last = 0) {
-  const plans = /** @type {Plans} */ (run.scene.munk[run.munk]);
-  const plan = doubles(/** @type {string} */ (run.scene.pool[plans.plans[run.place]]));
+  const plan = doubles(/** @type {Plan} */ (modelOf(run, "munk")).numbers);
   const bodies = plan[HEAD - 4];
   if (run.start) place(run, plan);
   const iterations = run.iterations ?? plan[HEAD - 3];

@@ -22,10 +22,7 @@ export const UNITS = { angle: "rad", position: "m" };
  * @returns {[number, number, number]} */
 export function poseAt(pose, bodies, frame, body) {
   const start = 3 * (frame * bodies + body);
-  const read = (/** @type {number} */ index) => {
-    const value = pose[index];
-    return value ?? NaN;
-  };
+  const read = (/** @type {number} */ index) => pose[index] ?? NaN;
   return [read(start), read(start + 1), read(start + 2)];
 }
 
@@ -90,20 +87,6 @@ export function slip({ body, point, angle }, pose, twist, bodies, frame) {
   const [nx, ny] = [-Math.sin(heading + angle), Math.cos(heading + angle)];
   const across = (vx - rate * ay) * nx + (vy + rate * ax) * ny;
   return [across * nx, across * ny];
-}
-
-/** The largest gap of any pin or slot over all instants [m].
- * @param {Joint[]} joints @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frames */
-export function largestGap(joints, pose, bodies, frames) {
-  let largest = 0;
-  for (const joint of joints) {
-    for (let frame = 0; frame < frames; frame++) {
-      const [[ax, ay], [bx, by]] = ends(joint, pose, bodies, frame);
-      const gap = Math.hypot(bx - ax, by - ay);
-      if (gap > largest) largest = gap;
-    }
-  }
-  return largest;
 }
 
 /** The point about which a body turns at an instant, for its pose and twist; null where it does not turn.

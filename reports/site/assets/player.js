@@ -12,6 +12,9 @@ const SHORTEST = 5; // s: a motion that is faster is slowed down until it takes 
 const GROWING = 3; // times slower while the visible difference grows fastest
 const SLOWER = [1, 2, 5, 10, 20, 50, 100];
 
+/** @param {Element} element @param {number} x @param {number} y @param {number} angle [rad] */
+const put = (element, x, y, angle) => element.setAttribute("transform", `translate(${x} ${y}) rotate(${(angle * 180) / Math.PI})`);
+
 export class Player {
   /** @param {HTMLElement} figure */
   constructor(figure) {
@@ -24,8 +27,6 @@ export class Player {
     this.chart = find(".errors");
     this.lens = new Lens(find(".lens"));
     this.boxes = /** @type {HTMLInputElement[]} */ ([...figure.querySelectorAll(".overlays input")]);
-    this.stage = /** @type {SVGSVGElement} */ (figure.querySelector("svg.stage"));
-    this.overlay = /** @type {SVGGElement} */ (this.stage.querySelector(".overlay"));
     /** @type {Element[][]} the drawn bodies of each motion */
     this.groups = [];
     /** @type {Take|null} */
@@ -47,11 +48,13 @@ export class Player {
     this.button.addEventListener("click", () => (this.playing ? this.stop() : this.play(false)));
   }
 
+  get stage() {
+    return /** @type {SVGSVGElement} */ (this.figure.querySelector("svg.stage"));
+  }
+
   /** Take over a drawing whose groups stand in the order of the motions, the truth last. @param {Take} take */
   load(take) {
     this.take = take;
-    this.stage = /** @type {SVGSVGElement} */ (this.figure.querySelector("svg.stage"));
-    this.overlay = /** @type {SVGGElement} */ (this.stage.querySelector(".overlay"));
     this.groups = [...this.stage.querySelectorAll(".motion")].map((group) => [...group.querySelectorAll(".body")]);
     [this.time.min, this.time.max] = take.window.map(String);
     this.frame = Math.min(Math.max(this.frame, take.window[0]), take.window[1]);
@@ -139,7 +142,7 @@ export class Player {
         const [x, y, angle] = poseAt(motions[index], take.bodies.length, frame, body);
         const there = Number.isFinite(x + y + angle);
         element.setAttribute("visibility", there ? "visible" : "hidden");
-        if (there) element.setAttribute("transform", `translate(${x} ${y}) rotate(${(angle * 180) / Math.PI})`);
+        if (there) put(element, x, y, angle);
       });
     });
     this.stage.classList.toggle("paths", this.on("paths"));
@@ -147,8 +150,8 @@ export class Player {
     this.clock.textContent = `${take.t[frame].toFixed(3)} s${this.slower > 1 ? `, ${this.slower} × slower` : ""}`;
     this.time.setAttribute("aria-valuetext", this.clock.textContent);
     this.mark(take.t[frame]);
-    this.overlay.replaceChildren();
-    const { overlay } = this;
+    const overlay = /** @type {SVGGElement} */ (this.stage.querySelector(".overlay"));
+    overlay.replaceChildren();
     const width = this.stage.viewBox.baseVal.width;
     const remarks = Object.entries(OVERLAYS).map(([name, { draw }]) => (this.on(name) ? draw({ take, frame, overlay, width }) : ""));
     this.lens.show(frame);
@@ -185,9 +188,9 @@ export class Player {
       const pose = pull(held.body, held.point, hand(event));
       if (!pose) return;
       for (const group of this.groups) {
-        group.forEach((element, body) => element.setAttribute("transform", `translate(${pose[3 * body]} ${pose[3 * body + 1]}) rotate(${(pose[3 * body + 2] * 180) / Math.PI})`));
+        group.forEach((element, body) => put(element, ...poseAt(pose, group.length, 0, body)));
       }
-      this.overlay.replaceChildren();
+      this.stage.querySelector(".overlay")?.replaceChildren();
     });
     const end = () => {
       if (held) release();

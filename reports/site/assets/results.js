@@ -10,28 +10,14 @@ const body = /** @type {HTMLTableSectionElement} */ (document.querySelector("#ro
 const count = /** @type {HTMLElement} */ (document.getElementById("count"));
 const MOST = 400; // rows in the table at once
 
-/** What is measured, with its unit. @type {Record<string, string>} */
-const UNITS = {
-  position: "error of a place [m]", angle: "error of an angle [rad]", velocity: "error of a velocity [m/s]",
-  gap: "gap [m] or slip [m/s]", energy: "drift of energy, relative [1]", reaction: "error of a reaction, relative [1]",
-};
-
 /** @typedef {Record<string, string|number|null>} Row */
 
 /** Of each engine the role of its colour, and whether it solves the equations as they are. @type {Record<string, {role: string, exact: boolean}>} */
 let looks = {};
 // Variants by line, so that a method has one look in every chart: an engine's colour, its variant's dashes.
 const DASHES = /** @type {Record<string, string>} */ ({ default: "2 3", tuned: "7 4", extended: "" });
-const HEADINGS = /** @type {Record<string, string>} */ ({ default: "as shipped", tuned: "documented settings", extended: "with our code" });
-
-/** @returns {Promise<Row[]>} */
-async function read() {
-  const { columns, rows, looks: told } = await (await fetch("rows.json")).json();
-  looks = told;
-  return rows.map((/** @type {(string|number|null)[]} */ row) =>
-    Object.fromEntries(columns.map((/** @type {string} */ name, /** @type {number} */ i) => [name, row[i]])),
-  );
-}
+/** @type {Record<string, string>} */
+let headings = {};
 
 /** @param {string} name */
 const chosen = (name) => /** @type {HTMLSelectElement|HTMLInputElement} */ (form.elements.namedItem(name)).value;
@@ -56,14 +42,15 @@ function draw(rows) {
     .filter((row) => Number(row[x]) > 0 && Number(row[y]) > 0)
     .map((row) => ({ ...row, method: nameOf(row) }));
   const engines = [...new Set(points.map((row) => String(row.engine)))];
-  const unit = { step: "step [s]", cpu: "CPU time per simulated second [s]" }[x];
+  // What is chosen says its unit.
+  const [across, error] = ["x", "y"].map((name) => /** @type {HTMLSelectElement} */ (form.elements.namedItem(name)).selectedOptions[0].text);
   chart.replaceChildren(
     points.length
       ? Plot.plot({
           width: Math.min(960, chart.clientWidth), height: 460, marginLeft: 60, grid: true,
           style: { background: "transparent", color: "var(--ink)", fontSize: "12px" },
-          x: { type: "log", label: unit, tickFormat: ".0e", ticks: 5 },
-          y: { type: "log", label: UNITS[y] ?? y, tickFormat: ".0e" },
+          x: { type: "log", label: across, tickFormat: ".0e", ticks: 5 },
+          y: { type: "log", label: `error: ${error}`, tickFormat: ".0e" },
           color: { legend: true, domain: engines, range: engines.map((name) => `var(--${looks[name].role})`) },
           marks: [
             ...[...new Set(points.map((row) => String(row.variant)))].map((variant) =>
@@ -78,7 +65,7 @@ function draw(rows) {
               },
             }),
           ],
-          ariaLabel: `Error of ${scene} against ${unit}`,
+          ariaLabel: `Error of ${scene} against ${across}`,
         })
       : "No row has both numbers.",
   );
@@ -87,7 +74,7 @@ function draw(rows) {
       const line = document.createElement("tr");
       for (const name of ["engine", "variant", "step", "outcome", "position", "angle", "velocity", "gap", "energy", "reaction", "cpu"]) {
         const value = row[name];
-        line.insertCell().textContent = name === "variant" ? (HEADINGS[String(value)] ?? String(value)) : value === null ? "–" : typeof value === "number" ? String(Number(value.toPrecision(3))) : value;
+        line.insertCell().textContent = name === "variant" ? (headings[String(value)] ?? String(value)) : value === null ? "–" : typeof value === "number" ? String(Number(value.toPrecision(3))) : value;
       }
       return line;
     }),
@@ -97,10 +84,10 @@ function draw(rows) {
 }
 
 /** Whether a row is one of an engine's three variants: of other methods there are many. @param {Row} row */
-const usual = ({ engine, variant }) => String(variant) in HEADINGS && !looks[String(engine)].exact;
+const usual = ({ engine, variant }) => String(variant) in headings && !looks[String(engine)].exact;
 
 /** What a method is called. @param {Row} row */
-const nameOf = ({ engine, variant }) => `${engine} ${HEADINGS[String(variant)] ?? variant}`;
+const nameOf = ({ engine, variant }) => `${engine} ${headings[String(variant)] ?? variant}`;
 
 /** What the reader chose, in the address. */
 function keep() {
@@ -109,7 +96,10 @@ function keep() {
 }
 
 async function begin() {
-  const rows = await read();
+  const told = await (await fetch("rows.json")).json();
+  ({ looks, headings } = told);
+  /** @type {Row[]} */
+  const rows = told.rows.map((/** @type {unknown[]} */ row) => Object.fromEntries(told.columns.map((/** @type {string} */ name, /** @type {number} */ i) => [name, row[i]])));
   const unique = (/** @type {string} */ name) => [...new Set(rows.map((row) => String(row[name])))].sort();
   fill(/** @type {HTMLSelectElement} */ (form.elements.namedItem("scene")), unique("scene"));
   fill(/** @type {HTMLSelectElement} */ (form.elements.namedItem("engine")), ["", ...unique("engine")]);

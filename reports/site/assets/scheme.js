@@ -1,34 +1,24 @@
 // Light or dark: the reader's choice if there is one, else the system's. Runs before the page is drawn.
 (() => {
   const root = document.documentElement;
-  const read = () => {
+  /** Where a page may keep nothing, the choice holds for this page. @param {(store: Storage) => void} use */
+  const kept = (use) => {
     try {
-      return localStorage.getItem("scheme");
-    } catch {
-      return null;
-    }
+      use(localStorage);
+    } catch {}
   };
-  const chosen = read();
-  if (chosen) root.dataset.scheme = chosen;
-  const dark = () =>
-    root.dataset.scheme ? root.dataset.scheme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  kept((store) => Object.assign(root.dataset, store.scheme && { scheme: store.scheme }));
+  const dark = () => (root.dataset.scheme ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "")) === "dark";
   addEventListener("DOMContentLoaded", () => {
     const button = document.querySelector("button.scheme");
     if (!(button instanceof HTMLButtonElement)) return;
-    const name = () => {
-      button.textContent = dark() ? "Light" : "Dark";
-    };
+    const name = () => (button.textContent = dark() ? "Light" : "Dark");
     button.hidden = false;
     name();
     button.addEventListener("click", () => {
-      root.dataset.scheme = dark() ? "light" : "dark";
-      try {
-        localStorage.setItem("scheme", root.dataset.scheme);
-      } catch {
-        // Without a store the choice holds for this page.
-      }
+      const scheme = (root.dataset.scheme = dark() ? "light" : "dark");
+      kept((store) => store.setItem("scheme", scheme));
       name();
-      dispatchEvent(new Event("scheme"));
     });
   });
 })();

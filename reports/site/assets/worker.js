@@ -1,9 +1,9 @@
 // @ts-check
 /** Runs the engines beside the page, so that the page never waits: a setting comes in, motions go out. */
 
-import { doubles, mechanismOf, pooled, runOf, truth, whyNot } from "./live_data.js";
+import { doubles, mechanismOf, modelOf, runOf, truth } from "./live_data.js";
 import { load, runMujoco, runMunk } from "./live_engines.js";
-import { errors, finite, largestGap } from "./motion.js";
+import { errors, finite } from "./motion.js";
 
 /** @typedef {import("./live_data.js").Setting} Setting @typedef {import("./live_data.js").Name} Name
  * @typedef {import("./live_data.js").Scene} Scene */
@@ -21,12 +21,6 @@ async function sceneOf(key) {
   return known;
 }
 
-/** What Python stored of a way, at the samples; null where there is none, or other settings. @param {Scene} scene @param {Setting} setting @param {Name} name */
-function stored(scene, setting, name) {
-  const kept = setting.own ? scene.native[name][setting[name]] : null;
-  return kept && !setting.start ? kept.map(doubles) : null;
-}
-
 /** All that a page shows of a setting. @param {Setting} setting @param {{mujoco: any, munk: any}} engines */
 async function answer(setting, engines) {
   const scene = await sceneOf(setting.key);
@@ -36,8 +30,8 @@ async function answer(setting, engines) {
   /** @type {Record<string, string>} */
   const lost = {};
   for (const name of /** @type {Name[]} */ (["munk", "mujoco"])) {
-    const why = whyNot(scene, setting, name) || (engines[name] ? "" : "this site was built without it");
-    const kept = stored(scene, setting, name);
+    const why = modelOf(run, name).why || (engines[name] ? "" : "this site was built without it");
+    const kept = setting.own ? scene.native[name][setting[name]]?.map(doubles) : null; // as Python stored it
     if (why && !kept) {
       lost[name] = why;
       continue;
@@ -49,49 +43,23 @@ async function answer(setting, engines) {
       ...found, name, pose, milliseconds: performance.now() - begin, from: why ? "Python" : "",
       apart: kept && !why ? pose.reduce((most, value, index) => Math.max(most, Math.abs(value - kept[0][index])), 0) : null,
       error: errors(exact.pose, pose, scene.bodies.length, run.samples + 1)[scene.measure].reduce((a, b) => Math.max(a, b), 0),
-      gap: largestGap(pooled(run, scene.joints), pose, scene.bodies.length, run.samples + 1),
     });
   }
-  const { word, measure, bodies, window, frames, duration, centre, versions } = scene;
+  const { measure, bodies, window, frames, centre, versions } = scene;
   const stretch = run.samples / frames;
   return {
-    word, measure, bodies, centre, versions, duration, exact, motions, lost,
+    measure, bodies, centre, versions, exact, motions, lost,
     window: window.map((frame) => Math.round(frame * stretch)),
     t: Float64Array.from({ length: run.samples + 1 }, (_, index) => index * run.every * run.step),
-    drawing: pooled(run, scene.drawings), joints: pooled(run, scene.joints), blades: pooled(run, scene.blades),
-    traces: pooled(run, scene.traces),
-    forces: scene.forces[setting.place] === null || setting.start || exact.forces.length ? null : pooled(run, /** @type {number[]} */ (scene.forces)),
-    mechanism: mechanismOf(run), release: mujocoVersion(engines.mujoco),
+    drawing: run.at.drawing, joints: run.at.joints, blades: run.at.blades, traces: run.at.traces,
+    forces: exact.missed === null ? run.at.forces : exact.forces,
+    mechanism: mechanismOf(run), release: engines.mujoco?.mj_versionString() ?? "",
     // What acts on nothing in this model: its sliders are not to be moved.
-    idle: idleOf(scene, setting),
+    idle: [...modelOf(run, "munk").idle, ...modelOf(run, "mujoco").idle],
   };
 }
 
-/** @param {any} mujoco */
-const mujocoVersion = (mujoco) => mujoco?.mj_versionString?.() ?? "";
-
-/** The records of Munk2D's plan, what each is and its first numbers. @param {Scene} scene @param {number[]} plans @param {number} place */
-function recordsOf(scene, plans, place) {
-  const plan = doubles(/** @type {string} */ (scene.pool[plans[place]]));
-  const found = [];
-  for (let at = 8 + 11 * plan[4]; at < plan.length; at += 2 + plan[at + 1]) found.push({ part: plan[at], first: plan[at + 2], second: plan[at + 3] });
-  return found;
-}
-
-/** Sliders that act on nothing in this model. @param {Scene} scene @param {Setting} setting @returns {string[]} */
-function idleOf(scene, setting) {
-  const [munk, mujoco] = [scene.munk[setting.munk], scene.mujoco[setting.mujoco]];
-  const idle = [];
-  const parts = "why" in munk ? [] : recordsOf(scene, munk.plans, setting.place).map(({ part }) => part);
-  const joints = parts.filter((part) => part <= 5).length - parts.filter((part) => part === 10).length;
-  if (!parts.some((part) => part <= 8)) idle.push("iterations");
-  if (!joints) idle.push("bias");
-  if ("why" in mujoco) idle.push("integrator");
-  if ("why" in mujoco || !mujoco.springs) idle.push("timeConstant", "impedance", "solverIterations", "tolerance");
-  return idle;
-}
-
-/** The sweeps of one step of Munk2D: velocities and impulses after each; `which`: the impulse of each joint.
+/** The sweeps of one step of Munk2D: velocities and impulses after each; `which`: the place of each joint's impulse.
  * @param {Setting} setting @param {number} frame */
 async function sweeps(setting, frame) {
   const { munk } = await /** @type {Promise<{mujoco: any, munk: any}>} */ (loading);
@@ -99,16 +67,13 @@ async function sweeps(setting, frame) {
   const run = runOf(setting, scene);
   const upto = { ...run, samples: 1, every: Math.max(1, frame * run.every - 1) };
   const whole = runMunk(munk, upto, 1).iterations;
-  const records = recordsOf(scene, /** @type {import("./live_data.js").Plans} */ (scene.munk[setting.munk]).plans, setting.place).filter(({ part }) => part <= 5);
-  const joints = /** @type {import("./motion.js").Joint[]} */ (pooled(run, scene.joints));
-  const which = joints.map(({ first, second }) => records.findIndex((record) => record.part <= 2 && record.first === first && record.second === second));
   const found = [];
   for (let last = 1; last <= Math.min(whole, 60); last++) {
     const { pose, twist, impulses, left } = runMunk(munk, upto, last);
     const width = 3 * scene.bodies.length;
     found.push({ pose: pose.slice(2 * width), twist: twist.slice(2 * width), impulses, left });
   }
-  return { found, whole, which, step: run.step };
+  return { found, whole, which: modelOf(run, "munk").impulses, step: run.step };
 }
 
 onmessage = async ({ data: { id, kind, setting, frame, packages, wanted, folder: where } }) => {

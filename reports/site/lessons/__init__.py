@@ -1,7 +1,5 @@
 """The lessons: the scenes each lets run and the experiments it makes; their words stand beside, one file each."""
 
-from dataclasses import replace
-
 from engines import Engine
 from reference.scene import Scene
 from reports.site.lesson import Take
@@ -19,6 +17,4 @@ def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Tak
         return Take(scene, methods)
     bodies = {body.name for body in scene.mechanism().bodies}
     ends = {body: points for body, points in plain.ends.items() if body in bodies}
-    traces = tuple((body, point) for body, point in plain.traces if body in bodies)
-    centre = plain.centre if plain.centre in bodies else None
-    return replace(Take(scene, methods), ends=ends, traces=traces, centre=centre, axle=plain.axle)
+    return Take(scene, methods, ends=ends, axle=plain.axle)

@@ -10,11 +10,9 @@ from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.pages.centrodes.page import exact
-from reports.site.lesson import Claim, Experiment, Lesson
-from reports.site.live.sliders import DOCUMENTED, Live, Point, Slider
+from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Lesson
+from reports.site.live.sliders import Live, Point, Slider
 
-BOTH = {"munk": DOCUMENTED, "mujoco": DOCUMENTED}
-FORCES, CENTRE = (frozenset({"paths", word}) for word in ("reactions", "centre"))
 RATIOS = (0.01, 0.1, 1.0, 10.0, 100.0)
 DENSITIES = tuple(1.0 if ratio == 1 else (1.0, ratio, 1.0) for ratio in RATIOS)
 DENSITY = Slider("density", "the coupler's density to that of the others", DENSITIES, tuple(map("{:g}".format, RATIOS)))
@@ -57,13 +55,13 @@ FOUR_BAR = Lesson(
     "four_bar",
     (DRIVEN, FREE),
     (
-        Experiment("driven", section=("four_bar", "Nine configurations")),
+        Experiment("driven", section="Nine configurations"),
         Experiment(
             "driven",
             after={"bias": 0.0},
             claims=(Claim("munk", most=0.1),),
             causes=(({"bias": None, "iterations": 100}, Claim("munk", least=10)),),
-            section=("four_bar", "Why the engine's pin is not the ideal one"),
+            section="Why the engine's pin is not the ideal one",
         ),
         Experiment(
             "let go",
@@ -76,7 +74,7 @@ FOUR_BAR = Lesson(
             "let go",
             after=BOTH,
             claims=(Claim("munk", most=0.2), Claim("mujoco", most=0.001)),
-            section=("four_bar", "Which step for which mechanism"),
+            section="Which step for which mechanism",
         ),
         Experiment(
             "let go",
@@ -92,7 +90,7 @@ FOUR_BAR = Lesson(
             (Claim("munk", least=10), Claim("mujoco", 1.0, 1.0)),
             (({"iterations": 100}, Claim("munk", most=0.1)), ({"density": 1.0}, Claim("munk", most=0.1))),
             FORCES,
-            ("four_bar", "Where methods fail"),
+            section="Where methods fail",
         ),
     ),
 )
@@ -131,7 +129,7 @@ SLIDER_CRANK = Lesson(
         ),
     ),
     (
-        Experiment("driven", shown=CENTRE, section=("slider_crank", "In motion")),
+        Experiment("driven", shown=CENTRE, section="In motion"),
         Experiment("let go", after=BOTH, claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.1))),
         Experiment(
             "driven",
@@ -140,7 +138,7 @@ SLIDER_CRANK = Lesson(
             (Claim("munk", least=10),),
             (({"iterations": 100}, Claim("munk", most=0.1)), ({"slider_mass": 0.5}, Claim("munk", most=0.1))),
             FORCES,
-            ("slider_crank", "Where methods fail"),
+            section="Where methods fail",
         ),
     ),
 )
@@ -185,7 +183,7 @@ PENDULUM = Lesson(
             after={"bias": 0.0},
             claims=(Claim("munk", most=0.1),),
             causes=(({"bias": None, "iterations": 100}, Claim("munk", least=10)),),
-            section=("pendulum", "In motion"),
+            section="In motion",
         ),
         Experiment(
             "two links",
@@ -193,7 +191,7 @@ PENDULUM = Lesson(
             {"steps": 5000},
             (Claim("mujoco", 5e-5, 2e-4), Claim("munk", 0.05, 0.2)),
             (({"integrator": 0}, Claim("mujoco", least=1000)),),
-            section=("pendulum", "Which step for which mechanism"),
+            section="Which step for which mechanism",
         ),
         Experiment(
             "ten links",
@@ -208,7 +206,7 @@ PENDULUM = Lesson(
             (Claim("munk", least=10), Claim("mujoco", 1.0, 1.0)),
             (({"iterations": 20}, Claim("munk", most=0.1)), ({"tip": 1.0}, Claim("munk", most=1.0))),
             FORCES,
-            ("pendulum", "Where methods fail"),
+            section="Where methods fail",
         ),
     ),
 )
@@ -246,13 +244,13 @@ CENTRODES = Lesson(
     (rolling_centrodes(), replace(DRIVEN, word="whole", sliders=())),
     (
         Experiment("whole", shown=CENTRE),
-        Experiment("rolling", shown=CENTRE, section=("centrodes", "The coupler of the four-bar")),
+        Experiment("rolling", shown=CENTRE, section="The coupler of the four-bar"),
         Experiment(
             "rolling",
             after=BOTH,
             claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.1)),
             shown=CENTRE,
-            section=("centrodes", "The centre as a measure of an engine"),
+            section="The centre as a measure of an engine",
         ),
     ),
 )

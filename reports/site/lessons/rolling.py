@@ -9,7 +9,7 @@ from engines.pymunk.joints.roll import Contact
 from engines.pymunk.methods import ROLL_FACETED
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
-from reports.site.lesson import Claim, Experiment, Lesson
+from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Lesson
 from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 
 ROLLER = (("roller", (0.0, 0.0)),)
@@ -22,8 +22,6 @@ CORNERS = (
     (FEW, replace(pymunk.DEFAULT, contact=Contact(vertices=8))),
     (MANY, ROLL_FACETED[-1]),
 )
-BOTH = {"munk": DOCUMENTED, "mujoco": DOCUMENTED}
-FORCES, CENTRE = (frozenset({"paths", word}) for word in ("reactions", "centre"))
 
 ROLLING = Lesson(
     "rolling",
@@ -54,31 +52,31 @@ ROLLING = Lesson(
         Live("a cam", RollingCam(), HUNDRED, 100, 3, (START_RATE,), munk=CORNERS, traces=ROLLER, centre="roller"),
     ),
     (
-        Experiment("a cam", shown=CENTRE, section=("rolling", "The contact")),
+        Experiment("a cam", shown=CENTRE, section="The contact"),
         Experiment(
             "an ellipse",
-            shown=frozenset({"paths", "friction"}),
-            section=("rolling", "Friction demanded, friction given"),
+            shown=("friction",),
+            section="Friction demanded, friction given",
         ),
         Experiment(
             "an ellipse",
             after={"steps": 2000},
             claims=(Claim("munk", 0.7, 1.3), Claim("mujoco", 0.7, 2.0)),
             causes=(({"munk": MANY}, Claim("munk", most=0.25)),),
-            section=("rolling", "Errors that no step removes"),
+            section="Errors that no step removes",
         ),
         Experiment(
             "a disc",
             after={"steps": 2000},
             claims=(Claim("munk", 0.05, 0.15),),
-            section=("rolling", "Roulettes"),
+            section="Roulettes",
         ),
         Experiment(
             "an ellipse",
             {"munk": MANY, "steps": 2000},
             {"munk": FEW},
             (Claim("munk", least=10),),
-            section=("rolling", "Where methods fail"),
+            section="Where methods fail",
         ),
     ),
 )
@@ -100,7 +98,7 @@ GEARS = Lesson(
         ),
     ),
     (
-        Experiment("two gears", after={"eccentricity": 0.7}, shown=FORCES, section=("rolling", "Elliptic gears")),
+        Experiment("two gears", after={"eccentricity": 0.7}, shown=FORCES, section="Elliptic gears"),
         Experiment("two gears", after=BOTH, claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.5)), shown=FORCES),
         Experiment(
             "two gears",
@@ -108,7 +106,7 @@ GEARS = Lesson(
             {"munk": FEW},
             (Claim("munk", least=10),),
             shown=FORCES,
-            section=("rolling", "The contact"),
+            section="The contact",
         ),
     ),
 )

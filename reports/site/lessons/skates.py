@@ -6,7 +6,7 @@ from engines import pymunk
 from engines.pymunk.methods import SKATE_CENTRE, SKATE_PROJECTED
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
-from reports.site.lesson import Claim, Experiment, Lesson
+from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Lesson
 from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 
 NAIVE, PROJECTED = "naive: the centre's sideways velocity set to zero", "our code: an impulse at the blade"
@@ -16,8 +16,6 @@ MUNK = (
     (NAIVE, SKATE_CENTRE),
     (PROJECTED, SKATE_PROJECTED),
 )
-BOTH = {"munk": DOCUMENTED, "mujoco": DOCUMENTED}
-FORCES = frozenset({"paths", "reactions", "centre"})
 SLEIGH = ChaplyginSleigh()
 
 SKATE = Lesson(
@@ -40,7 +38,7 @@ SKATE = Lesson(
         ),
     ),
     (
-        Experiment("the sleigh", BOTH, shown=FORCES, section=("skate", "What the row takes, and what it leaves")),
+        Experiment("the sleigh", BOTH, shown=FORCES + CENTRE, section="What the row takes, and what it leaves"),
         Experiment("the sleigh", after={"steps": 3000}, claims=(Claim("mujoco", 1.5, 2.5),)),
         Experiment(
             "the sleigh",
@@ -48,14 +46,14 @@ SKATE = Lesson(
             {"munk": NAIVE},
             (Claim("munk", least=100),),
             (({"steps": 3000}, Claim("munk", 0.9, 1.1)), ({"munk": PROJECTED}, Claim("munk", most=0.01))),
-            section=("skate", "Where methods fail"),
+            section="Where methods fail",
         ),
         Experiment(
             "the sleigh",
             BOTH,
             {"steps": 3000},
             (Claim("munk", 0.05, 0.2),),
-            section=("skate", "How do I put an ideal skate into pymunk?"),
+            section="How do I put an ideal skate into pymunk?",
         ),
     ),
 )
@@ -95,7 +93,7 @@ WHEELS = Lesson(
         ),
     ),
     (
-        Experiment("forwards", BOTH, shown=FORCES, section=("wheels", "How a vehicle can still move")),
+        Experiment("forwards", BOTH, shown=FORCES + CENTRE, section="How a vehicle can still move"),
         Experiment("forwards", after={"steps": 5000}, claims=(Claim("mujoco", 0.5, 1.5),)),
         Experiment(
             "forwards",
@@ -103,7 +101,7 @@ WHEELS = Lesson(
             {"munk": NAIVE},
             (Claim("munk", least=10),),
             (({"steps": 5000}, Claim("munk", 0.8, 1.3)), ({"munk": PROJECTED}, Claim("munk", most=0.1))),
-            section=("wheels", "Where methods fail"),
+            section="Where methods fail",
         ),
         Experiment("backwards", {**BOTH, "bend": 0.0125}, {"bend": 0.05}),
     ),

@@ -1,121 +1,88 @@
 """A live part as the data that a page loads: models, truth and drawings at every place of the sliders.
 
-What is the same at several places is there once: `pool` holds it, and places have its number. The numbers of truth
-and of Munk2D's plans are doubles as they are, in base64. Nothing is stepped here: what Python's engines gave comes as
-stored motions.
+The numbers of truth and of Munk2D's plans are doubles as they are, in base64. Nothing is stepped here: what Python's
+engines gave comes as stored motions.
 """
 
 from __future__ import annotations
 
 import base64
-import json
-import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Unsupported
+from engines import Unsupported
 from engines.mujoco.stiffness import Shipped
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.scene import Scene
-from reference.trajectory import Trajectory
 from reports.model.tasks import Answer, Motion
 from reports.site import drawn
 from reports.site.drawn import index_of, joints_of, loose, measure_of
-from reports.site.embed import forces, picture, shown
-from reports.site.lesson import Lesson, Source, Take
+from reports.site.embed import forces
 from reports.site.live.models import plan_of, text_of
-from reports.site.live.sliders import ENGINES, Live, Name, Point
-from reports.site.munk2d import compiled
-from reports.site.packages import MUJOCO, NotFetched
+from reports.site.live.sliders import ENGINES, NAMES, Live, Name
 
-NUMBER = re.compile(r"(?<=[\" ])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?=[\" ])")
-PACKAGES = {"munk": ("pymunk", "pymunk"), "mujoco": ("MuJoCo", "mujoco-core")}  # its name, and that of its package
-
-
-@dataclass
-class Pool:
-    """Values that a page needs, each once; `number` gives the place of one."""
-
-    values: list[Any] = field(default_factory=list)
-    known: dict[str, int] = field(default_factory=dict)
-
-    def number(self, value: Any) -> int:
-        """Where the value stands, put there if it is new."""
-        key = json.dumps(value)
-        if key not in self.known:
-            self.known[key] = len(self.values)
-            self.values.append(value)
-        return self.known[key]
+PACKAGES: dict[Name, str] = {"munk": "pymunk", "mujoco": "mujoco-core"}
 
 
 def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
     """All that a page needs of a live scene, for JSON; lists of places are in the order of `Live.places`.
 
-    Of pinned linkages the page finds the exact motion itself, from `mechanisms`; `truth` is then that of the scene's
-    own numbers alone. Poses and twists of a body are six numbers.
+    Of pinned linkages the page finds the exact motion itself, from `equations`; `truth` is then that of the scene's own
+    numbers alone. Poses and twists of a body are six numbers.
     """
-    pool = Pool()
-    places = list(live.places())
-    mechanisms = [scene.mechanism() for scene in places]
     mechanism = live.scene.mechanism()
-    pinned = all(isinstance(joint, Pin | Slot | Drive) for joint in mechanism.joints)
-    times = np.arange(live.frames + 1) * (live.scene.duration / live.frames)
-    motions = [scene.motion(times) if not pinned or scene == live.scene else None for scene in places]
-    truth = live.scene.motion(times)
-    stored = live.stored()
-    ways: dict[Name, list[dict[str, Any]]] = {
-        "mujoco": [_or_why(lambda own=own: _texts(own, live, mechanisms, pool), own) for _, own in live.mujoco],
-        "munk": [_or_why(lambda own=own: _plans(own, live, mechanisms, pool), own) for _, own in live.munk],
+    places = [(scene, scene.mechanism()) for scene in live.places()]
+    mechanisms = [each for _, each in places]
+    ways: dict[Name, list[Any]] = {
+        name: [_models(name, engine, live, mechanisms) for _, engine in live.ways(name)] for name in ENGINES
     }
-    points = [[(body, point) for body, point in live.traces] or _blades(each) for each in mechanisms]
+    stored = {key: answers.get(motion) for key, motion in live.stored().items()}
     return {
-        "word": live.word,
-        "scene": live.scene.name,
         "measure": measure_of(mechanism),
         "frames": live.frames,
         "window": live.window or (0, live.frames),
-        "steps": live.steps,
         "duration": live.scene.duration,
-        "sliders": [{"name": slider.field, "size": len(slider.values)} for slider in live.sliders],
         "bodies": [body.name for body in mechanism.bodies],
-        "truth": [None if each is None else pool.number(packed(_states(each))) for each in motions],
-        "mechanisms": [pool.number(_equations(each)) for each in mechanisms] if pinned else None,
-        "forces": [
-            None if each is None else pool.number(forces(one, each))
-            for one, each in zip(mechanisms, motions, strict=True)
-        ],
-        "drawings": [
-            pool.number(_drawing(live, scene, one, truth.pose if each is None else each.pose))
-            for scene, one, each in zip(places, mechanisms, motions, strict=True)
-        ],
-        "joints": [pool.number(joints_of(each)) for each in mechanisms],
-        "blades": [pool.number(_edges(each)) for each in mechanisms],
-        "traces": [
-            pool.number([{"body": one.body_index(body), "point": point} for body, point in each])
-            for one, each in zip(mechanisms, points, strict=True)
-        ],
         "centre": None if live.centre is None else mechanism.body_index(live.centre),
+        "places": [_place(live, *each) for each in places],
         **ways,
         "native": {
-            name: [
-                _native(answers.get(stored[name, index]) if (name, index) in stored else None, way)
-                for index, way in enumerate(each)
-            ]
+            name: [_native(stored.get((name, index)), way) for index, way in enumerate(each)]
             for name, each in ways.items()
         },
-        "versions": {name: native_version(name) for name in ENGINES},
-        "pool": pool.values,
+        "versions": {name: f"{NAMES[name]} {version(package)}" for name, package in PACKAGES.items()},
     }
 
 
-def _states(motion: Trajectory) -> NDArray[np.float64]:
-    return np.concatenate([motion.pose, motion.twist], axis=-1)
+def _place(live: Live, scene: Scene, mechanism: Mechanism) -> dict[str, Any]:
+    """The mechanism at a place of the sliders, how it is drawn, and its motion."""
+    pinned = all(isinstance(joint, Pin | Slot | Drive) for joint in mechanism.joints)
+    known = not pinned or scene == live.scene
+    truth = (scene if known else live.scene).motion(np.arange(live.frames + 1) * (scene.duration / live.frames))
+    blades = [joint for joint in mechanism.joints if isinstance(joint, Skate)]
+    traces = live.traces or [(str(blade.second), blade.second_point) for blade in blades]
+    return {
+        "equations": _equations(mechanism) if pinned else None,
+        "truth": packed(np.concatenate([truth.pose, truth.twist], axis=-1)) if known else None,
+        "forces": forces(mechanism, truth) if known else None,
+        "drawing": drawing(live, mechanism, truth.pose),
+        "joints": joints_of(mechanism),
+        "blades": [
+            {
+                "name": blade.name,
+                "body": mechanism.body_index(str(blade.second)),
+                "point": blade.second_point,
+                "angle": blade.angle,
+            }
+            for blade in blades
+        ],
+        "traces": [{"body": mechanism.body_index(body), "point": point} for body, point in traces],
+    }
 
 
 def _equations(mechanism: Mechanism) -> dict[str, Any]:
@@ -137,40 +104,6 @@ def _equations(mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-def _blades(mechanism: Mechanism) -> list[tuple[str, Point]]:
-    return [(str(joint.second), joint.second_point) for joint in mechanism.joints if isinstance(joint, Skate)]
-
-
-def _edges(mechanism: Mechanism) -> list[dict[str, Any]]:
-    """The skates: the body of each, its point there [m] and the blade's angle on it [rad]."""
-    return [
-        {
-            "name": each.name,
-            "body": mechanism.body_index(str(each.second)),
-            "point": each.second_point,
-            "angle": each.angle,
-        }
-        for each in mechanism.joints
-        if isinstance(each, Skate)
-    ]
-
-
-def native_version(engine: str) -> str:
-    """Such as "MuJoCo 4.0.1": what Python runs."""
-    name, package = PACKAGES[engine]
-    return f"{name} {version(package)}"
-
-
-def _or_why(make: Callable[[], dict[str, Any]], engine: Engine | str) -> dict[str, Any]:
-    """What is made, or the sentence that says why it can't be."""
-    if isinstance(engine, str):
-        return {"why": engine}
-    try:
-        return make()
-    except Unsupported as reason:
-        return {"why": str(reason)}
-
-
 def _native(answer: Answer | None, way: Mapping[str, Any]) -> list[str] | None:
     """The poses that Python's engine gave, and where the page has no engine for this the twists."""
     if answer is None or not answer.finished:
@@ -183,78 +116,48 @@ def packed(values: NDArray[np.float64]) -> str:
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
 
 
-def _plans(engine: Any, live: Live, mechanisms: Sequence[Mechanism], pool: Pool) -> dict[str, Any]:
-    plans = [plan_of(engine, mechanism, live.scene.duration) for mechanism in mechanisms]
-    return {"plans": [pool.number(packed(np.array(plan))) for plan in plans]}
+def _models(name: Name, engine: Any, live: Live, mechanisms: Sequence[Mechanism]) -> dict[str, Any]:
+    """What the page's engine is given, by place and step, or why it can't be: all sliders then act on nothing.
 
-
-def _texts(engine: Any, live: Live, mechanisms: Sequence[Mechanism], pool: Pool) -> dict[str, Any]:
+    A model for one step is that for all, unless a blade stands in the ground or a spring is as fast as the step.
+    """
     steps = [live.scene.duration / steps for steps in live.steps]
-    # A model for one step is that for all, unless a blade stands in the ground or a spring is as fast as the step.
-    known = steps if not isinstance(engine.stiffness, Shipped) or loose(mechanisms[0]) else steps[:1]
-    by_step = [[text_of(engine, mechanism, step) for step in known] for mechanism in mechanisms]
-    texts = [each[0] for each in by_step]
-    first = texts[0]
-    if any((each.bodies, each.turns, each.springs) != (first.bodies, first.turns, first.springs) for each in texts):
-        raise ValueError("the trees of a slider's places differ")
-    parts, numbers = template([each.text for told in by_step for each in told])
-    return {
-        "parts": parts,
-        "numbers": [list(map(pool.number, numbers[at : at + len(known)])) for at in range(0, len(numbers), len(known))],
-        "changes": [[pool.number(each.changes) for each in told] for told in by_step],
-        "velocity": [pool.number(each.velocity) for each in texts],
-        "bodies": first.bodies,
-        "turns": first.turns,
-        "links": first.links,
-        "springs": first.springs,
-    }
+    try:
+        if isinstance(engine, str):
+            raise Unsupported(engine)
+        if name == "munk":
+            plans = [plan_of(engine, mechanism, live.scene.duration) for mechanism in mechanisms]
+            return {"models": [[{**vars(plan), "numbers": packed(np.array(plan.numbers))}] for plan in plans]}
+        known = steps if not isinstance(engine.stiffness, Shipped) or loose(mechanisms[0]) else steps[:1]
+        return {"models": [[vars(text_of(engine, mechanism, step)) for step in known] for mechanism in mechanisms]}
+    except Unsupported as reason:
+        return {"why": str(reason), "idle": list(ENGINES[name])}
 
 
-def template(texts: Sequence[str]) -> tuple[list[str], list[str]]:
-    """What stands between the numbers of all texts, and the numbers of each, between commas. Raises ValueError."""
-    parts = [NUMBER.split(text) for text in texts]
-    if any(each != parts[0] for each in parts):
-        raise ValueError("the models of a slider's places differ in more than numbers")
-    return parts[0], [",".join(NUMBER.findall(text)) for text in texts]
-
-
-def _drawing(live: Live, scene: Scene, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict[str, Any]:
-    take = Take(scene, ends=live.ends, curves=live.curves, axle=live.axle)
-    left, bottom, width, height = drawn.box(mechanism, take, pose)
+def drawing(live: Live, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict[str, Any]:
+    """The parts of a picture as SVG; `pose` (times, bodies, 3), the truth."""
+    left, bottom, width, height = drawn.box(mechanism, live, pose)
     return {
         "box": " ".join(drawn.number(value) for value in (left, -bottom - height, width, height)),
-        "ground": drawn.ground(mechanism, take, pose),
-        "bodies": [drawn.body_shape(mechanism, take, body.name) for body in mechanism.bodies],
+        "ground": "".join(line.svg() for line in drawn.ground_lines(mechanism, live, pose)),
+        "bodies": [drawn.body_shape(mechanism, live, body.name) for body in mechanism.bodies],
         "size": mechanism.length_scale,
     }
 
 
 def first_picture(live: Live) -> str:
     """The exact motion at its start with its paths, for who has no script."""
-    take = Take(live.scene, samples=live.frames, ends=live.ends, traces=live.traces, curves=live.curves, axle=live.axle)
-    return picture(shown(take, {}), f"The mechanism: {live.word}")
-
-
-MUNK = "packages/munk2d.js"
-ENGINE_FILES = {MUNK: "munk2d", "packages/mujoco.js": "mujoco"}
-
-
-def engine_files(source: Source, lessons: Iterable[Lesson]) -> tuple[dict[str, bytes], list[str]]:
-    """The engines' files and the data of all live scenes, and a sentence for each engine that is missing."""
-    files: dict[str, bytes] = {}
-    missing = []
-    try:
-        content = source.registry.fetched(MUJOCO)
-        files |= {name: content[path] for path, name in MUJOCO.files}
-    except NotFetched as reason:
-        missing.append(f"This site was built without MuJoCo: {reason}.")
-    try:
-        files[MUNK] = compiled(source.cache)
-    except NotFetched as reason:
-        missing.append(f"This site was built without Munk2D, the engine in pymunk: {reason}.")
-    source.troubles += missing
-    known = {live.key: live for lesson in lessons for live in lesson.scenes}
-    for key, live in known.items():
-        told = json.dumps(data(live, source.answers), separators=(",", ":"), allow_nan=False)
-        files[f"live/{key}.json"] = told.encode()
-    return files, missing
+    mechanism = live.scene.mechanism()
+    pose = live.scene.motion(np.linspace(0.0, live.scene.duration, live.frames + 1)).pose
+    parts = drawing(live, mechanism, pose)
+    paths = (drawn.path(drawn.point_path(pose[:, mechanism.body_index(body)], point)) for body, point in live.traces)
+    traces = "".join(f'<path class="trace" d="{path}"/>' for path in paths)
+    bodies = "".join(
+        f'<g class="body" transform="{drawn.placed(where)}">{shape}</g>'
+        for where, shape in zip(pose[0], parts["bodies"], strict=True)
+    )
+    return (
+        f'<svg class="stage" viewBox="{parts["box"]}" role="img" aria-label="The mechanism: {live.word}">'
+        f'<g class="world" transform="scale(1 -1)"><g class="ground">{parts["ground"]}</g>'
+        f'<g class="motion truth"><g class="traces">{traces}</g>{bodies}</g><g class="overlay"></g></g></svg>'
+    )

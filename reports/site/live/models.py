@@ -1,7 +1,4 @@
-"""What engines in the page are given: MuJoCo's model as text with our changes, pymunk's space as a list of numbers."""
-
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
+"""What engines in the page are given: MuJoCo's model as text, pymunk's space as a list of numbers."""
 
 from __future__ import annotations
 
@@ -11,37 +8,31 @@ from enum import IntEnum
 from itertools import chain
 from typing import Any
 
-import mujoco
-import numpy as np
 import pymunk as pymunk_package
-from pymunk.constraints import GearJoint, GrooveJoint, PinJoint, PivotJoint, SimpleMotor
+from pymunk.constraints import GrooveJoint, PivotJoint
 
 from engines import Unsupported
 from engines.mujoco import MuJoCo
 from engines.mujoco.model import Model as TreeModel
+from engines.mujoco.written_file import as_text
 from engines.pymunk import Pymunk
 from engines.pymunk.joints.skate import AimedGroove, Zeroed
 from engines.pymunk.model import Model
-from reference.joints import Skate
+from reference.joints import Pin, Skate, Slot
 from reference.mechanism import Mechanism
-
-PARTS = ("", "opt", "stat")
-OWN = ("opt.timestep",)  # set by the page
+from reports.site.drawn import index_of
+from reports.site.live.sliders import ENGINES
 
 
 @dataclass(frozen=True)
 class Text:
-    """A model for the page: MJCF; changes to what is compiled of it, by path; its start; where our bodies are in it."""
+    """A model for the page: MJCF as `crosscheck export` writes it, and where our bodies are in it."""
 
     text: str
-    changes: tuple[tuple[str, tuple[float, ...]], ...]
-    velocity: tuple[float, ...]  # qvel at the start
     bodies: tuple[int, ...]  # MuJoCo's number of each body of the mechanism
-    turns: tuple[tuple[int, ...], ...]  # for each body: the places in qpos whose sum is its rotation since the start
-    links: tuple[
-        tuple[float, ...], ...
-    ]  # body, parent (-1: ground), places in qpos of its rotation and its slide (-1: none), the slide's direction
-    springs: bool  # whether solref and solimp act on anything
+    # Parents first: body, parent (-1: ground), places in qpos of rotation and slide (-1: none), the slide's direction.
+    links: tuple[tuple[float, ...], ...]
+    idle: tuple[str, ...]  # sliders of the engine that act on nothing
 
 
 def text_of(engine: MuJoCo, mechanism: Mechanism, step: float) -> Text:
@@ -50,53 +41,17 @@ def text_of(engine: MuJoCo, mechanism: Mechanism, step: float) -> Text:
     Raises Unsupported where our code helps while it is stepped: the page has none.
     """
     model = engine.model(mechanism, step, as_text=True)
-    hooks = model.hooks
-    if hooks.control or hooks.before or model.drive == "overwrite":
-        raise Unsupported("this method rewrites rows in each step by code of ours in Python, which the page has not")
-    if model.compiled.nu:
-        raise Unsupported("the page sets no actuators")
-    assert model.written_as is not None
-    text = model.written_as.text()
-    start = model.start()
+    springs = model.compiled.neq or model.compiled.npair
     return Text(
-        text,
-        tuple(changes(mujoco.MjModel.from_xml_string(text), model.compiled)),
-        tuple(start.qvel.tolist()),
+        as_text(model, engine.stiffness.softening),
         tuple(int(model.compiled.body(f"body {number}").id) for number in range(len(mechanism.bodies))),
-        turns(model),
         links(model),
-        bool(model.compiled.neq or model.compiled.npair),
+        () if springs else tuple(name for name in ENGINES["mujoco"] if name != "integrator"),
     )
 
 
-def changes(plain: Any, changed: Any) -> list[tuple[str, tuple[float, ...]]]:
-    """The numbers of a compiled model that differ from those of another, by path, such as ("opt.gravity", ...)."""
-    found = []
-    for part in PARTS:
-        first, second = (getattr(model, part) if part else model for model in (plain, changed))
-        for name in dir(first):
-            path = f"{part}.{name}".strip(".")
-            if name.startswith("_") or path in OWN:
-                continue
-            before, after = getattr(first, name), getattr(second, name)
-            if not isinstance(before, int | float | np.ndarray):
-                continue
-            if not np.array_equal(before, after):
-                found.append((path, tuple(np.asarray(after, dtype=float).ravel().tolist())))
-    return found
-
-
-def turns(model: TreeModel) -> tuple[tuple[int, ...], ...]:
-    """For each body the places in qpos of the rotations from the ground to it."""
-    found: dict[int, tuple[int, ...]] = {}
-    for link in model.tree.links:  # parents first
-        own = () if link.rotation is None else (model.address[link.rotation],)
-        found[link.body] = (() if link.parent is None else found[link.parent]) + own
-    return tuple(found[number] for number in range(len(found)))
-
-
 def links(model: TreeModel) -> tuple[tuple[float, ...], ...]:
-    """Of each body that hangs on a hinge or slides in a slot what a page needs to let it start elsewhere."""
+    """Of each body, parents first, how its pose follows from qpos, as `Text` has it."""
     found = []
     for link in model.tree.links:
         rotation = -1 if link.rotation is None else model.address[link.rotation]
@@ -111,15 +66,24 @@ STEP = 1e-3  # s: told in seconds, nothing of these models depends on it
 class Part(IntEnum):
     """What a record of the plan is, as munk2d.c has it."""
 
-    PIVOT, GROOVE, MOTOR, PIN, GEAR, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED = range(1, 11)
+    PIVOT, GROOVE, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED = range(1, 8)
 
 
 Indexed = Callable[[Any], int]
 
 
-def plan_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> tuple[float, ...]:
-    """Gravity; collision slop and bias; the number of bodies; iterations; error_bias; 1 if that is what is left after
-    a step, 0 after a second; bodies; records. For a motion of `duration` [s]. Raises Unsupported.
+@dataclass(frozen=True)
+class Plan:
+    """A space for the page: its numbers; sliders that act on nothing; of each pin and slot the place of its impulse."""
+
+    numbers: tuple[float, ...]
+    idle: tuple[str, ...]
+    impulses: tuple[int, ...]  # -1 where no constraint of pymunk holds the joint
+
+
+def plan_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> Plan:
+    """The numbers: gravity; collision slop and bias; the number of bodies; iterations; error_bias; 1 if that is what is
+    left after a step, 0 after a second; bodies; records. For a motion of `duration` [s]. Raises Unsupported.
 
     A body: kind (0 dynamic, 1 kinematic), mass, moment, x, y, angle, vx, vy, rate, and its origin in our frame. A
     record: what it is, how many numbers follow, and these. Bodies are counted from 0, -1 is the ground, and records
@@ -132,25 +96,29 @@ def plan_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> tuple[floa
     def index(body: Any) -> int:
         return places.get(body, -1)
 
-    constraints = _in_order(space)
-    biases = {each.error_bias for each in constraints if not any(each is aim.constraint for aim in _grooves(model))}
+    constraints = list(space._constraints)  # the public property is a set
+    # Of a groove that is aimed nothing is closed, whatever the others' error_bias.
+    aimed = [aim.constraint for aim in model.aims if isinstance(aim, AimedGroove)]
+    biases = {each.error_bias for each in constraints if each not in aimed}
     gravity = (each / unit**2 for each in space.gravity)
     head = (*gravity, space.collision_slop, space.collision_bias, len(model.bodies), space.iterations)
     head += (max(biases, default=1.0), float(unit != 1))
-    records = [_constraint(each, index, unit) for each in constraints]
+    records = [_constraint(each, index) for each in constraints]
     records += [_shape(each, index) for each in space.shapes]
     records += _by_hand(model, mechanism)
     flat = [head, *_bodies(model), *((part, len(numbers), *numbers) for part, numbers in records)]
-    return tuple(map(float, chain(*flat)))
-
-
-def _grooves(model: Model) -> list[AimedGroove]:
-    """Those that are aimed: nothing of their gap is closed, whatever the others' error_bias."""
-    return [aim for aim in model.aims if isinstance(aim, AimedGroove)]
-
-
-def _in_order(space: Any) -> list[Any]:
-    return list(space._constraints)  # the public property is a set
+    idle = {"iterations": not (constraints or space.shapes), "bias": not biases}
+    held = [(index(each.a), index(each.b)) for each in constraints]
+    pairs = [
+        (index_of(mechanism, joint.first), index_of(mechanism, joint.second))
+        for joint in mechanism.joints
+        if isinstance(joint, Pin | Slot)
+    ]
+    return Plan(
+        tuple(map(float, chain(*flat))),
+        tuple(name for name in idle if idle[name]),
+        tuple(held.index(pair) if pair in held else -1 for pair in pairs),
+    )
 
 
 def _bodies(model: Model) -> list[tuple[float, ...]]:
@@ -164,19 +132,13 @@ def _bodies(model: Model) -> list[tuple[float, ...]]:
     return told
 
 
-def _constraint(each: Any, index: Indexed, unit: float) -> tuple[Part, tuple[float, ...]]:
+def _constraint(each: Any, index: Indexed) -> tuple[Part, tuple[float, ...]]:
     between = (index(each.a), index(each.b))
     match each:
         case PivotJoint():
             return Part.PIVOT, (*between, *each.anchor_a, *each.anchor_b)
         case GrooveJoint():
             return Part.GROOVE, (*between, *each.groove_a, *each.groove_b, *each.anchor_b)
-        case SimpleMotor():
-            return Part.MOTOR, (*between, each.rate / unit)
-        case PinJoint():
-            return Part.PIN, (*between, *each.anchor_a, *each.anchor_b, each.distance)
-        case GearJoint():
-            return Part.GEAR, (*between, each.phase, each.ratio)
         case _:
             raise Unsupported(f"the page knows no {type(each).__name__}")
 
@@ -196,7 +158,6 @@ def _shape(each: Any, index: Indexed) -> tuple[Part, tuple[float, ...]]:
 
 def _by_hand(model: Model, mechanism: Mechanism) -> list[tuple[Part, tuple[float, ...]]]:
     """What our adapter does before and after each step, of which the shim knows the two that hold skates."""
-    constraints = _in_order(model.space)
     skates = [mechanism.body_index(str(joint.second)) for joint in mechanism.joints if isinstance(joint, Skate)]
     records: list[tuple[Part, tuple[float, ...]]] = []
     for hands in (model.repairs, model.aims):
@@ -207,7 +168,7 @@ def _by_hand(model: Model, mechanism: Mechanism) -> list[tuple[Part, tuple[float
                 case Zeroed():
                     records.append((Part.ZEROED, (body, hand._angle, hand._arm, hand._push, hand._spin)))
                 case AimedGroove():
-                    row = constraints.index(hand.constraint)
+                    row = list(model.space._constraints).index(hand.constraint)
                     records.append((Part.AIMED, (body, row, hand._angle, hand._back, hand._front)))
                 case _:
                     raise Unsupported("this method aims rows by code of ours in Python, which the page has not")

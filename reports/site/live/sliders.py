@@ -39,7 +39,22 @@ ENGINES: dict[Name, dict[str, tuple[str, tuple[tuple[Any, str], ...]]]] = {
         "tolerance": ("tolerance of the solver", TOLERANCES),
     },
 }
-SETTINGS = {name: pairs for each in ENGINES.values() for name, (_, pairs) in each.items()}
+
+
+@dataclass(frozen=True)
+class Control:
+    """The values of a slider, what is written beside each, and the place at which it stands at first."""
+
+    values: tuple[Any, ...]
+    texts: tuple[str, ...]
+    start: int = 0
+
+
+CONTROLS = {
+    name: Control(tuple(value for value, _ in pairs), tuple(words for _, words in pairs))
+    for each in ENGINES.values()
+    for name, (_, pairs) in each.items()
+}
 
 
 @dataclass(frozen=True)
@@ -51,23 +66,34 @@ class Slider:
     values: tuple[Any, ...]
     texts: tuple[str, ...] = ()
 
-    def start(self, scene: Scene) -> int:
-        """The place at which the scene itself stands. Raises ValueError if no value is the scene's."""
-        return self.values.index(getattr(scene, self.field))
+    def control(self, scene: Scene) -> Control:
+        """At first the scene's own value. Raises ValueError if it is none of the slider's."""
+        texts = self.texts or tuple(f"{value:.3g}" for value in self.values)
+        return Control(self.values, texts, self.values.index(getattr(scene, self.field)))
 
-    def told(self) -> tuple[str, ...]:
-        """What is written beside each place."""
-        return self.texts or tuple(f"{value:.3g}" for value in self.values)
+
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """What is drawn of a mechanism beside its joints.
+
+    ends: points of bodies [m]. curves: closed or open lines in a body's frame, or the ground's (None) [m]. axle: half
+    of it [m], where a skate is drawn as an axle with two wheels.
+    """
+
+    ends: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
+    curves: tuple[tuple[str | None, tuple[Point, ...]], ...] = ()
+    axle: float = 0.0
 
 
 @dataclass(frozen=True)
-class Live:
+class Live(Look):
     """A scene that engines run in the page.
 
     frames: sampling intervals that are shown; steps: of the whole motion, each a multiple or a divisor of `frames`, the
     one at place `start` first. munk, mujoco: ways to hold the joints, each with its words, those as shipped and with
     documented settings first; a sentence instead of an engine says why there is none. window: the frames that are
-    played, all unless given. ends, traces, centre, curves, axle: as in `Take`.
+    played, all unless given. traces: (body, point) whose paths are drawn. centre: the body whose instant centre can be
+    shown.
     """
 
     word: str
@@ -78,11 +104,8 @@ class Live:
     sliders: tuple[Slider, ...] = ()
     munk: tuple[tuple[str, pymunk.Pymunk | str], ...] = ((SHIPPED, pymunk.DEFAULT), (DOCUMENTED, pymunk.TUNED))
     mujoco: tuple[tuple[str, mujoco.MuJoCo | str], ...] = ((SHIPPED, mujoco.DEFAULT), (DOCUMENTED, mujoco.TUNED))
-    ends: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
     traces: tuple[tuple[str, Point], ...] = ()
     centre: str | None = None
-    curves: tuple[tuple[str | None, tuple[Point, ...]], ...] = ()
-    axle: float = 0.0
     window: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
@@ -112,25 +135,21 @@ class Live:
         """The ways of an engine."""
         return self.munk if name == "munk" else self.mujoco
 
-    def values(self) -> dict[str, tuple[list[Any], int]]:
-        """The values of every control, and the place at which it stands at first."""
-        own = {slider.field: (list(slider.values), slider.start(self.scene)) for slider in self.sliders}
-        ways = {name: ([words for words, _ in self.ways(name)], 0) for name in ENGINES}
-        engines = {name: ([value for value, _ in pairs], 0) for name, pairs in SETTINGS.items()}
-        return {"steps": (list(self.steps), self.start), **own, **ways, **engines}
-
-    def texts(self) -> dict[str, tuple[list[str], int]]:
-        """What is written beside each place of every control, and the place at which it stands at first."""
-        own = {slider.field: (list(slider.told()), slider.start(self.scene)) for slider in self.sliders}
-        ways = {name: ([words for words, _ in self.ways(name)], 0) for name in ENGINES}
-        engines = {name: ([words for _, words in pairs], 0) for name, pairs in SETTINGS.items()}
-        steps = [f"{1000 * self.scene.duration / each:.3g} ms" for each in self.steps]
-        return {"steps": (steps, self.start), **own, **ways, **engines}
+    def controls(self) -> dict[str, Control]:
+        """Every control, by its name."""
+        steps = tuple(f"{1000 * self.scene.duration / each:.3g} ms" for each in self.steps)
+        ways = {name: tuple(words for words, _ in self.ways(name)) for name in ENGINES}
+        return {
+            "steps": Control(self.steps, steps, self.start),
+            **{slider.field: slider.control(self.scene) for slider in self.sliders},
+            **{name: Control(words, words) for name, words in ways.items()},
+            **CONTROLS,
+        }
 
     def located(self, given: Mapping[str, Any]) -> dict[str, int]:
         """Places of controls from their values; raises ValueError for a value, KeyError for a control it has not."""
-        known = self.values()
-        return {name: known[name][0].index(value) for name, value in given.items()}
+        known = self.controls()
+        return {name: known[name].values.index(value) for name, value in given.items()}
 
     def stored(self) -> dict[tuple[Name, int], Motion]:
         """The motions that Python's engines make of the scene itself, by engine and way: page and Python are compared,
