@@ -14,7 +14,7 @@ from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.versions.page import table as versions
-from reports.write.programs import PAGES, program
+from reports.write.programs import program
 from reports.write.tables import NOTHING, markdown, milliseconds, number
 from reports.write.unmeasured import UNMEASURED
 
@@ -96,7 +96,7 @@ def error_at(material: Material, case: Case, engine: Engine) -> Any:
 
 def aimed(engine: str) -> str:
     """What our code does before each step of a skate, from the program that a test runs."""
-    source = program(PAGES / "skate" / "programs", f"{engine} tuned")
+    source = program("sleigh", f"{engine} tuned")
     return source[source.index("def aim():") : source.index("end = ")].rstrip()
 
 
