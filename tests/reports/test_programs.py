@@ -76,9 +76,13 @@ def test_a_pages_block_gives_the_error_of_the_row_of_each_method_without_a_progr
 
 
 def test_every_program_of_an_engine_alone_is_of_a_method_of_its_scene():
-    pages = [page for page in MECHANISMS if page.advised_scene is not None]
-    methods = [(page.advised_scene.name, f"{each.name} {each.variant}") for page in pages for each in page.engines]
-    assert {path.name for path in KEPT.iterdir()} <= {Path(file_of(*each)).name for each in methods}
+    known = {
+        Path(file_of(scene.name, f"{engine.name} {engine.variant}")).name
+        for page in MECHANISMS
+        if (scene := page.advised_scene) is not None
+        for engine in page.engines
+    }
+    assert {path.name for path in KEPT.iterdir()} <= known
 
 
 def test_a_program_that_is_wrong_by_a_thousandth_is_noticed():
