@@ -7,18 +7,18 @@ from dataclasses import replace
 
 from engines import registry
 from reports.model.measure import Measurement
-from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
+from reports.model.usual_steps import is_step
 from reports.plots.engines_compared import Compared, engines_compared
 from reports.plots.theme import svg
 from reports.write.columns import NO_JOINT, NOT_BUILT, Column, Line, empty, lines, reached, runs_of, within_budget
-from reports.write.tables import NOTHING, markdown, number
+from reports.write.page_tables import COMPARED
+from reports.write.tables import NOTHING, error_words, markdown
 
 PICTURE = "compared.svg"
 SCENES = {"free_four_bar": "four-bar", "sleigh": "skate"}
 COLUMNS = (Column.SHIPPED, Column.SETTINGS, Column.CODE)
-MILLISECOND = 1e-3  # s
 
 
 def compared_lines(pages: Mapping[Page, Material]) -> list[Line]:
@@ -93,9 +93,6 @@ def _cell(line: Line, column: Column) -> str:
     if word := empty(line, column):
         return f"*{word}*"
     engine, rows = line.columns[column][-1]
-    row = next((row for row in rows if abs(row.step - MILLISECOND) < 0.01 * MILLISECOND), None)
-    at_step = NOTHING if row is None else number(getattr(row, line.name))
-    if row is not None and not Outcome(row.outcome).comparable:
-        at_step = str(row.outcome)
-    runs = runs_of(engine, line.scene, MILLISECOND)
+    at_step = error_words(next((row for row in rows if is_step(row.step, COMPARED)), None), line.name)
+    runs = runs_of(engine, line.scene, COMPARED)
     return f"{within_budget(line, column)} ({at_step}{'; ' + runs if runs else ''})"

@@ -26,7 +26,7 @@ from reports.pages.versions.page import ratios, table
 from reports.plots.looks import colour
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.versions.table import ACCELERATION, Entry
-from reports.write.page_tables import advice
+from reports.write.page_tables import COMPARED, advice
 from reports.write.rows import Rows, own_rows
 from reports.write.unmeasured import MARK, UNMEASURED, formatted, milliseconds, number
 
@@ -116,7 +116,6 @@ def draw(lines: Sequence[Line], x: str, y: str, theme: Theme = LIGHT) -> Figure:
     return figure
 
 
-MILLISECOND = 1e-3  # s, the step at which findings compare: the grid of nearly every scene has it
 TENTH = 1e-4  # s
 
 
@@ -168,7 +167,7 @@ def spring(known: Known) -> Finding:
     shipped, tuned = rows.of(scene, "mujoco default"), rows.of(scene, "mujoco tuned")
     limit, same = shipped.sweep(), rows.of(scene, integrated).sweep()
     gap, wide = rows.of(scene, integrated).sweep("gap"), shipped.sweep("gap")
-    before, after = shipped.at(MILLISECOND), tuned.at(MILLISECOND)
+    before, after = shipped.at(COMPARED), tuned.at(COMPARED)
     costs = after.cpu / before.cpu if before.cpu else UNMEASURED  # not timed
     return Finding(
         "spring",
@@ -197,7 +196,7 @@ def luck(known: Known) -> Finding:
     """Two errors that cancel at one step."""
     scene, shipped, tuned = "spinning_four_bar", "mujoco default", "mujoco tuned"
     rows = known.rows
-    found, best = rows.of(scene, shipped).sweep(), rows.of(scene, shipped).at(MILLISECOND)
+    found, best = rows.of(scene, shipped).sweep(), rows.of(scene, shipped).at(COMPARED)
     return Finding(
         "luck",
         "A small error at one step may be luck",
@@ -226,8 +225,8 @@ def crank(known: Known) -> Finding:
         "mujoco tuned",
     )
     rows = known.rows
-    soft = [rows.of(scene, shipped, "failure").at(step) for step in (MILLISECOND, TENTH)]
-    over, right = rows.of(scene, stiff, "failure").at(MILLISECOND), rows.of(scene, inside).at(MILLISECOND)
+    soft = [rows.of(scene, shipped, "failure").at(step) for step in (COMPARED, TENTH)]
+    over, right = rows.of(scene, stiff, "failure").at(COMPARED), rows.of(scene, inside).at(COMPARED)
     return Finding(
         "crank",
         "A crank whose angle is overwritten after each step is not a driven crank",
@@ -251,7 +250,7 @@ def start(known: Known) -> Finding:
     scene, rows = "free_four_bar", known.rows
     shipped, plain, ahead = (rows.of(scene, f"pymunk {variant}") for variant in ("default", "tuned", "leapfrog"))
     first, second = plain.sweep(), ahead.sweep()
-    before, closed, after = (each.at(MILLISECOND) for each in (shipped, plain, ahead))
+    before, closed, after = (each.at(COMPARED) for each in (shipped, plain, ahead))
     return Finding(
         "start",
         "In pymunk `error_bias = 0` and velocities that start half a step ahead give second order",
@@ -288,7 +287,7 @@ def energy(known: Known) -> Finding:
         "MuJoCo as shipped": "mujoco default",
         "MuJoCo's tree, RK4": "mujoco tuned",
     }
-    lost, kept, euler, exact = (_at(MILLISECOND, rows.of(scene, method), "energy") for method in methods.values())
+    lost, kept, euler, exact = (_at(COMPARED, rows.of(scene, method), "energy") for method in methods.values())
     return Finding(
         "energy",
         "A pendulum without friction slows down in pymunk as shipped; one setting makes it as good as MuJoCo's",
@@ -316,8 +315,8 @@ def person(count: int) -> tuple[str, str, str]:
 def iterations(known: Known) -> Finding:
     """Ten iterations and twenty, on a person that falls, with all of each gap closed in a step; and as shipped."""
     rows = known.rows
-    coarse, fine = (rows.of(*person(10)).at(step) for step in (1e-2, MILLISECOND))
-    right = rows.of(*person(20)).at(MILLISECOND)
+    coarse, fine = (rows.of(*person(10)).at(step) for step in (1e-2, COMPARED))
+    right = rows.of(*person(20)).at(COMPARED)
     shipped = rows.of("person_one_foot", "pymunk default")
     return Finding(
         "iterations",
@@ -325,12 +324,12 @@ def iterations(known: Known) -> Finding:
         "A falling person is a chain of five unequal bodies. With all of each gap closed in every step, "
         f"pymunk's usual 10 iterations leave an error of {number(coarse.angle)} rad at 10 ms, and "
         f"of {number(fine.angle)} rad at 1 ms. 20 iterations leave {number(right.angle)} rad at 1 ms, and the same 10 "
-        f"with `error_bias` as shipped {number(shipped.at(MILLISECOND).angle)} rad. Long chains and unequal masses "
+        f"with `error_bias` as shipped {number(shipped.at(COMPARED).angle)} rad. Long chains and unequal masses "
         "need more iterations before they need smaller steps.",
         "person",
         fine.angle > 2 * coarse.angle
         and right.angle < fine.angle / 20
-        and shipped.at(MILLISECOND).angle < shipped.at(1e-2).angle / 5,
+        and shipped.at(COMPARED).angle < shipped.at(1e-2).angle / 5,
         (
             *(
                 of_rows(f"{count} iterations, error_bias = 0", rows.of(*person(count)), "angle")
@@ -345,7 +344,7 @@ def iterations(known: Known) -> Finding:
 def forces(known: Known) -> Finding:
     """The same motion with 20 and with 100 iterations, but not the same reactions."""
     few, many = (known.rows.of(*person(count)) for count in (20, 100))
-    less, more = few.at(MILLISECOND), many.at(MILLISECOND)
+    less, more = few.at(COMPARED), many.at(COMPARED)
     return Finding(
         "forces",
         "The right motion does not mean the right forces",
@@ -489,7 +488,7 @@ def contact(known: Known) -> Finding:
     scene, polygon, ellipsoid, written = "rolling_ellipse", "pymunk tuned", "mujoco default", "mujoco extended"
     rows = known.rows
     corners, smooth = rows.of(scene, polygon).sweep(), rows.of(scene, ellipsoid).sweep()
-    stiff, exactly = (rows.of(scene, method).at(MILLISECOND) for method in ("mujoco tuned", written))
+    stiff, exactly = (rows.of(scene, method).at(COMPARED) for method in ("mujoco tuned", written))
     return Finding(
         "contact",
         "A body that is not round does not roll truly on contact as shipped, nor as a polygon",
@@ -516,7 +515,7 @@ def skate(known: Known) -> Finding:
     scene, rows = "sleigh", known.rows
     naively, groove = rows.of(scene, "pymunk default"), rows.of(scene, "pymunk tuned")
     least = min((error for _, error in naively.points("position")), default=math.nan)
-    better = groove.at(MILLISECOND)
+    better = groove.at(COMPARED)
     return Finding(
         "skate",
         "To stop a body's centre sideways makes no skate, unless the blade is there",

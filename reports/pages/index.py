@@ -152,7 +152,6 @@ def engines_of(pages: Iterable[Page]) -> list[Engine]:
 def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
     """The index: findings, symptoms, every scene in a line, every page with its lesson. `files`: what is beside it."""
     entries = [(page, _overview_rows(page, material, page.scenes)) for page, material in pages.items()]
-    told = findings(pages)
     known = {page.name for page in pages}
     text = (
         environment()
@@ -160,7 +159,7 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
         .render(
             pages=list(pages),
             titles={page.name: page.title for page in pages},
-            findings=[found for found in told if found.page in known],
+            findings=findings(pages),
             symptoms=[(each, link(each.page, each.heading, files)) for each in SYMPTOMS if each.page in known],
             compared=comparison.table(comparison.compared_lines(pages)),
             equal_cost=equal_cost(entries),

@@ -11,6 +11,7 @@ from typing import Any
 from engines import Engine
 from reference.scene import Scene
 from reports.gate.prediction import declared_error
+from reports.model import catalogue
 from reports.model.cells import Cell
 from reports.model.convergence import judged
 from reports.model.measure import Measurement
@@ -52,7 +53,7 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
         "step": step,
         "table": page_tables.scene_table(featured, page.quantity, held, declared, runs) if featured else "",
         "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
-        "programs": advised_programs(page, scene, advice, engines) if scene is page.advised_scene else [],
+        "programs": advised_programs(scene, advice, engines) if scene is page.advised_scene else [],
     }
 
 
@@ -86,11 +87,12 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     scenes = [
         told_scene(scene, [row for row in rows if row.scene == scene.name], page, material) for scene in page.scenes
     ]
-    files |= {each.file: each.text for scene in scenes for each in scene["programs"]}
+    files |= {each.file: each.text for scene in scenes for each in scene["programs"] if each.text}
     given = {
         "page": page,
         "scenes": scenes,
         "advised": next((scenes[i] for i, scene in enumerate(page.scenes) if scene is page.advised_scene), None),
+        "registered": page.name in {each.name for each in catalogue.PAGES},  # else its code is not found by its name
         "pictures": unmeasured.Known(pictures),
         "failures": [told_experiment(failure, material) for failure in page.failures],
         "maps": [subject for subject in SUBJECTS if subject.page == page.name],

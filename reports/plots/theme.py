@@ -100,6 +100,7 @@ SETTINGS = {
     "hatch.linewidth": 0.6,
     "legend.frameon": False,
     "legend.labelcolor": LIGHT.ink,
+    "axes.titlecolor": LIGHT.ink,  # a title beside the middle is another one than `Axes.title`
     # Titles stand on their axes. Left to itself, matplotlib looks at all ticks in search of some that stand above.
     "axes.titley": 1.0,
 }

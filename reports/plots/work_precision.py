@@ -195,9 +195,9 @@ def _guides(panel: Axes, theme: Theme) -> None:
     points = np.concatenate(taken) if taken else np.array([[0.0, 1.0]])
     distances = KDTree(points).query(corners + fan)[0].min(axis=1)
     left, bottom = low + corners[distances.argmax(), 0] * size
-    for slope in SLOPES:
+    for slope, place in zip(SLOPES, ("top", "center", "bottom"), strict=True):  # apart in a panel of many decades too
         end = bottom + slope * width
         panel.plot(10 ** np.array([left, left + width]), 10 ** np.array([bottom, end]), color=theme.quiet,
                    linewidth=0.8, zorder=2, scalex=False, scaley=False)  # fmt: skip
         panel.annotate(str(slope), (10 ** (left + width), 10**end), xytext=(3, 0), textcoords="offset points",
-                       color=theme.quiet, fontsize=8, va="center")  # fmt: skip
+                       color=theme.quiet, fontsize=8, va=place)  # fmt: skip

@@ -23,7 +23,7 @@ from reports.model.quantities import quantity
 from reports.model.usual_steps import USUAL_STEPS, is_run_at, is_step, usual_variants
 from reports.write.holders import VARIANTS, Column, column_of
 from reports.write.page_tables import SAME_COST, TARGETS, reliable
-from reports.write.tables import NOTHING, markdown, milliseconds, number, step_words
+from reports.write.tables import NOTHING, error_words, markdown, milliseconds, number, step_words
 
 # CPU seconds per simulated second at which methods stand side by side: a hundredth of real time.
 BUDGET = 1e-2
@@ -241,17 +241,10 @@ def _at_steps(line: Line, engine: Engine, members: Sequence[Measurement], steps:
     sweep = by_method(sweeps(members), line.name).get((line.scene.name, engine.name, engine.variant))
     at = [next((row for row in members if is_step(row.step, step)), None) for step in asked]
     errors = [getattr(row, line.name) for row in at if row is not None and Outcome(row.outcome).comparable]
-    words = [_error(row, line.name) for row in at]
+    words = [error_words(row, line.name) for row in at]
     told = words if len(set(words)) > 1 else words[:1]  # "saturated" once
     end = _brought(sweep, members, errors) if sweep else ""
     return "; ".join(filter(None, (", ".join(told), end)))
-
-
-def _error(row: Measurement | None, name: str) -> str:
-    """The error at one step, the outcome where it can't be compared, a dash where the step was not run."""
-    if row is None:
-        return NOTHING
-    return number(getattr(row, name)) if Outcome(row.outcome).comparable else str(row.outcome)
 
 
 def _brought(sweep: Sweep, members: Iterable[Measurement], told: Sequence[float]) -> str:

@@ -42,9 +42,10 @@ def column_of(scene: Scene, engine: Engine) -> Column:
 
 
 def told_variant(scene: Scene, engine: Engine) -> str:
-    """The variant as a page names it: an engine's usual name is not lent to a trick of a user's."""
-    naive = engine.variant in VARIANTS and column_of(scene, engine) is Column.NAIVE
-    return str(Column.NAIVE) if naive else engine.variant
+    """The variant as a page names it: an engine's usual name is not lent to a trick of a user's; no two share one."""
+    if engine.variant not in VARIANTS or column_of(scene, engine) is not Column.NAIVE:
+        return engine.variant
+    return str(Column.NAIVE) if engine.variant == "default" else f"{Column.NAIVE}, {engine.variant}"
 
 
 def told_rows(rows: Mapping[Cell, Measurement]) -> dict[Cell, Measurement]:

@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from reports.model.convergence import ENOUGH, ROOM_SOFT, Sweep, Verdict, by_method, groups, sweeps
+from reports.model.convergence import ROOM_SOFT, Sweep, by_method, groups, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
-from reports.write.tables import NOTHING, markdown, milliseconds, number, step_words
+from reports.write.tables import NOTHING, markdown, milliseconds, number, step_words, sweep_words
 
 # The step [s] at which methods stand side by side, or the grid's nearest: a user's who has refined once.
 COMPARED = 1e-3
@@ -70,36 +70,17 @@ def scene_table(
         if soft:
             errors.insert(1, number(softness[members[0].method]))
         cost = milliseconds(row.cpu) if row and row.cpu > 0 else NOTHING
-        smaller = as_the_step_shrinks(verdicts[key], members)
-        finest = min(row.step for row in members)
-        if verdicts[key].plateau > ROOM_SOFT * declared(members[0].method, finest) + told.rounding:
+        finest = min(members, key=lambda row: row.step)
+        smaller = sweep_words(verdicts[key], "" if Outcome(finest.outcome).comparable else finest.outcome)
+        if verdicts[key].plateau > ROOM_SOFT * declared(members[0].method, finest.step) + told.rounding:
             smaller += ", **not declared**"
         method = members[0].method
         body.append([f"{method} ({runs[method]})" if method in runs else method, *errors, cost, smaller])
     heads = [f"{q.label} error [{q.unit}]" if q.name not in ("gap", "slip") else f"{q.label} [{q.unit}]" for q in known]
     if soft:
         heads.insert(1, f"declared [{told.unit}]")
-    header = ["method", *heads, "CPU [ms/s]", f"as the step shrinks, plateau in {told.unit}"]
+    header = ["method", *heads, "CPU [ms/s]", f"order as the step shrinks, plateau in {told.unit}"]
     return markdown(header, body, left=1, held=held)
-
-
-def as_the_step_shrinks(sweep: Sweep, members: Sequence[Measurement]) -> str:
-    """'order 2.0 (4 points)', 'order 1.0 (3 points), plateau **1.1e-3**', 'to rounding', 'then **torn**'."""
-    words = []
-    if sweep.points >= 2:
-        unchecked = "" if sweep.points >= ENOUGH else ", unchecked"
-        words.append(f"order {sweep.order:.1f} ({sweep.points} points{unchecked})")
-    finest = min(members, key=lambda row: row.step)
-    match sweep.verdict:
-        case _ if not Outcome(finest.outcome).comparable and math.isfinite(sweep.best):
-            words.append(f"at the finest step **{finest.outcome}**")
-        case Verdict.PLATEAU:
-            words.append(f"plateau **{number(sweep.plateau)}**")
-        case Verdict.ROUNDING:
-            words.append("to rounding")
-        case Verdict.LEVELS | Verdict.GROWS | Verdict.ERRATIC:
-            words.append(f"**{sweep.verdict}**")
-    return ", ".join(words) or NOTHING
 
 
 @dataclass(frozen=True)

@@ -83,25 +83,32 @@ def order_rows(found: Iterable[Sweep], quantities: Sequence[str]) -> list[list[s
     return [[f"{e} {v}", *(sweep_words(c[s, e, v]) for c in columns)] for s, e, v in keys]
 
 
-def sweep_words(sweep: Sweep) -> str:
-    """'1.99 (4 points)', '3.9 (3 points), then rounding', '1.1 (2 points, unchecked), then 2.0e-5'."""
+def sweep_words(sweep: Sweep, lost: str = "") -> str:
+    """'1.99 (±0.13, 4 points)', '3.9 (2 points, unchecked), then rounding', 'plateau **2e-5**'; a dash if nothing is
+    known. `lost`: what became of the finest step, if it has no answer."""
+    order = ""
     if sweep.points >= 2:
         checked = f"±{sweep.spread:.2g}, {sweep.points} points" if sweep.points >= ENOUGH else "2 points, unchecked"
         order = f"{sweep.order:.2f} ({checked})"
-    else:
-        order = ""
     match sweep.verdict:
+        case _ if lost and math.isfinite(sweep.best):
+            end = f"at the finest step **{lost}**"
         case Verdict.PLATEAU:
             end = f"plateau **{number(sweep.plateau)}**"
-        case Verdict.FALLS:
-            end = "" if order else f"falls, {number(sweep.best)}"
-        case Verdict.TOO_FEW:
-            return NOTHING if math.isnan(sweep.best) else f"not enough points, {number(sweep.best)}"
         case Verdict.ROUNDING:
-            end = "rounding" if not order else "then rounding"
+            end = "then rounding" if order else "rounding"
+        case Verdict.LEVELS | Verdict.GROWS | Verdict.ERRATIC:
+            end = f"**{sweep.verdict}**"
         case _:
-            end = f"{sweep.verdict}, best {number(sweep.best)}"
-    return ", ".join(filter(None, (order, end)))
+            end = "" if order or math.isnan(sweep.best) else f"{sweep.verdict}, {number(sweep.best)}"
+    return ", ".join(filter(None, (order, end))) or NOTHING
+
+
+def error_words(row: Measurement | None, name: str) -> str:
+    """The error of a run, the outcome where it can't be compared, a dash where there is none."""
+    if row is None:
+        return NOTHING
+    return number(getattr(row, name)) if Outcome(row.outcome).comparable else str(row.outcome)
 
 
 def outcome_grid(rows: Iterable[Measurement]) -> str:

@@ -168,6 +168,8 @@ def test_of_our_engines_neither_holds_a_skate_by_settings_and_pymunk_none_as_shi
 def test_a_users_trick_does_not_bear_the_usual_name_of_an_engine_on_any_page():
     assert [told_variant(scene, pymunk.DEFAULT) for scene in (FREE, SLEIGH)] == ["default", "naive"]
     assert told_variant(SLEIGH, mujoco.DEFAULT) == "default"  # a contact of its own
+    tricks = [told_variant(SLEIGH, Held(variant, by="ours")) for variant in ("default", "tuned")]
+    assert tricks == ["naive", "naive, tuned"]  # rows of one name would be taken for one method
     assert told_variant(SLEIGH, SKATE_POINT) == SKATE_POINT.variant
     cell = Cell(SLEIGH, pymunk.DEFAULT, 1)
     assert told_rows({cell: row_of("pymunk default")})[cell].method == "pymunk naive"

@@ -20,7 +20,7 @@ from reports.model.page import Material
 from reports.model.tasks import Answer, Task
 from reports.pages import findings as module
 from reports.pages.faults.page import OFFSETS
-from reports.pages.findings import CPU, FINDINGS, LOOKS, MILLISECOND, STEP, TENTH, Known, Line, draw, findings, of_rows
+from reports.pages.findings import CPU, FINDINGS, LOOKS, STEP, TENTH, Known, Line, draw, findings, of_rows
 from reports.pages.guides.page import EVERY, FOUR_BAR
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import SYMPTOMS
@@ -28,6 +28,7 @@ from reports.pages.rendering import render_page
 from reports.pages.versions.page import table
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.versions.table import ACCELERATION
+from reports.write.page_tables import COMPARED
 from reports.write.rows import Rows, lookups
 from reports.write.tables import number
 from reports.write.templates import anchor, headings, link
@@ -170,16 +171,16 @@ CRANK = {"scene": "driven_four_bar", "purpose": "failure"}
         ("exact", times(0.01, "cpu", **FREE, method="pymunk leapfrog")),
         ("exact", times(0.01, "cpu", **FREE, method="mujoco tuned")),
         ("luck", falls("spinning_four_bar", "mujoco default", "angle")),
-        ("luck", times(4.0, "angle", scene="spinning_four_bar", method="mujoco default", steps=at(MILLISECOND))),
+        ("luck", times(4.0, "angle", scene="spinning_four_bar", method="mujoco default", steps=at(COMPARED))),
         ("start", falls("free_four_bar", "pymunk leapfrog", "angle")),
         ("start", times(10.0, "angle", **FREE, method="pymunk leapfrog")),
         ("start", times(10.0, "angle", **FREE, method="pymunk tuned")),
         ("energy", times(0.1, "energy", scene="pendulum_1", method="pymunk default")),
         ("energy", times(1e10, "energy", scene="pendulum_1", method="mujoco tuned")),
         ("energy", times(0.1, "energy", scene="pendulum_1", method="mujoco default")),
-        ("iterations", times(0.1, "angle", **PERSON[10], steps=at(MILLISECOND))),
+        ("iterations", times(0.1, "angle", **PERSON[10], steps=at(COMPARED))),
         ("iterations", times(10.0, "angle", **PERSON[20])),
-        ("iterations", times(30.0, "angle", scene="person_one_foot", method="pymunk default", steps=at(MILLISECOND))),
+        ("iterations", times(30.0, "angle", scene="person_one_foot", method="pymunk default", steps=at(COMPARED))),
         ("forces", times(1.1, "angle", **PERSON[20])),
         ("forces", times(0.2, "reaction", **PERSON[20])),
         ("skate", times(1e-2, "position", scene="sleigh", method="pymunk default", steps=at(1e-4))),

@@ -58,8 +58,9 @@ def test_every_link_of_a_page_has_its_heading(page, undrawn):
             assert heading in anchors(target or name), (name, target, heading)
 
 
+@cache
 def run(source: str) -> tuple[dict, str]:
-    """What a program's names are at its end, and what it printed."""
+    """What a program's names are at its end, and what it printed; run once, whichever test asks."""
     names, said = {"__name__": "__main__"}, io.StringIO()
     with contextlib.redirect_stdout(said):
         exec(compile(source, "a page", "exec"), names)

@@ -75,8 +75,8 @@ def test_a_scenes_table_has_each_method_at_the_same_step_and_says_what_a_smaller
         row_of("c z", step=1e-3, outcome=Outcome.TORN, gap=0.5, slip=math.nan, reaction=math.nan),
     ]
     head, *body = table(scene_table(rows, "angle"))
-    assert head == ["method", "angle error [rad]", "gap [m]", "CPU [ms/s]", "as the step shrinks, plateau in rad"]
-    assert body[0] == ["a x", "1e-6", "1.7e-3", "100", "order 2.0 (3 points)"]
+    assert head == ["method", "angle error [rad]", "gap [m]", "CPU [ms/s]", "order as the step shrinks, plateau in rad"]
+    assert body[0] == ["a x", "1e-6", "1.7e-3", "100", "2.00 (±0, 3 points)"]
     assert body[1][:2] == ["b y", "3e-5"]
     assert body[1][-1].endswith("plateau **3e-5**")
     assert body[2][:3] == ["c z", "**torn**", "0.5"]

@@ -82,7 +82,7 @@ def test_a_page_judges_by_the_quantity_that_it_compares():
     errors = falling("mujoco default", (1e-2, 3e-5, 3e-5, 3e-5), "position")
     errors = [replace(r, angle=1e-2 * r.step**2) for r in errors]
     rows = {Cell(DISC, Toy(), 10**i): r for i, r in enumerate(errors)}
-    for quantity, words in (("position", "plateau **3e-5**"), ("angle", "order 2.0")):
+    for quantity, words in (("position", "plateau **3e-5**"), ("angle", "2.00 (±")):
         page = replace(PAGE, scenes=(DISC,), quantity=quantity)
         text = render_page(page, Material(rows), "the command")["base.md"]
         assert words in next(line for line in text.splitlines() if line.startswith("| mujoco default"))

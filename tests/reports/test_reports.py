@@ -25,7 +25,7 @@ from reports.model.measure import measure
 from reports.model.page import Failure, Material, Observation, Page
 from reports.pages.rendering import render_all
 from reports.plots.looks import SHADE_NAMES
-from reports.plots.theme import DARK, LIGHT, SERIES
+from reports.plots.theme import DARK, LIGHT, SERIES, new_figure, settings, style_axes, svg
 from tests.committed_rows import stale
 from tests.reports import test_any_rows as rendering
 from tests.toys import FAILURES, Disc, FailingToy, Toy
@@ -109,6 +109,19 @@ def test_pictures_are_well_formed_and_every_colour_has_its_dark_counterpart(file
             assert DARK.paper in sheet
             assert "Date" not in text
             assert "/tmp" not in text
+
+
+def test_a_title_beside_the_middle_and_other_words_without_a_colour_of_their_own_are_no_black_on_dark_paper():
+    with settings():
+        figure = new_figure(2.0, LIGHT)
+        panel = figure.subplots()
+        panel.set_title("an error", loc="left")
+        style_axes(panel, LIGHT)
+        panel.plot([1, 2], color=LIGHT.first, label="a line")
+        figure.legend()
+    words = re.findall(r"<text [^>]*>", svg(figure, "a picture"))
+    assert len(words) > 5
+    assert all("fill: " in each for each in words)
 
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK])

@@ -75,14 +75,16 @@ def sweep(verdict: Verdict, order: float = NAN, points: int = 0, plateau: float 
         (sweep(Verdict.FALLS), "falls, 1.7e-5"),
         (sweep(Verdict.PLATEAU, 1.1, 3, 2.3e-5), "1.10 (±0.13, 3 points), plateau **2.3e-5**"),
         (sweep(Verdict.ROUNDING, 3.9, 3), "3.90 (±0.13, 3 points), then rounding"),
-        (sweep(Verdict.LEVELS, 1.1, 3), "1.10 (±0.13, 3 points), levels off at the finest step, best 1.7e-5"),
-        (sweep(Verdict.GROWS), "grows as the step shrinks, best 1.7e-5"),
-        (sweep(Verdict.ERRATIC), "erratic, best 1.7e-5"),
+        (sweep(Verdict.LEVELS, 1.1, 3), "1.10 (±0.13, 3 points), **levels off at the finest step**"),
+        (sweep(Verdict.GROWS), "**grows as the step shrinks**"),
+        (sweep(Verdict.ERRATIC), "**erratic**"),
         (sweep(Verdict.TOO_FEW, best=NAN), "-"),
     ],
 )
 def test_a_sweep_is_told_in_words(found, words):
     assert tables.sweep_words(found) == words
+    lost = tables.sweep_words(found, "torn")
+    assert lost.endswith("at the finest step **torn**") if math.isfinite(found.best) else lost == words
 
 
 def test_orders_stand_under_each_quantity_of_each_method():

@@ -22,7 +22,7 @@ TEMPLATES = tuple(sorted(PAGES.rglob("*.md")))
 # What is drawn, or printed on the terminal too, has no mathematics of Markdown.
 DRAWN = ("centrodes/page.py", "atlas/page.py", "rolling/drawings.py", "rolling/page.py", "versions/page.py")
 DRAWING = (*DRAWN, "errata/experiments.py")
-MODULES = tuple(path for path in sorted(PAGES.rglob("*.py")) if not {"programs", "snippets"} & set(path.parts))
+MODULES = tuple(path for path in sorted(PAGES.rglob("*.py")) if "snippets" not in path.parts)
 
 LONGEST = 35  # words: two or three lines of a page
 LIMIT = 25_000  # bytes of Markdown: about five minutes

@@ -46,15 +46,21 @@ from reports.pages.engines.experiments import (
 )
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.plots.work_precision import work_precision
+from reports.write.holders import Column, column_of
 from reports.write.provenance import told_versions
 from reports.write.tables import NOTHING, markdown, number
 
 
 def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
-    """The rows of these scenes in all engines, those beside the grid as if they were of it."""
+    """The rows of these scenes in all engines, those beside the grid as if they were of it; no user's tricks."""
     names = {*scenes}
-    found = (row for cell, row in material.rows.items() if cell.scene.name in names and cell.purpose != "failure")
-    return [replace(row, purpose="sweep") for row in found if row.purpose in ("sweep", "beside")]
+    return [
+        replace(row, purpose="sweep")
+        for cell, row in material.rows.items()
+        if cell.scene.name in names
+        and cell.purpose in ("sweep", "beside")
+        and column_of(cell.scene, cell.engine) is not Column.NAIVE
+    ]
 
 
 def missed(row: Measurement, field: str) -> float:

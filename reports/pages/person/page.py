@@ -16,7 +16,6 @@ from reports.plots.theme import svg
 from reports.write.rows import lookups
 
 NAME = "person"
-ONE_FOOT = ("person_swaying", "person_one_foot")
 SCENES = (SwayingOnOneFoot(), OneFoot(), TwoFeet())
 
 

@@ -32,6 +32,7 @@ from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import svg
 from reports.write import tables
 from reports.write.holders import holders
+from reports.write.page_tables import COMPARED
 from reports.write.rows import Rows
 
 BLADE = 0.35  # m
@@ -99,8 +100,6 @@ NAME = "skate"
 SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinnedBody())
 SLEIGH = ChaplyginSleigh()
 
-# The step at which constructions are compared [s]: about that of a user who has refined once.
-COMPARED = 1e-3
 BLADES = 7  # skates drawn on the way
 # Name -> colour, dashes. A construction that is not visibly off is not worth a line.
 OVERLAID: dict[str, tuple[str, Any]] = {
@@ -196,7 +195,7 @@ def constructions(rows: Sequence[Measurement], held: Mapping[str, str] | None = 
         "energy [relative]",
         "reaction [relative]",
         "CPU [ms/s]",
-        "as the step shrinks, plateau in m",
+        "order as the step shrinks, plateau in m",
     ]
     return tables.markdown(header, [line for _, line in sorted(told, key=lambda pair: pair[0])], left=1, held=held)
 

@@ -98,9 +98,9 @@ FAILURES: tuple[Failure, ...] = (
         ),
         cells=GROOVES + cells(RodEndInSlot(), ALL, (1, 10, 100)),
         remark=(
-            "Use a `GrooveJoint` only where turning moves neither the groove nor the anchor: a groove in the ground or "
-            "in a body that can't turn, and an anchor at a centre of mass or on such a body. Right too are arms, from "
-            "a centre of mass to the anchor, that lie along or across the groove. The joint solves for "
+            "Use a `GrooveJoint` only where turning moves neither the groove nor the anchor. The groove is then in the "
+            "ground or in a body that can't turn, and the anchor at a centre of mass or on such a body. Right too are "
+            "arms, from a centre of mass to the anchor, that lie along or across the groove. The joint solves for "
             "the impulse that would stop its anchor in both directions, and then keeps the part along the "
             "normal ([cpGrooveJoint.c, line 76]"
             "(https://github.com/viblo/Munk2D/blob/2.0.1/src/cpGrooveJoint.c#L76)). This is the right impulse only if "

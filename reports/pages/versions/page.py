@@ -15,7 +15,7 @@ from matplotlib.patches import Rectangle
 
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
-from reports.plots.looks import HATCHES, SHADE_NAMES, outcome_colour, shade
+from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes, svg
 from reports.versions.catalogue import changes_between
 from reports.versions.comparison import Step, by_version, steps
@@ -62,35 +62,30 @@ def heat_table(entries: Sequence[Entry], versions: Sequence[str], theme: Theme =
     return figure
 
 
-def _look(entry: Entry, theme: Theme) -> tuple[str, str | None, str]:
-    """(colour, hatch, letters) of a cell."""
+def _look(entry: Entry, theme: Theme) -> tuple[str, str]:
+    """(colour, letters) of a cell. The letter of a failure needs no hatch, which would make it unreadable."""
     if not entry.comparable:
         outcome = Outcome(entry.outcome)
-        return outcome_colour(outcome, theme), HATCHES.get(outcome), outcome.letter
+        return outcome_colour(outcome, theme), outcome.letter
     power = math.floor(math.log10(entry.error)) if entry.error > 0 and math.isfinite(entry.error) else None
-    return getattr(theme, shade(entry.error)), None, "0" if power is None else f"{power}"
+    return getattr(theme, shade(entry.error)), "0" if power is None else f"{power}"
 
 
 def _cell(panel: Axes, column: int, row: int, entry: Entry, theme: Theme) -> None:
-    colour, hatch, letters = _look(entry, theme)
+    colour, letters = _look(entry, theme)
     # No patch: the limits are given, and need not follow each of some thousand cells.
     panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=theme.paper, linewidth=1))
-    if hatch:  # apart from its ground: in one patch its colours would not follow the reader's scheme
-        panel.add_artist(Rectangle((column, row), 1, 1, fill=False, edgecolor=theme.quiet, linewidth=0, hatch=hatch))
     panel.text(column + 0.5, row + 0.5, letters, ha="center", va="center", color=theme.ink, fontsize=7, in_layout=False)
 
 
 def _legend(figure: Figure, entries: Sequence[Entry], theme: Theme) -> None:
-    patches: list[Any] = [Rectangle((0, 0), 1, 1, facecolor=getattr(theme, role)) for role in SHADE_NAMES]
-    names = [*SHADE_NAMES.values()]
+    colours = {name: getattr(theme, role) for role, name in SHADE_NAMES.items()}
     for outcome in Outcome:
         if any(not entry.comparable and entry.outcome == outcome for entry in entries):
-            ground = Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme))
-            lines = Rectangle((0, 0), 1, 1, fill=False, edgecolor=theme.quiet, linewidth=0, hatch=HATCHES.get(outcome))
-            patches.append((ground, lines))
             told = "our adapter builds none" if outcome is Outcome.UNSUPPORTED else outcome
-            names.append(f"{outcome.letter}  {told}")
-    figure.legend(patches, names, loc="outside lower center", ncols=4)
+            colours[f"{outcome.letter}  {told}"] = outcome_colour(outcome, theme)
+    patches = [Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor=theme.quiet) for colour in colours.values()]
+    figure.legend(patches, list(colours), loc="outside lower center", ncols=4)
 
 
 def cost(entries: Sequence[Entry], versions: Sequence[str], theme: Theme = LIGHT) -> Figure:

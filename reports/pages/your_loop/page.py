@@ -9,21 +9,22 @@ from typing import Any
 
 from engines import Engine, mujoco, pymunk
 from reference.scene import Scene
-from reference.scenes.catalogue import SCENES
+from reference.scenes.catalogue import scene
 from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
+from reports.model.quantities import quantity
 from reports.pages.versions.page import table as versions
-from reports.write.programs import PAGES, program
-from reports.write.tables import NOTHING, markdown, milliseconds, number
+from reports.write.programs import program
+from reports.write.tables import NOTHING, error_words, markdown, milliseconds
 from reports.write.unmeasured import UNMEASURED
 
 NAME = "your_loop"
 LINES = Path(__file__).parent / "lines"
 EVERY = 10  # samples of these scenes are 1e-2 s apart: steps of a millisecond
-KNOWN = {scene.name: scene for scene in SCENES}
-LOOP, SLIDER, CHAIN = KNOWN["free_four_bar"], KNOWN["free_slider_crank"], KNOWN["pendulum_10"]
-DISC, SKATE = KNOWN["rolling_disc"], KNOWN["sleigh"]
+LOOP, SLIDER, CHAIN, DISC, SKATE = map(
+    scene, ("free_four_bar", "free_slider_crank", "pendulum_10", "rolling_disc", "sleigh")
+)
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,6 @@ PYMUNK = (
     Case("disc that rolls", "rolling", DISC, pymunk.DEFAULT, (pymunk.TUNED,)),
     Case("skate", "skate", SKATE, None, (pymunk.TUNED,), "position"),
 )
-UNITS = {"angle": "rad", "position": "m"}
 
 
 def cell(case: Case, engine: Engine) -> Cell:
@@ -72,17 +72,14 @@ def table(material: Material, cases: tuple[Case, ...], heads: tuple[str, ...]) -
         if engine is None:
             return "*no such joint*", NOTHING
         row = material.rows.get(cell(case, engine))
-        if row is None:
-            return NOTHING, NOTHING
-        error = number(getattr(row, case.quantity)) if Outcome(row.outcome).comparable else str(row.outcome)
-        return error, milliseconds(row.cpu)
+        return error_words(row, case.quantity), NOTHING if row is None else milliseconds(row.cpu)
 
     body = []
     for case in cases:
         pairs = [told(case, engine) for engine in (case.before, *case.after)]
         pairs += [(NOTHING, NOTHING)] * (len(heads) - len(pairs))
         costs = " → ".join(dict.fromkeys(cost for _, cost in pairs if cost != NOTHING))
-        name = f"[{case.what}]({case.page}.md), {UNITS[case.quantity]}"
+        name = f"[{case.what}]({case.page}.md), {quantity(case.quantity).unit}"
         body.append([name, *(error for error, _ in pairs), costs or NOTHING])
     known = any(each in material.rows for each in ASKED)
     return markdown(["at 1 ms", *heads, "CPU [ms/s]"], body, left=1) if known else ""
@@ -96,7 +93,7 @@ def error_at(material: Material, case: Case, engine: Engine) -> Any:
 
 def aimed(engine: str) -> str:
     """What our code does before each step of a skate, from the program that a test runs."""
-    source = program(PAGES / "skate" / "programs", f"{engine} tuned")
+    source = program("sleigh", f"{engine} tuned")
     return source[source.index("def aim():") : source.index("end = ")].rstrip()
 
 

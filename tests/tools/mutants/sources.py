@@ -15,7 +15,7 @@ from pathlib import Path
 from tests import ROOT
 
 PACKAGES = ("reference", "engines", "reports")
-SHOWN = {"snippets", "programs", "models", "results"}  # folders of what pages print and nothing imports
+SHOWN = {"snippets", "models", "results"}  # folders of what pages print and nothing imports
 SOURCES = tuple(
     sorted(
         path.relative_to(ROOT).as_posix()
