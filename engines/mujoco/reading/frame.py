@@ -171,11 +171,6 @@ def _refuse_free_body_out_of_plane(frame: Frame, tensor: Array, inertia: float, 
         raise refuse(name, "it is free, and the normal of the plane is no principal axis of its inertia")
 
 
-def sign_of(model: Any, data: Any, frame: Frame, joint: int) -> float:
-    """1 where a hinge's angle counts as angles in the plane do, -1 where it counts against them."""
-    return float(np.sign(data.xaxis[joint] @ frame.normal))
-
-
 def angles_of(model: Any, frame: Frame, groups: Groups, qpos: Array) -> Array:
     """Angles (times, bodies) [rad], not wrapped, of positions (times, nq)."""
     angles = np.zeros((len(qpos), len(groups.roots)))
