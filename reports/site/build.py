@@ -55,7 +55,8 @@ def lesson_page(lesson: Lesson, source: Source, names: Mapping[str, str]) -> dic
     """For lesson.html; `names`: pages by the Markdown file's name."""
 
     def quoted(text: str) -> Markup:
-        """A part of a page of results, without the anchors that it has there; its files stand in another folder."""
+        """A part of a page of results, whose anchors and other parts stay there; its files stand in another folder."""
+        text = text.replace("](#", f"]({lesson.page}.md#")
         told = markdown.linked(re.sub(r' id="[^"]*"', "", markdown.html(text)), names, _elsewhere)
         return Markup(OWN_FILE.sub(r'\1="../results/\2"', told))
 
