@@ -41,6 +41,7 @@ from reports.search.law import (
     ideal,
     response,
     rounded,
+    summed_in_tree,
     turned_in_a_step,
     written,
 )
@@ -378,25 +379,19 @@ def _left_open(mechanism: Mechanism, truth: Trajectory) -> float:
 def _rounded_about_origin(mechanism: Mechanism, truth: Trajectory) -> Constrained:
     """What poses (bodies, 3) and reactions (rows,) lose in Pinocchio, which adds up forces in the world's frame.
 
-    For a body and all that hangs on it in the tree it sums m (a - g) and what acts [N], and their torques about the
-    world's origin, F |p|. These are rounded, u = eps of the sums, and act on the body as forces: with `rounded`
-    da = S M^-1 u, of which the motion is da t^2 / 2, and df = A^-1 J M^-1 u.
+    So torques, inertias m |p|^2 and momenta are those about the world's origin: see `summed_in_tree`. Of its 5 n + 7
+    roundings, by half a unit each, squares are added, as they have no sign. What is rounded, u, acts on bodies as
+    forces: with `rounded` da = S M^-1 u, of which the motion is da t^2 / 2, and df = A^-1 J M^-1 u.
     """
-    links = spanning_tree(mechanism).links
+    tree = spanning_tree(mechanism)
+    often = (5 * tree.coordinates + 7) ** 0.5 / 2
     moved, pulled = np.zeros_like(mechanism.pose), np.zeros(mechanism.row_count)
     for pose, twist in zip(truth.pose, truth.twist, strict=True):
-        law = ideal(mechanism, pose, twist)
-        acting = np.abs(mechanism.unconstrained(pose, twist)) + np.abs(law.motion)
-        summed = np.abs(mechanism.inertias * acting)
-        summed[:, :2] = np.hypot(summed[:, 0], summed[:, 1])[:, None]
-        summed[:, 2] += summed[:, 0] * np.hypot(pose[:, 0], pose[:, 1])
-        for link in reversed(links):
-            if link.parent is not None:
-                summed[link.parent] += summed[link.body]
+        law, free = ideal(mechanism, pose, twist), mechanism.unconstrained(pose, twist)
+        summed = summed_in_tree(tree, np.hypot(pose[:, 0], pose[:, 1]), law.motion, twist, free).sum(axis=0)
         rows, bias = mechanism.rows(pose), mechanism.bias(pose, twist)
-        doubt = np.zeros(len(rows)), ROUNDINGS * np.finfo(float).eps * summed
-        free, give = mechanism.unconstrained(pose, twist), np.zeros((len(rows), 0))
-        off = rounded(rows, law, bias, mechanism.inertias, free, give, doubt)
+        doubt = np.zeros(len(rows)), often * np.finfo(float).eps * summed
+        off = rounded(rows, law, bias, mechanism.inertias, free, np.zeros((len(rows), 0)), doubt)
         moved, pulled = np.maximum(moved, off.motion), np.maximum(pulled, off.force)
     return Constrained(moved * truth.t[-1] ** 2 / 2, pulled)
 
