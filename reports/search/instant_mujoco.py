@@ -45,7 +45,6 @@ from reports.search.law import (
     force_difference,
     ideal,
     rounded,
-    summed_in_tree,
     turned_in_a_step,
 )
 from reports.search.raw_law import jacobian
@@ -324,8 +323,12 @@ class Instant:
         """What rounding makes of accelerations and forces, as parts of LAW.
 
         Beside what `rounded` knows: gaps of stiff rows are differences of places, and so are arms, eps of a place off.
-        And MuJoCo solves for the accelerations of a tree's coordinates, about the centre of mass of the tree: see
-        `summed_in_tree`.
+        And MuJoCo solves for the accelerations of a tree's coordinates. In the equation of one stand the inertias of
+        all that hangs on it, about the centre of mass of the tree, times accelerations that add up joint by joint, and
+        joints may move against each other: a light body far away is lost there. Of n coordinates the solution rounds
+        3 n + 1 times (Higham 2002, theorem 10.4), and sums along the tree, and each of what is added, n + 3 times.
+        A body's velocity adds a torque v x m v, of the velocity at that centre of mass: its parts, m v^2, cancel but
+        for their rounding, which turns a fast body (Featherstone 2008, equation 2.70).
         """
         mechanism, data, unit = self.mechanism, self.data, ROUNDINGS * np.finfo(float).eps
         rows, right, law = mechanism.rows(self.pose), mechanism.bias(self.pose, self.twist) + self.aimed, self.law()
@@ -336,14 +339,34 @@ class Instant:
         gap = gap + touched @ (places * (np.abs(law.motion[:, 2]) + self.twist[:, 2] ** 2))
         own = [self.model.compiled.body(f"body {index}").id for index in range(len(mass))]
         far = np.hypot(*(data.xipos[own] - data.subtree_com[self.model.compiled.body_rootid[own]])[:, :2].T)
-        summed, others = summed_in_tree(self.model.tree, far, law.motion, self.twist, self.free)
-        summed = (5 * self.model.compiled.nv + 7) / ROUNDINGS * summed + others
-        summed[:, 2] += places * (touched.T @ np.abs(law.force) + mass * np.hypot(self.free[:, 0], self.free[:, 1]))
+        moved, turned = self._along_chains(law.motion[:, :2]), self._along_chains(law.motion[:, 2:])
+        turned += self._along_chains(self.twist[:, 2:]) ** 2
+        hanging, pushed, torque = mass.copy(), mass * (moved + far * turned), mass * far * (moved + far * turned)
+        crossed = mass * (np.hypot(self.twist[:, 0], self.twist[:, 1]) + far * np.abs(self.twist[:, 2])) ** 2
+        joined = np.zeros(len(mass))
+        for link in reversed(self.model.tree.links):  # what hangs on a body is added to its own
+            joined[link.body] = far[link.body] + math.hypot(*link.anchor)
+            if link.parent is not None:
+                for each in (hanging, pushed, torque, crossed):
+                    each[link.parent] += each[link.body]
+        torque += hanging * joined * (moved + joined * turned)
+        summed = np.stack([pushed, pushed, torque], axis=1) * (5 * self.model.compiled.nv + 7) / ROUNDINGS
+        summed[:, 2] += crossed + places * (
+            touched.T @ np.abs(law.force) + mass * np.hypot(self.free[:, 0], self.free[:, 1])
+        )
         doubt = unit * gap, unit * summed
         least = rounded(rows, law, right, mechanism.inertias, self.free, self.give, doubt)
         # Nor does its solver take a step that is shorter than mjMINVAL [m/s^2, rad/s^2].
         ended = mujoco.mjMINVAL * np.abs(directions(self.model, data)).sum(axis=1).reshape(-1, 3)
         return Constrained((least.motion + ended) / LAW, least.force / LAW)
+
+    def _along_chains(self, values: Array) -> Array:
+        """(bodies,) the sums of what each joint adds to values (bodies, parts), from the ground to each body."""
+        out = np.zeros(len(values))
+        for link in self.model.tree.links:
+            before, above = (0.0, 0.0) if link.parent is None else (values[link.parent], out[link.parent])
+            out[link.body] = above + float(np.linalg.norm(values[link.body] - before))
+        return out
 
     def accelerations(self) -> Array:
         """The accelerations (tree coordinates,) of the law."""

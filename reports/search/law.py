@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.tree import Tree
 from reference.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -147,44 +146,6 @@ def rounded(
     moved = np.hstack([back.motion * lacking, (np.eye(len(motion)) - back.motion @ rows) * inverse * pushed])
     pulled = np.hstack([back.force * lacking, back.motion.T * pushed])
     return Constrained(np.linalg.norm(moved, axis=1).reshape(-1, 3), np.linalg.norm(pulled, axis=1))
-
-
-def summed_in_tree(tree: Tree, far: Array, motion: Array, twist: Array, free: Array) -> Array:
-    """What forces and torques (2, bodies, 3) [N, N, N m] an engine sums that solves for the accelerations of a tree's
-    coordinates: those of inertias, and all others.
-
-    `far` (bodies,) [m] is where bodies are from the point about which it sums. In the equation of one coordinate stand
-    the inertias of all that hangs on it, about that point, times accelerations that add up joint by joint. Joints may
-    move against each other: a light body is lost beside a heavy one that hangs on it. Of n coordinates the solution
-    rounds 3 n + 1 times (Higham 2002, theorem 10.4), sums along the tree, and each of what is added, n + 3 times. What
-    acts, M `free`, is only added up. A body's velocity adds a torque v x m v, of the velocity at the point: its
-    parts, m v^2, cancel but for their rounding, which turns a fast body (Featherstone 2008, equation 2.70).
-    """
-
-    def along_chains(values: Array) -> Array:
-        """(bodies,) the sums of what each joint adds to values (bodies, parts), from the ground to each body."""
-        out = np.zeros(len(values))
-        for link in tree.links:
-            before, above = (0.0, 0.0) if link.parent is None else (values[link.parent], out[link.parent])
-            out[link.body] = above + float(np.linalg.norm(values[link.body] - before))
-        return out
-
-    mass, inertia = tree.mechanism.inertias[:, 0], tree.mechanism.inertias[:, 2]
-    moved, turned = along_chains(motion[:, :2]), along_chains(motion[:, 2:]) + along_chains(twist[:, 2:]) ** 2
-    pushed, acting = mass * (moved + far * turned), mass * np.hypot(free[:, 0], free[:, 1])
-    torque, crossed = (
-        inertia * turned + far * pushed,
-        mass * (np.hypot(*twist[:, :2].T) + far * np.abs(twist[:, 2])) ** 2,
-    )
-    sums = np.stack([mass, pushed, torque, acting, inertia * np.abs(free[:, 2]) + far * acting + crossed])
-    joined = np.zeros(len(mass))
-    for link in reversed(tree.links):  # what hangs on a body is added to its own
-        joined[link.body] = far[link.body] + np.hypot(*link.anchor)
-        if link.parent is not None:
-            sums[:, link.parent] += sums[:, link.body]
-    hanging, pushed, torque, acting, beside = sums
-    torque += hanging * joined * (moved + joined * turned)
-    return np.stack([[pushed, pushed, torque], [acting, acting, beside]]).swapaxes(1, 2)
 
 
 def written(mechanism: Mechanism, away: float = 0.0) -> Array:
