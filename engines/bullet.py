@@ -80,7 +80,13 @@ class Bullet(Optional):
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        """First, of semi-implicit Euler; what the tree holds is exact."""
+        """First, of semi-implicit Euler; what the tree holds is exact.
+
+        Iterations end where the square of what rates miss, in m/s or rad/s, is below `residual`, at whatever step.
+        Where nothing is left to be integrated that is all that a loop misses.
+        """
+        if spanning_tree(mechanism).loops and is_prescribed(mechanism) and self.residual:
+            return Unpromised(f"iterations of bullet end at a residual of {self.residual:g}, however short the step is")
         if spanning_tree(mechanism).loops or any(isinstance(joint, Gear) for joint in mechanism.joints):
             return Promise(1, differences=1)
         if turns_steadily(mechanism) or is_prescribed(mechanism):

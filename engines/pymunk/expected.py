@@ -30,7 +30,7 @@ MOST_STEPS = 4096
 SOFT = Settings(
     iterations=10, error_bias=0.9, unit=1.0, skate="groove", roll="pivot", slot="exact", contact=SHIPPED_CONTACT
 )
-TORN = 0.05  # of the mechanism's length: from there on it is another mechanism
+TORN = 0.05  # of the mechanism's length, or rad: from there on it is another mechanism
 
 
 @validated
@@ -70,5 +70,6 @@ def _poses(mechanism: Mechanism, duration: float) -> list[np.ndarray]:
         if not any(isinstance(joint, Roll) for joint in mechanism.joints):
             raise
         return []
-    sound = np.isfinite(poses).all(axis=(1, 2)) & ~(np.abs(gap) > TORN * mechanism.length_scale).any(axis=1)
+    torn = np.abs(gap) > TORN * np.where(mechanism.turning, 1.0, mechanism.length_scale)
+    sound = np.isfinite(poses).all(axis=(1, 2)) & ~torn.any(axis=1)
     return list(poses[sound])

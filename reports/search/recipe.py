@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Skate, Slot, Triple, Vector, Weld
+from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
 from reference.plane import components, rotated
 from reference.rolling.closed_curves import Ellipse
@@ -243,7 +243,7 @@ class Standing:
         """The mechanism with these joints and forces, moving as the joints allow."""
         joints = tuple(each.joint for each in held)
         twists = self.allowed(held).tolist()
-        bodies = tuple(_with(body, twist=_three(own)) for body, own in zip(self.bodies, twists, strict=True))
+        bodies = tuple(_with(body, twist=tuple(own)) for body, own in zip(self.bodies, twists, strict=True))
         down_x, down_y = (float(pull * self._length / self._time**2) for pull in self._recipe.gravity)
         acting = tuple(self.joining.force(link, number) for link, number in forces)
         return Mechanism(bodies, joints, (down_x, down_y), acting)
@@ -293,8 +293,3 @@ def _with(value: Any, **changed: Any) -> Any:
     """As dataclasses.replace, for what has fields that its own class computes."""
     own = {field.name: getattr(value, field.name) for field in fields(value)}
     return type(value)(**(own | changed))
-
-
-def _three(values: Any) -> Triple:
-    x, y, angle = values
-    return x, y, angle

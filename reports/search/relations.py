@@ -123,7 +123,7 @@ def _errors(engine: Engine, recipe: Recipe, number: int) -> dict[str, float]:
         raise NotAsked(TOO_LONG)
     name = NAMES[number % len(NAMES)]
     if name in UNITS:
-        if _has_lengths(engine):
+        if engine.variant == "default":  # an impedance that grows over a millimetre, a slop of a decimetre
             raise NotAsked("settings as shipped have lengths in them")
         return {name: _in_units(engine, recipe, mechanism, UNITS[name])}
     try:
@@ -160,7 +160,8 @@ def _apart(
     """
     own = _run(engine, mechanism)
     step = STEP * mechanism.time_scale
-    misread = MISREAD / bound(engine) if engine.precision and _welded(mechanism) else 0.0
+    welded = any(isinstance(joint, Weld) for joint in mechanism.joints)
+    misread = MISREAD / bound(engine) if engine.precision and welded else 0.0
 
     def error(one: Mechanism, told: Trajectory, pose: Array, twist: Array) -> float:
         rounded = _rounded(engine, one) * max(away, float(np.abs(one.pose[:, :2]).max()))
@@ -213,10 +214,6 @@ def _nudges(mechanism: Mechanism, away: float) -> Iterator[Change]:
         yield Isometry(turn=NUDGED * turn, shift=(far * x, far * y))
 
 
-def _welded(mechanism: Mechanism) -> bool:
-    return any(isinstance(joint, Weld) for joint in mechanism.joints)
-
-
 def _rounded(engine: Engine, mechanism: Mechanism) -> float:
     """Which part of a place counts as moved, since it is rounded.
 
@@ -239,8 +236,3 @@ def _in_units(engine: Engine, recipe: Recipe, mechanism: Mechanism, decades: tup
         raise NotAsked("no joint has an arm: a metre stands for the mechanism's length, whatever the unit")
     run = _run(engine, other)
     return _apart(mechanism, engine, run.pose[-1] / unit, run.twist[-1] / unit, other, run)
-
-
-def _has_lengths(engine: Engine) -> bool:
-    """Whether its settings are those shipped: an impedance that grows over a millimetre, a slop of a decimetre."""
-    return engine.variant == "default"

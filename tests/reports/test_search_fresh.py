@@ -40,6 +40,7 @@ DOP853 = lagrange.VARIANTS[-1]
         (pymunk.TUNED, 796316743, 4, 1),  # a slide 100 m from the point of its slot, in a mechanism of 5 cm
         (mujoco.TUNED, 689539221, 4, 22),  # a force on a body of 50 t that a weld of 0.1 g passes on
         (pymunk.DEFAULT, 1828094220, 4, 21),  # forces of poses that are a radian off
+        (pymunk.TUNED, 341051688, 2, 19),  # a weld's angle open by 2 mrad, in a mechanism of 6 micrometres
         (pymunk.TUNED, 1737682144, 2, 32),  # lost at three steps in which rows turn, and right at an eighth
     ],
 )
