@@ -57,6 +57,7 @@ Array = NDArray[np.float64]
 EVALUATION_COST = 50e-6  # s, with three bodies, once compiled
 # Smaller than C MuJoCo's unit of mass by this, a power of two. A force of 1e-8 is then below half an eps of the whole
 # mass times 1 m/s^2; a row's compliance, 1e-4 of an inverse mass or more, is 500 times mjMINVAL (1e-15) or more.
+# Units smaller by 2^14 and by 2^34 gave the same to rounding in 110 mechanisms of the search, over 0, 2 and 4 decades.
 LIGHTER = 2.0**27
 NO_VELOCITY_TERM = "upstream: loops lack the velocity term J-dot v in MJX, so that they are wrong at any step"
 
