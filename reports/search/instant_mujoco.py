@@ -4,9 +4,9 @@ The judge has the mechanism's own rows J and their change, and of MuJoCo only wh
 a row is (`efc_KBIP`), how far it gives way (`efc_R`), and the armature of driven coordinates
 (`declared`). Each of its rows has to be one of the mechanism's, seen in the coordinates of its tree.
 
-MJX runs the same compiled model, so how far a row gives way is what MuJoCo says of it; the law is asked for with the
-velocity terms of rows and without. The later instant is one that MuJoCo steps to: what is asked is not how MJX steps,
-and a second program would have to be compiled.
+MJX runs the same compiled model, so how far a row gives way is what MuJoCo says of it. It leaves out the velocity terms
+of loops and rods, so of those it is asked for the law without. The later instant is one that MuJoCo steps to: what is
+asked is not how MJX steps, and a second program would have to be compiled.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -26,10 +26,11 @@ from numpy.typing import NDArray
 
 from engines import Softness
 from engines.lagrange import TRUTH
-from engines.mjx import Mjx
+from engines.mjx import Mjx, lacks_velocity_terms
 from engines.mujoco import MuJoCo
 from engines.mujoco.joints.skate import STEPWISE, slip_damping
 from engines.mujoco.model import Model
+from engines.tree import spanning_tree
 from reference.joints import Drive, Joint, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -368,11 +369,11 @@ class Instant:
             out[link.body] = above + float(np.linalg.norm(values[link.body] - before))
         return out
 
-    def accelerations(self) -> Array:
-        """The accelerations (tree coordinates,) of the law."""
+    def accelerations(self, velocity_term: bool = True) -> Array:
+        """The accelerations (tree coordinates,) of the law; see there for `velocity_term`."""
         _, _, coasting = _motion(self.model, self.data, np.zeros(self.model.compiled.nv))
         own = directions(self.model, self.data)[:, self.model.address]
-        told = np.linalg.lstsq(own, (self.law().motion - coasting).reshape(-1), rcond=None)[0]
+        told = np.linalg.lstsq(own, (self.law(velocity_term).motion - coasting).reshape(-1), rcond=None)[0]
         return np.asarray(told, dtype=np.float64)
 
     def missed(self, accelerations: Array, law: Constrained | None = None) -> float:
@@ -407,14 +408,30 @@ def _motion(model: Model, data: Any, accelerations: Array) -> tuple[Array, Array
     return pose, twist, change
 
 
-WITHOUT = "without velocity terms"  # the check that says what MJX computes instead
+def in_state(model: Model, state: Any) -> Any:
+    """A mujoco.MjData at the time, the place and the rates of another one, what follows from them computed."""
+    data = model.start()
+    data.time, data.qpos[:], data.qvel[:] = state.time, state.qpos, state.qvel
+    mujoco.mj_forward(model.compiled, data)
+    return data
+
+
+WITHOUT = "without velocity terms"  # the law that MJX obeys where it leaves them out, as its adapter says
 
 
 def mjx_errors(engine: Mjx, mechanism: Mechanism) -> dict[str, float]:
-    """By what accelerations miss the law, relative to the largest, and the law without the velocity terms of rows.
+    """By what accelerations miss the law, relative to the largest: of loops and rods, which lack the velocity terms of
+    rows as the adapter says, the law without those terms.
 
     Raises NotAsked where no law is declared, Fault for a row that is lacking, and Unsupported.
     """
+    missed = mjx_missed(engine, mechanism)
+    check = WITHOUT if lacks_velocity_terms(spanning_tree(mechanism)) else "acceleration"
+    return {check: missed[check]}
+
+
+def mjx_missed(engine: Mjx, mechanism: Mechanism) -> dict[str, float]:
+    """By what they miss the law and the law without velocity terms; see `mjx_errors`."""
     dt = STEP * mechanism.time_scale
     engine = replace(engine, settings=solved(engine.settings))
     model, held = engine.model(mechanism, dt)

@@ -26,7 +26,7 @@ from reports.search.subjects import Adapted, Alone, Subject, Told, is_shaped
 from reports.write.tables import number
 from reports.write.templates import environment
 
-LAWS = ("acceleration", "velocity")
+LAWS = ("acceleration", "velocity", "without velocity terms")
 # What the page counts together: checks of one instant, of descriptions, and the others, which are of a motion.
 GROUPS: Mapping[str, tuple[str, ...]] = {
     "instant": ("acceleration", "reaction", "velocity", "without velocity terms", "as its groove pushes"),

@@ -95,7 +95,7 @@ def script(subject: Subject, case: Any, check: str, number: int) -> str:
         if check == "velocity":
             return of_first_step(subject.engine, case)
         if check in ("acceleration", instant_mujoco.WITHOUT):
-            return of_mujoco(subject.engine, case)
+            return of_mujoco(subject.engine, case, check)
         return of_motion(subject.engine, case, check, number)
     except (Unsupported, NotAsked):
         return ""
@@ -336,21 +336,32 @@ for title, mechanism, found, seconds in (
 """
 
 
-def of_mujoco(engine: Any, recipe: Recipe) -> str:
-    """The model as MJCF and its accelerations by MuJoCo or MJX. Raises Unsupported where our code helps it step."""
+def of_mujoco(engine: Any, recipe: Recipe, check: str = "acceleration") -> str:
+    """The model as MJCF and its accelerations by MuJoCo or MJX at the two instants that are asked.
+
+    Raises Unsupported where our code helps it step.
+    """
     mechanism = build(recipe)
     inner = at_an_instant(engine, mechanism)
     if not isinstance(inner, MuJoCo | Mjx):
         raise Unsupported(f"{inner.name} declares no accelerations")
     method = inner.settings if isinstance(inner, Mjx) else inner
-    dt = instant_mujoco.STEP * mechanism.time_scale
+    dt, term = instant_mujoco.STEP * mechanism.time_scale, check != instant_mujoco.WITHOUT
     text, model = method.text(mechanism, dt), method.model(mechanism, dt, as_text=True)
-    here = instant_mujoco.Instant.of(mechanism, model, model.start(), method.softness(mechanism, dt))
+    run = replace(method, estimates=False).build(mechanism, dt)
+    finite = np.isfinite(run(1, instant_mujoco.STEPS).pose).all()
     by_mjx = "jax.jit(mjx.forward)(mjx.put_model(model), mjx.put_data(model, data))"
-    lines = ["mujoco.mj_resetDataKeyframe(model, data, 0)", "mujoco.mj_forward(model, data)"]
     read = f"np.array({by_mjx if isinstance(inner, Mjx) else 'data'}.qacc)[{model.address!r}]"
-    block = Block("accelerations at the start", [*_model_lines(text), *lines], read, here.accelerations())
-    return _written(inner, [block], DECLARED)
+    begin, blocks = [*_model_lines(text), "mujoco.mj_resetDataKeyframe(model, data, 0)"], []
+    states = {"at the start": model.start()} | ({f"{instant_mujoco.STEPS} steps later": run.data} if finite else {})
+    for title, state in states.items():
+        data = instant_mujoco.in_state(model, state)
+        here = instant_mujoco.Instant.of(mechanism, model, data, method.softness(mechanism, dt))
+        numbers = f"{data.time!r}, {data.qpos.tolist()!r}, {data.qvel.tolist()!r}"
+        lines = [f"data.time, data.qpos[:], data.qvel[:] = {numbers}", "mujoco.mj_forward(model, data)"]
+        expected = here.accelerations(velocity_term=term)
+        blocks.append(Block(f"accelerations {title}", [*begin, *lines], read, expected))
+    return _written(inner, blocks, DECLARED if term else f"{DECLARED},\nhere left out for loops and rods, as MJX does")
 
 
 def of_mujoco_alone(model: raw.Model, other: str = "") -> str:
