@@ -49,6 +49,10 @@ STEP_COSTS: dict[bool, dict[Integrator, float]] = {
 # holds of poses, in radians and parts of the mechanism's length, and of velocities, in the mechanism's own time.
 LOOSER, ROUGH, HELD = 10.0, 100.0, 1e-10
 
+# What a projection may leave of speeds in a joint: half of the digits. Of slow motions, beside this part of the
+# mechanism's length in its own time, no digits are counted.
+HALF, SLOW = 1.5e-8, 1e-4
+
 TABLEAUS = {"euler": NONE, "rk4": RK4, "dop853": FIXED_DOP853}
 
 
@@ -192,7 +196,7 @@ class _LagrangeRun(OneShot):
                     self._in_numpy(poses, twists, done, every)
                 stepping = time.process_time() - started
                 warnings = self._machine.warnings(self._engine.tolerance)
-            warnings = warnings or self._stopped(t, poses)
+            warnings = warnings or self._stopped(t, poses) or self._slipped(t, poses, twists)
             return Trajectory(t, poses, twists, self._reactions(t, poses, twists), stepping, warnings)
 
     def _stopped(self, t: Array, poses: Array) -> tuple[str, ...]:
@@ -201,6 +205,26 @@ class _LagrangeRun(OneShot):
             return (left_open(self._dynamics.unclosed),)
         ended = np.all(np.isfinite(poses), axis=(1, 2))
         return () if ended[-1] else (not_held(self._engine.tolerance, float(t[int(np.argmin(ended)) - 1])),)
+
+    def _slipped(self, t: Array, poses: Array, twists: Array) -> tuple[str, ...]:
+        """What is to be said where joints slip after a projection: then one of their rows was left out.
+
+        J M^-1 J^T keeps few digits of the mass of a body that is far from its joint, beside its radius of gyration:
+        below its rounding a row is not told from one that follows from others.
+        """
+        mechanism = self._mechanism
+        if self._engine.stabilisation != "projection" or not mechanism.row_count:
+            return ()
+        size = np.array([1.0, 1.0, mechanism.length_scale])
+        speed = np.abs(twists * size).max(axis=(1, 2)) + SLOW * mechanism.length_scale / mechanism.time_scale
+        slip = np.abs(mechanism.slip(poses, twists)) * np.where(mechanism.turning, mechanism.length_scale, 1.0)
+        open_at = t[1:][slip[1:].max(axis=1) > HALF * speed[1:]]
+        if not len(open_at):
+            return ()
+        return (
+            f"lagrange: at {open_at[0]:.6g} s joints slip after the projection: masses, or an arm and a radius of "
+            "gyration, are so far apart that a row is lost beside others, or the position is singular",
+        )
 
     def _in_machine_code(self, machine: Machine, poses: Array, twists: Array, every: int) -> int:
         """Fill samples; gives the last that is done."""

@@ -68,6 +68,29 @@ def test_steps_of_one_length_tell_of_a_dead_end_and_of_a_motion_that_is_lost(met
     assert Lagrange(method).build(pendulum(), 1e-2)(40, 5).warnings == ()
 
 
+@pytest.mark.parametrize(("gyration", "held"), [(1.0, True), (1e-6, False)])
+@pytest.mark.parametrize("method", ["euler", "rk4", "dop853"])
+def test_a_joint_whose_row_is_lost_beside_others_is_told(method, gyration, held):
+    """A body 2.5 km from its pin, on a slope: the force along its arm is m (gyration / arm)^2 of that across."""
+    c, s = np.cos(0.7), np.sin(0.7)
+    light = Body("light", 1.0, gyration**2, (0.0, 0.0, 0.7), (82 * c, 82 * s, 0.03))
+    rate = (82 * 2 + 2500 * 0.03) / -500
+    other = Body("other", 1.0, 2.5e7, (3000 * s, -3000 * c, 0.7), (-82 * c, -82 * s, rate))
+    pair = Mechanism((light, other), (Pin("pin", "light", "other", (0.0, -2500.0), (0.0, 500.0)),))
+    run = Lagrange(method).build(pair, 0.02)(5, 1)
+    assert bool(np.abs(slip(pair, run)).max() < 1e-6) is held
+    assert (run.warnings == ()) is held
+
+
+@pytest.mark.parametrize(("part", "told"), [(1e-8, False), (2e-8, True)])
+def test_half_of_the_digits_of_speeds_may_slip_after_a_projection_and_no_more(part, told):
+    own, ran = pendulum(angle=-np.pi / 2 + 1.0), Lagrange("rk4").build(pendulum(angle=-np.pi / 2 + 1.0), 0.01)
+    run = Lagrange("rk4").build(own, 0.01)(20, 1)
+    speed = np.abs(run.twist * [1.0, 1.0, own.length_scale]).max(axis=(1, 2))
+    off = run.twist + part * speed[:, None, None] * np.eye(3)[0]
+    assert bool(ran._slipped(run.t, run.pose, off)) is told
+
+
 def test_a_skate_that_leaves_no_velocity_free_leaves_poses_to_the_integrator():
     """A crank is driven, and a bar on it has a blade: all velocities follow from the pose, no pose from the time."""
     crank = Body("crank", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 2.0))

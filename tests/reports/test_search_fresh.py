@@ -11,6 +11,7 @@ import pytest
 
 from engines import Engine, lagrange, mujoco, pymunk
 from engines.lagrange import TRUTH
+from engines.lagrange.engine import _LagrangeRun
 from engines.mujoco.model import Model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -87,6 +88,16 @@ def test_places_that_are_rounded_anew_turn_small_bodies_and_a_speed_beside_it_is
     speed = 1e-5 * float(np.abs(own.twist[:, :2]).max())
     found = Adapted(Beside(pymunk.TUNED, speed=speed)).ask(case, 12, ("relations",))
     assert found.faults == ("in other lengths",)
+
+
+def test_a_row_that_is_lost_beside_others_is_told_and_is_found_where_nothing_tells_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Arms of 460 m and a radius of gyration of 2.5 um: a row of the pin is lost as it is drawn, and not turned."""
+    case = recipe(389370127, 7, EVERY, 4)
+    assert "says itself that something is wrong" in Adapted(DOP853).ask(case, 7, ("relations",)).not_asked[0]
+    monkeypatch.setattr(_LagrangeRun, "_slipped", lambda *_: ())
+    assert Adapted(DOP853).ask(case, 7, ("relations",)).faults == ("turned",)
 
 
 def test_sweeps_that_can_not_take_a_closed_gap_back_are_not_asked_until_steps_are_short() -> None:
