@@ -31,7 +31,7 @@ from reports.search.law import (
     response,
     turned_in_a_step,
 )
-from reports.search.motions import left_by_newton
+from reports.search.motion_bounds import left_by_newton
 from reports.search.parts import Recipe
 from reports.search.recipe import build
 

@@ -21,7 +21,7 @@ from engines import Promise, Unsupported, box2d, bullet, exudyn, mjx, pinocchio
 from engines.conformance.same import Isometry
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search import instant_mujoco, motions, relations
+from reports.search import instant_mujoco, motion_bounds, motions, relations
 from reports.search.law import NotAsked
 from reports.search.mechanisms import RUN, SHAPES, mechanism, of_a_shape
 from reports.search.plan import taken
@@ -164,7 +164,7 @@ def test_what_newtons_method_may_leave_in_exudyn_hides_no_more_than_that() -> No
     for number in range(60):
         own = mechanism(5, number, ("pin", "force"), 2)
         truth = motions.judged(own)
-        allowed = motions.left_by_newton(engine, own, truth, truth.t[1] / motions.COARSE).motion
+        allowed = motion_bounds.left_by_newton(engine, own, truth, truth.t[1] / motion_bounds.COARSE).motion
         turn = float(np.abs(allowed * [1.0, 1.0, own.length_scale]).max()) / own.length_scale
         share = own.length_scale * turn / np.abs(truth.pose - own.pose).max()
         if not 1e-4 < share < 1e-3:  # above its own error at the coarse step
@@ -209,8 +209,8 @@ def test_sums_about_the_origin_hide_no_more_of_pinocchio_than_their_rounding(
         pytest.skip(engine.missing)
     own = build(Adapted(engine).draw(seed, number, taken(engine), decades))
     error, bound = motions.errors(engine, own)["motion"]
-    assert motions.LEAST["motion"] < error < bound < 100 * error
-    size = motions._size(own, motions.judged(own), Promise(4))
+    assert motion_bounds.LEAST["motion"] < error < bound < 100 * error
+    size = motion_bounds.size_of(own, motions.judged(own), Promise(4))
     with turned_by(type(engine), lambda _: 2 * bound * size / own.length_scale):
         error, bound = motions.errors(engine, own)["motion"]
     assert error > bound

@@ -15,7 +15,7 @@ from engines.lagrange.engine import _LagrangeRun
 from engines.mujoco.model import Model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search import motions
+from reports.search import motion_bounds, motions
 from reports.search.law import NotAsked, lost_in_products
 from reports.search.mechanisms import mechanism, recipe
 from reports.search.parts import EVERY
@@ -103,7 +103,10 @@ def test_a_row_that_is_lost_beside_others_is_told_and_is_found_where_nothing_tel
 def test_sweeps_that_can_not_take_a_closed_gap_back_are_not_asked_until_steps_are_short() -> None:
     """As shipped, ten sweeps leave 0.98 of the slowest mode, and a hundredth of a gap may be closed in a step."""
     own = mechanism(1438770828, 10, EVERY, 4)
-    truth, step = motions.judged(own), motions.SPAN * own.time_scale / motions.SAMPLES / motions.COARSE
+    truth, step = (
+        motions.judged(own),
+        motion_bounds.SPAN * own.time_scale / motion_bounds.SAMPLES / motion_bounds.COARSE,
+    )
     with pytest.raises(NotAsked, match="leave more of an impulse"):
         motions._left_by_sweeps(pymunk.DEFAULT, own, truth, step / 64)
     assert 0.9 < motions._left_by_sweeps(pymunk.DEFAULT, own, truth, step / 2**20) < 1

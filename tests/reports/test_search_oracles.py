@@ -22,7 +22,17 @@ from engines.pymunk import model as pymunk_model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.gate.change import Altered
-from reports.search import instant_mujoco, instant_pymunk, mechanisms, motions, plan, raw, raw_law, relations
+from reports.search import (
+    instant_mujoco,
+    instant_pymunk,
+    mechanisms,
+    motion_bounds,
+    motions,
+    plan,
+    raw,
+    raw_law,
+    relations,
+)
 from reports.search.instant_pymunk import PUSHED
 from reports.search.mechanisms import ALL
 from reports.search.parts import EVERY
@@ -232,10 +242,10 @@ class Drifting(Lagrange):
     times: float = 0.0
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
-        steps = round(motions.SPAN * mechanism.time_scale / dt)
+        steps = round(motion_bounds.SPAN * mechanism.time_scale / dt)
 
         def drifted(given: Trajectory) -> Trajectory:
-            by = self.times * motions._drifted(mechanism, given, steps)
+            by = self.times * motion_bounds.drifted(mechanism, given, steps)
             pose = given.pose.copy()
             pose[1:, :, 0] += by
             return replace(given, pose=pose)
@@ -280,7 +290,7 @@ class Admitting(Boasting):
     finer: bool = True
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
-        rough = motions.SPAN * mechanism.time_scale / motions.SAMPLES / motions.COARSE
+        rough = motion_bounds.SPAN * mechanism.time_scale / motion_bounds.SAMPLES / motion_bounds.COARSE
         words = ("it is wrong",) if (dt < 0.75 * rough) is self.finer else ()
         return Spoiled(super().build(mechanism, dt), lambda given: replace(given, warnings=words))
 
@@ -397,12 +407,12 @@ class Beside(Around):
 def test_what_rounding_leaves_where_rows_nearly_depend_on_each_other_is_no_fault_and_twice_as_much_is() -> None:
     """Eight runs of a step, whose weights are 66: a bound that knew neither rows nor weights took this for a fault."""
     case, own = mechanisms.recipe(77777, 456, EVERY), mechanisms.mechanism(77777, 456, EVERY)
-    span = motions.SPAN * own.time_scale / motions.SAMPLES
-    truth = TRUTH.build(own, span)(motions.SAMPLES, 1)
+    span = motion_bounds.SPAN * own.time_scale / motion_bounds.SAMPLES
+    truth = TRUTH.build(own, span)(motion_bounds.SAMPLES, 1)
     promise = PYMUNK_EXTENDED.order(own)
     assert isinstance(promise, Promise)
-    rounded = motions._rounded_reactions(own, promise, truth, span / motions.COARSE / 2)
-    force = 2 * rounded * motions._force_size(own, truth)
+    rounded = motion_bounds.rounded_reactions(own, promise, truth, span / motion_bounds.COARSE / 2)
+    force = 2 * rounded * motion_bounds.force_size(own, truth)
     assert Adapted(PYMUNK_EXTENDED).ask(case, 456, ("motions",)).faults == ()
     assert Adapted(Beside(PYMUNK_EXTENDED, reaction=force)).ask(case, 456, ("motions",)).faults == ("reactions",)
 

@@ -13,7 +13,7 @@ import pytest
 from engines import Engine, box2d, bullet, exudyn, mjx, mujoco, pinocchio, pymunk
 from engines.lagrange import TRUTH, Lagrange
 from reference.rolling.roll import Roll
-from reports.search import instant_mujoco, mechanisms, motions, relations
+from reports.search import instant_mujoco, mechanisms, motion_bounds, relations
 from reports.search.independent import Motion
 from reports.search.mechanisms import mechanism
 from reports.search.parts import EVERY
@@ -106,8 +106,8 @@ def test_a_script_prints_what_the_adapter_gives(tmp_path: Path) -> None:
         pytest.skip(engine.missing)
     subject = Adapted(engine)
     case = subject.draw(SEED, 3, ("pin", "slot", "weld", "drive", "damper"), 0)
-    drawn, steps = build(case), motions.SAMPLES * motions.COARSE
-    dt = motions.SPAN * drawn.time_scale / steps
+    drawn, steps = build(case), motion_bounds.SAMPLES * motion_bounds.COARSE
+    dt = motion_bounds.SPAN * drawn.time_scale / steps
     own = np.abs(engine.build(drawn, dt)(1, steps).pose[-1] - TRUTH.build(drawn, steps * dt)(1, 1).pose[-1]).max()
     assert differences(script(subject, case, "motion", 0), tmp_path)[0] == pytest.approx(own, rel=1e-6, abs=1e-13)
 
