@@ -376,7 +376,8 @@ def test_a_guess_is_answered_with_what_was_measured(opened):
     assert told.startswith("Not so. pymunk: ")
     assert "times as large" in told
     assert page.locator("#part-5 [data-right].right").count() == 1
-    assert "iterations 1" in page.inner_text(".legend .method-1")
+    # The legend tells what the picture was made with, and the picture comes after the answer.
+    page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('iterations 1')")
 
 
 @pytest.mark.parametrize("each", [4, pytest.param(1, marks=pytest.mark.slow)])
