@@ -358,6 +358,8 @@ def test_the_address_changes_by_the_reader_alone_and_holds_what_he_set(opened):
     assert page.evaluate("location.hash") == ""
     number = page.locator("#part-1 .drag").first
     number.focus()
+    # The page scrolls there, and shows the part that comes to the middle; what a hand changes follows that.
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))))")
     page.keyboard.press("ArrowRight")
     assert page.evaluate("location.hash") == "#set&scene=0&0.coupler=2"
     linked = opened("lessons/four_bar.html#set&scene=0&0.coupler=2&steps=99&0.crank=77&nothing&=")
