@@ -6,6 +6,7 @@ from pathlib import Path
 
 from engines import Unsupported
 from reports.check.checked import Applied, Checked
+from reports.run.files import is_stream
 
 MUCH_MORE = 1.1  # times what was promised: then not all settings have reached the model
 
@@ -18,6 +19,8 @@ def applied(found: Checked, target: Path) -> Applied:
     source, advised = found.reading.source, found.advised
     if source is None:
         raise Unsupported("--apply: this model has no text to be changed; give its MJCF file or its script")
+    if is_stream(target):
+        raise Unsupported(f"--apply: {target} is no file, and the model is read from it again")
     if target.suffix.lower() != source.path.suffix.lower():
         raise Unsupported(f"--apply is {str(target)!r}; it must end in {source.path.suffix}, as the model does")
     if advised is None:

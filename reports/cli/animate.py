@@ -36,12 +36,14 @@ def animate(
     if to not in KINDS:
         raise BadInput(f"--to is {to!r}; there are {', '.join(KINDS)}")
     from reports.cli.known import one_scene
-    from reports.run.files import folder_for
+    from reports.run.files import folder_for, is_stream
 
     known, chosen = one_scene(scene, settings or ())
     methods = _methods(engines, known.engines)
     path = output or Path(f"{chosen.name}.{to}")
     refuse_existing([path], "--output", force)
+    if to != "svg" and is_stream(path):
+        raise BadInput(f"--output {path} is no file, and a film has to be one")
     folder_for(path.absolute().parent, "give another --output")  # before anything is run
     shown = _shown(chosen, methods, every, results)
     from reports.cli.terminal import Terminal

@@ -128,12 +128,16 @@ def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
     """Write all files, each under its name only when all are complete on disk; links are replaced, never followed.
 
     All are written aside first, so that a full disk or an error leaves every old file as it was. A kill while they get
-    their names leaves some old and some new ones, each of them whole. Raises FileTrouble, ending in the remedy.
+    their names leaves some old and some new ones, each of them whole. What is no file, such as /dev/stdout or a pipe,
+    is written into at the end. Raises FileTrouble, ending in the remedy.
     """
     with ExitStack() as stack:
         asides: dict[Path, Path] = {}  # folder -> a folder in it, hence on the same disk
         complete: dict[Path, Path] = {}
+        streams = {path: text for path, text in texts.items() if is_stream(path)}
         for path, text in texts.items():
+            if path in streams:
+                continue
             folder = folder_for(path.parent, remedy)
             try:
                 if path.is_dir() and not path.is_symlink():
@@ -147,8 +151,18 @@ def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
                     os.fsync(file.fileno())
             except OSError as reason:
                 raise FileTrouble(f"{path} can't be written ({reason.strerror or reason}): {remedy}") from None
-        for path, aside in complete.items():
+        for path in texts:
             try:
-                aside.replace(path)
+                if path in streams:
+                    with path.open("w", encoding="utf-8", newline="\n") as file:
+                        file.write(streams[path])
+                else:
+                    complete[path].replace(path)
             except OSError as reason:
                 raise FileTrouble(f"{path} can't be written ({reason.strerror or reason}): {remedy}") from None
+
+
+def is_stream(path: Path) -> bool:
+    """Whether it is a device, a pipe or a link in /dev: a file put in its place would be there for every program."""
+    link = path.is_symlink() and path.absolute().is_relative_to("/dev")  # /dev/stdout may lead to a file
+    return link or (path.exists() and not path.is_file() and not path.is_dir())

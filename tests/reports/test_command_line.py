@@ -204,6 +204,21 @@ def test_a_link_is_replaced_and_what_it_leads_to_is_not(tmp_path):
     assert not (tmp_path / "page.md").is_symlink()
 
 
+def test_a_pipe_is_written_into_and_stays_one(tmp_path, capfd):
+    """As root, a file would otherwise take the place of /dev/null."""
+    pipe = tmp_path / "a.gif"
+    os.mkfifo(pipe)
+    reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        write_whole({pipe: "new", tmp_path / "page.md": "new"}, "")
+        assert os.read(reading, 10) == b"new"
+    finally:
+        os.close(reading)
+    assert call("animate", "sleigh", "--to", "gif", "--force", "--output", str(pipe)) == REFUSED
+    assert "is no file" in one_line(capfd.readouterr().err)
+    assert pipe.is_fifo()
+
+
 @pytest.mark.parametrize(
     ("error", "status", "line"),
     [
@@ -241,7 +256,7 @@ def ended(words, **streams):
 
 
 def test_a_full_disk_behind_a_pipe_s_place_is_one_line_and_a_closed_one_none():
-    if not Path("/dev/full").exists():
+    if not Path("/dev/full").is_char_device():
         pytest.skip("/dev/full is there on Linux alone")
     with open("/dev/full", "w") as full:
         for words in (["errata", "1"], ["--help"]):
