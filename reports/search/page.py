@@ -19,6 +19,7 @@ from reports.search import plan
 from reports.search.chunk import Asked, asked, from_words, left_out, refused, stored
 from reports.search.mechanisms import SHAPES
 from reports.search.planted import FAULTS, SIZES, Control, controls
+from reports.search.raw_law import BESIDE, CURVED
 from reports.search.recipe import LEAST_RANK, NEAREST
 from reports.search.release import release_of
 from reports.search.shrinking import Shrink, line_of, worst_of
@@ -29,7 +30,7 @@ from reports.write.templates import environment
 LAWS = ("acceleration", "velocity", "without velocity terms")
 # What the page counts together: checks of one instant, of descriptions, and the others, which are of a motion.
 GROUPS: Mapping[str, tuple[str, ...]] = {
-    "instant": ("acceleration", "reaction", "velocity", "without velocity terms", "as its groove pushes"),
+    "instant": (*LAWS, "reaction", "as its groove pushes", CURVED, BESIDE),
     "description": (
         "turned", "shifted", "mirrored", "renamed", "swapped", "in other lengths", "in other masses",
     ),
