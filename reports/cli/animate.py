@@ -13,7 +13,7 @@ from reports.model.ending import BadInput, FileTrouble
 if TYPE_CHECKING:
     from engines import Engine
     from reference.scene import Scene
-    from reports.site.embed import Shown
+    from reports.site.animated import Shown
 
 KINDS = ("svg", "gif", "mp4")
 MOST = 4  # methods in one picture: more can't be told apart
@@ -72,7 +72,7 @@ def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Sh
     from engines.registry import method
     from reports.cli.run import run_interruptible
     from reports.cli.terminal import Terminal, opened
-    from reports.site.embed import shown
+    from reports.site.animated import shown
     from reports.site.lessons import take_like
 
     take = take_like(scene, tuple((method(engine), engine, every) for engine in engines))

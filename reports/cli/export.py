@@ -68,8 +68,7 @@ def view(
         except ValueError as reason:
             raise BadInput(f"{chosen.name}: {reason}") from None
         out = Path(f"{chosen.name}.svg")
-    from reports.site.animated import animation
-    from reports.site.embed import shown
+    from reports.site.animated import animation, shown
     from reports.site.lessons import take_like
 
     motion = shown(take_like(chosen, ()), {})

@@ -23,13 +23,13 @@ from reports.cli.commands import invoke
 from reports.model.ending import BadInput, FileTrouble
 from reports.model.tasks import answered
 from reports.site import markdown
-from reports.site.animated import PAUSE, animation, film
-from reports.site.build import MARKER, build, reference_pages
-from reports.site.embed import Shown, forces, shown
+from reports.site.animated import PAUSE, Shown, animation, film, shown
+from reports.site.build import MARKER, build, lesson_page, reference_pages
 from reports.site.folder import compressed_size, refuse_strangers, write_site
 from reports.site.lecture import html as lecture_html
 from reports.site.lesson import Part, Source, part_of
 from reports.site.lessons import LESSONS, take_like
+from reports.site.live.data import forces
 from reports.site.markdown import html, section
 from reports.site.packages import NotFetched, Package, Registry
 from reports.site.rows import explored
@@ -112,6 +112,16 @@ def test_sections_that_lessons_quote_are_on_their_pages():
     page = "# Top\n## Part\nbefore\n```\n# a comment\n```\nafter\n### Below\nmore\n# Next\nother\n"
     assert section(page, "Part") == "before\n```\n# a comment\n```\nafter\n### Below\nmore"
     assert section(page, "Nothing") is None
+
+
+def test_a_quoted_link_leads_to_the_page_of_results_and_quoted_code_stays_as_it_is(tmp_path):
+    lesson = LESSONS[0]
+    heading = next(each.section for each in lesson.experiments if each.section)
+    text = f"## {heading}\n\n`x[i](#a)` [here](#b), [as named][c]\n\n```\nf](#d)\n```\n\n[c]: #e\n"
+    told = lesson_page(lesson, Source({f"{lesson.page}.md": text}, {}, {}, {}, tmp_path, ""), {lesson.page: "x.html"})
+    body = next(part["more"]["body"] for part in told["parts"] if part["more"])
+    assert re.findall(r"<code>(.*?)</code>", body, re.DOTALL) == ["x[i](#a)", "f](#d)\n"]
+    assert re.findall('href="(.*?)"', body) == [f"../results/{lesson.page}.html#{anchor}" for anchor in "be"]
 
 
 def test_no_link_of_the_site_is_dead(files):
