@@ -31,7 +31,7 @@ from reports.site.lesson import Part, Source, part_of
 from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import forces
 from reports.site.markdown import html, section
-from reports.site.packages import NotFetched, Package, Registry
+from reports.site.packages import NotFetched, Package, Registry, printed
 from reports.site.rows import explored
 from tests import ROOT
 
@@ -164,6 +164,8 @@ def test_a_notebook_becomes_a_page_with_what_its_cells_print_and_draw():
     assert page.endswith("</details>")  # the last cell has the solutions
     with pytest.raises(NotFetched, match="a cell fails: ZeroDivisionError"):
         lecture_html(json.dumps({"cells": cells}))
+    with pytest.raises(NotFetched, match="a cell fails: it did not end within"):
+        printed([sys.executable, "-c", "import time; time.sleep(60)"], "a cell fails", 0.1)
 
 
 def test_formulas_are_found_outside_of_code_alone_and_are_drawn_by_the_browser():
@@ -321,11 +323,15 @@ def test_a_film_is_written(falling, tmp_path, monkeypatch):
         (["free_four_bar", "--engines", "pymunk defautl"], BadInput, "did you mean 'pymunk default'"),
         (["four_bar"], BadInput, "'four_bar' names 3 scenes; give one of"),
         (["free_four_bar", "--output", "mine.svg"], FileTrouble, "is there already"),
+        (["free_four_bar", "--to", "gif", "--output", "x.svg"], BadInput, "with --to gif it must end in .gif"),
+        (["free_four_bar", "--to", "mp4"], BadInput, "needs the program ffmpeg"),
         (["free_four_bar", "--output", "mine.svg/x.svg"], FileTrouble, "give another --output"),
     ],
 )
 def test_bad_words_are_refused_in_a_line_before_anything_is_run(words, refusal, told, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("reports.site.animated.shutil.which", lambda name: None)
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     (tmp_path / "mine.svg").write_text("mine")
     with pytest.raises(refusal, match=re.escape(told)):
         invoke(["animate", *words])
