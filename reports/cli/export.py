@@ -10,7 +10,7 @@ import typer
 from reports.cli.options import REFERENCES, refuse_existing
 from reports.cli.streams import written
 from reports.model.ending import BadInput
-from reports.run.files import write_whole
+from reports.run.files import is_stream, write_whole
 
 if TYPE_CHECKING:
     from reference.scene import Scene
@@ -127,4 +127,5 @@ def told(scene: Scene) -> list[str]:
 def _write(path: Path, text: str, force: bool) -> None:
     refuse_existing([path], "--out", force)
     write_whole({path: text}, "give another --out")
-    print(f"written: {path}")
+    if not is_stream(path):  # which may be the standard output, where a file would get this line
+        print(f"written: {path}")
