@@ -43,7 +43,12 @@ RATE = 25  # frames a second, of a film; a GIF's frames last whole hundredths of
 INCHES = (12.8, 5.6)
 DOTS = 100  # an inch of a film: 1280 points wide
 # Width of motions [pt], and their lines, whose dashes are told in the widths of lines.
-LOOKS = ((5.6, "-"), (4.0, (0, (5, 2.5))), (3.2, (0, (1.5, 2.5))), (3.2, (0, (6, 2, 1, 2))))
+LOOKS: tuple[tuple[float, Any], ...] = (
+    (5.6, "-"),
+    (4.0, (0, (5, 2.5))),
+    (3.2, (0, (1.5, 2.5))),
+    (3.2, (0, (6, 2, 1, 2))),
+)
 DECADES = 8  # of the scale of errors, at most
 
 

@@ -10,6 +10,7 @@ from functools import partial
 from html import escape
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import jinja2
 from markupsafe import Markup
@@ -48,7 +49,7 @@ OWN_FILE = re.compile(r'(href|src)="(?!https?:|mailto:|\.\./)([^"]+)"')
 DRAGGED = re.compile(r"\{(\w+)\}")  # a number in a lesson's words that moves a control
 
 
-def lesson_page(lesson: Lesson, source: Source, names: Mapping[str, str]) -> dict[str, object]:
+def lesson_page(lesson: Lesson, source: Source, names: Mapping[str, str]) -> dict[str, Any]:
     """For lesson.html; `names`: pages by the Markdown file's name."""
 
     def quoted(text: str) -> Markup:
