@@ -20,6 +20,7 @@ from engines.conformance import cases
 from engines.lagrange import Lagrange
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.cli.commands import invoke
+from reports.cli.site import texts_of
 from reports.model.ending import BadInput, FileTrouble
 from reports.model.tasks import answered
 from reports.site import markdown
@@ -66,14 +67,8 @@ class Page(HTMLParser):
 def source(tmp_path_factory):
     """The published pages, no motions, and no packages: npm is not asked."""
     cache = tmp_path_factory.mktemp("cache")
-    texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
-    for pattern in ("programs/*.py", "upstream/*.md"):
-        found = RESULTS.glob(pattern)
-        texts[".csv"] |= {path.relative_to(RESULTS).as_posix(): path.read_text("utf-8") for path in found}
-    return Source(texts[".md"], texts[".svg"], texts[".csv"], {}, cache, "Made by a test.", CONTRIBUTING, api=False)
-
-
-SUFFIXES = (".md", ".svg", ".csv")
+    given = {"answers": {}, "cache": cache, "foot": "Made by a test.", "contributing": CONTRIBUTING, "api": False}
+    return Source(**texts_of(RESULTS), **given)
 
 
 @pytest.fixture(scope="module")

@@ -22,6 +22,7 @@ from reference.joints import Drive
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.scenes.four_bar.scenes import DrivenFourBar
+from reports.cli.site import texts_of
 from reports.model.tasks import answered
 from reports.site.build import build, tasks
 from reports.site.folder import compressed_size, server, write_site
@@ -48,17 +49,10 @@ def files(request):
     """The site with the quick lessons and with those that a test that was selected asks for."""
     given = (vars(item).get("callspec") for item in request.session.items if item.path == request.path)
     wanted = {*QUICK, *(each.params.get("lesson") for each in given if each is not None)}
-    texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
-    for pattern in ("programs/*.py", "upstream/*.md"):
-        found = RESULTS.glob(pattern)
-        texts[".csv"] |= {path.relative_to(RESULTS).as_posix(): path.read_text("utf-8") for path in found}
     answers = {motion: answered(motion) for motion in tasks(LESSONS[:1])}
     cache = Path(request.config.cache.mkdir("site"))
-    source = Source(texts[".md"], texts[".svg"], texts[".csv"], answers, cache, "Made by a test.", api=False)
+    source = Source(**texts_of(RESULTS), answers=answers, cache=cache, foot="Made by a test.", api=False)
     return build(source, [lesson for lesson in LESSONS if lesson.name in wanted])
-
-
-SUFFIXES = (".md", ".svg", ".csv")
 
 
 @pytest.fixture(scope="module")
