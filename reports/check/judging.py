@@ -50,10 +50,8 @@ def accelerations(mechanism: Mechanism, pose: Array, twist: Array, t: float, giv
     return (free + inverse * (rows.T @ solve_symmetric(matrix, right))).reshape(-1, 3)
 
 
-def soft_motion(
-    mechanism: Mechanism, give: Callable[[Array], Give], t: Array, tolerance: float = TOLERANCE
-) -> tuple[Array, Array]:
-    """Poses and twists (times, bodies, 3) of joints that give way; NaN from where the equations are not solved.
+def soft_motion(mechanism: Mechanism, give: Callable[[Array], Give], t: Array, tolerance: float = TOLERANCE) -> Array:
+    """Poses (times, bodies, 3) of joints that give way; NaN from where the equations are not solved.
 
     By LSODA: dampers of light bodies, and stiff joints, are much faster than the motion.
     """
@@ -71,10 +69,9 @@ def soft_motion(
 
     start = np.concatenate([mechanism.pose.reshape(-1), mechanism.twist.reshape(-1)])
     found: Any = solve_ivp(rates, (0.0, float(t[-1])), start, "LSODA", t_eval=t, rtol=tolerance, atol=allowed)
-    out = np.full((len(t), 2, *mechanism.pose.shape), np.nan)
-    done = found.y.shape[1]
-    out[:done] = found.y.T.reshape(done, 2, -1, 3)
-    return out[:, 0], out[:, 1]
+    out = np.full((len(t), *mechanism.pose.shape), np.nan)
+    out[: found.y.shape[1]] = found.y[:count].T.reshape(-1, *mechanism.pose.shape)
+    return out
 
 
 LOOSER = Lagrange(tolerance=1e-10)  # the judge at another tolerance: its own error is what that changes

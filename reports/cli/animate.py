@@ -13,7 +13,7 @@ from reports.model.ending import BadInput, FileTrouble
 if TYPE_CHECKING:
     from engines import Engine
     from reference.scene import Scene
-    from reports.site.embed import Shown
+    from reports.site.animated import Shown
 
 KINDS = ("svg", "gif", "mp4")
 MOST = 4  # methods in one picture: more can't be told apart
@@ -42,8 +42,15 @@ def animate(
     methods = _methods(engines, known.engines)
     path = output or Path(f"{chosen.name}.{to}")
     refuse_existing([path], "--output", force)
-    if to != "svg" and is_stream(path):
+    if to == "mp4":
+        from reports.site.animated import ffmpeg
+
+        ffmpeg()  # refused before anything is run
+    stream = is_stream(path)
+    if stream and to != "svg":
         raise BadInput(f"--output {path} is no file, and a film has to be one")
+    if not stream and path.suffix != f".{to}":
+        raise BadInput(f"--output is {str(path)!r}; with --to {to} it must end in .{to}")
     folder_for(path.absolute().parent, "give another --output")  # before anything is run
     shown = _shown(chosen, methods, every, results)
     from reports.cli.terminal import Terminal
@@ -51,7 +58,8 @@ def animate(
     for word, why in shown.lost.items():
         Terminal(140).say(f"{word}: {why}")
     _write(shown, to, path)
-    Terminal(140).say(f"written: {path}, {path.stat().st_size / 1000:.0f} kB")
+    if not stream:
+        Terminal(140).say(f"written: {path}, {path.stat().st_size / 1000:.0f} kB")
 
 
 def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engine]:
@@ -72,7 +80,7 @@ def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Sh
     from engines.registry import method
     from reports.cli.run import run_interruptible
     from reports.cli.terminal import Terminal, opened
-    from reports.site.embed import shown
+    from reports.site.animated import shown
     from reports.site.lessons import take_like
 
     take = take_like(scene, tuple((method(engine), engine, every) for engine in engines))
@@ -83,7 +91,7 @@ def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Sh
 
 
 def _write(shown: Shown, kind: str, path: Path) -> None:
-    from reports.run.files import folder_for, temporary_folder, write_whole
+    from reports.run.files import temporary_folder, write_whole
     from reports.site.animated import animation, film
     from reports.write.tables import number
 
@@ -96,7 +104,7 @@ def _write(shown: Shown, kind: str, path: Path) -> None:
         write_whole({path: animation(shown, title)}, "give another --output")
         return
     try:
-        with temporary_folder(folder_for(path.absolute().parent, "give another --output")) as aside:
+        with temporary_folder(path.absolute().parent) as aside:
             film(shown, title, aside / path.name)
             (aside / path.name).replace(path)
     except OSError as reason:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from reports.cli.options import refuse_existing
 from reports.model.ending import BadInput, Broken
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ def check(
     key: Annotated[str, typer.Option(help="The stored state to begin with, or none; the first unless given.")] = "",
     step: Annotated[float | None, typer.Option(help="Your step [s], instead of the model's own.")] = None,
     limit: Annotated[float, typer.Option(help="CPU seconds after which the check of a model is ended.")] = 120.0,
+    force: Annotated[bool, typer.Option("--force", help="Replace files that are there, the model too.")] = False,
 ) -> None:
     """Check a model of your own against ideal joints: how wrong your settings are, why, and which are enough.
 
@@ -70,9 +72,9 @@ def check(
         from reports.check.document import schema
 
         return _say(json.dumps(schema(), indent=1))
-    files = {"html": html, "markdown": markdown, "junit": junit}
+    files = {"html": html, "markdown": markdown, "junit": junit, "apply": apply}
     sizes = {"duration": (duration, LONGEST), "tolerance": (tolerance, 1.0), "fix-to": (fix_to, 1.0)}
-    _refuse_bad(model, sizes | {"limit": (limit, 1e6)}, step, duration, files)
+    _refuse_bad(model, sizes | {"limit": (limit, 1e6)}, step, duration, files, force)
     if tolerance is not None and fix_to is not None:
         raise BadInput("--tolerance and --fix-to both name an error; give one of them")
     from reports.run.worker import start_early
@@ -116,8 +118,9 @@ def _refuse_bad(
     step: float | None,
     duration: float,
     files: Mapping[str, Path | None],
+    force: bool,
 ) -> None:
-    """Raises BadInput before anything is run."""
+    """Raises BadInput and FileTrouble before anything is run."""
     if not model:
         raise BadInput("no model was given; give model.xml, model.urdf, script.py or a folder of them")
     for name, (value, most) in sizes.items():
@@ -125,9 +128,13 @@ def _refuse_bad(
             raise BadInput(f"--{name} is {value:g}; it must be greater than zero and at most {most:g}")
     if step is not None and not 0 < step <= duration:
         raise BadInput(f"--step is {step:g}; it must be greater than zero and at most the duration, {duration:g}")
-    for name, path in files.items():
-        if path is not None and (not path.name or path.is_dir()):
-            raise BadInput(f"--{name} is {str(path)!r}, which is a folder; give a file")
+    given = {f"--{name}": path for name, path in files.items() if path is not None}
+    for name, path in given.items():
+        if not path.name or path.is_dir():
+            raise BadInput(f"{name} is {str(path)!r}, which is a folder; give a file")
+        refuse_existing([path], name, force)
+    if len({path.absolute() for path in given.values()}) < len(given):
+        raise BadInput(f"{' and '.join(given)} name one file twice; give each a file of its own")
 
 
 def _models(model: str) -> list[str]:

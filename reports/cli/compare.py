@@ -12,7 +12,7 @@ import typer
 
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, REFERENCES, STORE, AsJson, AsMarkdown, Folder
-from reports.cli.versions import SCENES, USUAL, named_scenes, request_of, run_column
+from reports.cli.versions import SCENES, USUAL, named_scenes, request_of, run_column, tell_of_pip
 from reports.model.ending import BadInput, Broken
 
 if TYPE_CHECKING:
@@ -115,12 +115,10 @@ def _named(word: str) -> tuple[Engine, ...]:
 
 def _side(word: str, engine: str | None, engines: tuple[Engine, ...]) -> Side:
     """What a word means. Raises BadInput."""
-    from reports.cli.streams import said
     from reports.run.installed import built, distributions_in, installed
     from reports.versions.catalogue import distributions, engine_of
     from reports.versions.column import modules_in
 
-    said(f"{word}: installed by pip, unless it is there already")
     name, equals, version = word.partition("==")
     if equals:
         known = engine_of(engines, [name])
@@ -128,7 +126,10 @@ def _side(word: str, engine: str | None, engines: tuple[Engine, ...]) -> Side:
             names = ", ".join(dict.fromkeys(each.name for each in engines))
             raise BadInput(f"{word}: no engine needs {name!r}; there are {names}")
         places = distributions(engines, known) if known is not None else (name,)
+        tell_of_pip(word)
         return Side(word, engine or known or name, installed(places, version), True)
+    if Path(word).exists():
+        tell_of_pip(word)
     place = built(Path(word))
     versions = distributions_in(place)
     known = engine_of(engines, [*versions, *modules_in(place)])

@@ -10,7 +10,7 @@ import typer
 from reports.cli.options import REFERENCES, refuse_existing
 from reports.cli.streams import written
 from reports.model.ending import BadInput
-from reports.run.files import write_whole
+from reports.run.files import is_stream, write_whole
 
 if TYPE_CHECKING:
     from reference.scene import Scene
@@ -68,8 +68,7 @@ def view(
         except ValueError as reason:
             raise BadInput(f"{chosen.name}: {reason}") from None
         out = Path(f"{chosen.name}.svg")
-    from reports.site.animated import animation
-    from reports.site.embed import shown
+    from reports.site.animated import animation, shown
     from reports.site.lessons import take_like
 
     motion = shown(take_like(chosen, ()), {})
@@ -128,4 +127,5 @@ def told(scene: Scene) -> list[str]:
 def _write(path: Path, text: str, force: bool) -> None:
     refuse_existing([path], "--out", force)
     write_whole({path: text}, "give another --out")
-    print(f"written: {path}")
+    if not is_stream(path):  # which may be the standard output, where a file would get this line
+        print(f"written: {path}")

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from reports.model.ending import BadInput, FileTrouble, nearest
+from reports.run.files import is_stream
 
 # Below the current folder, in the checkout too: no command writes to what is published.
 FOLDER = Path("crosscheck-results")
@@ -43,15 +44,19 @@ AsMarkdown = Annotated[bool, typer.Option("--markdown", help="Markdown, as for a
 
 
 def refuse_existing(paths: Iterable[Path], option: str, force: bool) -> None:
-    """Raises FileTrouble for a file that is there, unless it may be replaced. A link counts that leads nowhere."""
+    """Raises FileTrouble for a file that is there, unless it may be replaced. A link counts that leads nowhere.
+
+    A device or a pipe is written into, so that nothing is lost.
+    """
     for path in paths:
-        if not force and (path.is_symlink() or path.exists()):
+        if not force and (path.is_symlink() or path.exists()) and not is_stream(path):
             raise FileTrouble(f"{path} is there already: give another {option}, or --force to replace it")
 
 
 def listed(option: str, words: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
-    """Words with commas between them, each of them known. Raises BadInput."""
-    names, found = tuple(known), [name.strip() for word in words for name in word.split(",")]
+    """Known words with commas between them; one that has a comma itself has to be given alone. Raises BadInput."""
+    names = tuple(known)
+    found = [name.strip() for word in words for name in ([word] if word in names else word.split(","))]
     out = tuple(dict.fromkeys(filter(None, found)))
     if not out:
         raise BadInput(f"{option} names nothing; give one or some of {', '.join(names)}, with commas between them")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -50,9 +50,7 @@ def site(
         server(Path(), port).server_close()
     console = Terminal(140)
     source = Source(
-        pages=_texts(folder, "*.md"),
-        pictures=_texts(folder, "*.svg"),
-        tables=_texts(folder, "*.csv") | _texts(folder, "programs/*.py") | _texts(folder, "upstream/*.md"),
+        **texts_of(folder),
         answers={},
         cache=results / CACHE,
         foot=_foot(),
@@ -72,6 +70,12 @@ def site(
     if serve:
         console.say(f"http://localhost:{port} shows it; Ctrl-C ends")
         serve_folder(output, port)
+
+
+def texts_of(folder: Path) -> dict[str, Any]:
+    """What a site shows of a folder of results, as fields of `Source`."""
+    tables = _texts(folder, "*.csv") | _texts(folder, "programs/*.py") | _texts(folder, "upstream/*.md")
+    return {"pages": _texts(folder, "*.md"), "pictures": _texts(folder, "*.svg"), "tables": tables}
 
 
 def _texts(folder: Path, pattern: str) -> dict[str, str]:

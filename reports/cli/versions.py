@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -142,7 +143,7 @@ def _column(
     from reports.run.installed import installed
     from reports.versions.catalogue import distributions
 
-    said(f"{name} {number}: installed by pip, unless it is there already")
+    tell_of_pip(f"{name} {number}")
     place = installed(distributions(engines, name), number)
     begin, most = monotonic(), QUICK_CELL if trees else float("inf")
     request = request_of(name, place, scenes, results / STORE, most=most, trees=trees, fresh=fresh)
@@ -153,6 +154,11 @@ def _column(
     if told:
         console.tell(f"{name} {number}: {told}")
     return found
+
+
+def tell_of_pip(word: str) -> None:
+    """Before a wait. It is progress, and does not begin as a refusal does."""
+    print(f"{word}: installed by pip, unless it is there already", file=sys.stderr, flush=True)
 
 
 def request_of(engine: str, place: Path, scenes: tuple[Scene, ...], store: Path, **terms: Any) -> VersionRequest:

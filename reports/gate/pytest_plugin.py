@@ -18,6 +18,8 @@ from engines.loading import is_reference
 from reports.gate.change import BadBaseline, Baseline, mixed, read_baseline
 from reports.gate.theory import Case, idle
 from reports.gate.walk import CaseVerdict, grown, remarks, walk
+from reports.model.ending import FileTrouble
+from reports.run.files import write_whole
 from reports.write.provenance import versions
 from reports.write.tables import markdown, number
 
@@ -157,6 +159,8 @@ def pytest_configure(config: pytest.Config) -> None:
     target = _option(config, "--crosscheck-report")
     if target is not None and not target.resolve().parent.is_dir():
         raise pytest.UsageError(f"--crosscheck-report {target}: there is no folder {target.parent}")
+    if target is not None and target.is_dir():
+        raise pytest.UsageError(f"--crosscheck-report {target}: it is a folder; give a file")
 
 
 def _engines(words: Sequence[str]) -> tuple[tuple[Engine, ...], tuple[str, ...]]:
@@ -248,5 +252,8 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
         terminalreporter.line(line)
     target = _option(config, "--crosscheck-report")
     if target is not None:
-        target.write_text(report(found.values(), baseline), encoding="utf-8", newline="\n")
+        try:
+            write_whole({target: report(found.values(), baseline)}, "give another --crosscheck-report")
+        except FileTrouble as reason:
+            raise pytest.UsageError(str(reason)) from None
         terminalreporter.line(f"written to {target}")

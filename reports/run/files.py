@@ -154,7 +154,8 @@ def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
         for path in texts:
             try:
                 if path in streams:
-                    with path.open("w", encoding="utf-8", newline="\n") as file:
+                    # At its end: /dev/stdout may lead to a file in which something stands already.
+                    with path.open("a", encoding="utf-8", newline="\n") as file:
                         file.write(streams[path])
                 else:
                     complete[path].replace(path)

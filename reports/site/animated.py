@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -17,25 +18,94 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 from PIL import Image
 
+from engines import Engine
+from reference.mechanism import Mechanism
 from reference.plane import rotated
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+from reports.model.cells import Cell
 from reports.model.ending import BadInput
+from reports.model.tasks import Answer, Motion, trajectory_of
 from reports.plots.looks import family_of, role
 from reports.plots.theme import LIGHT, Theme, settings, style_axes, svg
 from reports.site import drawn
-from reports.site.embed import Shown
+from reports.site.live.sliders import Look
 
 Array = NDArray[np.float64]
 Moving = list[tuple[Line2D, Array, Array]]  # lines, their points in the body's frame (points, 2), its poses (times, 3)
 Growing = list[tuple[Line2D, Array]]  # lines, and the error at every instant [rad]
 
+FRAMES = 100  # of a moving picture, at most: what an eye can tell in six seconds
 SECONDS = 8.0  # one round
 PAUSE = 0.12  # of a round of an SVG, at its end
 KEYS = 60  # instants of an SVG that are told apart; between them the pose goes steadily
 RATE = 25  # frames a second, of a film; a GIF's frames last whole hundredths of a second, as these do
 INCHES = (12.8, 5.6)
 DOTS = 100  # an inch of a film: 1280 points wide
-LOOKS = ((7.0, ""), (5.0, "10 5"), (4.0, "3 5"), (4.0, "12 4 2 4"))  # width and dashes of motions [pt]
+# Width of motions [pt], and their lines, whose dashes are told in the widths of lines.
+LOOKS: tuple[tuple[float, Any], ...] = (
+    (5.6, "-"),
+    (4.0, (0, (5, 2.5))),
+    (3.2, (0, (1.5, 2.5))),
+    (3.2, (0, (6, 2, 1, 2))),
+)
 DECADES = 8  # of the scale of errors, at most
+
+
+@dataclass(frozen=True)
+class Take(Look):
+    """One motion that a picture shows: the truth of a scene, and methods over it.
+
+    methods: (how it is called in the legend, engine, steps between samples). samples: of the scene unless given.
+    """
+
+    scene: Scene
+    methods: tuple[tuple[str, Engine, int], ...] = ()
+    samples: int | None = None
+
+    @property
+    def sample_count(self) -> int:
+        """Sampling intervals of the motion."""
+        return self.scene.samples if self.samples is None else self.samples
+
+    def motions(self) -> dict[str, Motion]:
+        """What has to be run for it, by the word of the legend."""
+        return {
+            word: Motion(Cell(self.scene, engine, every, "failure", self.samples))
+            for word, engine, every in self.methods
+        }
+
+    @property
+    def shown(self) -> slice:
+        """The samples that the picture shows: at most about FRAMES."""
+        return slice(0, None, max(1, -(-(self.sample_count + 1) // (FRAMES + 1))))
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A take with its motions: what pictures are made of."""
+
+    take: Take
+    mechanism: Mechanism
+    t: Array  # (frames,) s
+    truth: Trajectory
+    motions: Mapping[str, Array]  # legend -> poses (frames, bodies, 3), NaN where the method gave up
+    lost: Mapping[str, str]  # legend -> why there is no motion
+
+
+def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
+    """The take at its frames. A method that was not run, or did not finish, is told in `lost`."""
+    motions: dict[str, Array] = {}
+    lost: dict[str, str] = {}
+    spacing = take.scene.duration / take.sample_count
+    t = np.arange(take.sample_count + 1, dtype=np.float64)[take.shown] * np.float64(spacing)
+    for word, motion in take.motions().items():
+        answer = answers.get(motion)
+        if answer is None or not answer.finished:
+            lost[word] = "not run" if answer is None else f"{answer.outcome}: {answer.sentence}".rstrip(": ")
+        else:
+            motions[word] = trajectory_of(answer).pose[take.shown]
+    return Shown(take, take.scene.mechanism(), t, take.scene.motion(t), motions, lost)
 
 
 def animation(shown: Shown, title: str) -> str:
@@ -84,9 +154,10 @@ def _keyframes(label: str, places: Array) -> str:
     return f'@keyframes {label}{{{"".join(told)}}}[id^="{label}-"]{{{rule}}}'
 
 
-def roles_of(shown: Shown) -> list[str]:
-    """The colour of each motion: that of its engine, as in all charts; variants differ by their lines."""
-    return [role(family_of(engine.name)) for words, engine, _ in shown.take.methods if words in shown.motions]
+def _looks(shown: Shown, theme: Theme) -> list[tuple[str, float, Any]]:
+    """Colour, width and line of each motion: an engine's colour is that of all charts, variants differ by lines."""
+    roles = [role(family_of(engine.name)) for words, engine, _ in shown.take.methods if words in shown.motions]
+    return [(getattr(theme, own), *look) for own, look in zip(roles, LOOKS, strict=False)]
 
 
 def decades(errors: Sequence[Array]) -> tuple[int, int]:
@@ -180,15 +251,12 @@ def _stage(panel: Axes, shown: Shown, theme: Theme) -> Moving:
     for fixed in drawn.ground_lines(shown.mechanism, shown.take, shown.truth.pose):
         panel.plot(*fixed.outline.T, color=theme.quiet, linewidth=1.0)
     out: Moving = []
-    widths = (width for width, _ in LOOKS)
-    looks = [(getattr(theme, own), width) for own, width in zip(roles_of(shown), widths, strict=False)]
-    looks.append((theme.ink, 2.0))
-    for motion, ((colour, thick), pose) in enumerate(
-        zip(looks, [*shown.motions.values(), shown.truth.pose], strict=True)
-    ):
+    looks = [*_looks(shown, theme), (theme.ink, 1.6, "-")]
+    poses = [*shown.motions.values(), shown.truth.pose]
+    for motion, ((colour, width, _), pose) in enumerate(zip(looks, poses, strict=True)):
         for index, body in enumerate(shown.mechanism.bodies):
             lines = [each.outline for each in drawn.body_lines(shown.mechanism, shown.take, body.name)]
-            style: dict[str, Any] = {"color": colour, "linewidth": 0.8 * thick, "solid_capstyle": "round"}
+            style: dict[str, Any] = {"color": colour, "linewidth": width, "solid_capstyle": "round"}
             for number, points in enumerate(lines):
                 (line,) = panel.plot([], [], gid=f"m{motion}b{index}-{number}", **style)
                 out.append((line, points, pose[:, index]))
@@ -206,11 +274,10 @@ def _chart(panel: Axes, shown: Shown, theme: Theme) -> Growing:
     panel.tick_params(labelsize=11)
     panel.set_title("largest error of an angle [rad]", fontsize=12, color=theme.ink, loc="left")
     out: Growing = []
-    for own, (_, dash), (name, pose) in zip(roles_of(shown), LOOKS, shown.motions.items(), strict=False):
+    for (colour, _, line_style), (name, pose) in zip(_looks(shown, theme), shown.motions.items(), strict=True):
         error = np.abs(pose - shown.truth.pose)[..., 2].max(axis=1)
         error = np.where(error > 0, error, np.nan)
-        style = (0, tuple(float(part) / 2 for part in dash.split())) if dash else "-"
-        look: dict[str, Any] = {"color": getattr(theme, own), "linestyle": style}
+        look: dict[str, Any] = {"color": colour, "linestyle": line_style}
         (line,) = panel.plot([], [], linewidth=2.0, **look)
         panel.plot([], [], linewidth=3.0, label=name, **look)  # for the legend, which stands still
         out.append((line, error))

@@ -10,6 +10,7 @@ from functools import partial
 from html import escape
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import jinja2
 from markupsafe import Markup
@@ -17,8 +18,7 @@ from markupsafe import Markup
 from reports.model.tasks import Motion
 from reports.plots.theme import DARK, LIGHT, Theme
 from reports.site import markdown
-from reports.site.animated import animation
-from reports.site.embed import shown
+from reports.site.animated import animation, shown
 from reports.site.lecture import html as lecture_html
 from reports.site.lesson import Lesson, Source
 from reports.site.lessons import LESSONS, take_like
@@ -45,26 +45,23 @@ def _variables(theme: Theme) -> str:
     return " ".join(f"--{field.name}: {getattr(theme, field.name)};" for field in fields(Theme))
 
 
-OWN_FILE = re.compile(r'(href|src)="(?!https?:|#|mailto:|\.\./)([^"]+)"')
-
-
+OWN_FILE = re.compile(r'(href|src)="(?!https?:|mailto:|\.\./)([^"]+)"')
 DRAGGED = re.compile(r"\{(\w+)\}")  # a number in a lesson's words that moves a control
 
 
-def lesson_page(lesson: Lesson, source: Source, names: Mapping[str, str]) -> dict[str, object]:
+def lesson_page(lesson: Lesson, source: Source, names: Mapping[str, str]) -> dict[str, Any]:
     """For lesson.html; `names`: pages by the Markdown file's name."""
 
     def quoted(text: str) -> Markup:
         """A part of a page of results, whose anchors and other parts stay there; its files stand in another folder."""
-        text = text.replace("](#", f"]({lesson.page}.md#")
-        told = markdown.linked(re.sub(r' id="[^"]*"', "", markdown.html(text)), names, _elsewhere)
-        return Markup(OWN_FILE.sub(r'\1="../results/\2"', told))
+        told = re.sub(r' id="[^"]*"', "", markdown.html(text)).replace('href="#', f'href="{lesson.page}.html#')
+        return Markup(OWN_FILE.sub(r'\1="../results/\2"', markdown.linked(told, names, _elsewhere)))
 
     parts = []
     for words, each in zip(lesson.parts, lesson.experiments, strict=True):
         live = lesson.scene(each.scene)
         before = live.located(each.before)
-        told = {name: each.texts[before.get(name, each.start)] for name, each in live.controls().items()}
+        told = {name: one.texts[before.get(name, one.start)] for name, one in live.controls().items()}
         more = None
         there = markdown.section(source.pages.get(f"{lesson.page}.md", ""), each.section)
         if there is not None:  # a page made of few rows lacks some parts

@@ -9,46 +9,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from engines import Engine
-from reference.scene import Scene
-from reports.model.cells import Cell
 from reports.model.tasks import Answer, Motion
-from reports.site.live.sliders import DOCUMENTED, ENGINES, Live, Look, Name
+from reports.site.live.sliders import DOCUMENTED, ENGINES, Live, Name
 from reports.site.packages import Registry
 
-FRAMES = 100  # of a moving picture, at most: what an eye can tell in six seconds
 FOLDER = Path(__file__).parent / "lessons"
 BOTH: dict[str, Any] = dict.fromkeys(ENGINES, DOCUMENTED)
 FORCES, CENTRE = ("reactions",), ("centre",)  # overlays
-
-
-@dataclass(frozen=True)
-class Take(Look):
-    """One motion that a picture shows: the truth of a scene, and methods over it.
-
-    methods: (how it is called in the legend, engine, steps between samples). samples: of the scene unless given.
-    """
-
-    scene: Scene
-    methods: tuple[tuple[str, Engine, int], ...] = ()
-    samples: int | None = None
-
-    @property
-    def sample_count(self) -> int:
-        """Sampling intervals of the motion."""
-        return self.scene.samples if self.samples is None else self.samples
-
-    def motions(self) -> dict[str, Motion]:
-        """What has to be run for it, by the word of the legend."""
-        return {
-            word: Motion(Cell(self.scene, engine, every, "failure", self.samples))
-            for word, engine, every in self.methods
-        }
-
-    @property
-    def shown(self) -> slice:
-        """The samples that the picture shows: at most about FRAMES."""
-        return slice(0, None, max(1, -(-(self.sample_count + 1) // (FRAMES + 1))))
 
 
 @dataclass(frozen=True)

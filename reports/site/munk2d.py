@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import shutil
-import subprocess
 from importlib.metadata import version
 from pathlib import Path
 
 from reports.model.ending import BadInput
 from reports.run.files import temporary_folder
 from reports.run.installed import sources
-from reports.site.packages import ANSWERING, NotFetched
+from reports.site.packages import ANSWERING, NotFetched, printed
 
 SHIM = Path(__file__).with_suffix(".c")
 # At -O2 emscripten 3.1.6 of Debian fails in a later step.
@@ -29,7 +28,7 @@ def compiled(cache: Path) -> bytes:
     if compiler is None:
         raise NotFetched("emscripten is not installed")
     release = version("pymunk")
-    told = subprocess.run([compiler, "--version"], capture_output=True, text=True, encoding="utf-8").stdout.splitlines()
+    told = printed([compiler, "--version"], "emscripten does not tell its version", PATIENCE).splitlines()
     parts = (release, SHIM.read_text(encoding="utf-8"), " ".join(FLAGS), *told[:1])
     kept = cache / f"munk2d-{hashlib.sha256(repr(parts).encode()).hexdigest()[:16]}.js"
     if not kept.is_file():
@@ -51,7 +50,5 @@ def _sources(release: str, folder: Path) -> Path:
 def _compile(compiler: str, sources: Path, output: Path) -> Path:
     files = sorted(str(path) for path in (sources / "src").glob("*.c") if path.name != THREADED)
     words = [compiler, *FLAGS, f"-I{sources / 'include'}", str(SHIM), *files, "-o", str(output)]
-    ended = subprocess.run(words, capture_output=True, text=True, encoding="utf-8", timeout=PATIENCE)
-    if ended.returncode:
-        raise NotFetched(f"emscripten refuses Munk2D: {(ended.stderr.strip().splitlines() or ['no reason'])[-1]}")
+    printed(words, "emscripten refuses Munk2D", PATIENCE)
     return output

@@ -10,6 +10,7 @@ import hashlib
 import shutil
 import subprocess
 import tarfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -55,10 +56,10 @@ class Registry:
             return "npm is not installed"
         words = [npm, "view", "d3", "version", "--fetch-retries=0", f"--fetch-timeout={1000 * ANSWERING}"]
         try:
-            ended = subprocess.run(words, capture_output=True, encoding="utf-8", timeout=ANSWERING)
-        except subprocess.TimeoutExpired:
-            return f"npm's registry did not answer within {ANSWERING} s"
-        return f"npm's registry does not answer ({_reason(ended.stderr)})" if ended.returncode else ""
+            printed(words, "npm's registry does not answer", ANSWERING)
+        except NotFetched as reason:
+            return str(reason)
+        return ""
 
     def fetched(self, package: Package) -> dict[str, bytes]:
         """The package's files by their names in the site, fetched once into `cache`. Raises NotFetched."""
@@ -78,25 +79,26 @@ class Registry:
         return self.cache / f"{package.name.strip('@').replace('/', '-')}-{package.version}.tgz"
 
 
-def _reason(told: str) -> str:
-    """What npm says first; further down it names its own log."""
-    lines = [line for line in told.splitlines() if "error" in line]
-    return (lines or ["no reason was given"])[0]
+def printed(words: Sequence[str], trouble: str, patience: float, **given: Any) -> str:
+    """What a program prints. Raises NotFetched, which begins with `trouble`, where it fails or takes longer [s]."""
+    try:
+        ended = subprocess.run(words, capture_output=True, encoding="utf-8", timeout=patience, **given)
+    except subprocess.TimeoutExpired:
+        raise NotFetched(f"{trouble}: it did not end within {patience} s") from None
+    if ended.returncode:
+        lines = ended.stderr.strip().splitlines() or ["no reason was given"]
+        told = [line for line in lines if line.startswith("npm error")]  # further down npm names its own log
+        raise NotFetched(f"{trouble}: {told[0] if told else lines[-1]}")
+    return ended.stdout
 
 
 def _fetch(package: Package, path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with temporary_folder(path.parent) as folder:
         words = ["npm", "pack", f"{package.name}@{package.version}", "--silent", "--ignore-scripts"]
-        given: dict[str, Any] = {"cwd": folder, "capture_output": True, "encoding": "utf-8", "timeout": PATIENCE}
-        try:
-            ended = subprocess.run(words, **given)
-        except subprocess.TimeoutExpired:
-            raise NotFetched(f"npm did not fetch {package.name} within {PATIENCE} s") from None
-        found = list(folder.glob("*.tgz"))
-        if ended.returncode or not found:
-            raise NotFetched(f"npm could not fetch {package.name} {package.version} ({_reason(ended.stderr)})")
-        found[0].replace(path)
+        printed(words, f"npm could not fetch {package.name} {package.version}", PATIENCE, cwd=folder)
+        (found,) = folder.glob("*.tgz")
+        found.replace(path)
 
 
 D3 = Package(

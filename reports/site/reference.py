@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from importlib import import_module
 from importlib.util import find_spec
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.run.files import temporary_folder
-from reports.site.packages import NotFetched
+from reports.site.packages import NotFetched, printed
 
 MODULES = ("reference", "engines")
 TEMPLATES = Path(__file__).parent / "templates" / "pdoc"
@@ -24,9 +23,7 @@ def reference_pages() -> dict[str, bytes]:
     with temporary_folder() as folder:
         words = [sys.executable, "-m", "reports.site.reference", *MODULES, "--no-show-source", "--no-search"]
         words += ["--template-directory", str(TEMPLATES), "--output-directory", str(folder)]
-        ended = subprocess.run(words, capture_output=True, text=True, encoding="utf-8", timeout=PATIENCE)
-        if ended.returncode:
-            raise NotFetched(f"pdoc failed: {(ended.stderr.strip().splitlines() or ['no reason'])[-1]}")
+        printed(words, "pdoc failed", PATIENCE)
         found = (path for path in sorted(folder.rglob("*")) if path.is_file())
         pages = {f"reference/{path.relative_to(folder).as_posix()}": path.read_bytes() for path in found}
     return pages | {"reference/pdoc.css": pages.pop("reference/index.html")}

@@ -254,12 +254,12 @@ def test_softness_as_declared_is_what_mujoco_does():
     )
     reading = read(model)
     run = reading.model.run(40, 50)
-    soft, _ = soft_motion(reading.mechanism, reading.model.give, run.t)
+    soft = soft_motion(reading.mechanism, reading.model.give, run.t)
     ideal_is_off = apart(reading.mechanism, soft, run.pose).max()
     # RK4 at 0.2 ms: the step's own error is far below; the ideal motion is 1e-3 off.
     assert ideal_is_off < 1e-6
     stiffer = [replace(reading.model.give(np.zeros(8)), compliance=np.zeros(8))]
-    wrong, _ = soft_motion(reading.mechanism, lambda gap: stiffer[0], run.t)
+    wrong = soft_motion(reading.mechanism, lambda gap: stiffer[0], run.t)
     assert apart(reading.mechanism, wrong, run.pose).max() > 1e-5
 
 

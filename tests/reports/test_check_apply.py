@@ -168,6 +168,8 @@ def test_only_a_tolerance_that_was_asked_for_sets_the_status(here, capfd):
     assert call(*words, "--tolerance", 1e-12, "--apply", "new.xml") == 2
     assert "nothing was written" in capfd.readouterr().err
     assert not (here / "new.xml").exists()
+    assert call(*words, "--apply", "model.xml", "--force") == 0
+    assert (here / "model.xml").read_text() != FOUR_BAR
     assert call(*words, "--apply", "new.txt") == 2
     assert "it must end in .xml" in capfd.readouterr().err
     assert call("check", "--schema") == 0

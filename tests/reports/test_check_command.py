@@ -26,6 +26,7 @@ from tests.reports.test_check import FOUR_BAR, PENDULUM, found_in
 from tests.reports.test_command_line import call, here
 
 __all__ = ["here"]
+WRITTEN = ("apply", "html", "junit", "markdown")  # options that name a file
 
 
 def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, capfd):
@@ -71,6 +72,8 @@ def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, t
         (("check", "a.xml", "--duration", -1), "--duration is -1"),
         (("check", "a.xml", "--tolerance", "nan"), "--tolerance is nan"),
         (("check", "a.xml", "--step", 5), "--step is 5"),
+        (("check", "a.xml", "--html", "r.html", "--markdown", "./r.html"), "--html and --markdown name one file twice"),
+        *((("check", "a.xml", f"--{name}", "a.xml"), f"give another --{name}, or --force") for name in WRITTEN),
         (("export", "pendulum_1", "--to", "usd"), "--to is 'usd'; it must be one of mjcf, pymunk, urdf"),
         (("export", "pendulum_1", "--variant", "best"), "--variant is 'best'"),
         (("export", "pendulum_1", "--step", 0), "--step is 0"),
@@ -80,8 +83,10 @@ def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, t
         (("view", "penduum_1"), "did you mean"),
     ],
 )
-def test_bad_words_are_one_line(here, capfd, words, sentence):
+def test_bad_words_are_one_line_and_nothing_is_replaced(here, capfd, words, sentence):
+    (here / "a.xml").write_text("mine")
     assert call(*words) == 2
+    assert [(path.name, path.read_text()) for path in here.iterdir()] == [("a.xml", "mine")]
     out, err = capfd.readouterr()
     assert sentence in err.splitlines()[-1]
     assert out == ""

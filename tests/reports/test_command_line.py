@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import xml.etree.ElementTree as xml
 from contextlib import closing
 from pathlib import Path
 from unittest.mock import Mock
@@ -17,6 +18,7 @@ from reference.scenes.four_bar.scenes import FreeFourBar
 from reports import __main__ as program
 from reports.cli import commands, selection
 from reports.cli import report as report_command
+from reports.cli.options import listed
 from reports.model import catalogue
 from reports.model.cells import Cell
 from reports.model.ending import FINE, INTERRUPTED, REFUSED, UNREAD, BadInput, Broken
@@ -217,6 +219,19 @@ def test_a_pipe_is_written_into_and_stays_one(tmp_path, capfd):
     assert call("animate", "sleigh", "--to", "gif", "--force", "--output", str(pipe)) == REFUSED
     assert "is no file" in one_line(capfd.readouterr().err)
     assert pipe.is_fifo()
+
+
+def test_a_file_behind_the_standard_output_holds_what_is_written_there_and_no_more(tmp_path):
+    with (tmp_path / "a.xml").open("w") as file:
+        words = [sys.executable, "-m", "reports", "export", "free_four_bar", "--out", "/dev/stdout"]
+        subprocess.run(words, stdout=file, cwd=tmp_path, env=environment(), check=True)
+    assert xml.parse(tmp_path / "a.xml").getroot().tag == "mujoco"
+
+
+def test_a_word_with_a_comma_is_known_where_it_is_given_alone():
+    assert listed("--engines", ["a, b", "c,d"], ["a, b", "c", "d"]) == ("a, b", "c", "d")
+    with pytest.raises(BadInput, match="names nothing; give one or some of a, b"):
+        listed("--engines", [" , "], ["a", "b"])
 
 
 @pytest.mark.parametrize(

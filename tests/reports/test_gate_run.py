@@ -101,6 +101,7 @@ def test_workers_of_pytest_leave_the_grid_to_its_own(suite):
     [
         (["--baseline", "nothing.csv"], "baseline nothing.csv: No such file or directory"),
         (["--crosscheck-report", "no/such/folder.md"], "there is no folder no/such"),
+        (["--crosscheck-report", "."], "--crosscheck-report .: it is a folder"),
         (["--scene", "moon"], "no case of --scene"),
         (["--cost", "0"], "--cost 0.0: it must be a number above 0, such as 1.5"),
         (["--cost", "nan"], "--cost nan: it must be a number above 0, such as 1.5"),

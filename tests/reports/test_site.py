@@ -20,18 +20,19 @@ from engines.conformance import cases
 from engines.lagrange import Lagrange
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.cli.commands import invoke
+from reports.cli.site import texts_of
 from reports.model.ending import BadInput, FileTrouble
 from reports.model.tasks import answered
 from reports.site import markdown
-from reports.site.animated import PAUSE, animation, film
-from reports.site.build import MARKER, build, reference_pages
-from reports.site.embed import Shown, forces, shown
+from reports.site.animated import PAUSE, Shown, animation, film, shown
+from reports.site.build import MARKER, build, lesson_page, reference_pages
 from reports.site.folder import compressed_size, refuse_strangers, write_site
 from reports.site.lecture import html as lecture_html
 from reports.site.lesson import Part, Source, part_of
 from reports.site.lessons import LESSONS, take_like
+from reports.site.live.data import forces
 from reports.site.markdown import html, section
-from reports.site.packages import NotFetched, Package, Registry
+from reports.site.packages import NotFetched, Package, Registry, printed
 from reports.site.rows import explored
 from tests import ROOT
 
@@ -66,14 +67,8 @@ class Page(HTMLParser):
 def source(tmp_path_factory):
     """The published pages, no motions, and no packages: npm is not asked."""
     cache = tmp_path_factory.mktemp("cache")
-    texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
-    for pattern in ("programs/*.py", "upstream/*.md"):
-        found = RESULTS.glob(pattern)
-        texts[".csv"] |= {path.relative_to(RESULTS).as_posix(): path.read_text("utf-8") for path in found}
-    return Source(texts[".md"], texts[".svg"], texts[".csv"], {}, cache, "Made by a test.", CONTRIBUTING, api=False)
-
-
-SUFFIXES = (".md", ".svg", ".csv")
+    given = {"answers": {}, "cache": cache, "foot": "Made by a test.", "contributing": CONTRIBUTING, "api": False}
+    return Source(**texts_of(RESULTS), **given)
 
 
 @pytest.fixture(scope="module")
@@ -112,6 +107,16 @@ def test_sections_that_lessons_quote_are_on_their_pages():
     page = "# Top\n## Part\nbefore\n```\n# a comment\n```\nafter\n### Below\nmore\n# Next\nother\n"
     assert section(page, "Part") == "before\n```\n# a comment\n```\nafter\n### Below\nmore"
     assert section(page, "Nothing") is None
+
+
+def test_a_quoted_link_leads_to_the_page_of_results_and_quoted_code_stays_as_it_is(tmp_path):
+    lesson = LESSONS[0]
+    heading = next(each.section for each in lesson.experiments if each.section)
+    text = f"## {heading}\n\n`x[i](#a)` [here](#b), [as named][c]\n\n```\nf](#d)\n```\n\n[c]: #e\n"
+    told = lesson_page(lesson, Source({f"{lesson.page}.md": text}, {}, {}, {}, tmp_path, ""), {lesson.page: "x.html"})
+    body = next(part["more"]["body"] for part in told["parts"] if part["more"])
+    assert re.findall(r"<code>(.*?)</code>", body, re.DOTALL) == ["x[i](#a)", "f](#d)\n"]
+    assert re.findall('href="(.*?)"', body) == [f"../results/{lesson.page}.html#{anchor}" for anchor in "be"]
 
 
 def test_no_link_of_the_site_is_dead(files):
@@ -154,6 +159,8 @@ def test_a_notebook_becomes_a_page_with_what_its_cells_print_and_draw():
     assert page.endswith("</details>")  # the last cell has the solutions
     with pytest.raises(NotFetched, match="a cell fails: ZeroDivisionError"):
         lecture_html(json.dumps({"cells": cells}))
+    with pytest.raises(NotFetched, match="a cell fails: it did not end within"):
+        printed([sys.executable, "-c", "import time; time.sleep(60)"], "a cell fails", 0.1)
 
 
 def test_formulas_are_found_outside_of_code_alone_and_are_drawn_by_the_browser():
@@ -311,11 +318,15 @@ def test_a_film_is_written(falling, tmp_path, monkeypatch):
         (["free_four_bar", "--engines", "pymunk defautl"], BadInput, "did you mean 'pymunk default'"),
         (["four_bar"], BadInput, "'four_bar' names 3 scenes; give one of"),
         (["free_four_bar", "--output", "mine.svg"], FileTrouble, "is there already"),
+        (["free_four_bar", "--to", "gif", "--output", "x.svg"], BadInput, "with --to gif it must end in .gif"),
+        (["free_four_bar", "--to", "mp4"], BadInput, "needs the program ffmpeg"),
         (["free_four_bar", "--output", "mine.svg/x.svg"], FileTrouble, "give another --output"),
     ],
 )
 def test_bad_words_are_refused_in_a_line_before_anything_is_run(words, refusal, told, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("reports.site.animated.shutil.which", lambda name: None)
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     (tmp_path / "mine.svg").write_text("mine")
     with pytest.raises(refusal, match=re.escape(told)):
         invoke(["animate", *words])

@@ -22,6 +22,7 @@ from reference.joints import Drive
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.scenes.four_bar.scenes import DrivenFourBar
+from reports.cli.site import texts_of
 from reports.model.tasks import answered
 from reports.site.build import build, tasks
 from reports.site.folder import compressed_size, server, write_site
@@ -48,17 +49,10 @@ def files(request):
     """The site with the quick lessons and with those that a test that was selected asks for."""
     given = (vars(item).get("callspec") for item in request.session.items if item.path == request.path)
     wanted = {*QUICK, *(each.params.get("lesson") for each in given if each is not None)}
-    texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
-    for pattern in ("programs/*.py", "upstream/*.md"):
-        found = RESULTS.glob(pattern)
-        texts[".csv"] |= {path.relative_to(RESULTS).as_posix(): path.read_text("utf-8") for path in found}
     answers = {motion: answered(motion) for motion in tasks(LESSONS[:1])}
     cache = Path(request.config.cache.mkdir("site"))
-    source = Source(texts[".md"], texts[".svg"], texts[".csv"], answers, cache, "Made by a test.", api=False)
+    source = Source(**texts_of(RESULTS), answers=answers, cache=cache, foot="Made by a test.", api=False)
     return build(source, [lesson for lesson in LESSONS if lesson.name in wanted])
-
-
-SUFFIXES = (".md", ".svg", ".csv")
 
 
 @pytest.fixture(scope="module")
@@ -305,20 +299,22 @@ def test_a_joint_is_taken_by_hand_and_the_linkage_stays_closed(running):
     assert np.abs(DrivenFourBar().mechanism().gap(np.reshape(held, (3, 3)), 0.0)[:8]).max() < 1e-9
 
 
-def test_a_step_of_pymunk_is_told_sweep_by_sweep(running):
+@pytest.mark.parametrize(("steps", "frame"), [(3, 10), (1, 1)], ids=["the 40th step", "the first step"])
+def test_a_step_of_pymunk_is_told_sweep_by_sweep(running, steps, frame):
     page = running("four_bar")
     told = page.evaluate(
-        """async () => {
+        """async ([steps, frame]) => {
           const { ask, form } = window.crosscheck;
-          form.move(1, {});
+          form.move(1, { steps });
           const setting = form.setting(null);
-          const { found, whole } = await ask({ kind: "sweeps", setting, frame: 10 });
+          const { found, whole } = await ask({ kind: "sweeps", setting, frame });
           const { motions } = await ask({ setting });
           const width = 9;
           const impulses = found.map((each) => [...each.impulses.slice(0, 8)]);
           return { whole, impulses, swept: found.map(({ twist }) => [...twist]),
-            after: [...motions[0].twist.slice(10 * width, 11 * width)] };
-        }"""
+            after: [...motions[0].twist.slice(frame * width, (frame + 1) * width)] };
+        }""",
+        [steps, frame],
     )
     assert told["whole"] == len(told["swept"]) == pymunk.SHIPPED_ITERATIONS
     # The last sweep is the step itself, and each adds less than the one before.
@@ -452,6 +448,9 @@ def test_the_charts_show_variants_first_and_their_table_is_sorted(opened):
     methods = set(page.locator("#rows tbody td:nth-child(2)").all_inner_texts())
     assert methods == {"as shipped", "documented settings", "with our code"}
     page.locator("input[name=all]").check()
+    assert "lagrange" in set(page.locator("#rows tbody td:nth-child(1)").all_inner_texts())
+    page.reload()  # the address holds it
+    page.wait_for_selector("html[data-ready]")
     assert "lagrange" in set(page.locator("#rows tbody td:nth-child(1)").all_inner_texts())
     page.locator("#rows th button").nth(5).click()
     cells = page.locator("#rows tbody td:nth-child(6)").all_inner_texts()

@@ -25,10 +25,10 @@ from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.site.drawn import demanded, place_of
-from reports.site.embed import forces
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders
 from reports.site.live.data import data as live_data
+from reports.site.live.data import forces
 from reports.site.live.models import Part, plan_of, text_of
 from reports.site.live.sliders import Live
 

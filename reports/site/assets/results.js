@@ -91,7 +91,7 @@ const nameOf = ({ engine, variant }) => `${engine} ${headings[String(variant)] ?
 
 /** What the reader chose, in the address. */
 function keep() {
-  const state = ["scene", "engine", "x", "y", "filter"].filter((name) => chosen(name)).map((name) => `${name}=${encodeURIComponent(chosen(name))}`);
+  const state = [...new FormData(form)].filter(([, value]) => value).map(([name, value]) => `${name}=${encodeURIComponent(String(value))}`);
   history.replaceState(history.state, "", `#${state.join("&")}`);
 }
 
@@ -108,7 +108,7 @@ async function begin() {
     for (const [name, value] of new URLSearchParams(location.hash.slice(1))) {
       const element = form.elements.namedItem(name);
       if (element instanceof HTMLSelectElement && [...element.options].some((option) => option.value === value)) element.value = value;
-      if (element instanceof HTMLInputElement && element.type === "search") element.value = value;
+      if (element instanceof HTMLInputElement) Object.assign(element, element.type === "search" ? { value } : { checked: true });
     }
   };
   restore();

@@ -65,13 +65,14 @@ async function sweeps(setting, frame) {
   const { munk } = await /** @type {Promise<{mujoco: any, munk: any}>} */ (loading);
   const scene = await sceneOf(setting.key);
   const run = runOf(setting, scene);
-  const upto = { ...run, samples: 1, every: Math.max(1, frame * run.every - 1) };
+  const before = frame * run.every - 1; // steps
+  const upto = { ...run, samples: Math.min(before, 1), every: before };
   const whole = runMunk(munk, upto, 1).iterations;
   const found = [];
   for (let last = 1; last <= Math.min(whole, 60); last++) {
     const { pose, twist, impulses, left } = runMunk(munk, upto, last);
     const width = 3 * scene.bodies.length;
-    found.push({ pose: pose.slice(2 * width), twist: twist.slice(2 * width), impulses, left });
+    found.push({ pose: pose.slice(-width), twist: twist.slice(-width), impulses, left });
   }
   return { found, whole, which: modelOf(run, "munk").impulses, step: run.step };
 }

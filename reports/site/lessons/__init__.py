@@ -2,7 +2,7 @@
 
 from engines import Engine
 from reference.scene import Scene
-from reports.site.lesson import Take
+from reports.site.animated import Take
 from reports.site.lessons.linkages import CENTRODES, FOUR_BAR, PENDULUM, SLIDER_CRANK
 from reports.site.lessons.rolling import GEARS, ROLLING
 from reports.site.lessons.skates import SKATE, WHEELS

@@ -18,14 +18,16 @@ from engines import Unsupported
 from engines.mujoco.stiffness import Shipped
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
 from reference.scene import Scene
+from reference.trajectory import Trajectory
 from reports.model.tasks import Answer, Motion
 from reports.site import drawn
-from reports.site.drawn import index_of, joints_of, loose, measure_of
-from reports.site.embed import forces
+from reports.site.drawn import between, demanded, index_of, joints_of, loose, measure_of, place_of
 from reports.site.live.models import plan_of, text_of
 from reports.site.live.sliders import ENGINES, NAMES, Live, Name
 
+DIGITS = 6  # of forces and their places, after the point
 PACKAGES: dict[Name, str] = {"munk": "pymunk", "mujoco": "mujoco-core"}
 
 
@@ -102,6 +104,38 @@ def _equations(mechanism: Mechanism) -> dict[str, Any]:
             for each in drives
         ],
     }
+
+
+def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
+    """The reaction of each joint on its second body: where it acts [m] and the force [N], two numbers an instant.
+
+    Of a rolling contact also the friction that it demands [1]. Nothing for a drive, whose reaction is a torque. With
+    `partly` the motion does not determine all of a force, and what it does determine is told.
+    """
+    found, row = [], 0
+    for joint in mechanism.joints:
+        own = truth.reaction[:, row : row + joint.size]
+        row += joint.size
+        known = np.isfinite(own)
+        if isinstance(joint, Drive) or not (known.any() or isinstance(joint, Roll)):
+            continue
+        first, second = between(mechanism, joint, truth.pose)
+        across = joint.rows(first, second)[..., 3:5]
+        told: dict[str, Any] = {"name": joint.name, "at": _listed(place_of(joint, first, second))}
+        told |= {"force": _listed(np.einsum("ti,tij->tj", np.nan_to_num(own), across)), "partly": not bool(known.all())}
+        if isinstance(joint, Roll):
+            told["contact"] = True
+            if known.all():
+                normal = own[:, 1:] * across[:, 1]
+                told |= {"normal": _listed(normal), "friction": _listed(demanded(own))}
+        found.append(told)
+    return found
+
+
+def _listed(values: NDArray[np.float64]) -> list[float | None]:
+    """All numbers one after another; None where there is none, since JSON has no NaN."""
+    flat = np.asarray(values, dtype=float).ravel()
+    return [round(value, DIGITS) + 0.0 if np.isfinite(value) and abs(value) < 1e6 else None for value in flat.tolist()]
 
 
 def _native(answer: Answer | None, way: Mapping[str, Any]) -> list[str] | None:
