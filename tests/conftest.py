@@ -13,6 +13,8 @@ pytest_plugins = ["planar_crosscheck_pytest", "reports.gate.pytest_plugin", "pyt
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
+os.environ.pop("COLUMNS", None)  # how wide somebody's window is: tables would be folded
+
 # The longest, each of which would keep one worker busy after the others have ended.
 FIRST = (
     *("site_in_browser", "installations", "cluster", "wrong_models", "any_rows", "lagrange_compiled"),

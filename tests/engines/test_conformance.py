@@ -98,17 +98,14 @@ def failures(engine) -> list[str]:
     return [f"{case}: {result.sentence}" for case, result in found if result.status == "fails"]
 
 
-@pytest.mark.parametrize("engine", DAILY, ids=label)
-def test_our_engines_pass_every_check(engine):
+EVERY = (*DAILY, *(pytest.param(each, marks=pytest.mark.slow) for each in (*METHODS, *SPECIAL) if each not in DAILY))
+
+
+@pytest.mark.parametrize("engine", EVERY, ids=label)
+def test_every_construction_of_ours_passes_every_check(engine):
     if engine.missing:
         pytest.skip(engine.missing)
     assert failures(engine) == []
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("engine", [each for each in (*METHODS, *SPECIAL) if each not in DAILY], ids=label)
-def test_every_construction_of_ours_passes_every_check(engine):
-    test_our_engines_pass_every_check(engine)
 
 
 @pytest.mark.parametrize("world", [*WORLDS, SPINNING], ids=lambda world: world.name)

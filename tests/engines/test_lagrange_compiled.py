@@ -17,7 +17,6 @@ from engines.lagrange.arrays import CHANGE, FORCE_KINDS, KINDS, MATRIX, ROWS, ar
 from engines.lagrange.dynamics import RK4, Dynamics
 from engines.lagrange.machine import Machine
 from reference.forces import Damper, Spring, TorsionDamper, TorsionSpring
-from reference.joints import Drive, Pin, Roll, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.many_links import LongPendulum
@@ -49,22 +48,9 @@ def test_every_method_gives_the_numbers_of_numpy(method):
     assert max(differences(four_bar(crank_rate=3.0), method, 1e-3, 5)) < allowed
 
 
-JOINTS = {Drive, Pin, Roll, Skate, Slot}
-SOME = range(12, 24)  # of the random mechanisms: every kind of joint, and no roll whose table takes seconds
-
-
-def moves_as_in_numpy(number: int) -> None:
-    mechanism = random_mechanism(11, number)
-    # Least pivots of these are about 1e-4 (`recipe.LEAST_RANK`), which costs numpy's reactions up to four digits.
-    assert max(differences(mechanism, Lagrange("rk4"), 1e-3 * mechanism.time_scale)) < 1e-12
-
-
-@pytest.mark.parametrize("number", SOME)
-def test_random_mechanisms_of_all_joints_move_as_in_numpy(number):
-    moves_as_in_numpy(number)
-
-
-@pytest.mark.parametrize("number", range(12))
+@pytest.mark.parametrize(
+    "number", [*range(12), *(pytest.param(each, marks=pytest.mark.slow) for each in range(12, 40))]
+)
 def test_random_mechanisms_of_all_joints_links_and_forces_move_as_in_numpy(number):
     mechanism = random_mechanism(21, number, EVERY)
     # The largest difference of the first 150 is 1.2e-14.
@@ -75,12 +61,6 @@ def test_the_random_mechanisms_have_every_joint_link_and_force_of_the_compiled_c
     drawn = [random_mechanism(21, number, EVERY) for number in range(12)]
     kinds = {type(part) for mechanism in drawn for part in (*mechanism.joints, *mechanism.forces)}
     assert kinds == {*KINDS, *FORCE_KINDS}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", sorted({*range(40)} - {*SOME}))
-def test_more_random_mechanisms_of_all_joints_move_as_in_numpy(number):
-    moves_as_in_numpy(number)
 
 
 def exact_acceleration(mechanism: Mechanism) -> np.ndarray:

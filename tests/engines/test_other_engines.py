@@ -32,15 +32,14 @@ from reports.search.mechanisms import mechanism
 from reports.search.parts import FORCES, LINKS
 from tests import mechanisms
 from tests.all_elements import ALONE
-from tests.engines.test_promised import QUICKLY, installed, meshed, shipped
+from tests.engines.test_promised import QUICKLY, each_extra, installed, meshed, shipped
 from tests.present import present
 
 NAMES = tuple(dict.fromkeys(engine.name for engine in QUICKLY))
 HANGING = present(next((world for world in WORLDS if world.name == "hanging bar"), None))
-each = pytest.mark.parametrize("engine", QUICKLY, ids=registry.method)
 
 
-@each
+@each_extra
 def test_reactions_carry_a_body_that_hangs(engine):
     installed(engine)
     run = engine.build(HANGING.mechanism, 1e-2)(20, 2)

@@ -26,14 +26,11 @@ from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import Trajectory, energy
 from tests.engines.test_matrix import blade_on_a_board
+from tests.engines.test_pymunk import largest
 
 ELLIPSE, DISC, RING, HILL = RollingEllipse(), RollingDisc(), RollingInRing(), RollingOnCircle()
 SLEIGH = ChaplyginSleigh()
 SLED = SLEIGH.mechanism()
-
-
-def largest(values) -> float:
-    return float(np.abs(values).max())
 
 
 def run(engine, scene: Scene, every: int) -> Trajectory:

@@ -12,7 +12,7 @@ from pymunk.constraints import GrooveJoint
 
 from engines import Promise
 from engines.lagrange import TRUTH
-from engines.pymunk import DEFAULT, LEAPFROG, METHODS, TUNED, Pymunk
+from engines.pymunk import DEFAULT, LEAPFROG, TUNED, Pymunk
 from engines.pymunk.contraction import LEFT, as_real, contraction, contraction_at, contractions, gain, sweeps
 from engines.pymunk.expected import worst_contraction
 from reference.joints import Drive, Pin, Slot
@@ -25,9 +25,8 @@ from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import energy, joint_gap
 from reports.search.mechanisms import mechanism
 from reports.search.parts import EVERY
+from tests.engines.test_pymunk import every_method
 from tests.mechanisms import four_bar
-
-every_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
 
 
 def largest(values) -> float:

@@ -116,7 +116,7 @@ def test_a_scene_comes_back_from_a_pymunk_script(scene, tmp_path):
 
 
 @pytest.mark.parametrize("scene", OTHERS, ids=lambda scene: scene.name)
-def test_a_scene_with_a_skate_or_a_roll_has_no_file_or_one_that_is_refused(scene, tmp_path):
+def test_a_scene_with_a_skate_or_a_roll_has_no_file_or_one_that_is_refused(scene):
     mechanism = scene.mechanism()
     with pytest.raises(Unsupported, match="pymunk has no such joint"):
         script(PYMUNK, mechanism, 1e-3)

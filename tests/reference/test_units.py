@@ -111,18 +111,14 @@ COSTLY = (
 
 @pytest.mark.parametrize("scale", SCALES)
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("scene", [each for each in ALL if each.name not in COSTLY], ids=lambda scene: scene.name)
+@pytest.mark.parametrize(
+    "scene",
+    [pytest.param(each, marks=pytest.mark.slow if each.name in COSTLY else ()) for each in ALL],
+    ids=lambda scene: scene.name,
+)
 def test_a_scene_in_other_units_is_the_same_scene(scene: Scene, kind: str, scale: str) -> None:
-    # In closed form, or integrated in nearly the same steps: what is left is rounding.
-    assert difference(scene, kind, SCALES[scale]) < 1e-12
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("scale", SCALES)
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("scene", [each for each in ALL if each.name in COSTLY], ids=lambda scene: scene.name)
-def test_a_costly_scene_in_other_units_is_the_same_scene(scene: Scene, kind: str, scale: str) -> None:
-    # Integrated in the same steps, or solved for iteratively: rounding, grown tenfold and more up to the horizon.
+    # In closed form, or integrated in nearly the same steps, or solved for iteratively: what is left is rounding, which
+    # of costly ones grows tenfold and more up to the horizon.
     assert difference(scene, kind, SCALES[scale]) < 1e-12
 
 

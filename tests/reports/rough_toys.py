@@ -11,6 +11,7 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from multiprocessing import forkserver, resource_tracker
 from pathlib import Path
@@ -224,6 +225,25 @@ def probe() -> list[str]:
 def dies(*_: object) -> None:
     """Instead of a worker's work: killed before it says that it is ready."""
     os.kill(os.getpid(), signal.SIGKILL)
+
+
+def is_free(file: Any) -> bool:
+    """Whether no process holds a lock on a file: processes that have ended may still have their number."""
+    import fcntl
+
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def wait_until(true: Callable[[], bool]) -> None:
+    """Raises AssertionError after far longer than a loaded machine takes for what is waited for."""
+    end = time.monotonic() + 300.0
+    while not true():
+        assert time.monotonic() < end, "it did not come true"
+        time.sleep(0.05)
 
 
 def helpers() -> tuple[int | None, int | None]:

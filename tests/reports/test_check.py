@@ -176,7 +176,7 @@ def test_a_pymunk_pendulum_as_shipped_misses_by_its_step_and_the_advice_can_be_c
     assert again.met
 
 
-def test_the_judge_of_a_check_is_the_truth_of_a_scene(tmp_path):
+def test_the_judge_of_a_check_is_the_truth_of_a_scene():
     scene = FreeFourBar()
     judge = judged(scene.mechanism(), 40, 0.01)
     truth = scene.motion(judge.trajectory.t)
@@ -224,7 +224,7 @@ def test_freedoms_modes_and_singular_positions_are_told():
     assert rows - independent == 1
 
 
-def test_a_stiff_spring_is_the_stiffest_mode(tmp_path):
+def test_a_stiff_spring_is_the_stiffest_mode():
     text = (
         '<mujoco><option gravity="0 0 0"/><worldbody><body><joint type="slide" axis="1 0 0" stiffness="200"/>'
         '<inertial pos="0 0 0" mass="2" diaginertia=".1 .1 .1"/></body></worldbody></mujoco>'

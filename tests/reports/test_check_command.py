@@ -45,20 +45,21 @@ def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, 
 
 
 @pytest.mark.parametrize(
-    ("text", "sentence"),
+    ("text", "limit", "sentence"),
     [
-        ("while True:\n    pass", "CPU"),
+        ("while True:\n    pass", 1, "CPU"),
         (
             "import pymunk\nfrom pymunk._chipmunk_cffi import lib\nspace, body = pymunk.Space(), pymunk.Body(1, 1)\n"
             "space.add(body)\nlib.cpSpaceAddBody(space._space, body._body)",
+            60,
             "its process was lost: aborted with signal 6 ... a second time. Failed condition: body->space != space",
         ),
     ],
     ids=["endless", "aborted by Chipmunk"],
 )
-def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, text, sentence):
+def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, text, limit, sentence):
     (here / "script.py").write_text(text)
-    assert call("check", "script.py:space", "--limit", 1) == 2
+    assert call("check", "script.py:space", "--limit", limit) == 2
     out, err = capfd.readouterr()
     assert out == ""
     (line,) = [line for line in err.splitlines() if line.startswith("crosscheck: ")]

@@ -139,7 +139,7 @@ def test_nothing_is_published_outside_a_checkout(here, monkeypatch, capfd):
     assert list(here.iterdir()) == []
 
 
-def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkeypatch, capfd):
+def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkeypatch):
     """With a grid of one cell and one page of one line, since rendering is not the subject."""
     checkout(here / "checkout", monkeypatch)
     cell = Cell(Disc(), Toy(), 1)

@@ -9,7 +9,6 @@ import re
 import threading
 import time
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -29,9 +28,11 @@ from reports.site.folder import server
 from reports.site.markdown import html
 from reports.write.csv_files import as_csv
 from reports.write.templates import inert_page
-from tests.reports.test_command_line import call, one_line
+from tests.reports.rough_toys import is_free, wait_until
+from tests.reports.test_command_line import call, here, one_line
 from tests.toys import Disc, Toy
 
+__all__ = ["here"]
 SCENE = """
 import os, signal, time
 from dataclasses import dataclass
@@ -63,13 +64,6 @@ OF_SCENES = {
 }
 
 
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(known, "SLEEPING", 10.0)  # s: a loaded machine imports for seconds
-    return tmp_path
-
-
 def member(text, head, deed):
     return f"{text}    {head}\n        {DEEDS[deed]}\n"
 
@@ -99,7 +93,9 @@ MANY = [
 @pytest.mark.parametrize(
     ("name", "deed"), [*FEW, *(pytest.param(*each, marks=pytest.mark.slow) for each in MANY if each not in FEW)]
 )
-def test_what_a_scene_s_own_code_does_is_one_line(here, capfd, name, deed):
+def test_what_a_scene_s_own_code_does_is_one_line(here, monkeypatch, capfd, name, deed):
+    if deed == "sleeps":  # a loaded machine imports for seconds
+        monkeypatch.setattr(known, "SLEEPING", 10.0)
     (here / "odd_scene.py").write_text(member(SCENE, OF_SCENES[name], deed))
     assert call("run", "odd_scene.py") == REFUSED
     told = told_in_a_line(capfd)
@@ -139,35 +135,27 @@ def test_a_step_cost_that_is_none_names_the_engine_and_the_scene(deed):
         estimated_cost(Cell(Disc(), Odd(), 1))
 
 
-def forks(number):
-    """In the child too it returns a number, as an engine does that forks and forgets."""
-    if os.fork() == 0 and number % 2:
+def forks(file):
+    """In the child too it returns its file, as an engine does that forks and forgets; the child's is a lock on it."""
+    import fcntl
+
+    held = os.open(file, os.O_CREAT | os.O_WRONLY)
+    fcntl.flock(held, fcntl.LOCK_EX)
+    if os.fork():
+        os.close(held)
+    elif file.name in "135":
         time.sleep(1e4)
-    return number
+    return file
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
-def test_a_job_that_forks_is_answered_once_and_its_child_is_ended():
-    before = set(children_of_all())
-    told = list(supervise(forks, range(6), 20.0, workers=2))
-    assert sorted((item, result) for item, result, _ in told) == [(number, number) for number in range(6)]
-    late = time.monotonic() + 10.0  # a killed process stays in the list until its new parent has taken notice
-    while any(each not in before and sleeping(each) for each in children_of_all()) and time.monotonic() < late:
-        time.sleep(0.05)
-    assert [each for each in children_of_all() if each not in before and sleeping(each)] == []
-
-
-def children_of_all():
-    return [path.name for path in Path("/proc").iterdir() if path.name.isdigit()]
-
-
-def sleeping(process):
-    """Whether it is a worker of these tests whose parent is gone."""
-    try:
-        words = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-        return words[1] == "1" and b"forkserver" in Path(f"/proc/{process}/cmdline").read_bytes()
-    except OSError:
-        return False
+def test_a_job_that_forks_is_answered_once_and_its_child_is_ended(tmp_path):
+    files = [tmp_path / str(number) for number in range(6)]
+    told = list(supervise(forks, files, 20.0, workers=2))
+    assert sorted((item, result) for item, result, _ in told) == [(file, file) for file in files]
+    for path in files:
+        with path.open("w") as file:
+            wait_until(lambda file=file: is_free(file))
 
 
 def test_names_are_words_on_pages_and_no_formula_is_one_in_a_table():

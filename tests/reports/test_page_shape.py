@@ -22,12 +22,10 @@ from reports.run.store import Store
 from reports.write.templates import anchor, headings
 from tests.committed_rows import RESULTS
 from tests.committed_rows import page_rows as whole
-from tests.reports import test_any_rows as rendering
-from tests.reports.test_any_rows import FROM_ROWS, cheap, written
+from tests.reports.test_any_rows import FROM_ROWS, cheap, undrawn, written
 from tests.toys import Disc, Toy
 
-undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
-
+__all__ = ["undrawn"]
 MECHANISMS = tuple(page for page in FROM_ROWS if page.scenes)
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 named = pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)

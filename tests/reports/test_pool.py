@@ -7,8 +7,9 @@ import random
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -28,7 +29,7 @@ from reports.run.running import missing, run_cells, run_into, run_items
 from reports.run.store import Store
 from reports.run.supervisor import WorkersLost, supervise
 from tests import ROOT
-from tests.reports.rough_toys import RoughToy
+from tests.reports.rough_toys import RoughToy, wait_until
 from tests.toys import FAILURES, Disc, FailingToy, Toy, in_process
 
 
@@ -224,15 +225,17 @@ def test_published_timings_that_are_damaged_are_told_and_change_no_cell_of_a_qui
     assert choose_cells(SCENES[:3], VARIANTS, PAGES, False) == quick
 
 
-def process_of(item: Kindred) -> int:
-    time.sleep(0.2)  # the other worker is there by then
+def process_of(folder: Path, item: Kindred) -> int:
+    """Once the other worker is there too."""
+    (folder / str(os.getpid())).touch()
+    wait_until(lambda: len([*folder.iterdir()]) >= 2)
     return os.getpid()
 
 
-def test_each_kin_is_worked_on_in_one_process_while_there_is_other_work():
+def test_each_kin_is_worked_on_in_one_process_while_there_is_other_work(tmp_path):
     items = [Kindred(name, number) for number in range(6) for name in ("a", "b")]
     where: dict[str, set[int]] = {"a": set(), "b": set()}
-    for item, process, _ in supervise(process_of, items, 60.0, 2):
+    for item, process, _ in supervise(partial(process_of, tmp_path), items, 60.0, 2):
         where[item.kin].add(process)
     # The one that is done first helps the other.
     assert min(len(found) for found in where.values()) == 1

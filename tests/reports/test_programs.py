@@ -14,12 +14,9 @@ from reports.model.quantities import quantity
 from reports.write.page_tables import advice
 from reports.write.programs import KEPT, Program, advised_programs, file_of, program
 from tests.committed_rows import page_rows
-from tests.reports import test_any_rows as rendering
-from tests.reports.test_page_shape import FENCED, MECHANISMS, run, texts
+from tests.reports.test_page_shape import FENCED, MECHANISMS, named, run, texts, undrawn
 
-undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
-
-named = pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
+__all__ = ["undrawn"]
 
 
 def advised(page: Page) -> tuple[list[Program], list]:

@@ -27,11 +27,10 @@ from reports.pages.rendering import render_all
 from reports.plots.looks import SHADE_NAMES
 from reports.plots.theme import DARK, LIGHT, SERIES, new_figure, settings, style_axes, svg
 from tests.committed_rows import stale
-from tests.reports import test_any_rows as rendering
+from tests.reports.test_any_rows import undrawn
 from tests.toys import FAILURES, Disc, FailingToy, Toy
 
-undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
-
+__all__ = ["undrawn"]
 ENGINES = (Toy(), Toy("soft", plateau=1e-3), FailingToy("unsupported"), FailingToy("tear"))
 FAST_FAILURES = tuple(FailingToy(v) for v in FAILURES if v not in ("abort", "exit", "hang", "raise"))
 LARGE = tuple(Cell(Disc(), Toy("default", factor=0.1), every, "large") for every in QUICK)

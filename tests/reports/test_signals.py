@@ -8,15 +8,17 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from reports.cli import interruption
-from reports.model.ending import FINE, INTERRUPTED, REFUSED
+from reports.model.ending import FINE, INTERRUPTED, REFUSED, FileTrouble
 from reports.run import files
 from reports.run.files import remove_all, temporary_folder
 from reports.run.store import Store
+from tests.reports.rough_toys import wait_until
 from tests.reports.test_command_line import ROOT, call, environment
 
 pytestmark = pytest.mark.skipif(files.fcntl is None, reason="nothing is locked or swept on Windows")
@@ -142,10 +144,7 @@ def test_a_signal_at_any_time_leaves_no_folder_no_process_and_no_traceback(tmp_p
     _, err = process.communicate(timeout=60)
     assert "Traceback" not in err
     assert ended or process.returncode in (128 + number, -number)  # before its first line it ends as any program
-    deadline = time.monotonic() + 20.0
-    while (running := still_there(str(tmp_path))) and time.monotonic() < deadline:
-        time.sleep(0.1)
-    assert running == []
+    wait_until(lambda: not still_there(str(tmp_path)))
     assert [path.name for path in tmp_path.rglob("*") if path.name.endswith((".part", ".half"))] == []
     assert [*(tmp_path / "temporary").iterdir()] == []
 
@@ -162,7 +161,7 @@ def still_there(folder):
     return found
 
 
-def test_ctrl_c_has_again_the_meaning_that_it_had(capfd):
+def test_ctrl_c_has_again_the_meaning_that_it_had():
     before = signal.getsignal(signal.SIGINT)
     assert call("--help") == FINE
     assert call("nonsense") == REFUSED
@@ -218,8 +217,7 @@ def test_ctrl_c_in_a_run_says_what_is_stored_and_the_next_run_goes_on(tmp_path):
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     store = tmp_path / "cells.sqlite"
-    while process.poll() is None and count_of_rows(store) == 0:
-        time.sleep(0.1)
+    wait_until(lambda: process.poll() is not None or count_of_rows(store) > 0)
     assert process.poll() is None, process.communicate()  # it had ended before anything was stored
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate()
@@ -231,10 +229,9 @@ def test_ctrl_c_in_a_run_says_what_is_stored_and_the_next_run_goes_on(tmp_path):
 
 
 def count_of_rows(path):
-    if not path.exists():
-        return 0
-    with Store.read(path) as store:
+    with suppress(FileTrouble), Store.read(path) as store:  # it is not there, or just being made
         return store._connection.execute("select count(*) from results").fetchone()[0]
+    return 0
 
 
 def test_a_ctrl_c_that_is_kept_raises_when_asked_and_the_second_at_once():

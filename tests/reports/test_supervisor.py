@@ -247,6 +247,8 @@ def finest_tick(_):
 def test_a_limit_does_not_make_the_clock_coarse_by_which_stepping_is_timed():
     # A timer for the CPU time makes Linux count it in ticks of 4 ms; without one it is well below a microsecond's tenth
     # of a thousand. Ten microseconds lie between.
+    if finest_tick(0) >= 1e-5:
+        pytest.skip("this system's clock of CPU time is coarse without a limit too")
     [(_, tick, _)] = supervise(finest_tick, [0], limit=60.0, workers=1)
     assert tick < 1e-5
 

@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 
 import pytest
 
@@ -18,10 +17,10 @@ from reports.model.outcomes import Outcome
 from reports.run import supervisor
 from reports.run.running import run_cells
 from tests import ROOT
-from tests.reports.rough_toys import RoughToy, helpers
+from tests.reports.rough_toys import RoughToy, helpers, is_free, wait_until
 from tests.toys import Disc
 
-fcntl = pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
+pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
 
 
 class Killer:
@@ -118,21 +117,3 @@ def test_workers_end_when_their_parent_is_gone(tmp_path):
     for kind in kinds:
         with (tmp_path / kind).open("w", encoding="utf-8") as file:
             wait_until(lambda file=file: is_free(file))
-
-
-def is_free(file) -> bool:
-    """Whether no process holds a lock on a file: processes that have ended may still have their number."""
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True
-
-
-def wait_until(true) -> None:
-    """Raises AssertionError when it takes far longer than any limit here."""
-    for _ in range(1200):
-        if true():
-            return
-        time.sleep(0.05)
-    raise AssertionError("it did not come true within a minute")

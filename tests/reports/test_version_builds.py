@@ -267,7 +267,8 @@ def test_a_file_that_is_no_wheel_is_one_line_and_status_2(here):
 
 def test_without_network_one_line_says_so_and_nothing_is_left(here, monkeypatch):
     """By pip itself: an index at a port where nobody listens; what pip is told elsewhere is not asked."""
-    monkeypatch.setenv("PIP_CONFIG_FILE", "/dev/null")
+    monkeypatch.setenv("PIP_CONFIG_FILE", os.devnull)
+    monkeypatch.setenv("no_proxy", "*")
     for name in ("PIP_NO_INDEX", "PIP_FIND_LINKS", "PIP_EXTRA_INDEX_URL"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("PIP_INDEX_URL", "http://127.0.0.1:9/simple")

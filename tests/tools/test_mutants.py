@@ -141,7 +141,7 @@ def test_the_likely_tests_run_the_mistakes_own_block_and_the_most_particular_com
         ("area:area:factor:1", "test_positive", "", 1),
     ],
 )
-def test_the_status_tells_whether_all_is_as_it_should_be(tree, monkeypatch, capsys, name, test, reason, status):
+def test_the_status_tells_whether_all_is_as_it_should_be(tree, monkeypatch, name, test, reason, status):
     monkeypatch.chdir(tree)
     monkeypatch.setattr(Traced, "likely", lambda *_: (f"tests/test_area.py::{test}",))
     mistake = replace(wrong("2 * ", "3 * "), name=name)

@@ -65,7 +65,9 @@ def test_the_example_of_an_action_gives_compare_words_that_it_knows(file):
 
 
 def git(folder, *words):
-    return subprocess.run(["git", "-C", folder, *words], check=True, capture_output=True, text=True).stdout
+    return subprocess.run(
+        ["git", "-c", "commit.gpgsign=false", "-C", folder, *words], check=True, capture_output=True, text=True
+    ).stdout
 
 
 @pytest.fixture

@@ -256,13 +256,13 @@ function begin() {
   const linked = form.restore(location.hash);
   const parts = [...root.querySelectorAll(".part")];
   if (linked) run(false);
-  let moved = linked;
+  let moved = linked; // until the reader has passed the parts that the link opened the page at, of which there may be two
   const looking = new IntersectionObserver((entries) => {
-    for (const { target, isIntersecting } of entries) {
-      if (!isIntersecting || !(target instanceof HTMLElement) || target.classList.contains("shown")) continue;
-      if (moved) moved = false;
-      else if (!target.querySelector(".answers .chosen")) stageOf(target, "before", true);
+    const near = entries.filter(({ target, isIntersecting }) => isIntersecting && !target.classList.contains("shown"));
+    for (const { target } of moved ? [] : near) {
+      if (target instanceof HTMLElement && !target.querySelector(".answers .chosen")) stageOf(target, "before", true);
     }
+    if (near.length) moved = false;
   }, { rootMargin: "-25% 0px -70% 0px" });
   for (const part of parts) looking.observe(part);
   if (!linked && parts[0] instanceof HTMLElement) stageOf(parts[0], "before", true);

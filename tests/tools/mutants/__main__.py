@@ -35,7 +35,7 @@ def chosen(words: Sequence[str], drawn: int, seed: str) -> list[tuple[Mistake, s
     return named + [(mistake, "") for mistake in (*exact, *itertools.islice(generated.drawn(seed, files), drawn))]
 
 
-def traced(workers: int, trees: Sequence[Path], anew: bool = False) -> Traced:
+def traced(trees: Sequence[Path], anew: bool = False) -> Traced:
     """The trace that is kept; else, or anew, all fast tests are run for one."""
     folder = KEPT / "trace"
     if anew:
@@ -96,7 +96,7 @@ def main(words: Sequence[str] | None = None) -> int:
     trial.load_others()
     with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as folder:
         trees = [trial.copy_tree(ROOT, Path(folder) / str(number)) for number in range(max(1, given.workers))]
-        trace = traced(given.workers, trees, anew=given.command == "trace")
+        trace = traced(trees, anew=given.command == "trace")
         if given.command == "trace":
             return 0
         if given.command == "run":
