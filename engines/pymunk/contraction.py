@@ -25,7 +25,7 @@ angle of 0.1 is too much if 0.82 is left. The kept impulses then grow in every s
 A complex mode counts here as the real one that needs as many sweeps, half of what is stable being left of either.
 
 All this is of joints that close their gaps alike. A motor knows no angle and a blade has no gap: where such rows feel
-others, gaps that are closed leave the modes of the sweeps, and half as much more may be needed. With S = 1 - L^-1 A,
+others, gaps that are closed leave the modes of the sweeps, and up to twice as many were needed. With S = 1 - L^-1 A,
 R = S^k, and B a 1 for each row that closes gamma of its gap, a step makes of rows' velocities u, impulses l and gaps g
 
     g' = g + u,   l' = R l - (1 - R) A^-1 (u + gamma B g'),   u' = u + A l',
