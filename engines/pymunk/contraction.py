@@ -23,6 +23,16 @@ so that mu = exp(i phi), phi from pi/3 to pi, is the rim of what is stable: from
 pi. And with a gap that closes slowly, or with none to close, it is r = mu^2 / (2 mu - 1), from 1 down to 1/3: there an
 angle of 0.1 is too much if 0.82 is left. The kept impulses then grow in every step, however short it is.
 A complex mode counts here as the real one that needs as many sweeps, half of what is stable being left of either.
+
+All this is of joints that close their gaps alike. A motor knows no angle and a blade has no gap: where such rows feel
+others, gaps that are closed leave the modes of the sweeps, and up to twice as many were needed. With S = 1 - L^-1 A,
+R = S^k, and B a 1 for each row that closes gamma of its gap, a step makes of rows' velocities u, impulses l and gaps g
+
+    g' = g + u,   l' = R l - (1 - R) A^-1 (u + gamma B g'),   u' = u + A l',
+
+whose spectral radius is `growth`. It is a number of the pose and of k alone, as the rows change by a part of the step:
+in a shorter step impulses grow as much, and there are more steps. So there k rises until the map is stable with twice
+as much left, 2 R in place of R; where B is 1, that is the same as half of what is stable.
 """
 
 from __future__ import annotations
@@ -38,8 +48,8 @@ from scipy.sparse.linalg import splu
 
 from engines.pymunk.joints.drive import find_cranks, find_turned
 from engines.remembered import by_identity
-from reference.checks import LARGEST_COUNT, Count, Numbers, validated
-from reference.joints import Joint, Weld
+from reference.checks import LARGEST_COUNT, Count, Numbers, Positive, validated
+from reference.joints import Drive, Joint, Roll, Skate, Weld
 from reference.kinds import Rule, from_to
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE, ranks
@@ -53,6 +63,7 @@ FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a 
 DENSE = 100  # rows up to which all eigenvalues are found, and beyond if rows depend on others
 # The first steps of a run are few, so that they may take more work than the others.
 CONVERGED_WORK, ROUNDING = 1_000_000, 1e-16
+LARGEST = 1 - 1e-12  # rho
 GROWING = 1e-6  # of itself in a step: beyond, it is no rounding of a mode
 STAGES = 6  # more of them show less, but longer: what shows of these is over at the tenth step, often the first sample
 # The rim of what is stable of a complex mode, at angles from 0 to a half turn: by which power of e sweeps must shrink a
@@ -79,10 +90,10 @@ def contraction(mechanism: Mechanism) -> float:
 def contraction_at(mechanism: Mechanism, pose: Numbers) -> float:
     """The same at a pose (bodies, 3) [m, m, rad]."""
     try:
-        rho = _spectral_radius(*_joint_matrix(mechanism, pose), mechanism.length_scale)
+        rho = _spectral_radius(*_joint_matrix(mechanism, pose)[:3], mechanism.length_scale)
     except np.linalg.LinAlgError:  # masses so far apart that no number is left
         rho = 0.0
-    return min(max(rho, 0.0), 1 - 1e-12)
+    return min(max(rho, 0.0), LARGEST)
 
 
 @validated
@@ -91,11 +102,11 @@ def contractions(mechanism: Mechanism, poses: Numbers) -> Array:
 
     All in one go: for few rows a fifth of the time.
     """
-    matrix, starts, rows = _joint_matrix(mechanism, poses)
+    matrix, starts, rows, _ = _joint_matrix(mechanism, poses)
     if not starts:
         return np.zeros(len(poses))
     modes = _left(np.linalg.solve(_lower(matrix, starts), matrix), rows, mechanism.length_scale)
-    return np.clip(as_real(modes).max(axis=-1), 0.0, 1 - 1e-12)
+    return np.clip(as_real(modes).max(axis=-1), 0.0, LARGEST)
 
 
 def as_real(modes: Modes) -> Array:
@@ -107,19 +118,56 @@ def as_real(modes: Modes) -> Array:
 
 
 @validated
-def grows(mechanism: Mechanism, iterations: Count) -> bool:
-    """Whether impulses that are kept grow from step to step with so many sweeps, whatever the step.
+def closing(mechanism: Mechanism, touching: bool = False) -> Array:
+    """1 for rows (rows,) that close a gap, else 0; `touching`: a Roll is a contact, of which nothing is closed."""
+    still = (Drive, Skate, Roll) if touching else (Drive, Skate)
+    return np.array([float(not isinstance(joint, still)) for joint in mechanism.joints for _ in range(joint.size)])
 
-    By mu^2 - 2 r mu + r = 0 for each mode, as no gap is closed within a step that is short enough. Not told for more
-    than DENSE rows.
+
+@validated
+def growth(mechanism: Mechanism, pose: Numbers, iterations: Count, closes: Numbers, spare: Positive = 1.0) -> float:
+    """By which factor the map of a step, see the module, makes its fastest mode larger; from 1 on, as gaps may stay.
+
+    `closes` (rows,): which part of its gap each row closes in a step. `spare` times as much is left as sweeps leave.
+    Infinite where no number is left, as masses are too far apart.
     """
-    matrix, starts, rows = _joint_matrix(mechanism, mechanism.pose)
-    if not starts or len(matrix) > DENSE:
-        return False
-    change = np.linalg.pinv(_lower(matrix, starts)) @ matrix
-    left = _left(change, rows, mechanism.length_scale) ** iterations
-    root = np.sqrt(left * left - left)
-    return bool(np.maximum(np.abs(left + root), np.abs(left - root)).max(initial=0.0) > 1 + GROWING)
+    matrix, starts, rows, kept = _joint_matrix(mechanism, pose)
+    count = int(ranks(rows, np.asarray(mechanism.length_scale)))
+    if not count:
+        return 1.0
+    size = np.sqrt(np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0))  # rows of any unit are alike
+    matrix = matrix / np.outer(size, size)
+    sizes, axes = (part[..., -count:] for part in np.linalg.eigh(matrix))
+    sweep = np.eye(len(matrix)) - np.linalg.pinv(_lower(matrix, starts)) @ matrix
+    closed = axes.T @ (np.asarray(closes)[kept, None] * axes)
+    one, none = np.eye(count), np.zeros((count, count))
+    with np.errstate(all="ignore"):
+        left = spare * np.linalg.matrix_power(axes.T @ sweep @ axes, iterations)
+        solved = (one - left) / sizes
+        impulses = np.hstack([-solved @ (one + closed), left, -solved @ closed])
+        velocities = np.hstack([one, none, none]) + sizes[:, None] * impulses
+        step = np.vstack([velocities, impulses, np.hstack([one, none, one])])
+        try:
+            return float(np.abs(np.linalg.eigvals(step)).max())
+        except np.linalg.LinAlgError:
+            return np.inf
+
+
+@validated
+def steady(mechanism: Mechanism, poses: Numbers, rho: Contraction, touching: bool = False) -> float:
+    """rho as it counts where not all rows close gaps: of as many sweeps as make the step's map stable at all `poses`.
+
+    LARGEST where as many are more than any work allows.
+    """
+    closes, enough = closing(mechanism, touching), _enough(rho)
+    if closes.all() or enough > CONVERGED_WORK:
+        return rho
+    iterations = enough
+    while any(growth(mechanism, pose, iterations, closes, 0.5 / LEFT) > 1 + GROWING for pose in poses):
+        iterations = ceil(1.05 * iterations)
+        if iterations > CONVERGED_WORK:
+            return LARGEST
+    return rho if iterations == enough else LEFT ** (1 / (iterations - 0.5))  # `sweeps` rounds this up again
 
 
 def _spectral_radius(matrix: Array, starts: list[int], rows: Array, length: float) -> float:
@@ -156,10 +204,10 @@ def _lower(matrix: Array, starts: list[int]) -> Array:
     return lower
 
 
-def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int], Array]:
+def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int], Array, list[int]]:
     """A at poses (..., bodies, 3), without the rows that are prescribed motions; where each constraint's block begins.
 
-    (..., rows, rows), the beginnings, and the rows (..., rows, 3 bodies) of what is not prescribed.
+    (..., rows, rows), the beginnings, the rows (..., rows, 3 bodies) of what is not prescribed, and which they are.
     """
     weights = 1 / mechanism.inertias
     for name in find_turned(mechanism):
@@ -176,7 +224,7 @@ def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int], 
             starts.append(len(kept))
             kept += block
     held = np.where(weights.reshape(-1) > 0, rows, 0.0)[..., kept, :]
-    return matrix[..., np.array(kept, dtype=int)[:, None], kept], starts, held
+    return matrix[..., np.array(kept, dtype=int)[:, None], kept], starts, held, kept
 
 
 def _parts(joint: Joint) -> tuple[int, ...]:
@@ -245,8 +293,12 @@ def sweeps(rho: Contraction, joints: Count = 1, fewest: Count = FEWEST, work: Wh
 
     More than MOST only as far as a step may take so much `work`, sweeps times joints; where that is not enough, MOST.
     """
-    enough = max(fewest, ceil(log(LEFT) / log(rho))) if rho > 0 else fewest
+    enough = _enough(rho, fewest)
     return enough if enough * joints <= work else min(enough, max(MOST, fewest))
+
+
+def _enough(rho: float, fewest: int = FEWEST) -> int:
+    return max(fewest, ceil(log(LEFT) / log(rho))) if rho > 0 else fewest
 
 
 @validated

@@ -141,7 +141,7 @@ class Pymunk(Engine, Valid):
         """How the mechanism is swept in a motion of `duration` [s]: by its worst pose, where it is by contraction."""
         if isinstance(self.iterations, int) and self.error_bias != CONTRACTION:
             return Sweeping(self.iterations)
-        rho = worst_contraction(mechanism, duration)
+        rho = worst_contraction(mechanism, duration, self.touches)
         if isinstance(self.iterations, int):
             return swept_by(rho, self.iterations)
         found = sweeping(rho, max(1, len(mechanism.joints)), self.fewest, self.work)

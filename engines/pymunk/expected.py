@@ -14,7 +14,7 @@ from math import ceil
 import numpy as np
 
 from engines import Unsupported
-from engines.pymunk.contraction import DENSE, contraction, contraction_at, contractions
+from engines.pymunk.contraction import DENSE, contraction, contraction_at, contractions, steady
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.model import Settings, build_model
 from engines.pymunk.running import record
@@ -34,14 +34,19 @@ TORN = 0.05  # of the mechanism's length, or rad: from there on it is another me
 
 
 @validated
-def worst_contraction(mechanism: Mechanism, duration: NonNegative) -> float:
-    """The largest `contraction` over the start and what a rough run passes within `duration` [s]."""
-    return _worst(mechanism, float(f"{duration:.12g}"))  # the levels of an extrapolation round it differently
+def worst_contraction(mechanism: Mechanism, duration: NonNegative, touching: bool = False) -> float:
+    """The largest `contraction` over the start and what a rough run passes within `duration` [s], as it counts there.
+
+    See `engines.pymunk.contraction.steady`; `touching`: whether a Roll is a contact.
+    """
+    return _worst(mechanism, float(f"{duration:.12g}"), touching)  # an extrapolation's levels round it differently
 
 
 @by_identity()
-def _worst(mechanism: Mechanism, duration: float) -> float:
-    return max([contraction(mechanism), *_all(mechanism, _poses(mechanism, duration))])
+def _worst(mechanism: Mechanism, duration: float, touching: bool) -> float:
+    poses = _poses(mechanism, duration)
+    rho = max([contraction(mechanism), *_all(mechanism, poses)])
+    return steady(mechanism, np.array([mechanism.pose, *poses]), rho, touching)
 
 
 def _all(mechanism: Mechanism, poses: list[np.ndarray]) -> list[float]:

@@ -13,7 +13,17 @@ from pymunk.constraints import GrooveJoint
 from engines import Promise
 from engines.lagrange import TRUTH
 from engines.pymunk import DEFAULT, LEAPFROG, TUNED, Pymunk
-from engines.pymunk.contraction import LEFT, as_real, contraction, contraction_at, contractions, gain, sweeps
+from engines.pymunk.contraction import (
+    LEFT,
+    as_real,
+    closing,
+    contraction,
+    contraction_at,
+    contractions,
+    gain,
+    growth,
+    sweeps,
+)
 from engines.pymunk.expected import worst_contraction
 from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Body, Mechanism
@@ -27,6 +37,8 @@ from reports.search.mechanisms import mechanism
 from reports.search.parts import EVERY
 from tests.engines.test_pymunk import every_method
 from tests.mechanisms import four_bar
+
+MOTOR = (451161196, 54)  # seed and number of a motor among pins and a gear
 
 
 def largest(values) -> float:
@@ -137,12 +149,13 @@ def test_of_a_complex_mode_so_many_sweeps_are_made_that_half_of_what_is_stable_i
     assert all(kept_impulses(mode**more) < 1 for more in range(math.ceil(count), 3 * math.ceil(count)))
 
 
-@pytest.mark.parametrize("number", [239, 255, 266])
-def test_a_weld_among_other_joints_does_not_blow_up_however_short_steps_are_and_where_it_does_nothing_is_promised(
-    number,
-):
-    """Their modes are complex: swept as if these were real, 255 missed its motion by a thousandfold of it."""
-    own = mechanism(77777, number, EVERY)
+@pytest.mark.parametrize(("seed", "number"), [(77777, 239), (77777, 255), (77777, 266), MOTOR])
+def test_welds_and_motors_do_not_blow_up_however_short_steps_are_and_where_they_do_nothing_is_promised(seed, number):
+    """Welds' modes are complex: swept as if these were real, 255 missed its motion by a thousandfold of it.
+
+    A motor closes no gap: swept as if it did, a step four times as short missed five hundred times as much.
+    """
+    own = mechanism(seed, number, EVERY)
     span = 0.4 * own.time_scale
     truth = TRUTH.build(own, span)(1, 1)
 
@@ -152,6 +165,39 @@ def test_a_weld_among_other_joints_does_not_blow_up_however_short_steps_are_and_
     assert missed(TUNED, 640) < 0.3 * missed(TUNED, 160)
     assert isinstance(TUNED.order(own), Promise)
     assert isinstance(DEFAULT.order(own), Promise) == (missed(DEFAULT, 640) < missed(DEFAULT, 160))
+
+
+@pytest.mark.parametrize("closed", [0.0, 1.0])
+def test_twice_as_much_left_is_stable_by_the_map_of_a_step_where_it_is_so_mode_by_mode(closed):
+    """Two derivations, of rows that all close their gaps, or none: the rule for modes, and the spectral radius."""
+    for number in range(40):
+        own = mechanism(77777, number, ("pin", "rod", "gear", "weld"))
+        count = sweeps(contraction(own), work=10**6)
+        of_gaps = np.full(own.row_count, closed)
+        assert count > 10**5 or growth(own, own.pose, count, of_gaps, 0.5 / LEFT) < 1 + 1e-6
+        if closed and 5 < count < 10**5:
+            assert growth(own, own.pose, count - 1, of_gaps, 0.5 / LEFT) > 1 + 1e-6
+
+
+@pytest.mark.parametrize(("seed", "number", "few"), [(*MOTOR, 30), (31, 655, 9), (31, 981, 8)])
+def test_impulses_grow_in_the_engine_as_the_map_of_a_step_says_where_motors_and_blades_close_no_gap(seed, number, few):
+    own = mechanism(seed, number, EVERY)
+    of_gaps = closing(own, touching=True)
+    assert 0 < of_gaps.mean() < 1
+
+    def grown(iterations: int) -> float:
+        """A step's factor, from two thirds of a run whose steps are so short that rows hardly change."""
+        twist = replace(TUNED, iterations=iterations, error_bias=0.0).build(own, 1e-7 * own.time_scale)(66, 1).twist
+        change = np.abs(np.diff(twist, axis=0)).max(axis=(1, 2))
+        return float((change[-1] / change[20]) ** (1 / 45))
+
+    # What the fastest mode begins with is not all there is, and modes turn: a few per cent, of 5 to 25 in a step.
+    assert grown(few) == pytest.approx(growth(own, own.pose, few, of_gaps), abs=0.02)
+    enough = TUNED.sweeping(own).iterations
+    assert grown(enough) < 1.01
+    # Left to fewer sweeps, not all of a gap is closed, and it is said.
+    short = replace(TUNED, iterations=few).build(own, 1e-3 * own.time_scale)(2, 2)
+    assert any("not converged" in warning for warning in short.warnings)
 
 
 def test_a_small_gain_does_not_underflow_to_a_gain_of_one_at_small_steps():
