@@ -264,9 +264,13 @@ class ExtrapolatedRun(OneShot):
         # Each step rounds a pose anew, by half a unit at most, and the combination carries that with its weights.
         carried = np.abs(extrapolation_weights(levels, powers)) @ levels * np.finfo(float).eps / 2 * steps
         elapsed = np.linspace(0.0, 1.0, poses.shape[1])[:, None, None]
+        # The coarsest run may miss otherwise in its first step than in all others: a gap is closed a step late, say. If
+        # that run alone is out of the series, it puts the extrapolation off by the whole last difference.
+        least = np.full(poses.shape[1], LEAST)
+        least[: 2 if steps < len(least) else 1] = 1.0
         with np.errstate(all="ignore"):
             rounding = carried * elapsed * np.maximum(np.abs(pose), self._scale)
-        return expected_error(poses / self._scale, levels, powers) * self._scale + rounding
+        return expected_error(poses / self._scale, levels, powers, least) * self._scale + rounding
 
     def _largest(self, estimate: Array) -> Array:
         """(times,) the largest so far, of a radian or of the mechanism's length: what was missed once may pass zero."""
@@ -324,15 +328,17 @@ def _part(run: Run, samples: int, every: int, each: int) -> Trajectory:
 
 
 @validated
-def expected_error(values: Numbers, levels: tuple[Count, ...], powers: tuple[Count, ...]) -> Array:
+def expected_error(
+    values: Numbers, levels: tuple[Count, ...], powers: tuple[Count, ...], least: float | Array = LEAST
+) -> Array:
     """An estimate (times, ...) of the error of values (levels, times, ...) that are extrapolated, all in one unit.
 
     The differences between the extrapolations of k + 1 and of the k finest runs fall from one k to the next while the
     runs are a series in the step. The last of them is the error of the extrapolation without the coarsest run; what is
     left is smaller by the factor that it fell by, or by the one that the last two factors lead to, as in asymptotic
-    series factors rise. That is taken CAUTION times. It is no less than LEAST of the last difference, as that may just
-    pass zero, and no more than a single run that is out of the series, by whatever, puts the extrapolation off if it is
-    that run alone. Factors are those of the largest differences so far.
+    series factors rise. That is taken CAUTION times. It is no less than `least`, at each time, of the last difference,
+    as that may just pass zero, and no more than a single run that is out of the series, by whatever, puts the
+    extrapolation off if it is that run alone. Factors are those of the largest differences so far.
     """
     parts = [
         combine(values[-count:], extrapolation_weights(levels[-count:], powers[: count - 1]))
@@ -347,7 +353,7 @@ def expected_error(values: Numbers, levels: tuple[Count, ...], powers: tuple[Cou
         fewer = np.array([0.0, *extrapolation_weights(levels[1:], powers[:-1])])
         most = np.abs(weights / (weights - fewer)).max()
         expected = CAUTION * np.max([ratios[-1], *rising], axis=0) if ratios else most
-        factor = np.clip(expected, min(LEAST, most), most)
+        factor = np.clip(expected, np.minimum(least, most), most)
         return apart[-1] * np.reshape(factor, (-1, *(1,) * (apart[-1].ndim - 1)))
 
 

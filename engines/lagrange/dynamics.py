@@ -98,7 +98,10 @@ class Dynamics:
             return self.mechanism.unconstrained(pose, twist)
         if not (np.isfinite(pose).all() and np.isfinite(twist).all()):  # curves have no contact there
             return np.full_like(pose, np.nan)
-        rows, reaction = self.reaction(pose, twist, t)
+        return self.under(*self.reaction(pose, twist, t), pose, twist)
+
+    def under(self, rows: Array, reaction: Array, pose: Array, twist: Array) -> Array:
+        """Accelerations (bodies, 3) under these reactions (rows,)."""
         free = self.mechanism.unconstrained(pose, twist).reshape(-1)
         return (free + self.weight * (rows.T @ reaction)).reshape(-1, 3)
 

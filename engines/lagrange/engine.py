@@ -28,6 +28,7 @@ from reference.checks import Count, InvalidMechanism, Positive, Valid, validated
 from reference.joints import Joint
 from reference.kinds import Rule
 from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -50,7 +51,7 @@ STEP_COSTS: dict[bool, dict[Integrator, float]] = {
 LOOSER, ROUGH, HELD = 10.0, 100.0, 1e-10
 
 # What a projection may leave of speeds in a joint: half of the digits. Of slow motions, beside this part of the
-# mechanism's length in its own time, no digits are counted.
+# mechanism's length in its own time, no digits are counted. So it is of accelerations without a projection.
 HALF, SLOW = 1.5e-8, 1e-4
 
 TABLEAUS = {"euler": NONE, "rk4": RK4, "dop853": FIXED_DOP853}
@@ -196,8 +197,13 @@ class _LagrangeRun(OneShot):
                     self._in_numpy(poses, twists, done, every)
                 stepping = time.process_time() - started
                 warnings = self._machine.warnings(self._engine.tolerance)
-            warnings = warnings or self._stopped(t, poses) or self._slipped(t, poses, twists)
-            return Trajectory(t, poses, twists, self._reactions(t, poses, twists), stepping, warnings)
+            reactions, accelerations = self._reactions(t, poses, twists)
+            warnings = warnings or self._stopped(t, poses)
+            if not warnings and self._engine.stabilisation == "projection":
+                warnings = self._slipped(t, poses, twists)
+            elif not warnings:
+                warnings = self._pushed(t, poses, twists, accelerations)
+            return Trajectory(t, poses, twists, reactions, stepping, warnings)
 
     def _stopped(self, t: Array, poses: Array) -> tuple[str, ...]:
         """What is to be said of a run that did not come to its end, or of which numpy left joints open."""
@@ -213,18 +219,29 @@ class _LagrangeRun(OneShot):
         below its rounding a row is not told from one that follows from others.
         """
         mechanism = self._mechanism
-        if self._engine.stabilisation != "projection" or not mechanism.row_count:
-            return ()
+        slow = SLOW * mechanism.length_scale / mechanism.time_scale
+        slips = self._beyond(mechanism.slip(poses, twists), twists, slow, HALF)
+        return _row_lost("joints slip after the projection", t[1:][slips[1:]])
+
+    def _pushed(self, t: Array, poses: Array, twists: Array, accelerations: Array) -> tuple[str, ...]:
+        """The same without a projection, where speeds slip as the integrator lets them: accelerations then do not do
+        what rows ask of them. Tables of curves are those of curves that touch, which they surely do at the start."""
+        mechanism, rate = self._mechanism, self._baumgarte
+        if any(isinstance(joint, Roll) for joint in mechanism.joints):
+            t, poses, twists, accelerations = t[:1], poses[:1], twists[:1], accelerations[:1]
+        missing = mechanism.slip(poses, accelerations) + mechanism.rate - mechanism.bias(poses, twists)
+        if rate:
+            gap = np.where(mechanism.holonomic, mechanism.gap(poses, t), 0.0)
+            missing += rate * (2 * mechanism.slip(poses, twists) + rate * gap)
+        slow = SLOW * mechanism.length_scale / mechanism.time_scale**2
+        return _row_lost("accelerations open joints", t[self._beyond(missing, accelerations, slow, HALF)])
+
+    def _beyond(self, rows: Array, rates: Array, slow: float, part: float) -> NDArray[np.bool_]:
+        """(times,) where a row is more than this part of the largest rate, each as of a length; `slow` is let pass."""
+        mechanism = self._mechanism
         size = np.array([1.0, 1.0, mechanism.length_scale])
-        speed = np.abs(twists * size).max(axis=(1, 2)) + SLOW * mechanism.length_scale / mechanism.time_scale
-        slip = np.abs(mechanism.slip(poses, twists)) * np.where(mechanism.turning, mechanism.length_scale, 1.0)
-        open_at = t[1:][slip[1:].max(axis=1) > HALF * speed[1:]]
-        if not len(open_at):
-            return ()
-        return (
-            f"lagrange: at {open_at[0]:.6g} s joints slip after the projection: masses, or an arm and a radius of "
-            "gyration, are so far apart that a row is lost beside others, or the position is singular",
-        )
+        row = np.abs(rows) * np.where(mechanism.turning, mechanism.length_scale, 1.0)
+        return row.max(axis=1, initial=0.0) > part * (np.abs(rates * size).max(axis=(1, 2)) + slow)
 
     def _in_machine_code(self, machine: Machine, poses: Array, twists: Array, every: int) -> int:
         """Fill samples; gives the last that is done."""
@@ -247,30 +264,41 @@ class _LagrangeRun(OneShot):
                 return
             poses[sample + 1], twists[sample + 1] = pose, twist
 
-    def _reactions(self, t: Array, poses: Array, twists: Array) -> Array:
-        """Of every sample (samples, rows); where rows are dependent, the smallest, as `Mechanism.reaction` has them."""
+    def _reactions(self, t: Array, poses: Array, twists: Array) -> tuple[Array, Array]:
+        """Of every sample (samples, rows), and the accelerations (samples, bodies, 3); NaN where the motion is lost.
+
+        Where rows are dependent reactions are the smallest, as `Mechanism.reaction` has them.
+        """
         mechanism = self._mechanism
-        reactions = np.full((len(t), mechanism.row_count), np.nan)
+        reactions, accelerations = np.full((len(t), mechanism.row_count), np.nan), np.full_like(poses, np.nan)
         alive = np.all(np.isfinite(poses) & np.isfinite(twists), axis=(1, 2))
         if not mechanism.row_count or not np.any(alive):
-            return reactions
+            return reactions, accelerations
         if self._machine is not None:
             last = len(t) - int(np.argmax(alive[::-1]))
             parts = (np.zeros((last, 3 * len(mechanism.bodies) + 3)) for _ in range(2))
             columns, fast = parts
             columns[:, :-3], fast[:, :-3] = poses[:last].reshape(last, -1), twists[:last].reshape(last, -1)
-            reactions[:last], accelerations = self._machine.reactions(float(t[1]), columns, fast)
+            reactions[:last], accelerations[:last] = self._machine.reactions(float(t[1]), columns, fast)
             if not self._machine.left_to_numpy:
                 if self._machine.dependent:
-                    reactions[:last] = mechanism.reaction(poses[:last], accelerations, twist=twists[:last])
-                return reactions
-        states = zip(t[alive], poses[alive], twists[alive], strict=True)
+                    reactions[:last] = mechanism.reaction(poses[:last], accelerations[:last], twist=twists[:last])
+                return reactions, accelerations
+        for at in np.flatnonzero(alive):
+            rows, reactions[at] = self.dynamics.reaction(poses[at], twists[at], t[at])
+            accelerations[at] = self.dynamics.under(rows, reactions[at], poses[at], twists[at])
         if self.dynamics.redundant:
-            accelerations = np.array([self.dynamics.acceleration(pose, twist, at) for at, pose, twist in states])
-            reactions[alive] = mechanism.reaction(poses[alive], accelerations, twist=twists[alive])
-        else:
-            reactions[alive] = [self.dynamics.reaction(pose, twist, at)[1] for at, pose, twist in states]
-        return reactions
+            reactions[alive] = mechanism.reaction(poses[alive], accelerations[alive], twist=twists[alive])
+        return reactions, accelerations
+
+
+def _row_lost(what: str, times: Array) -> tuple[str, ...]:
+    if not len(times):
+        return ()
+    return (
+        f"lagrange: at {times[0]:.6g} s {what}: masses, or an arm and a radius of gyration, are so far apart that a "
+        "row is lost beside others, or the position is singular",
+    )
 
 
 METHODS = tuple(

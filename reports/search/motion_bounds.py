@@ -104,30 +104,24 @@ def left_by_newton(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt: 
     """What Newton's method of MuJoCo or Exudyn may leave in motions (bodies, 3) and reactions (rows,); 0 of any other.
 
     Exudyn's ends where one norm of what is left of forces [N], torques [N m] and what is held [m or rad; of index 2 as
-    rates] is below `relative` times what it begins with, which is about the largest force, and `absolute`, in the
-    engine's own units. A light body then accelerates by that over its mass, for the whole motion; and of a gap that is
-    left in a step the next one makes an acceleration 1 / (beta dt^2) times as large, beta = 1/4 or above, of a rate 2 /
-    dt.
+    rates] is below `relative` times what it begins with, which is about the largest force, and `absolute`. A
+    light body then accelerates by that over its mass, for the whole motion; and of a gap that is left in a step the
+    next one makes an acceleration 1 / (beta dt^2) times as large, beta = 1/4 or above, of a rate 2 / dt. One that ends
+    by what it still moves, in its own units, leaves no more than is below LEAST.
     """
     own = engine.within(mechanism)
-    if not isinstance(own, Exudyn):
+    if not isinstance(own, Exudyn) or own.own_units:
         still = 0 * mechanism.pose
         moved = left_by_its_solver(own, mechanism, dt, truth.t[-1]) if isinstance(own, MuJoCo) else still
         return Constrained(moved, np.zeros(mechanism.row_count))
-    length, mass, seconds = 1.0, 1.0, 1.0
-    if own.own_units:
-        length, seconds = mechanism.length_scale, mechanism.time_scale
-        mass = max(body.mass for body in mechanism.bodies)
-    newton, largest = mass * length / seconds**2, force_size(mechanism, truth)
-    left = own.relative * largest * max(1.0, mechanism.length_scale / length) / newton + own.absolute
+    left = own.relative * force_size(mechanism, truth) * max(1.0, mechanism.length_scale) + own.absolute
     rows, lasts = mechanism.rows(mechanism.pose), truth.t[-1]
     back, light = response(rows, mechanism.inertias), 1 / mechanism.inertias.reshape(-1)
-    force = np.tile([left * newton, left * newton, left * newton * length], len(mechanism.bodies))
-    gap = left * np.where(mechanism.turning, 1.0, length)
+    force, gap = np.full(len(light), left), np.full(len(rows), left)
     pushed = np.abs((np.eye(len(light)) - back.motion @ rows) * light) @ force * lasts**2 / 2
     rates = own.integrator == "TrapezoidalIndex2"
-    held = np.abs(back.motion) @ gap * (lasts / seconds if rates else 1.0)
-    pulled = np.abs(back.force) @ gap * (2 / dt / seconds if rates else 4 / dt**2)
+    held = np.abs(back.motion) @ gap * (lasts if rates else 1.0)
+    pulled = np.abs(back.force) @ gap * (2 / dt if rates else 4 / dt**2)
     return Constrained((pushed + held).reshape(-1, 3), pulled)
 
 

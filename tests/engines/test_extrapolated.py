@@ -143,7 +143,7 @@ def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_o
 @pytest.mark.parametrize("every", [1, 2, 3, 10])
 def test_how_often_it_is_sampled_changes_neither_the_motion_nor_the_estimate_nor_what_is_told(every):
     method = Extrapolated(Toy({2: 1.0, 3: 300.0, 4: 100.0, 5: 100.0}), "extended", (1, 2, 3, 4), (2, 3, 4))
-    each, sampled = (method.build(pendulum(), 0.05)(60 // count, count) for count in (1, every))
+    each, sampled = (method.build(pendulum(), 0.025)(60 // count, count) for count in (1, every))
     for name in ("t", "pose", "twist", "estimate"):
         assert np.array_equal(present(getattr(sampled, name)), present(getattr(each, name))[::every])
     # At this instant its own estimate passes the claim, whether it is a sample or not.

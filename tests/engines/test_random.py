@@ -113,6 +113,14 @@ def test_nothing_is_wrong_without_a_word_at_long_steps_and_sampling_changes_no_o
     assert any(one.error > CLAIM for one in found[1])
 
 
+def test_what_the_first_step_alone_misses_is_told_too():
+    """Two loops of Bullet, 1.05e-7 off after a step, where the estimate was 6.7e-8, and 2e-9 after the next."""
+    (row,) = rows(installed(bullet.EXTENDED), known(7001, range(245, 246), EVERY), (1e-2,), (1,))
+    assert row.error > CLAIM
+    assert row.estimate > row.error
+    assert not row.silent
+
+
 def test_rows_on_which_no_number_of_sweeps_converges_are_told():
     # Three slots, two pins and a skate on four bodies: a sweep leaves all but 6e-6 of the slowest mode.
     own = mechanism(22, 263, HELD)

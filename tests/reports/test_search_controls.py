@@ -11,18 +11,20 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import chain, repeat
 from typing import Any
 from unittest import mock
 
 import numpy as np
 import pytest
 
-from engines import Promise, Unsupported, box2d, bullet, exudyn, mjx, pinocchio
+from engines import Promise, Unsupported, box2d, bullet, exudyn, mjx, pinocchio, pymunk
 from engines.conformance.same import Isometry
+from engines.extrapolated import Extrapolated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.search import instant_mujoco, motion_bounds, motions, relations
-from reports.search.law import NotAsked
+from reports.search.law import Fault, NotAsked
 from reports.search.mechanisms import RUN, SHAPES, mechanism, of_a_shape
 from reports.search.plan import taken
 from reports.search.planted import FAULTS, LEAST, SIZES, Control, Off, planting
@@ -153,6 +155,13 @@ def turned_by(engine: type, angle: Callable[[Mechanism], float]) -> Iterator[Non
 
     with mock.patch.object(engine, "build", wrong):
         yield
+
+
+def test_a_method_that_tells_its_own_error_may_not_lose_a_motion_in_silence_at_any_step() -> None:
+    own, angles = mechanism(5, 1, ("pin", "force")), chain([np.nan], repeat(0.0))
+    with turned_by(Extrapolated, lambda _: next(angles)), pytest.raises(Fault, match="tells its own error"):
+        motions.errors(pymunk.EXTENDED, own)
+    assert all(error <= bound for error, bound in motions.errors(pymunk.EXTENDED, own).values())
 
 
 def test_what_newtons_method_may_leave_in_exudyn_hides_no_more_than_that() -> None:
