@@ -13,8 +13,9 @@ MuJoCo's own: the free four-bar with RK4 at 1e-3 s is 7.40e-4 rad off with two s
 4.58e-3 rad with the five of our tuned variant.
 
 Its solver ends where no part of what is left of the forces is above 1e-8, whatever the tolerance: `mjx.math.norm` takes
-such a vector for zero. That number has a unit, so the model is in a small one of mass: in that of `mujoco`, about the
-whole mechanism's, light bodies beside heavy ones would never feel a gear.
+such a vector for zero. That number has a unit, so the model is in the smallest one of mass that its rows admit
+(`_smallest_unit`): in that of `mujoco`, about the whole mechanism's, light bodies beside heavy ones would never feel a
+gear, and from step to step keep the acceleration that they had.
 
 A program is compiled for each model, 5 s to half a minute: that is building and not stepping. JAX keeps it for models
 of the same structure, numbers apart; and for other processes in the user's cache folder, or where the environment's
@@ -29,6 +30,7 @@ the extra installs what it needs, and it has to be installed by itself: pip inst
 
 from __future__ import annotations
 
+import math
 import os
 import platform
 import time
@@ -36,6 +38,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, ClassVar
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -44,9 +47,12 @@ from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco.engine import MuJoCo
 from engines.mujoco.methods import DEFAULT as C_DEFAULT
 from engines.mujoco.methods import TUNED as C_TUNED
-from engines.mujoco.model import Model, unit_of_mass
+from engines.mujoco.model import Model
+from engines.mujoco.releases import full_inertia
+from engines.mujoco.running import UNSOLVED
 from engines.single_run import Optional, Recorded, SingleRun, quiet, tree_states
 from engines.tree import Tree, spanning_tree
+from engines.units import power_of_two
 from engines.user_cache import cache_folder
 from reference.checks import Name, Positive, validated
 from reference.joints import Joint, Rod, Skate
@@ -55,10 +61,9 @@ from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
 EVALUATION_COST = 50e-6  # s, with three bodies, once compiled
-# Smaller than C MuJoCo's unit of mass by this, a power of two. A force of 1e-8 is then below half an eps of the whole
-# mass times 1 m/s^2; a row's compliance, 1e-4 of an inverse mass or more, is 500 times mjMINVAL (1e-15) or more.
-# Units smaller by 2^14 and by 2^34 gave the same to rounding in 110 mechanisms of the search, over 0, 2 and 4 decades.
-LIGHTER = 2.0**27
+# Times mjMINVAL, below which MuJoCo and MJX take no row's compliance (R): that of the hardest row at the start. As
+# shipped R is halved where a gap opens by a millimetre; a power of two is a quarter of a binary digit off at most.
+LEAST_COMPLIANCE = 4.0
 NO_VELOCITY_TERM = "upstream: loops lack the velocity term J-dot v in MJX, so that they are wrong at any step"
 
 
@@ -116,7 +121,9 @@ class Mjx(Optional):
                 what = f"a {type(joint).__name__.lower()} needs a contact, and our adapter of MJX builds none"
                 raise Unsupported(f"joint {joint.name!r}: {what}")
         self.require()
-        model = self.settings.model(mechanism, dt, unit=unit_of_mass(mechanism) / LIGHTER)
+        model = self.settings.model(mechanism, dt)
+        if unit := _smallest_unit(model):
+            model = self.settings.model(mechanism, dt, unit=unit)
         if model.hooks.control or model.hooks.before:
             raise Unsupported("some rows are written by callbacks of MuJoCo's C code, which MJX does not run")
         try:
@@ -134,6 +141,37 @@ class Mjx(Optional):
         """
         mjx, _, forward = _programs()
         return np.asarray(forward(held, mjx.put_data(model.compiled, data)).qacc, dtype=np.float64)
+
+
+def _smallest_unit(model: Model) -> float | None:
+    """The unit of mass [kg] in which the hardest row's compliance R, an inverse mass, is LEAST_COMPLIANCE mjMINVAL.
+
+    None where there are no rows, and so nothing to solve. A force of 1e-8 of it is then 4e-23 / R [N, R in 1/kg]: with
+    R at least 1e-4 of the row's own inverse inertia, 4e-19 of that inertia times 1 m/s^2 or rad/s^2.
+    """
+    compliance = model.start().efc_R
+    if not len(compliance):
+        return None
+    return model.unit * power_of_two(LEAST_COMPLIANCE * mujoco.mjMINVAL / float(compliance.min()))
+
+
+def _missed(model: Model, data: Any, told: Any) -> float:
+    """How far MJX's answer `told` is from the equations that it solves, relative to the accelerations in them.
+
+    Its cost is a parabola, whose least is one step of Newton's away: H^-1 g, H = M + J^T R^-1 J, and g what is left of
+    the forces. `data`: a mujoco.MjData in the state, for M.
+    """
+    rows, solved = np.asarray(told._impl.efc_J), np.asarray(told.qacc)
+    if not len(rows):
+        return 0.0
+    mujoco.mj_forward(model.compiled, data)
+    inertia, hard, aimed = full_inertia(model.compiled, data), *map(np.asarray, (told._impl.efc_D, told._impl.efc_aref))
+    left = inertia @ solved - np.asarray(told.qfrc_smooth) + rows.T @ (hard * (rows @ solved - aimed))
+    size = max(np.abs(each).max() for each in (solved, np.asarray(told.qacc_smooth), aimed))
+    try:
+        return float(np.abs(np.linalg.solve(inertia + (rows.T * hard) @ rows, left)).max() / max(size, 1e-300))
+    except np.linalg.LinAlgError:
+        return math.inf
 
 
 def lacks_velocity_terms(tree: Tree) -> bool:
@@ -179,10 +217,17 @@ def _record(model: Model, held: Any, data: Any, samples: int, every: int) -> Rec
             states.append(now)
         position[sample], velocity[sample] = np.asarray(now.qpos), np.asarray(now.qvel)
     stepping = time.process_time() - begin
+    missed = 0.0
     for sample, each in enumerate(states):
-        acceleration[sample] = np.asarray(forward(held, each).qacc)
+        told = forward(held, each)
+        acceleration[sample] = np.asarray(told.qacc)
+        if np.isfinite(position[sample]).all() and np.isfinite(acceleration[sample]).all():
+            data.time, data.qpos[:], data.qvel[:] = float(each.time), position[sample], velocity[sample]
+            missed = max(missed, _missed(model, data, told))
     motion = tree_states(model.tree, *(each[:, model.address] for each in (position, velocity, acceleration)))
     warnings = (NO_VELOCITY_TERM,) if lacks_velocity_terms(model.tree) else ()
+    if not missed <= UNSOLVED:
+        warnings += (f"ours: the solver missed the accelerations by {missed:.1g} of themselves",)
     return Recorded(*motion, stepping, *model.loads(), warnings)
 
 

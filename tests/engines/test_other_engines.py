@@ -312,11 +312,12 @@ def test_pinocchio_tells_no_inertia_of_bodies_that_are_welded_together():
 @pytest.mark.parametrize(("joint", "told"), [(None, False), (Rod("rod", None, "bob", (0, 0), (0, 0), 1.0), True)])
 def test_mjx_says_what_it_lacks_where_it_lacks_it(monkeypatch, joint, told):
     """Without its compiler: what a run says is decided by the mechanism alone."""
-    still = SimpleNamespace(qpos=np.zeros(3), qvel=np.zeros(3), qacc=np.zeros(3))
+    still = SimpleNamespace(time=0.0, qpos=np.zeros(3), qvel=np.zeros(3), qacc=np.zeros(3))
     device = SimpleNamespace(put_model=lambda model: model, put_data=lambda model, data: still)
     still.qpos = still.qpos.view(Ready)
     monkeypatch.setattr(mjx, "_programs", lambda: (device, lambda held, now, count: now, lambda held, now: now))
     monkeypatch.setattr(mjx.Mjx, "require", lambda self: None)
+    monkeypatch.setattr(mjx, "_missed", lambda model, data, told: 0.0)
     own = Mechanism((Body("bob", 1.0, 0.1, (1.0, 0.0, 0.0)),), (joint,) if joint else ())
     run = mjx.DEFAULT.build(own, 1e-2)(2, 1)
     assert run.warnings == ((mjx.NO_VELOCITY_TERM,) if told else ())
