@@ -26,7 +26,7 @@ from tests.reports.test_check import FOUR_BAR, PENDULUM, found_in
 from tests.reports.test_command_line import call, here
 
 __all__ = ["here"]
-WRITTEN = ("apply", "html", "junit", "markdown")  # options that name a file
+WRITTEN = ("html", "junit", "markdown")  # options that name a report
 
 
 def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, capfd):
@@ -74,7 +74,8 @@ def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, t
         (("check", "a.xml", "--tolerance", "nan"), "--tolerance is nan"),
         (("check", "a.xml", "--step", 5), "--step is 5"),
         (("check", "a.xml", "--html", "r.html", "--markdown", "./r.html"), "--html and --markdown name one file twice"),
-        *((("check", "a.xml", f"--{name}", "a.xml"), f"give another --{name}, or --force") for name in WRITTEN),
+        (("check", "a.xml", "--apply", "a.xml"), "give another --apply, or --force"),
+        *((("check", "a.xml", "--force", f"--{name}", "a.xml"), "which is the model") for name in WRITTEN),
         (("export", "pendulum_1", "--to", "usd"), "--to is 'usd'; it must be one of mjcf, pymunk, urdf"),
         (("export", "pendulum_1", "--variant", "best"), "--variant is 'best'"),
         (("export", "pendulum_1", "--step", 0), "--step is 0"),
