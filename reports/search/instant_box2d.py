@@ -49,14 +49,15 @@ def first_step(engine: Box2D, mechanism: Mechanism) -> tuple[Trajectory, Array, 
     _refuse_chains(mechanism)
     dt = STEP * mechanism.time_scale
     told = replace(engine, substeps=1).build(mechanism, dt)(1, 1)
+    poses = [pose for pose in told.pose if np.isfinite(pose).all()]
+    lost = max(lost_in_products(mechanism, pose) for pose in poses) * engine.precision / np.finfo(float).eps
+    if ROUNDINGS * lost >= 1:
+        raise NotAsked("in single precision nothing is left of J M^-1 J^T of a joint")
     if not np.isfinite(told.pose).all():
         raise Fault("it was lost within a step")
     if told.warnings:
         raise NotAsked("it says itself that something is wrong")
     free = mechanism.twist + dt * mechanism.unconstrained(mechanism.pose, mechanism.twist)
-    lost = max(lost_in_products(mechanism, pose) for pose in told.pose) * engine.precision / np.finfo(float).eps
-    if ROUNDINGS * lost >= 1:
-        raise NotAsked("in single precision nothing is left of J M^-1 J^T of a joint")
     states = np.array([*told.pose, mechanism.twist, np.zeros_like(free), np.zeros_like(free)])
     between, law = _law(mechanism, dt, states)
     return told, law, (free, mechanism.twist, _rounded(engine, mechanism, dt, states, (free, between, law)) / ROUNDINGS)
