@@ -21,7 +21,7 @@ back after the drift, a gap closes at about w^2 h = 1.4e5 / s^2 times h: the sho
 what opens it falls with h too. So no order can be promised. Box2D 3.1.0 can set the frequency of all joints
 (`b2World_SetJointTuning`), 3.1.1 and later that of one (`b2Joint_SetConstraintTuning`). pyb2d3 0.11.1 has neither, so
 that it stays as shipped here. But a weld joint has frequencies of its own, which stay in the correction after the
-drift. With `closing`, a Pin without a drive is a weld joint that nearly nothing (1e-6 Hz) keeps from turning, whose
+drift. With `closing`, a Pin without a drive is a weld joint that nearly nothing (SLACK) keeps from turning, whose
 points are held at the frequency closing / h; Rods and Welds are held at it too. A quarter is what the engine allows its
 contacts at most; at a half a chain of ten pins blows up. So stiff a pin makes forces of what single precision rounds
 off places: the shorter the step, the noisier are reactions. The page of engines shows what each of the two, frequency
@@ -62,7 +62,8 @@ ENOUGH = 1e30  # N m, of a motor: single precision ends at 3e38
 FASTEST = 1e18  # m/s, which the engine would cut to 400; single precision holds no larger square
 TURNED = math.pi / 4  # in a step: what is faster the engine cuts to it, and its binding has no switch for that
 FORCES_COST = 150e-6  # s, of force elements, which are worked out by numpy
-SLACK = 1e-6  # Hz: a spring that keeps no weld joint from turning; zero would be the stiffest
+# Of its points' frequency: a weld joint's spring that keeps it from turning in no number of steps; 0 is the stiffest.
+SLACK = 4e-9
 JOINTS = "https://box2d.org/documentation/group__joint.html"  # all that there are
 LACKS = {
     Gear: f"box2d has no gears since version 3 ({JOINTS})",
@@ -194,7 +195,7 @@ class _World:
             motor = {"enable_motor": True, "motor_speed": rate, "max_motor_torque": ENOUGH}
         if isinstance(joint, Pin):
             if drive is None and self.hertz:
-                return self._weld(ends, SLACK, angular_damping_ratio=0.0)
+                return self._weld(ends, SLACK * self.hertz, angular_damping_ratio=0.0)
             return self.world.create_revolute_joint(**ends, **motor)
         line = (math.cos(joint.line_angle), math.sin(joint.line_angle))
         if drive is not None and drive.turning_rate == 0:

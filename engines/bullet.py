@@ -17,7 +17,8 @@ a push against the gap (erp, 0.2 of it a step as shipped), and drifts with the n
 order. Accelerations are changes of velocity over the last step, so nothing is told at t = 0.
 
 A joint that moves less inertia than 2.2e-16 (SIMD_EPSILON) in the model's units, a millimetre's body in metres, say,
-feels no force (btMultiBody.cpp); it goes on as it began, which a warning tells.
+feels no force (btMultiBody.cpp); it goes on as it began, which a warning tells. So does one for a motor of a joint that
+moves more than 1 / SIMD_EPSILON = 4.5e15, to which it does nothing (btMultiBodyConstraint.cpp).
 """
 
 # pyright: reportMissingImports=false, reportAttributeAccessIssue=false
@@ -25,9 +26,9 @@ feels no force (btMultiBody.cpp); it goes on as it began, which a warning tells.
 
 from __future__ import annotations
 
-import math
 import tempfile
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -53,6 +54,7 @@ ITERATION_COST = 0.1e-6  # s, of an iteration for each row of a loop
 SHIPPED_ITERATIONS, SHIPPED_ERP = 50, 0.2
 NOTHING = float(np.finfo(float).eps)  # kg or kg m^2: SIMD_EPSILON, below which the inverse of an inertia is zero
 UNMOVED = "ours: unresolved from 0 s on, bullet takes an inertia below 2.2e-16 for none and moves it by no force"
+UNTURNED = "ours: unresolved from 0 s on, a motor of bullet does nothing to an inertia above 4.5e15"
 LACKS = {
     Rod: "our adapter of bullet builds no distance between points",
     Skate: "bullet stops slip by friction at a contact, and our adapter builds no contact",
@@ -117,15 +119,34 @@ class Bullet(Optional):
         return SingleRun(mechanism, dt, world.size, lambda samples, every: world.record(dt, samples, every))
 
 
-def _is_unmoved(mechanism: Mechanism, tree: Tree) -> bool:
-    """Whether a joint at the end of a chain moves no more than NOTHING."""
-    carrying = {link.parent for link in tree.links}
-    for link in tree.links:
-        body = mechanism.bodies[link.body]
-        moved = body.inertia + body.mass * math.hypot(*link.anchor) ** 2 if link.turns else body.mass
-        if link.columns and link.body not in carrying and moved < NOTHING:
-            return True
-    return False
+def _unmoved(mechanism: Mechanism, tree: Tree, motors: Iterable[int]) -> tuple[str, ...]:
+    """Warnings of what the engine takes for no inertia, or for an infinite one, in the pose of the start.
+
+    A joint moves what hangs on it, whose own joints are free: 1 / (M^-1)_jj, M of the coordinates from it outwards
+    (Featherstone's articulated inertia). A motor moves all of the tree, which is the same of all coordinates.
+    """
+    if not tree.coordinates:
+        return ()
+    still = np.zeros(tree.coordinates)
+    rest, units = tree.instant(still, still)[1], np.eye(tree.coordinates)
+    twists = np.array([(tree.instant(still, unit)[1] - rest).reshape(-1) for unit in units])
+    masses = (twists * mechanism.inertias.reshape(-1)) @ twists.T
+    size = np.sqrt(np.diag(masses))
+
+    def moved(own: list[int], column: int) -> float:
+        scaled = masses[np.ix_(own, own)] / np.outer(size[own], size[own])
+        place = own.index(column)
+        return float(size[column] ** 2 / np.linalg.pinv(scaled, hermitian=True)[place, place])
+
+    outwards: dict[int, list[int]] = {}
+    for link in reversed(tree.links):
+        own = [*link.columns, *outwards.pop(link.body, [])]
+        if link.columns and moved(own, link.column) < NOTHING:
+            return (UNMOVED,)
+        if link.parent is not None:
+            outwards.setdefault(link.parent, []).extend(own)
+    every = [*range(tree.coordinates)]
+    return (UNTURNED,) if any(moved(every, column) > 1 / NOTHING for column in motors) else ()
 
 
 def _refused(mechanism: Mechanism, tree: Tree) -> dict[int, float]:
@@ -177,7 +198,7 @@ class World:
         self, mechanism: Mechanism, tree: Tree, drives: dict[int, float], dt: float, parameters: dict[str, float]
     ) -> None:
         """`drives`: rates [rad/s] of tree coordinates that a motor turns; `parameters`: the engine's own, by name."""
-        self.mechanism, self.tree, self.bullet = mechanism, tree, package()
+        self.mechanism, self.tree, self.motors, self.bullet = mechanism, tree, tuple(drives), package()
         self.server: int = self.bullet.connect(self.bullet.DIRECT)
         own = {"physicsClientId": self.server}
         self.bullet.setGravity(*mechanism.gravity, 0.0, **own)
@@ -305,7 +326,7 @@ class World:
         stepping = time.process_time() - begin
         acceleration = differences(velocity, before, dt)
         motion = tree_states(self.tree, position, velocity, acceleration)
-        warnings = (UNMOVED,) if _is_unmoved(self.mechanism, self.tree) else ()
+        warnings = _unmoved(self.mechanism, self.tree, self.motors)
         return Recorded(*motion, stepping, self.mechanism.inertias, np.array(self.mechanism.gravity), warnings)
 
 

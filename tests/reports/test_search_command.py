@@ -47,7 +47,7 @@ def test_findings_are_told_made_small_and_written_and_the_page_shows_them(
     assert "mujoco alone" in said
     assert re.search(r"4 cases were asked in \d+ s\. The first finding came after [\d.]+ s, within 4 cases\.", said)
     assert re.search(
-        r"mujoco alone │ acceleration │ .* │ +1 │ +0 │ +[0-3] │ +joint", said
+        r"mujoco alone │ acceleration, a known fault │ .* │ +1 │ +0 │ +[0-3] │ +joint", said
     )  # what draws a finding again
     folder = here / "crosscheck-results" / SEARCH
     findings = sorted(folder.glob("*.json"))

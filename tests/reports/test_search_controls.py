@@ -23,7 +23,7 @@ from engines.conformance.same import Isometry
 from engines.extrapolated import Extrapolated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search import instant_mujoco, motion_bounds, motions, relations
+from reports.search import instant_box2d, instant_mujoco, motion_bounds, motions, relations
 from reports.search.law import Fault, NotAsked
 from reports.search.mechanisms import RUN, SHAPES, mechanism, of_a_shape
 from reports.search.plan import taken
@@ -44,6 +44,12 @@ SINGLE = {
 NOT_ASKED = {"box2d": ("drive",)}
 
 
+# Kinds that the search was asked for with a seed, where they are others than what the engine takes.
+_PUSHED = ("spring", "damper", "torsion-spring", "torsion-damper", "force", "torque")
+DRAWN = {
+    1634853611: ("pin", "slot", "drive", "rod", "weld", *_PUSHED),
+    1189519295: ("pin", "drive", "weld", *_PUSHED),
+}
 ADAPTERS = [name for name in LEAST if name != "mjx"]
 PARTS = 4  # of the faults; each adapter has another part of them every day, and all of them in the slow tests
 
@@ -86,6 +92,50 @@ def test_what_box2d_rounds_grows_with_the_distance() -> None:
             apart.append(np.abs(back(runs[1])[1][-1] - runs[0].twist[-1]).max())
         growth.append(apart[1] / apart[0])
     assert 3 < np.median(growth) < 30  # ten, as the distance
+
+
+@pytest.mark.parametrize(
+    ("seed", "number", "decades"),
+    [(1634853611, 76, 2), (904102, 306, 2), (904103, 163, 4), (904103, 181, 4), (904109, 691, 4)],
+)
+def test_what_box2d_rounds_in_a_points_products_hides_no_more_than_that(seed: int, number: int, decades: int) -> None:
+    """Of light bodies far from their pins, a determinant that keeps three digits; and 1e5 m from the origin a gap."""
+    engine = box2d.DEFAULT
+    if engine.missing:
+        pytest.skip(engine.missing)
+    own = build(Adapted(engine).draw(seed, number, DRAWN[seed] if seed in DRAWN else taken(engine), decades))
+    bound = instant_box2d.bound(engine)
+    assert instant_box2d.errors(engine, own)["velocity"] < bound
+    size = np.array([1.0, 1.0, own.length_scale])
+    _, law, others = instant_box2d.first_step(engine, own)
+    largest = max(float(np.abs(each * size).max()) for each in (law, *others))
+    right = type(engine).build
+
+    def wrong(self: Any, mechanism: Mechanism, dt: float) -> Any:
+        def run(samples: int, every: int) -> Trajectory:
+            told = right(self, mechanism, dt)(samples, every)
+            return replace(told, twist=told.twist + 2 * bound * largest)
+
+        return run
+
+    with mock.patch.object(type(engine), "build", wrong):
+        assert instant_box2d.errors(engine, own)["velocity"] > bound
+
+
+@pytest.mark.parametrize(
+    ("seed", "number", "told"),
+    [(1189519295, 82, bullet.UNTURNED), (904103, 565, bullet.UNTURNED), (904103, 117, ""), (904103, 362, "")],
+)
+def test_bullet_says_what_inertia_it_does_not_move(seed: int, number: int, told: str) -> None:
+    """A motor of 8e15 kg m^2; and in millimetres a chain whose last joint moves enough, but not the one before."""
+    engine = bullet.TUNED
+    if engine.missing:
+        pytest.skip(engine.missing)
+    recipe = Adapted(engine).draw(seed, number, DRAWN[seed] if seed in DRAWN else taken(engine), 4)
+    length, mass, time = recipe.decades
+    own, short = build(recipe), build(replace(recipe, decades=(length - 3, mass, time)))
+    warned = [engine.build(each, relations.STEP * each.time_scale)(1, 1).warnings for each in (own, short)]
+    assert warned == ([(told,), ()] if told else [(), (bullet.UNMOVED,)])
 
 
 # ---------------------------------------------------------------------------------------------------------------- MJX
