@@ -27,10 +27,10 @@ from reports.search.subjects import Adapted, Alone, Subject, Told, is_shaped
 from reports.write.tables import number
 from reports.write.templates import environment
 
-LAWS = ("acceleration", "velocity", "without velocity terms")
+LAWS = ("acceleration", CURVED, "velocity", "without velocity terms")
 # What the page counts together: checks of one instant, of descriptions, and the others, which are of a motion.
 GROUPS: Mapping[str, tuple[str, ...]] = {
-    "instant": (*LAWS, "reaction", "as its groove pushes", CURVED, BESIDE),
+    "instant": (*LAWS, "reaction", "as its groove pushes", BESIDE),
     "description": (
         "turned", "shifted", "mirrored", "renamed", "swapped", "in other lengths", "in other masses",
     ),
