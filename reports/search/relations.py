@@ -160,12 +160,10 @@ def _apart(
     """
     own = _run(engine, mechanism)
     step = STEP * mechanism.time_scale
-    welded = any(isinstance(joint, Weld) for joint in mechanism.joints)
-    misread = MISREAD / bound(engine) if engine.precision and welded else 0.0
 
     def error(one: Mechanism, told: Trajectory, pose: Array, twist: Array) -> float:
         rounded = _rounded(engine, one) * max(away, float(np.abs(one.pose[:, :2]).max()))
-        moved, far = told.pose[-1] - one.pose, np.array([[rounded, 0.0, misread]])
+        moved, far = told.pose[-1] - one.pose, np.array([[rounded, 0.0, 0.0]]) + _misread(engine, one) / bound(engine)
         return max(
             difference(one, pose - one.pose, moved, (one.twist * STEPS * step, 1e-6 * one.pose, far)),
             difference(one, twist, told.twist[-1], (one.twist, far / step)),
@@ -199,6 +197,19 @@ def _apart(
             if found <= ROUNDINGS * error(one, told, pose[-1], twist[-1]):
                 raise NotAsked("descriptions differ by no more than what it makes of rounding")
     return found
+
+
+def _misread(engine: Engine, mechanism: Mechanism) -> Array:
+    """How far bodies (bodies, 3) [m, m, rad] are moved as the angles of welds are misread, and so closed as gaps.
+
+    Of a gap of one row, all bodies move by a column of M^-1 J^T (J M^-1 J^T)^-1: a light one on a pin at a welded one's
+    far end turns by more than the gap.
+    """
+    welds = [isinstance(joint, Weld) and label == "torque" for joint in mechanism.joints for label in joint.labels]
+    if not engine.precision or not any(welds):
+        return np.zeros_like(mechanism.pose)
+    motion = response(mechanism.rows(mechanism.pose), mechanism.inertias).motion
+    return MISREAD * np.abs(motion[:, welds]).sum(axis=1).reshape(-1, 3)
 
 
 def _nudges(mechanism: Mechanism, away: float) -> Iterator[Change]:

@@ -122,6 +122,21 @@ def test_what_box2d_rounds_in_a_points_products_hides_no_more_than_that(seed: in
         assert instant_box2d.errors(engine, own)["velocity"] > bound
 
 
+def test_what_box2d_misreads_of_a_welds_angle_turns_a_light_body_more_and_hides_no_more_than_that() -> None:
+    """A pin at the far end of a welded body: the light one on it turns by 4.5 times what is misread."""
+    engine = box2d.TUNED
+    if engine.missing:
+        pytest.skip(engine.missing)
+    recipe = Adapted(engine).draw(904204, 434, taken(engine), 0)
+    bound = relations.bound(engine)
+    assert relations.errors(engine, recipe, 434)["turned"] < bound
+    own = build(recipe)
+    assert relations._misread(engine, own)[1, 2] == pytest.approx(4.469 * relations.MISREAD, rel=1e-3)
+    wrong = 2 * float(relations._misread(engine, own).max())
+    with turned_by(box2d.Box2D, lambda one: wrong if one.pose[1, 2] - own.pose[1, 2] > 0.5 else 0.0):
+        assert relations.errors(engine, recipe, 434)["turned"] > bound  # one of the two descriptions is
+
+
 @pytest.mark.parametrize(
     ("seed", "number", "told"),
     [(1189519295, 82, bullet.UNTURNED), (904103, 565, bullet.UNTURNED), (904103, 117, ""), (904103, 362, "")],
