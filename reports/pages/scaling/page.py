@@ -131,7 +131,7 @@ SWEEPS_OVER_SQUARE = -4 * log(LEFT) / pi**2
 CAPPED = ceil(sqrt(MOST / SWEEPS_OVER_SQUARE))
 
 # No fit goes across sizes at which a method is another one: by its sweeps, which have a limit, and at COSTLY
-# sizes, where what it plans before the first step is a large part of a few steps.
+# sizes, where the first steps, which are swept longer, are a large part of a few steps.
 ALIKE: Mapping[str, tuple[float, float]] = {
     "pymunk tuned": (CAPPED, max(LARGE)),
     "pymunk extended": (0, max(LARGE)),
