@@ -327,10 +327,10 @@ class Instant:
         Beside what `rounded` knows: gaps of stiff rows are differences of places, and so are arms, eps of a place off.
         And MuJoCo solves for the accelerations of a tree's coordinates. In the equation of one stand the inertias of
         all that hangs on it, about the centre of mass of the tree, times accelerations that add up joint by joint, and
-        joints may move against each other: a light body far away is lost there, or one that carries a heavy one. Of n
-        coordinates the solution rounds 3 n + 1 times (Higham 2002, theorem 10.4), and sums along the tree, and each of
-        what is added, n + 3 times. A body's velocity adds a torque v x m v, of the velocity at that centre of mass: its
-        parts, m v^2, cancel but for their rounding, which turns a fast body (Featherstone 2008, equation 2.70).
+        joints may move against each other: a light body far away is lost there. Of n coordinates the solution rounds
+        3 n + 1 times (Higham 2002, theorem 10.4), and sums along the tree, and each of what is added, n + 3 times.
+        A body's velocity adds a torque v x m v, of the velocity at that centre of mass: its parts, m v^2, cancel but
+        for their rounding, which turns a fast body (Featherstone 2008, equation 2.70).
         """
         mechanism, data, unit = self.mechanism, self.data, ROUNDINGS * np.finfo(float).eps
         rows, right, law = mechanism.rows(self.pose), mechanism.bias(self.pose, self.twist) + self.aimed, self.law()
@@ -343,8 +343,7 @@ class Instant:
         far = np.hypot(*(data.xipos[own] - data.subtree_com[self.model.compiled.body_rootid[own]])[:, :2].T)
         moved, turned = self._along_chains(law.motion[:, :2]), self._along_chains(law.motion[:, 2:])
         turned += self._along_chains(self.twist[:, 2:]) ** 2
-        hanging, pushed = mass.copy(), mass * (moved + far * turned)
-        torque = far * pushed + mechanism.inertias[:, 2] * turned
+        hanging, pushed, torque = mass.copy(), mass * (moved + far * turned), mass * far * (moved + far * turned)
         crossed = mass * (np.hypot(self.twist[:, 0], self.twist[:, 1]) + far * np.abs(self.twist[:, 2])) ** 2
         joined = np.zeros(len(mass))
         for link in reversed(self.model.tree.links):  # what hangs on a body is added to its own

@@ -131,21 +131,19 @@ def test_a_light_bodys_equations_are_solved_to_its_own_digits_beside_heavy_ones(
     assert np.abs(left[terms > 0] / terms[terms > 0]).max() < 1e-14
 
 
-@pytest.mark.parametrize(("seed", "number", "body", "off"), [(1199539626, 26, 4, 1e-3), (1852688171, 5, 2, 10.0)])
-def test_the_inertia_of_a_light_body_is_asked_for_as_sharply_as_mujoco_adds_it_up(
-    seed: int, number: int, body: int, off: float, monkeypatch: pytest.MonkeyPatch
+def test_the_inertia_of_a_light_body_far_away_is_asked_for_as_sharply_as_mujoco_adds_it_up(
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Of 2e-5 kg m^2 that stand 70 km from the centre of mass of their tree MuJoCo rounds digits away beside 1e8; and
-    of 0.03 that carry a body of 8e11 nearly all, by what is known of its method."""
+    """Its 2e-5 kg m^2 stand 70 km from the centre of mass of their tree, so MuJoCo rounds them away from 1e8."""
     subject = Adapted(TUNED)
-    case = subject.draw(seed, number, EVERY, 4)
-    assert subject.ask(case, number, ("instant",)).faults == ()
+    case = subject.draw(1199539626, 26, EVERY, 4)
+    assert subject.ask(case, 26, ("instant",)).faults == ()
 
     def heavier(model: Model) -> None:
-        model.compiled.body_inertia[model.compiled.body(f"body {body}").id] *= 1 + off
+        model.compiled.body_inertia[model.compiled.body("body 4").id] *= 1 + 1e-3
 
     wrong(monkeypatch, heavier)
-    assert subject.ask(case, number, ("instant",)).faults[0] == "acceleration"
+    assert subject.ask(case, 26, ("instant",)).faults[0] == "acceleration"
 
 
 @pytest.mark.parametrize(("seed", "number"), [(1199539626, 75), (510355852, 14)])
