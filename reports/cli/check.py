@@ -62,7 +62,9 @@ def check(
     key: Annotated[str, typer.Option(help="The stored state to begin with, or none; the first unless given.")] = "",
     step: Annotated[float | None, typer.Option(help="Your step [s], instead of the model's own.")] = None,
     limit: Annotated[float, typer.Option(help="CPU seconds after which the check of a model is ended.")] = 120.0,
-    force: Annotated[bool, typer.Option("--force", help="Let --apply replace a file, as the model.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Let --apply replace a file that is there, even the model.")
+    ] = False,
 ) -> None:
     """Check a model of your own against ideal joints: how wrong your settings are, why, and which are enough.
 
@@ -129,14 +131,15 @@ def _refuse_bad(
     if step is not None and not 0 < step <= duration:
         raise BadInput(f"--step is {step:g}; it must be greater than zero and at most the duration, {duration:g}")
     given = {f"--{name}": path for name, path in files.items() if path is not None}
+    own = {Path(word).resolve() for word in (model, model.rpartition(":")[0])}
     for name, path in given.items():
         if not path.name or path.is_dir():
             raise BadInput(f"{name} is {str(path)!r}, which is a folder; give a file")
-        if name != "--apply" and path.absolute() in {Path(model).absolute(), Path(model.rpartition(":")[0]).absolute()}:
+        if name != "--apply" and path.resolve() in own:
             raise BadInput(f"{name} is {str(path)!r}, which is the model; give another file")
     if "--apply" in given:  # reports are written again, as those of pytest are
         refuse_existing([given["--apply"]], "--apply", force)
-    if len({path.absolute() for path in given.values()}) < len(given):
+    if len({path.resolve() for path in given.values()}) < len(given):
         raise BadInput(f"{' and '.join(given)} name one file twice; give each a file of its own")
 
 

@@ -143,7 +143,7 @@ STEP = 0.01  # of the mechanism's own time scale
 STEPS = 5  # after which the second instant lies: at the first one every coordinate of the tree is zero
 # Rounding, and what it becomes where a model is hardened: the primal solver adds J^T J / R to the inertia.
 LAW, ROUNDED = 1e-9, 1e-14
-LOST = 0.1  # of the fastest velocity: a method that misses more has lost the motion
+LOST_SPEED = 0.1  # of the fastest velocity: a method that misses more has lost the motion
 
 
 def bound(engine: MuJoCo) -> float:
@@ -217,7 +217,7 @@ def _refuse_what_is_huge(
         off = max(difference(mechanism, *each, (size,)) for each in zip(run.twist, motion.twist, strict=True))
     except ValueError:  # it goes where curves can't touch
         off = math.inf
-    if off >= LOST:
+    if off >= LOST_SPEED:
         raise NotAsked("steps are too long for what happens soon after the start: a textbook method loses it too")
 
 
