@@ -29,12 +29,11 @@ publish: .venv/installed-mjx     ## for maintainers: all engines and releases, i
 slow: .venv/installed            ## the tests that take minutes each: all bad arguments, 200 kills, every wrong model
 	$(BIN)/python -m pytest $(WORKERS) -m slow
 
-check: .venv/installed-develop   ## style, types, layers; and warnings about the words of pages
+check: .venv/installed-develop   ## style, types, layers
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright
 	$(BIN)/lint-imports
-	$(BIN)/python -m tests.tools.prose
 
 bench: .venv/installed-bench     ## what stepping costs beside the bare loops, and the site
 	$(BIN)/crosscheck site

@@ -273,7 +273,7 @@ def ended(words, **streams):
 def test_a_full_disk_behind_a_pipe_s_place_is_one_line_and_a_closed_one_none():
     if not Path("/dev/full").is_char_device():
         pytest.skip("/dev/full is there on Linux alone")
-    with open("/dev/full", "w") as full:
+    with open("/dev/full", "w", encoding="utf-8") as full:
         for words in (["errata", "1"], ["--help"]):
             process = ended(words, stdout=full, stderr=subprocess.PIPE)
             assert process.returncode == REFUSED

@@ -21,7 +21,7 @@ FINDINGS = sorted(FOLDER.glob("*.json"))
 
 @pytest.mark.parametrize("path", FINDINGS, ids=lambda path: path.stem)
 def test_a_finding_is_as_it_was_written_down(path: Path) -> None:
-    finding: dict[str, Any] = json.loads(path.read_text())
+    finding: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     assert finding["reason"].startswith(("upstream: ", "ours: "))
     subject = next(each for each in known_subjects(['["mujoco alone"]']) if each.name == finding["subject"])
     told = replayed(finding, subject)

@@ -309,7 +309,7 @@ def test_a_check_that_never_ends_fails_in_the_mechanism_in_which_it_was(monkeypa
         if question.check == "does_not_wrap_angles":
             return Loss(Outcome.LOST, "killed from outside with signal 9 (SIGKILL)"), ""
         number = min(1, sum(case.check.name == question.check for case in cases(LEAPFROG)) - 1)
-        Path(question.notes, question.check).write_text(str(number))
+        Path(question.notes, question.check).write_text(str(number), encoding="utf-8")
         return Loss(Outcome.TIMED_OUT, "did not end within 60 s of CPU time"), ""
 
     found = answered(monkeypatch, hanging)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import os
 import shutil
 import subprocess
@@ -13,8 +12,6 @@ import pytest
 
 from tests import ROOT
 from tests.tools.lower_bounds import PYPROJECT, lower_bounds
-
-SOURCES = [path for folder in ("reference", "engines", "reports") for path in sorted((ROOT / folder).rglob("*.py"))]
 
 # A script whose workers import it again before anything else, so that the same is hidden there.
 WITHOUT = """
@@ -70,47 +67,6 @@ def test_without_fork_server_timers_and_most_signals_cells_end_in_the_same_outco
         "spin: timed out, did not end within 2 s of CPU time",
     ]
     assert sorted(path.name for path in folder.iterdir()) == ["cells.sqlite", "script.py", "truths"]
-
-
-def test_text_files_are_opened_with_their_encoding():
-    found = {path: unnamed_encodings(path.read_text(encoding="utf-8")) for path in SOURCES}
-    assert {path: lines for path, lines in found.items() if lines} == {}
-    assert len(found) > 100
-
-
-def unnamed_encodings(source: str) -> list[int]:
-    """The lines that read or write a text in whatever encoding the machine has."""
-    lines = []
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Call):
-            name = getattr(node.func, "attr", getattr(node.func, "id", ""))
-            words = {word.arg for word in node.keywords}
-            given = (*node.args, *(word.value for word in node.keywords))
-            binary = any("b" in ast.literal_eval(argument) for argument in given if is_mode(argument))
-            of_system = isinstance(node.func, ast.Attribute) and getattr(node.func.value, "id", "") == "os"
-            if name in ("open", "fdopen", "read_text", "write_text") and not (
-                binary or of_system or "encoding" in words
-            ):
-                lines.append(node.lineno)
-    return lines
-
-
-def is_mode(node: ast.expr) -> bool:
-    return isinstance(node, ast.Constant) and isinstance(node.value, str) and set(node.value) <= set("rwxabt+")
-
-
-@pytest.mark.parametrize(
-    ("line", "found"),
-    [
-        ("path.write_text(text, newline='')", [1]),
-        ("open(path, 'w')", [1]),
-        ("path.read_text(encoding='utf-8')", []),
-        ("path.open(mode='wb')", []),
-        ("os.open(path, os.O_RDONLY)", []),
-    ],
-)
-def test_a_text_file_of_the_machine_s_encoding_is_found(line, found):
-    assert unnamed_encodings(line) == found
 
 
 def test_every_dependency_has_a_lower_bound_that_can_be_tried():

@@ -66,7 +66,7 @@ class _Writer:
     """A plugin of pytest: tells at once which tests ran and which failed."""
 
     def __init__(self, path: Path) -> None:
-        self.file = path.open("a", buffering=1)
+        self.file = path.open("a", encoding="utf-8", buffering=1)
 
     def pytest_runtest_logreport(self, report: Any) -> None:
         if report.when == "call" or report.failed:
@@ -167,7 +167,7 @@ def _kill(process: int, wait: bool) -> None:
 
 
 def _answer(told: Path, status: int | None, question: Question, seconds: float) -> Answer:
-    rows = [json.loads(row) for row in told.read_text().splitlines()]
+    rows = [json.loads(row) for row in told.read_text(encoding="utf-8").splitlines()]
     shutil.rmtree(told.parent, ignore_errors=True)
     end = f"no end within {question.limit:g} s" if status is None else ""
     if status is not None and os.waitstatus_to_exitcode(status) not in (0, 1, 5) and not any(row[1] for row in rows):
