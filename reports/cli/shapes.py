@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from reference.chapter.shapes import Shapes
 
 KINDS = ("csv", "svg", "dxf")
+USUAL = ("csv", "svg")  # dxf needs a package that an installation has only with the extra `dxf`
 MOST_POINTS = 1_000_000  # far more than a workshop can cut, far less than memory can hold
 MOST_BYTES = 2**27  # of the table of poses, a hundred for each of a million
 # Of the shapes' size: above this the table is too coarse for what it describes, and the user must know.
@@ -24,19 +26,26 @@ COARSE = 1e-3
 
 def shapes(
     motion: Annotated[Path, typer.Argument(help="CSV of poses with the columns t, x, y, angle (s, m, m, rad).")],
-    folder: Annotated[Path, typer.Option(help="Where MOTION_shapes.csv, .svg and .dxf are written.")] = Path(),
+    folder: Annotated[Path, typer.Option(help="Where MOTION_shapes.csv, .svg or .dxf are written.")] = Path(),
     points: Annotated[int, typer.Option(help="Points of each shape.")] = 400,
-    kind: Annotated[list[str] | None, typer.Option(help="Only this kind of file: csv, svg, dxf (repeatable).")] = None,
+    kind: Annotated[
+        list[str] | None,
+        typer.Option(help="Kind of file: csv, svg, dxf (repeatable; csv and svg if none is named)."),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace files that are there.")] = False,
 ) -> None:
     """Write the two shapes that generate a motion when the one rolls on the other.
 
     They are the curves of the instant centre of the poses in MOTION.csv (its centrodes), in space and in the body.
     """
-    kinds = dict.fromkeys(kind or KINDS)
+    kinds = dict.fromkeys(kind or USUAL)
     for word in kinds:
         if word not in KINDS:
             raise BadInput(f"--kind is {word!r}; there are {', '.join(KINDS)}")
+    if "dxf" in kinds and find_spec("ezdxf") is None:
+        raise BadInput(
+            "--kind dxf needs the package ezdxf, which is not installed: pip install 'planar-crosscheck[dxf]'"
+        )
     if not 2 <= points <= MOST_POINTS:
         raise BadInput(f"--points is {points}; give from 2 to {MOST_POINTS}")
     targets = {name: folder / f"{motion.stem}_shapes.{name}" for name in kinds}

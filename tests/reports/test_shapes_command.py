@@ -20,6 +20,7 @@ from reports.write.templates import TEMPLATES
 from tests.reports.test_command_line import call
 
 HEADER = "t,x,y,angle"
+EVERY_KIND = ("--kind", "csv", "--kind", "svg", "--kind", "dxf")
 
 
 def ladder(count=101, low=0.2, high=1.3):
@@ -35,7 +36,7 @@ def as_text(table, header=HEADER):
 def test_a_ladders_shapes_are_cardans_circles_in_every_kind_of_file(tmp_path, capfd):
     motion = tmp_path / "ladder.csv"
     motion.write_text(as_text(ladder()))
-    assert call("shapes", motion, "--folder", tmp_path / "new" / "folder", "--points", 50) == 0
+    assert call("shapes", motion, "--folder", tmp_path / "new" / "folder", "--points", 50, *EVERY_KIND) == 0
     folder = tmp_path / "new" / "folder"
     assert {path.name for path in folder.iterdir()} == {f"ladder_shapes.{kind}" for kind in ("csv", "svg", "dxf")}
     rows = list(csv.DictReader(io.StringIO((folder / "ladder_shapes.csv").read_text())))
@@ -63,13 +64,13 @@ def test_files_that_are_there_stay_unless_forced_and_links_are_not_followed(tmp_
     (tmp_path / "dangling").mkdir()
     (tmp_path / "dangling" / "ladder_shapes.dxf").symlink_to(tmp_path / "nowhere")
     for name in ("there", "linked", "dangling"):
-        assert call("shapes", motion, "--folder", tmp_path / name) == 2
+        assert call("shapes", motion, "--folder", tmp_path / name, *EVERY_KIND) == 2
         out, err = capfd.readouterr()
         assert out == ""
         assert "--force" in err
         assert len(list((tmp_path / name).iterdir())) == 1
     for name in ("there", "linked", "dangling"):
-        assert call("shapes", motion, "--folder", tmp_path / name, "--force") == 0
+        assert call("shapes", motion, "--folder", tmp_path / name, "--force", *EVERY_KIND) == 0
         written = list((tmp_path / name).iterdir())
         assert len(written) == 3
         assert not any(path.is_symlink() for path in written)
@@ -86,6 +87,19 @@ def test_a_coarse_table_is_said_to_be_coarse_and_a_fine_one_is_not(tmp_path, cap
         (tmp_path / "motion.csv").write_text(as_text(table))
         assert call("shapes", tmp_path / "motion.csv", "--folder", tmp_path, "--force") == 0
         assert ("too far apart" in capfd.readouterr().out) is coarse
+
+
+def test_dxf_is_no_default_and_without_its_package_it_is_refused_before_anything_is_written(
+    tmp_path, monkeypatch, capfd
+):
+    motion = tmp_path / "ladder.csv"
+    motion.write_text(as_text(ladder()))
+    monkeypatch.setitem(sys.modules, "ezdxf", None)
+    assert call("shapes", motion, "--folder", tmp_path / "out", *EVERY_KIND) == 2
+    assert "planar-crosscheck[dxf]" in capfd.readouterr().err
+    assert not (tmp_path / "out").exists()
+    assert call("shapes", motion, "--folder", tmp_path / "out") == 0
+    assert {path.suffix for path in (tmp_path / "out").iterdir()} == {".csv", ".svg"}
 
 
 def altered(row, column, value):
@@ -169,5 +183,5 @@ def test_the_pages_example_runs_as_it_stands(tmp_path, monkeypatch, capfd):
     runpy.run_path("coupler.py")
     words = shlex.split(next(line for line in shell.splitlines() if line.startswith("crosscheck ")))[1:]
     assert call(*words) == 0
-    assert {"coupler_shapes.csv", "coupler_shapes.svg", "coupler_shapes.dxf"} <= {p.name for p in Path().iterdir()}
+    assert {"coupler_shapes.svg", "coupler_shapes.dxf"} <= {p.name for p in Path().iterdir()}
     assert "gives the motion back" in capfd.readouterr().out
