@@ -29,6 +29,19 @@ GRID = "reports.gate.grid_tests"
 PLUGIN = "reports.gate.pytest_plugin"
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "crosscheck: every scene in every engine variant, against the truth (minutes)")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Deselect the grid unless `-m crosscheck` names it: its options and fixtures exist only then."""
+    if config.pluginmanager.has_plugin(PLUGIN):
+        return
+    grid = [item for item in items if item.get_closest_marker("crosscheck")]
+    config.hook.pytest_deselected(items=grid)
+    items[:] = [item for item in items if item not in grid]
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Parser, args: list[str]) -> None:
     """`-m crosscheck` brings the grid's options, and the grid where no tests are named. In the checkout it is there."""

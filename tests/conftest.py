@@ -1,4 +1,4 @@
-"""The grid's options and its table, from the package, so that an installed copy has them too."""
+"""Options and hooks of the whole test suite. The grid's own plugin is loaded by `-m crosscheck` alone."""
 
 import os
 import signal
@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-pytest_plugins = ["planar_crosscheck_pytest", "reports.gate.pytest_plugin", "pytester"]
+pytest_plugins = ["pytester"]
 
 # A shell that starts the tests in the background has them ignore Ctrl-C, and the programs that they start inherit it.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:

@@ -55,11 +55,13 @@ class Old:
 
 @dataclass(frozen=True)
 class Baseline:
-    """The cells of an earlier run, the versions it was made with ("" where nobody says), and the folder it lies in."""
+    """The cells of an earlier run, the versions it was made with ("" if unknown), the folder of the file, and the
+    quantities for which the file has no column, since the suite measured fewer quantities then."""
 
     cells: Mapping[Identity, Old]
     versions: str = ""
     folder: Path | None = None
+    unmeasured: tuple[str, ...] = ()
 
     @property
     def same_versions(self) -> bool:
@@ -115,18 +117,21 @@ def _seconds_beside(path: Path) -> dict[Identity, float]:
 
 
 def read_baseline(path: Path) -> Baseline:
-    """Read an errors.csv. Raises BadBaseline, in one line, for a file that is not there or is none."""
+    """Read an errors.csv. Raises BadBaseline, in one line, for a missing file or one of another kind.
+
+    A quantity without a column is not compared; `Baseline.unmeasured` names it.
+    """
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not text"
         raise BadBaseline(f"baseline {path}: {reason}; give the errors.csv of a run") from None
     _, rows = read_lines(text)
-    errors = tuple(q.name for q in QUANTITIES)
-    needed = {*IDENTITY, "purpose", "outcome", "reaction_rows", *errors}
-    missing = sorted(needed - set(rows[0] if rows else ()))
+    columns = set(rows[0] if rows else ())
+    missing = sorted({*IDENTITY, "purpose", "outcome", "reaction_rows"} - columns)
     if missing:
         raise BadBaseline(f"baseline {path}: it has no column {missing[0]!r}; give the errors.csv of a run")
+    errors = tuple(q.name for q in QUANTITIES if q.name in columns)
     seconds = _seconds_beside(path)
     cells: dict[Identity, Old] = {}
     for number, row in enumerate(rows, start=1):
@@ -141,7 +146,8 @@ def read_baseline(path: Path) -> Baseline:
             raise BadBaseline(
                 f"baseline {path}: row {number} is damaged ({row['scene']}); give an errors.csv"
             ) from None
-    return Baseline(cells, versions_beside(path), path.parent)
+    unmeasured = tuple(q.name for q in QUANTITIES if q.name not in columns)
+    return Baseline(cells, versions_beside(path), path.parent, unmeasured)
 
 
 # Roundings that are tried.

@@ -25,7 +25,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         test_a_method_is_as_exact_as_theory_promises,
         test_a_method_gives_the_numbers_of_the_baseline,
     ):
-        given = metafunc.config.stash[GIVEN]
+        given = metafunc.config.stash.get(GIVEN, ())
         found = cases(with_engines(PAGES, given)) if given else GRID
         metafunc.parametrize("case", [pytest.param(case, id=case.label) for case in found])
 

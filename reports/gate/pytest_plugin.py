@@ -74,6 +74,7 @@ def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
     """Sentences on the baseline: its versions if they differ, what changed then, what is dear, and cells it lacks."""
     verdicts = tuple(verdicts)
     out = [told] if (told := mixed(baseline)) else []
+    out += [f"The baseline has no column {name!r}: this quantity is not compared." for name in baseline.unmeasured]
     if not baseline.same_versions:
         out.append(f"The baseline was made with {baseline.versions}; here are {versions()}.")
         for verdict in verdicts:
@@ -147,7 +148,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Bad files are one line, before anything is run."""
-    config.addinivalue_line("markers", "crosscheck: every scene in every engine variant, against the truth (minutes)")
     try:
         config.stash[KNOWN] = read_baseline(_option(config, "--baseline"))
     except BadBaseline as error:

@@ -278,6 +278,17 @@ def test_a_file_that_is_no_baseline_is_one_line(tmp_path, text):
     assert "\n" not in str(told.value)
 
 
+def test_a_baseline_without_the_column_of_a_quantity_is_a_sentence_and_the_others_are_compared(tmp_path):
+    lines = as_csv([row()], timings=False).splitlines()
+    column = lines[0].split(",").index("reaction")
+    text = "\n".join(",".join(cell for i, cell in enumerate(line.split(",")) if i != column) for line in lines)
+    (tmp_path / "errors.csv").write_text(text)
+    baseline = read_baseline(tmp_path / "errors.csv")
+    (known,) = baseline.cells.values()
+    assert set(known.errors) == set(NAMES) - {"reaction"}
+    assert [line for line in changes([], baseline) if "no column 'reaction'" in line]
+
+
 def test_a_nudged_mechanism_is_another_rounding_of_all_that_enters_and_the_same_for_a_seed():
     mechanism = DrivenFourBar().mechanism()
     found = [Nudge(seed)(mechanism) for seed in range(20)]
