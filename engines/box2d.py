@@ -47,9 +47,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from engines.capability import Capability
 from engines.contract import Holder, Promise, Size, Unpromised, Unsupported
 from engines.motions import over_three
-from engines.single_run import Optional, Recorded, SingleRun, differences, refuse_lacking, unwrapped
+from engines.single_run import Optional, Recorded, SingleRun, differences, unwrapped
 from reference.checks import Count, Name, NonNegative, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -65,11 +66,16 @@ FORCES_COST = 150e-6  # s, of force elements, which are worked out by numpy
 # Of its points' frequency: a weld joint's spring that keeps it from turning in no number of steps; 0 is the stiffest.
 SLACK = 4e-9
 JOINTS = "https://box2d.org/documentation/group__joint.html"  # all that there are
-LACKS = {
-    Gear: f"box2d has no gears since version 3 ({JOINTS})",
-    Skate: f"box2d has no joint for a velocity across a blade alone: those for lines hold a place on them ({JOINTS})",
-    Roll: "in box2d a disc rolls by contact and friction, and our adapter builds no contact",
-}
+CAPABILITY = Capability(
+    "box2d",
+    frozenset({Pin, Slot, Drive, Rod, Weld}),
+    lacks={
+        Gear: f"box2d has no gears since version 3 ({JOINTS})",
+        Skate: "box2d has no joint for a velocity across a blade alone: those for lines hold a place on them "
+        f"({JOINTS})",
+        Roll: "in box2d a disc rolls by contact and friction, and our adapter builds no contact",
+    },
+)
 
 
 @dataclass(frozen=True)
@@ -109,7 +115,7 @@ class Box2D(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A world for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_lacking(mechanism, LACKS)
+        CAPABILITY.require(mechanism)
         self.require()
         world = _World(mechanism, self.closing * self.substeps / dt)
         return SingleRun(

@@ -36,10 +36,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from engines.capability import Capability
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, refuse_lacking, tree_states
+from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, tree_states
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.checks import Count, Fraction, Name, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
@@ -55,11 +56,15 @@ SHIPPED_ITERATIONS, SHIPPED_ERP = 50, 0.2
 NOTHING = float(np.finfo(float).eps)  # kg or kg m^2: SIMD_EPSILON, below which the inverse of an inertia is zero
 UNMOVED = "ours: unresolved from 0 s on, bullet takes an inertia below 2.2e-16 for none and moves it by no force"
 UNTURNED = "ours: unresolved from 0 s on, a motor of bullet does nothing to an inertia above 4.5e15"
-LACKS = {
-    Rod: "our adapter of bullet builds no distance between points",
-    Skate: "bullet stops slip by friction at a contact, and our adapter builds no contact",
-    Roll: "in bullet a disc rolls by contact and friction, and our adapter builds no contact",
-}
+CAPABILITY = Capability(
+    "bullet",
+    frozenset({Pin, Slot, Drive, Gear, Weld}),
+    lacks={
+        Rod: "our adapter of bullet builds no distance between points",
+        Skate: "bullet stops slip by friction at a contact, and our adapter builds no contact",
+        Roll: "in bullet a disc rolls by contact and friction, and our adapter builds no contact",
+    },
+)
 
 
 @dataclass(frozen=True)
@@ -110,7 +115,7 @@ class Bullet(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_lacking(mechanism, LACKS)
+        CAPABILITY.require(mechanism)
         tree = spanning_tree(mechanism)
         drives = _refused(mechanism, tree)
         self.require()

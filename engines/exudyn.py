@@ -42,6 +42,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from engines.capability import Capability
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.lagrange.dynamics import Dynamics
@@ -59,6 +60,11 @@ AXIS = [0.0, 0.0, 1.0]  # out of the plane
 DISC = 0.1  # the radius of a skate's disc, which stands on edge
 BELOW = "ours: unresolved from 0 s on, a light body's forces are below what is resolved of the largest"
 STEP_COST = 19e-6  # s, with three bodies
+CAPABILITY = Capability(
+    "exudyn",
+    frozenset({Pin, Weld, Gear, Rod, Slot, Drive, Skate, Roll}),
+    frozenset({Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}),
+)
 
 
 @dataclass(frozen=True)
@@ -114,6 +120,7 @@ class Exudyn(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A system for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
+        CAPABILITY.require(mechanism)
         self.require()
         length, mass, seconds = 1.0, 1.0, 1.0
         if self.own_units:

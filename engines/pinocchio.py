@@ -37,9 +37,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from engines.capability import Capability
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.single_run import Optional, Recorded, SingleRun, refuse_lacking, tree_states
+from engines.single_run import Optional, Recorded, SingleRun, tree_states
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.checks import Name, NonNegative, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
@@ -53,12 +54,16 @@ Integrator = Literal["euler", "rk4"]
 REGULARISATION, ACCURACY, ITERATIONS = 1e-10, 1e-14, 20
 EVALUATION_COST = 6e-6  # s, with three bodies
 FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
-LACKS = {
-    Rod: "our adapter of pinocchio holds points and frames together, and no distance between points",
-    Gear: "our adapter calls constraintDynamics, which refuses pinocchio's JointModelMimic",
-    Skate: "our adapter of pinocchio holds whole points, and no velocity across a blade",
-    Roll: "our adapter of pinocchio builds no contact",
-}
+CAPABILITY = Capability(
+    "pinocchio",
+    frozenset({Pin, Slot, Drive, Weld}),
+    lacks={
+        Rod: "our adapter of pinocchio holds points and frames together, and no distance between points",
+        Gear: "our adapter calls constraintDynamics, which refuses pinocchio's JointModelMimic",
+        Skate: "our adapter of pinocchio holds whole points, and no velocity across a blade",
+        Roll: "our adapter of pinocchio builds no contact",
+    },
+)
 
 
 @dataclass(frozen=True)
@@ -104,7 +109,7 @@ class Pinocchio(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_lacking(mechanism, LACKS)
+        CAPABILITY.require(mechanism)
         tree = spanning_tree(mechanism)
         refuse_slots_in_loops(tree, "pinocchio")
         self.require()

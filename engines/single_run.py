@@ -6,7 +6,7 @@ import ctypes
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -67,13 +67,6 @@ class Optional(Engine, Valid):
         """Raises Unsupported with the sentence where the package is missing."""
         if self.missing:
             raise Unsupported(self.missing)
-
-
-def refuse_lacking(mechanism: Mechanism, lacks: Mapping[type, str]) -> None:
-    """Raises Unsupported for a joint of these kinds; `lacks`: by kind, a clause that says what the engine has not."""
-    for joint in mechanism.joints:
-        if type(joint) in lacks:
-            raise Unsupported(f"joint {joint.name!r}: {lacks[type(joint)]}")
 
 
 @contextmanager

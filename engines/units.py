@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import assert_never
 
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive
@@ -46,3 +47,5 @@ def _counted(force: ForceElement, mass: float, time: float) -> ForceElement:
         case Force():
             x, y = force.force
             return replace(force, force=(x / mass * time**2, y / mass * time**2))
+        case _:
+            assert_never(force)

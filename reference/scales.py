@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from typing import assert_never
 
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Body, Drive, Joint, Rod, Roll, Vector
@@ -78,6 +79,8 @@ def _rate(force: ForceElement, length: float, bodies: Mapping[str, Body]) -> flo
             return math.sqrt(abs(force.torque) * turning)
         case Force():
             return math.sqrt(math.hypot(*force.force) * light / length)
+        case _:
+            assert_never(force)
 
 
 def _ends(force: ForceElement) -> tuple[tuple[str | None, Vector], tuple[str | None, Vector]]:

@@ -19,6 +19,8 @@ from engines.lagrange.arrays import (
     CONTROL,
     DAMPING,
     DEPENDENT,
+    FORCE_KINDS,
+    KINDS,
     LACKING,
     MARCH,
     NOT_TABULATED,
@@ -130,7 +132,11 @@ class Machine:
 
     @classmethod
     def of(cls, mechanism: Mechanism) -> Machine | None:
-        """None for a pair of curves that no table holds: only the reference's own contacts will do there."""
+        """None where numpy has to evaluate the reference's own laws: for a pair of curves that no table holds, and for
+        a kind of joint or force that machine code does not know.
+        """
+        if not {*map(type, mechanism.joints)} <= {*KINDS} or not {*map(type, mechanism.forces)} <= {*FORCE_KINDS}:
+            return None
         arrays = arrays_of(mechanism)
         rolls = [joint.rolling for joint in mechanism.joints if isinstance(joint, Roll)]
         records = arrays.rolls

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Unsupported
+from engines.capability import Capability
 from engines.mujoco.construction import Building, Hooks
 from engines.mujoco.forces import add_forces
 from engines.mujoco.joints.drive import DriveBy, DrivenCoordinate, add_drives, add_geared_drives, driven_coordinates
@@ -28,11 +29,17 @@ from engines.mujoco.stiffness import Stiffness
 from engines.mujoco.written_model import Written, new_specification
 from engines.tree import Tree, spanning_tree
 from engines.units import counted_in, power_of_two
+from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
 Coordinates = Literal["tree", "free"]
+CAPABILITY = Capability(
+    "mujoco",
+    frozenset({Pin, Weld, Gear, Rod, Slot, Drive, Skate, Roll}),
+    frozenset({Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}),
+)
 LIGHTEST = 1e13  # units of mass in which a body's own mass and inertia are still far above mjMINVAL
 
 
@@ -117,11 +124,9 @@ class Model:
 
 def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
+    CAPABILITY.require(mechanism)
     whole, unit = mechanism, 1.0 if settings.as_text else settings.unit or unit_of_mass(mechanism)
     mechanism = counted_in(mechanism, unit)
-    for joint in mechanism.joints:
-        if not isinstance(joint, Pin | Slot | Weld | Rod | Gear | Drive | Skate | Roll):
-            raise Unsupported(f"joint {joint.name!r} is a {type(joint).__name__}; MuJoCo has no such joint")
 
     def of(kind: type[Any]) -> list[Any]:
         return [joint for joint in mechanism.joints if isinstance(joint, kind)]

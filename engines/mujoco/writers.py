@@ -15,8 +15,10 @@ from typing import Any
 from xml.etree import ElementTree as xml
 
 from engines import Unsupported
+from engines.capability import Capability
 from engines.mujoco.methods import VARIANTS
 from engines.tree import Link, spanning_tree
+from reference.joints import Drive, Pin, Slot, Weld
 from reference.mechanism import Mechanism
 
 
@@ -71,21 +73,18 @@ def show(text: str) -> None:
 
 
 MJCF, URDF = Mjcf(), Urdf()
+IN_URDF = Capability("URDF", frozenset({Pin, Slot, Weld, Drive}), frozenset())
 
 
 def urdf(mechanism: Mechanism) -> str:
     """The file's text. Raises Unsupported for loops, free bodies, prescribed motions, and forces."""
+    IN_URDF.require(mechanism)
     tree = spanning_tree(mechanism)
-    for joint in (
-        *tree.loops,
-        *(each for each in mechanism.joints if type(each).__name__ in ("Rod", "Gear", "Skate", "Roll")),
-    ):
-        raise Unsupported(f"joint {joint.name!r} closes a loop or is none of a tree; URDF has neither")
-    driven = [joint for joint in mechanism.joints if type(joint).__name__ == "Drive" and joint not in tree.kept]
-    if driven:
-        raise Unsupported(f"drive {driven[0].name!r} prescribes a motion, which URDF has no word for")
-    if mechanism.forces:
-        raise Unsupported(f"force {mechanism.forces[0].name!r}: URDF has no springs and no applied forces")
+    for joint in tree.loops:
+        raise Unsupported(f"joint {joint.name!r} closes a loop, which a URDF can't hold")
+    for joint in mechanism.joints:
+        if isinstance(joint, Drive) and joint not in tree.kept:
+            raise Unsupported(f"drive {joint.name!r} prescribes a motion, which URDF has no word for")
     root = xml.Element("robot", {"name": "crosscheck"})
     xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _row(*_upright(*mechanism.gravity))})
     if mechanism.twist.any():

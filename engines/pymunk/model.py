@@ -13,16 +13,23 @@ from pymunk._chipmunk_cffi import lib
 from pymunk.constraints import Constraint, GearJoint, GrooveJoint, PinJoint, PivotJoint, SimpleMotor
 
 from engines import Size, Unsupported
+from engines.capability import Capability
 from engines.pymunk.forces import applied, spring
 from engines.pymunk.joints.drive import crank_body, find_cranks, find_turned, motor, turned_body
 from engines.pymunk.joints.pin import gear, pin, rod, weld
 from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, extent_of, touching
 from engines.pymunk.joints.skate import SkateConstruction, blade
 from engines.pymunk.joints.slot import SlotConstruction, slide
+from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
+CAPABILITY = Capability(
+    "pymunk",
+    frozenset({Pin, Weld, Gear, Rod, Slot, Drive, Skate, Roll}),
+    frozenset({Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}),
+)
 # Scalar constraints of each kind of pymunk constraint; its solver has no others.
 ROWS = {PivotJoint: 2, SimpleMotor: 1, GrooveJoint: 1, PinJoint: 1, GearJoint: 1}
 
@@ -103,6 +110,7 @@ def _stay(body: pymunk.Body, dt: float) -> None:
 
 def build_model(mechanism: Mechanism, settings: Settings) -> Model:
     """The mechanism at t = 0; raises Unsupported."""
+    CAPABILITY.require(mechanism)
     return _Builder(mechanism, settings).model()
 
 
@@ -209,8 +217,6 @@ class _Builder:
                 return constraints
             case Roll():
                 return self._roll(joint, first, second)
-            case _:
-                raise Unsupported(f"joint {joint.name!r}: pymunk has no construction for a {type(joint).__name__} here")
 
     def _roll(self, joint: Roll, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
         if self.settings.roll != "contact":

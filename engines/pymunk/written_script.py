@@ -72,7 +72,7 @@ def script(engine: Any, mechanism: Mechanism, dt: float) -> str:
         if isinstance(joint, Roll | Skate):
             what = "a roll is a contact of shapes there" if isinstance(joint, Roll) else "nothing holds a skate there"
             raise Unsupported(f"joint {joint.name!r}: pymunk has no such joint, {what}; a script would be no mechanism")
-    steady = tuple(force for force in mechanism.forces if isinstance(force, Force | Torque))
+    steady = tuple(force for force in mechanism.forces if type(force) is Force or type(force) is Torque)
     model = engine.model(replace(mechanism, forces=tuple(each for each in mechanism.forces if each not in steady)), dt)
     if model.aims or model.repairs or engine.leapfrog:
         raise Unsupported("this variant needs code of ours before or after every step; its script would not be its own")
