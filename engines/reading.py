@@ -96,8 +96,13 @@ class OwnModel(Protocol):
         """Whether that law lets some joints give way."""
         ...
 
+    @property
+    def own_twist(self) -> Array:
+        """The user's velocities at t = 0 (bodies, 3) [m/s, rad/s], which the mechanism's joints may not allow."""
+        ...
+
     def start(self) -> Array:
-        """The engine's accelerations at t = 0 (bodies, 3) [m/s^2, rad/s^2]."""
+        """The engine's accelerations at t = 0 (bodies, 3) [m/s^2, rad/s^2], at the mechanism's velocities."""
         ...
 
     def give(self, gap: Array) -> Give:

@@ -226,7 +226,7 @@ def parts_of(
     declared, softness = truth.pose, 0.0 if model.declares else float("nan")
     early = truth.t <= horizon
     if model.declares and model.softly_held:
-        declared = soft_motion(mechanism, model.give, truth.t, tolerance)
+        declared = soft_motion(mechanism, model.give, truth.t, tolerance, model.own_twist)
         softness = _largest(apart(mechanism, declared, truth.pose)[early])
     left = [_largest(apart(mechanism, run.pose, declared)[early]) for run in (own, *(each.run for each in smaller))]
     if not smaller:

@@ -50,9 +50,16 @@ def accelerations(mechanism: Mechanism, pose: Array, twist: Array, t: float, giv
     return (free + inverse * (rows.T @ solve_symmetric(matrix, right))).reshape(-1, 3)
 
 
-def soft_motion(mechanism: Mechanism, give: Callable[[Array], Give], t: Array, tolerance: float = TOLERANCE) -> Array:
+def soft_motion(
+    mechanism: Mechanism,
+    give: Callable[[Array], Give],
+    t: Array,
+    tolerance: float = TOLERANCE,
+    twist: Array | None = None,
+) -> Array:
     """Poses (times, bodies, 3) of joints that give way; NaN from where the equations are not solved.
 
+    twist (bodies, 3) [m/s, rad/s]: velocities at t = 0, the mechanism's unless they are given; soft joints allow any.
     By LSODA: dampers of light bodies, and stiff joints, are much faster than the motion.
     """
     count = mechanism.pose.size
@@ -67,7 +74,7 @@ def soft_motion(mechanism: Mechanism, give: Callable[[Array], Give], t: Array, t
         change = accelerations(mechanism, pose, twist, at, give(gap))
         return np.concatenate([state[count:], change.reshape(-1)])
 
-    start = np.concatenate([mechanism.pose.reshape(-1), mechanism.twist.reshape(-1)])
+    start = np.concatenate([mechanism.pose.reshape(-1), (mechanism.twist if twist is None else twist).reshape(-1)])
     found: Any = solve_ivp(rates, (0.0, float(t[-1])), start, "LSODA", t_eval=t, rtol=tolerance, atol=allowed)
     out = np.full((len(t), *mechanism.pose.shape), np.nan)
     out[: found.y.shape[1]] = found.y[:count].T.reshape(-1, *mechanism.pose.shape)

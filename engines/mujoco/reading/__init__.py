@@ -14,6 +14,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from engines.consistent_start import with_consistent_start
 from engines.mujoco.reading.elements import Scene, drives, equalities, steady, tree_joints
 from engines.mujoco.reading.forces import forces, off, turns
 from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, find_groups, name_of
@@ -24,7 +25,6 @@ from engines.mujoco.reading.settings import switch_off
 from engines.reading import Note, Reading, Source, refuse, refuse_at_start
 from reference.checks import InvalidMechanism
 from reference.forces import Force
-from reference.mechanism import Mechanism
 
 SUFFIXES = (".xml", ".mjcf", ".urdf", ".mjb")
 
@@ -66,7 +66,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     for element in without:
         scene.note(element, "left out at your word, in your model too")
     try:
-        mechanism = Mechanism(bodies, tuple(joints), gravity, (*acting, *weights))
+        mechanism, jumped = with_consistent_start(bodies, joints, gravity, (*acting, *weights))
     except InvalidMechanism as reason:
         if "is open by" not in str(reason):
             raise
@@ -75,7 +75,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     own = OwnMuJoCo(scene, mechanism)
     refuse_at_start(own, mechanism)
     title = model.names[: model.names.find(b"\x00")].decode() if isinstance(model.names, bytes) else ""
-    return Reading(mechanism, own, tuple(scene.notes), title)
+    return Reading(mechanism, own, (*jumped, *scene.notes), title)
 
 
 def read_object(model: Any, without: Sequence[str] = (), step: float | None = None) -> Reading:

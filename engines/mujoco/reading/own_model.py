@@ -67,6 +67,10 @@ class OwnMuJoCo:
         return ("contact", "limit", "frictionloss", "actuation", "spring", "damper", "armature")
 
     @property
+    def own_twist(self) -> Array:
+        return np.array([body.twist for body in self.scene.bodies])
+
+    @property
     def suspects(self) -> Mapping[str, str]:
         return {}
 
@@ -101,7 +105,7 @@ class OwnMuJoCo:
         """With the solver's tolerance at zero: the equations are to be compared, not where a solver stops."""
         model = copy.copy(model)
         model.opt.tolerance, model.opt.iterations = 0.0, max(100, model.opt.iterations)
-        data = self._fresh(model)
+        data = self._started(model)
         with heard():
             mujoco.mj_forward(model, data)
         return self._motion(model, data)[1]
@@ -113,7 +117,7 @@ class OwnMuJoCo:
     def _drift(self) -> Array:
         """Accelerations (3 bodies,) at the start with MuJoCo's coordinates at a steady rate."""
         model = self.scene.model
-        data = self._fresh(model)
+        data = self._started(model)
         mujoco.mj_forward(model, data)
         data.qacc[:] = 0.0
         return self._motion(model, data)[1].reshape(-1)
@@ -187,6 +191,14 @@ class OwnMuJoCo:
         for name in ("qpos", "qvel", "ctrl", "act", "qfrc_applied", "xfrc_applied", "eq_active", "mocap_pos"):
             getattr(data, name)[:] = getattr(given, name)
         data.mocap_quat[:] = given.mocap_quat
+        return data
+
+    def _started(self, model: Any) -> Any:
+        """The same at the velocities of the mechanism, which satisfy all joints."""
+        data = self._fresh(model)
+        mujoco.mj_fwdPosition(model, data)
+        if np.any(self.own_twist != self.mechanism.twist):
+            data.qvel[:] = np.linalg.lstsq(self._directions(data), self.mechanism.twist.reshape(-1), rcond=None)[0]
         return data
 
     def _centres(self, data: Any) -> Array:

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pymunk
 
+from engines.consistent_start import with_consistent_start
 from engines.pymunk.reading.joints import described
 from engines.pymunk.reading.own_model import OwnPymunk, switch_off
 from engines.pymunk.reading.script import made, rewritten
 from engines.reading import Note, Reading, Source, refuse_at_start
 from reference.checks import InvalidMechanism
-from reference.mechanism import Mechanism
 
 USUAL_STEP = 1 / 60  # s: pymunk's own examples'
 
@@ -34,7 +34,7 @@ def read(space: pymunk.Space, step: float | None = None, without: Sequence[str] 
     last = float(space.current_time_step)
     x, y = space.gravity
     try:
-        mechanism = Mechanism(tuple(found.bodies), tuple(found.joints), (float(x), float(y)), tuple(found.forces))
+        mechanism, jumped = with_consistent_start(found.bodies, found.joints, (float(x), float(y)), found.forces)
     except InvalidMechanism as reason:
         if not last:
             raise
@@ -44,7 +44,7 @@ def read(space: pymunk.Space, step: float | None = None, without: Sequence[str] 
     refuse_at_start(own, mechanism)
     if len({shape.body for shape in space.shapes if not shape.sensor}) > 1:
         found.notes.append(Note("contacts", "they are left out, since none is made in the judged motion"))
-    notes = [*found.notes, *(Note(element, "left out at your word, in your model too") for element in without)]
+    notes = [*jumped, *found.notes, *(Note(element, "left out at your word, in your model too") for element in without)]
     return Reading(mechanism, own, tuple(notes))
 
 

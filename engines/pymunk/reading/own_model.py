@@ -83,6 +83,10 @@ class OwnPymunk:
         return ("contact", "limit")
 
     @property
+    def own_twist(self) -> Array:
+        return np.array([body.twist for body in self.described.bodies])
+
+    @property
     def suspects(self) -> Mapping[str, str]:
         return self.described.suspects
 
@@ -116,6 +120,8 @@ class OwnPymunk:
         if element is not None:
             switch_off(space, element)
         space.iterations = max(space.iterations, SWEEPS)
+        for body, (x, y, turn) in zip(bodies, self.mechanism.twist.tolist(), strict=True):
+            body.velocity, body.angular_velocity = (x, y), turn
         self._stepper(space, bodies)(step)
         return (_twists(bodies) - self.mechanism.twist) / step
 

@@ -1,0 +1,118 @@
+"""The velocities with which a motion of ideal joints begins where a user's own do not satisfy them: after an impulse.
+
+A motor that is at rest at t = 0, as in most scripts of games, asks for a velocity that no body has yet. Rigid bodies
+then take up the rate at once. The impulse of ideal joints makes the least of all possible changes, measured as the
+kinetic energy of the change, (v - v0)^T M (v - v0) / 2, subject to J v = rate (Gauss's principle for impulses).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.reading import Note
+from reference.checks import InvalidMechanism
+from reference.forces import ForceElement
+from reference.joints import Body, Joint, Vector
+from reference.mechanism import START_TOLERANCE, Mechanism, open_joint
+from reference.rows import rank
+
+Array = NDArray[np.float64]
+# The least of the rows in a combination that no velocities satisfy: a row with a smaller weight in it is rounding.
+TAKES_PART = 1e-6
+MOST_NAMED = 4
+
+
+class _AnyStart(Mechanism):
+    """A mechanism whose start may break its rows."""
+
+    def _refuse_a_bad_start(self) -> None:
+        pass
+
+
+def with_consistent_start(
+    bodies: Sequence[Body], joints: Sequence[Joint], gravity: Vector, forces: Sequence[ForceElement]
+) -> tuple[Mechanism, tuple[Note, ...]]:
+    """The mechanism of these elements, with velocities that satisfy its rows, and a note if these are not the bodies'.
+
+    Raises InvalidMechanism where a position is open, and where no velocities satisfy all rows.
+    """
+    elements = tuple(joints), gravity, tuple(forces)
+    own = _AnyStart(tuple(bodies), *elements)
+    slip = own.slip(own.pose, own.twist) if joints else np.zeros(0)
+    size = np.asarray(own.length_scale)
+    if not joints or open_joint(own, np.zeros_like(slip), slip, own.pose, own.twist, size) is None:
+        return Mechanism(tuple(bodies), *elements), ()
+    if gap := open_joint(own, own.gap(own.pose, 0.0), np.zeros_like(slip), own.pose, own.twist, size):
+        raise InvalidMechanism(f"mechanism: {gap}")
+    twist = own.twist + _least_change(own, slip)
+    missed = own.slip(own.pose, twist)
+    speed = np.where(own.turning, 1.0, own.length_scale) * float(
+        max(np.abs(own.twist[:, 2]).max(), np.abs(own.twist[:, :2]).max() / size, np.abs(_per_length(own, slip)).max())
+    )
+    if np.any(np.abs(missed) > START_TOLERANCE * speed):
+        raise InvalidMechanism(_contradiction(own, missed))
+    moved = tuple(
+        replace(body, twist=(float(x), float(y), float(turn))) for body, (x, y, turn) in zip(bodies, twist, strict=True)
+    )
+    return Mechanism(moved, *elements), (_note(own, slip, twist),)
+
+
+def _least_change(own: Mechanism, slip: Array) -> Array:
+    """(bodies, 3): M^-1 J^T times the impulses that take away the slip (rows,), in the least squares of M^(-1/2)."""
+    rows, root = own.rows(own.pose), np.sqrt(own.inertias.reshape(-1))
+    matrix = rows / root
+    norm = np.linalg.norm(matrix, axis=1)
+    scale = 1 / np.where(norm > 0, norm, 1.0)
+    left, sizes, right = np.linalg.svd(matrix * scale[:, None], full_matrices=False)
+    # Whether rows depend on one another does not depend on masses.
+    count = rank(rows, own.length_scale)
+    change = np.zeros_like(root)
+    for _ in range(2):  # once more with what rounding has left
+        wanted = -(slip + rows @ change) * scale
+        change += right[:count].T @ (left[:, :count].T @ wanted / sizes[:count]) / root
+    return change.reshape(-1, 3)
+
+
+def _per_length(own: Mechanism, slip: Array) -> Array:
+    """Slips (rows,) as rates [1/s]."""
+    return np.where(own.turning, slip, slip / own.length_scale)
+
+
+def _contradiction(own: Mechanism, missed: Array) -> str:
+    """What is wrong where the rows are still missed by so much (rows,) [m/s, rad/s] at the best velocities."""
+    sizes = np.abs(_per_length(own, missed))
+    joints = [joint.name for joint in own.joints for _ in range(joint.size)]
+    driven = [name for name, rate in zip(joints, own.rate, strict=True) if rate]
+    taking = [name for name, size in zip(joints, sizes, strict=True) if size > TAKES_PART * sizes.max()]
+    names = list(dict.fromkeys(sorted(taking, key=lambda name: name not in driven)))
+    worst = int(np.argmax(sizes))
+    unit = "rad/s" if own.turning[worst] else "m/s"
+    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+    return (
+        f"no velocities satisfy {', '.join(names[:MOST_NAMED])}{more} together: at best {own.row_names[worst]!r} is "
+        f"moving apart at {abs(missed[worst]):.3g} {unit}; change a rate, or leave one of them out"
+    )
+
+
+def _note(own: Mechanism, slip: Array, twist: Array) -> Note:
+    change = twist - own.twist
+    rates = np.abs(_per_length(own, slip))
+    broken = [name for name, rate in zip(own.row_names, rates, strict=True) if rate > TAKES_PART * rates.max()]
+    more = f" and {len(broken) - MOST_NAMED} more rows" if len(broken) > MOST_NAMED else ""
+    energies = 0.5 * np.sum(own.inertias * change**2, axis=1)
+    most = int(np.argmax(energies))
+    before, after = own.twist[most], twist[most]
+    worst = int(np.argmax(rates))
+    unit = "rad/s" if own.turning[worst] else "m/s"
+    return Note(
+        "the start",
+        f"its velocities do not satisfy {', '.join(broken[:MOST_NAMED])}{more} (by {abs(slip[worst]):.3g} {unit}), so "
+        f"the ideal motion begins after the impulse that satisfies all joints with the least change of kinetic energy "
+        f"({energies.sum():.3g} J in the change of velocities): {own.bodies[most].name} changes most, from "
+        f"{np.hypot(*before[:2]):.3g} to {np.hypot(*after[:2]):.3g} m/s and from {before[2]:.3g} to {after[2]:.3g} "
+        f"rad/s; your model is run from the start that it has",
+    )

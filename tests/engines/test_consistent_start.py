@@ -1,0 +1,225 @@
+"""Velocities that no joint allows at t = 0: the motion begins after the least impulse, or one line says why none is."""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import atan2, cos, dist, hypot, sin
+
+import mujoco
+import numpy as np
+import pymunk
+import pytest
+from pymunk.constraints import GearJoint, PivotJoint, SimpleMotor
+from scipy.integrate import solve_ivp
+
+from engines.lagrange import TRUTH
+from engines.mujoco.reading import read as read_mujoco
+from engines.pymunk.reading import read
+from reference.checks import InvalidMechanism
+from reports.check.checked import Plan, check
+from reports.check.judging import refuse_disagreement
+
+STEPPED = 1e-6  # see tests/engines/test_reading_pymunk.py
+
+
+def linkage(*points, ground=(0, 0), gravity=-9.81):
+    """A space of bars, the first pinned to the ground, each to the next; returns it, its bars and its pivots."""
+    space = pymunk.Space()
+    space.gravity = (0, gravity)
+    bars = []
+    for p, q in pairwise(points):
+        bar = pymunk.Body(1.0, dist(p, q) ** 2 / 12)
+        bar.position = (p[0] + q[0]) / 2, (p[1] + q[1]) / 2
+        space.add(bar)
+        bars.append(bar)
+    pivots = [(space.static_body, bars[0], points[0])]
+    pivots += [(a, b, at) for a, b, at in zip(bars, bars[1:], points[1:], strict=False)]
+    if ground is not None:
+        pivots.append((space.static_body, bars[-1], points[-1]))
+    space.add(*[PivotJoint(a, b, at) for a, b, at in pivots])
+    return space, bars, pivots
+
+
+A, B, C, D = (0, 0), (0.0, 0.5), (1.2, 0.9), (1.1, 0.0)
+
+
+def by_kkt(space, bars, pivots, rates):
+    """The velocities (bars, 3) that minimise the kinetic energy of the change, by the KKT matrix of hand-made rows.
+
+    rates: (a, b, factor, rate), of omega_b - factor omega_a = rate; a and b are bars or the ground.
+    """
+    place = {body: 3 * number for number, body in enumerate(bars)}
+    rows, right = [], []
+    for a, b, at in pivots:
+        for axis in (0, 1):
+            row = np.zeros(3 * len(bars))
+            for body, sign in ((a, -1), (b, 1)):
+                if body in place:
+                    arm = np.subtract(at, body.position)
+                    row[place[body] + axis] += sign
+                    row[place[body] + 2] += sign * (arm[0] if axis else -arm[1])
+            rows.append(row)
+            right.append(0.0)
+    for a, b, factor, rate in rates:
+        row = np.zeros(3 * len(bars))
+        for body, share in ((a, -factor), (b, 1.0)):
+            if body in place:
+                row[place[body] + 2] += share
+        rows.append(row)
+        right.append(rate)
+    mass = np.array([value for body in bars for value in (body.mass, body.mass, body.moment)])
+    before = np.array([value for body in bars for value in (*body.velocity, body.angular_velocity)])
+    matrix = np.block([[np.diag(mass), np.transpose(rows)], [np.array(rows), np.zeros((len(rows), len(rows)))]])
+    return np.linalg.lstsq(matrix, np.concatenate([mass * before, right]), rcond=None)[0][: mass.size].reshape(-1, 3)
+
+
+def one_motor():
+    space, bars, pivots = linkage(A, B, C, D)
+    space.add(SimpleMotor(space.static_body, bars[0], -5))
+    return space, bars, pivots, [(None, bars[0], 0, 5.0)]
+
+
+def two_motors_on_a_moving_chain():
+    space, bars, pivots = linkage(A, B, C, (2.0, 0.3), ground=None)
+    bars[2].velocity, bars[2].angular_velocity = (0.3, -0.2), 1.5
+    space.add(SimpleMotor(space.static_body, bars[0], -3), SimpleMotor(bars[0], bars[1], 2))
+    return space, bars, pivots, [(None, bars[0], 0, 3.0), (bars[0], bars[1], 1, -2.0)]
+
+
+def a_motor_and_a_gear():
+    space, bars, pivots = linkage(A, B, C, ground=None)
+    space.add(SimpleMotor(space.static_body, bars[0], 4), GearJoint(bars[0], bars[1], 0.0, 2.0))
+    return space, bars, pivots, [(None, bars[0], 0, -4.0), (bars[0], bars[1], 0.5, 0.0)]
+
+
+def a_motor_twice():
+    space, bars, pivots, rates = one_motor()
+    space.add(SimpleMotor(space.static_body, bars[0], -5), PivotJoint(bars[0], bars[1], B))
+    return space, bars, pivots, rates
+
+
+def pivots_alone():
+    space, bars, pivots = linkage(A, B, C, D)
+    bars[1].velocity, bars[1].angular_velocity = (0.7, 0.1), -2.0
+    return space, bars, pivots, []
+
+
+def a_light_coupler():
+    space, bars, pivots, rates = one_motor()
+    bars[1].mass, bars[1].moment = 0.01, 1e-3
+    return space, bars, pivots, rates
+
+
+STARTS = [one_motor, two_motors_on_a_moving_chain, a_motor_and_a_gear, a_motor_twice, pivots_alone, a_light_coupler]
+
+
+@pytest.mark.parametrize("make", STARTS)
+def test_a_start_that_breaks_rows_becomes_the_nearest_that_does_not_and_is_named(make):
+    space, bars, pivots, rates = make()
+    reading = read(space)
+    wanted = by_kkt(space, bars, pivots, rates)
+    assert reading.mechanism.twist == pytest.approx(wanted, abs=1e-9 * np.abs(wanted).max())
+    assert refuse_disagreement(reading) < STEPPED
+    note = reading.notes[0]
+    assert note.element == "the start"
+    if rates:
+        assert "SimpleMotor 1 torque" in note.reason
+    change = wanted - [(*body.velocity, body.angular_velocity) for body in bars]
+    energy = 0.5 * sum(b.mass * (x * x + y * y) + b.moment * w * w for b, (x, y, w) in zip(bars, change, strict=True))
+    assert f"({energy:.3g} J" in note.reason
+
+
+def test_a_start_that_satisfies_its_joints_is_left_as_it_is():
+    space, *_ = linkage(A, B, C, D)
+    reading = read(space)
+    assert not reading.mechanism.twist.any()
+    assert not reading.notes
+
+
+@pytest.mark.parametrize(
+    ("rates", "named"),
+    [((1.0, 2.0), ("SimpleMotor 1, SimpleMotor 2",)), ((3.0,), ("SimpleMotor 1", "PivotJoint"))],
+)
+def test_rates_that_contradict_each_other_are_one_line(rates, named):
+    space, bars, _ = linkage(A, B, C, D)
+    if len(rates) == 1:  # a truss: a fifth bar leaves no freedom
+        space.add(PivotJoint(space.static_body, bars[0], B))
+    space.add(*[SimpleMotor(space.static_body, bars[0], rate) for rate in rates])
+    with pytest.raises(InvalidMechanism, match="no velocities satisfy") as refused:
+        read(space)
+    assert all(name in str(refused.value) for name in named)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_motor_from_rest_moves_a_four_bar_as_its_closed_form_says():
+    space, *_ = one_motor()
+    mechanism = read(space).mechanism
+    motion = TRUTH.build(mechanism, 0.01)(100, 1)
+    lengths = dist(B, C), dist(C, D)
+    for t, pose in zip(motion.t, motion.pose, strict=True):
+        crank = np.pi / 2 + 5 * t
+        at = 0.5 * cos(crank), 0.5 * sin(crank)
+        apart = hypot(D[0] - at[0], D[1] - at[1])
+        along = (lengths[0] ** 2 - lengths[1] ** 2 + apart**2) / (2 * apart)
+        up = np.sqrt(lengths[0] ** 2 - along**2)
+        x, y = (D[0] - at[0]) / apart, (D[1] - at[1]) / apart
+        knee = at[0] + along * x - up * y, at[1] + along * y + up * x
+        assert pose[1, :2] == pytest.approx([(at[0] + knee[0]) / 2, (at[1] + knee[1]) / 2], abs=1e-9)
+        assert pose[1, 2] == pytest.approx(atan2(knee[1] - at[1], knee[0] - at[0]) - atan2(0.4, 1.2), abs=1e-9)
+
+
+def test_a_rod_that_hangs_on_a_driven_crank_swings_as_one_equation_says():
+    """One coordinate: the angle of the rod, whose pivot goes round at 3 rad/s; at t = 0+ it has not turned."""
+    space = pymunk.Space()
+    space.gravity = (0, -9.81)
+    crank, rod = pymunk.Body(1, 0.02), pymunk.Body(1, 0.05)
+    crank.position, rod.position = (0.1, 0), (0.5, 0)
+    space.add(crank, rod, PivotJoint(space.static_body, crank, (0, 0), (-0.1, 0)))
+    space.add(PivotJoint(crank, rod, (0.1, 0), (-0.3, 0)), SimpleMotor(space.static_body, crank, -3.0))
+    arm, radius, inertia, rate = 0.3, 0.2, 0.05 + 0.09, 3.0
+
+    def rates(t, state):
+        angle, turning = state
+        x, y = -radius * rate**2 * cos(rate * t), -radius * rate**2 * sin(rate * t) + 9.81
+        return turning, arm * (x * sin(angle) - y * cos(angle)) / inertia
+
+    # The impulse acts at the pivot, which gets 0.6 m/s upwards: about the pivot nothing turns the rod.
+    begin = -arm * rate * radius / inertia
+    reading = read(space)
+    motion = TRUTH.build(reading.mechanism, 0.01)(200, 1)
+    found = solve_ivp(rates, (0, 2), (0.0, begin), "DOP853", t_eval=motion.t, rtol=1e-11, atol=1e-11)
+    assert motion.pose[:, 1, 2] == pytest.approx(found.y[0], abs=1e-8)
+    # pymunk moves its bodies before it changes their velocities, so at the user's own step the crank stays behind.
+    run = check(reading, "b42", 1.0, 1e-4, plan=Plan(0.0)).own
+    assert abs(run.pose[-1, 0, 2] - 3.0 * run.t[-1]) == pytest.approx(3.0 / 60, rel=0.02)
+
+
+ROUND = """<mujoco><option timestep="0.001" integrator="{integrator}"/><default><geom contype="0" conaffinity="0"
+ type="capsule" size=".02"/><joint axis="0 -1 0"/><equality solref="{solref} 1"/></default><worldbody>
+ <body name="one"><joint name="a"/><geom fromto="0 0 0 .3 0 0"/></body>
+ <body name="two" pos="0 0 .5"><joint name="b"/><geom fromto="0 0 0 .2 0 .2"/></body></worldbody>
+ <equality><joint name="mesh" joint1="b" joint2="a" polycoef="0 -2 0 0 0"/></equality>
+ <keyframe><key qvel="3 0"/></keyframe></mujoco>"""
+
+
+def test_in_mujoco_too_and_a_stiffer_row_comes_nearer_to_the_impulse():
+    errors = []
+    for solref in (0.02, 0.005):
+        model = mujoco.MjModel.from_xml_string(ROUND.format(integrator="RK4", solref=solref))
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        reading = read_mujoco(model, data)
+        first, second = (body.inertia + body.mass * hypot(*body.pose[:2]) ** 2 for body in reading.mechanism.bodies)
+        second = reading.mechanism.bodies[1].inertia + reading.mechanism.bodies[1].mass * (0.1**2 + 0.1**2)
+        rate = first * 3 / (first + 4 * second)
+        assert reading.mechanism.twist[:, 2] == pytest.approx([rate, -2 * rate], rel=1e-12)
+        assert "mesh torque" in reading.notes[0].reason
+        assert refuse_disagreement(reading) < STEPPED
+        found = check(reading, "meshed", 0.3, 1e-4, plan=Plan(0.0))
+        errors.append(found.own_errors.largest)
+        # What the row gives way by its own law is told from the step, from the velocities that the user has.
+        assert found.parts.softness == pytest.approx(found.own_errors.largest, rel=0.05)
+    assert errors[1] < 0.5 * errors[0]
