@@ -7,24 +7,29 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import assert_never
 
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Body, Drive, Joint, Rod, Roll, Vector
+from reference.joints import Body, Drive, Joint, Rod, Roll, Slot, Vector
+from reference.plane import components
 
 ROUNDED = 1e-12  # of a curve's radius: less than that is what rounding makes of a contact at a centre of mass
+ON_LINE = 1e-9  # of the distance between the ends of a spring: how far off a slot's line rounding may place an end
 
 
 def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequence[ForceElement] = ()) -> float:
     """The largest of rods and of distances between two points of one body at which something is joined or pulls [m].
 
-    The centre of mass is one of these points. Where all of them are one, the largest rest length or radius of curvature
-    where something rolls; or 1.
+    The centre of mass is one of these points. A slot holds at the place of its line where the second body's point is at
+    t = 0, and a force along its line acts there: neither depends on the point by which the line is described. Where all
+    points are one, the largest length of a spring or radius of curvature where something rolls; or 1.
     """
     points: dict[str, set[Vector]] = {body.name: {(0.0, 0.0)} for body in bodies}
-    for joint in (*joints, *forces):
-        for name, point in ((joint.first, "first_point"), (joint.second, "second_point")):
-            if name is not None and hasattr(joint, point):
-                points[name].add(getattr(joint, point))
+    own = {body.name: body for body in bodies}
+    slots = [joint for joint in joints if isinstance(joint, Slot)]
+    for member in (*joints, *forces):
+        for name, point in _ends(member, slots, own):
+            if name is not None:
+                points[name].add(point)
     rods = [joint.length for joint in joints if isinstance(joint, Rod)]
-    rests = [force.rest_length for force in forces if isinstance(force, Spring)]
+    rests = [_spring_length(force, slots, own) for force in forces if isinstance(force, Spring)]
     rolls = [joint.rolling for joint in joints if isinstance(joint, Roll)]
     bent = [
         abs(float(curve.curvature(arc)))
@@ -55,14 +60,14 @@ def time_scale(
     rates += [abs(body.twist[2]) for body in bodies]
     rates += [math.hypot(*body.twist[:2]) / length for body in bodies]
     rates += [abs(joint.turning_rate) for joint in joints if isinstance(joint, Drive)]
-    own = {body.name: body for body in bodies}
-    rates += [_rate(force, length, own) for force in forces]
+    own, slots = {body.name: body for body in bodies}, [joint for joint in joints if isinstance(joint, Slot)]
+    rates += [_rate(force, length, own, slots) for force in forces]
     return 1 / max(rates) if max(rates) > 0 else 1.0
 
 
-def _rate(force: ForceElement, length: float, bodies: Mapping[str, Body]) -> float:
+def _rate(force: ForceElement, length: float, bodies: Mapping[str, Body], slots: Sequence[Slot]) -> float:
     """How fast a force alone would move its bodies [1/s]."""
-    ends = [(bodies[name], point) for name, point in _ends(force) if name is not None]
+    ends = [(bodies[name], point) for name, point in _ends(force, slots, bodies) if name is not None]
     # The inverse of the mass that a force at a point feels, at most, and of the inertia that a torque feels.
     light = sum(1 / body.mass + (x * x + y * y) / body.inertia for body, (x, y) in ends)
     turning = sum(1 / body.inertia for body, _ in ends)
@@ -83,10 +88,66 @@ def _rate(force: ForceElement, length: float, bodies: Mapping[str, Body]) -> flo
             assert_never(force)
 
 
-def _ends(force: ForceElement) -> tuple[tuple[str | None, Vector], tuple[str | None, Vector]]:
-    """The bodies between which a force acts, and where; a torque acts anywhere."""
-    first, second = getattr(force, "first_point", (0.0, 0.0)), getattr(force, "second_point", (0.0, 0.0))
-    return (force.first, first), (force.second, second)
+def _ends(
+    member: Joint | ForceElement, slots: Sequence[Slot], bodies: Mapping[str, Body]
+) -> tuple[tuple[str | None, Vector], tuple[str | None, Vector]]:
+    """The two bodies and the points where a joint holds or a force acts; the centre of mass for one without a point."""
+    if isinstance(member, Slot):
+        return (member.first, _held_place(member, bodies)), (member.second, member.second_point)
+    slot = _slot_along(member, slots, bodies)
+    if slot is not None:
+        return _ends(slot, slots, bodies)
+    first, second = getattr(member, "first_point", (0.0, 0.0)), getattr(member, "second_point", (0.0, 0.0))
+    return (member.first, first), (member.second, second)
+
+
+def _held_place(slot: Slot, bodies: Mapping[str, Body]) -> Vector:
+    """The place [m] in the slot's first body where the second body's point is at t = 0."""
+    return _from_world(slot.first, _to_world(slot.second, slot.second_point, bodies), bodies)
+
+
+def _slot_along(member: Joint | ForceElement, slots: Sequence[Slot], bodies: Mapping[str, Body]) -> Slot | None:
+    """The slot along whose line a spring or damper acts in all positions: between the same bodies, one end at the
+    second body's point and the other anywhere on the line in the first body.
+    """
+    if not isinstance(member, Spring | Damper):
+        return None
+    ends = [(member.first, member.first_point), (member.second, member.second_point)]
+    span = math.dist(*(_to_world(name, point, bodies) for name, point in ends))
+    for slot in slots:
+        for (name, point), (other, held) in (ends, ends[::-1]):
+            if (name, other) == (slot.first, slot.second) and math.dist(held, slot.second_point) <= ON_LINE * span:
+                x, y = point[0] - slot.first_point[0], point[1] - slot.first_point[1]
+                if abs(math.cos(slot.line_angle) * y - math.sin(slot.line_angle) * x) <= ON_LINE * span:
+                    return slot
+    return None
+
+
+def _spring_length(spring: Spring, slots: Sequence[Slot], bodies: Mapping[str, Body]) -> float:
+    """The rest length [m]; the length at t = 0 if that is zero; the extension at t = 0 of a spring along a slot."""
+    length = math.dist(
+        _to_world(spring.first, spring.first_point, bodies), _to_world(spring.second, spring.second_point, bodies)
+    )
+    if _slot_along(spring, slots, bodies) is None:
+        return spring.rest_length or length
+    extension = abs(length - spring.rest_length)
+    return extension if extension > ROUNDED * length else 0.0
+
+
+def _to_world(name: str | None, point: Vector, bodies: Mapping[str, Body]) -> Vector:
+    if name is None:
+        return point
+    x, y, angle = bodies[name].pose
+    across, up = components(angle, *point)
+    return float(x + across), float(y + up)
+
+
+def _from_world(name: str | None, place: Vector, bodies: Mapping[str, Body]) -> Vector:
+    if name is None:
+        return place
+    x, y, angle = bodies[name].pose
+    across, up = components(-angle, place[0] - x, place[1] - y)
+    return float(across), float(up)
 
 
 def diameter(points: Iterable[Vector]) -> float:

@@ -238,6 +238,7 @@ def _largest(values: Array) -> float:
     return float(values.max()) if np.isfinite(values).all() else float("inf")
 
 
+MOST_NAMED = 6  # elements in a sentence
 SAMPLES = 200  # about so many instants are compared
 LOOKS = 10  # times a sample at most: how often a motion is asked what it meets; an engine looks once a step
 SMALLER = 4  # runs of the user's own settings at smaller steps that the parts are told from
@@ -295,9 +296,19 @@ class Checked:
         end = (
             f"; the tolerance of {number(self.tolerance)} is {'met' if self.met else 'missed'}." if self.asked else "."
         )
+        if self.facts.locked:
+            start = f"{start} can't move, since its joints leave no freedom{self._hinges_instead}; it"
         if not self.own_errors.finished:
             return f"{start} gives up before {self.duration:g} s{end}"
         return f"{start} is off by up to {number(self.own_errors.largest)} in {self.duration:g} s{end}"
+
+    @property
+    def _hinges_instead(self) -> str:
+        """For a mechanism that is locked by welds: the joint that was perhaps meant."""
+        if not (welds := self.facts.locking_welds):
+            return ""
+        hinge = "connect, which holds a point and no angle," if self.reading.model.engine == "MuJoCo" else "a hinge"
+        return f" (weld {', '.join(welds[:MOST_NAMED])} holds the angle too; {hinge} was perhaps meant)"
 
     @property
     def advised(self) -> Tried | None:

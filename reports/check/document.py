@@ -72,11 +72,13 @@ fastest_rotation: number: rad/s
 stiffest_mode: number?: rad/s or 1/s, of small motions at the start
 length: number: m
 time: number: s
+locked: flag: the joints leave no freedom, and none prescribes a motion
+locking_welds: [text]: of a locked mechanism: welds that as hinges would leave a freedom
 """,
     "ERRORS": """
 angle: number?: rad
 position: number?: m
-reaction: number?: of the largest true one of its kind (force or moment of a row)
+reaction: number?: of the largest true one of its kind (force or moment of a row), if that is more than rounding
 energy: number?: kinetic, and potential of gravity and springs, of the largest kinetic one
 """,
     "SERIES": """

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.joints import Drive, Pin, Slot
+from reference.joints import Drive, Pin, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rows import undetermined
 from reference.trajectory import Trajectory
@@ -38,6 +38,8 @@ class Facts:
     stiffest_mode: float  # rad/s or 1/s, at the start
     length: float
     time: float
+    locked: bool = False  # the joints leave no freedom, and none prescribes a motion
+    locking_welds: tuple[str, ...] = ()  # of a locked mechanism: welds that as hinges would leave a freedom
 
 
 def facts_of(mechanism: Mechanism, motion: Trajectory) -> Facts:
@@ -47,6 +49,7 @@ def facts_of(mechanism: Mechanism, motion: Trajectory) -> Facts:
     rows = mechanism.rows(mechanism.pose) if mechanism.row_count else np.zeros((0, 3 * len(mechanism.bodies)))
     idle = undetermined(rows, mechanism.length_scale) if len(rows) else np.zeros(0, dtype=bool)
     names = tuple(name for name, which in zip(mechanism.row_names, idle, strict=True) if which)
+    locked = freedoms[1] == 0 and not mechanism.rate.any()
     return Facts(
         len(mechanism.bodies),
         len(mechanism.joints),
@@ -61,7 +64,21 @@ def facts_of(mechanism: Mechanism, motion: Trajectory) -> Facts:
         _stiffest(mechanism),
         mechanism.length_scale,
         mechanism.time_scale,
+        locked,
+        _locking_welds(mechanism) if locked else (),
     )
+
+
+def _locking_welds(mechanism: Mechanism) -> tuple[str, ...]:
+    """The welds of a locked mechanism, if hinges in their places would leave a freedom."""
+    hinges = tuple(
+        Pin(joint.name, joint.first, joint.second, joint.first_point, joint.second_point)
+        if isinstance(joint, Weld)
+        else joint
+        for joint in mechanism.joints
+    )
+    free = replace(mechanism, joints=hinges).degrees_of_freedom()[1] > 0
+    return tuple(joint.name for joint in mechanism.joints if isinstance(joint, Weld)) if free else ()
 
 
 def _singular(mechanism: Mechanism, motion: Trajectory, independent: int) -> tuple[tuple[float, float], ...]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.rows import solve_symmetric, undetermined
 from reference.trajectory import Trajectory, energy
+from reports.check.one_freedom import has_one_freedom, motion_along_curve
 
 Array = NDArray[np.float64]
 FAR = 1e12  # m, rad, and those in a second: nothing in a motion that is worth a number
@@ -83,9 +85,11 @@ def soft_motion(
 
 LOOSER = Lagrange(tolerance=1e-10)  # the judge at another tolerance: its own error is what that changes
 KNOWN = 0.1  # of a tolerance: the most that the judge's estimate of its own error may be where others are held to it
+ALONG, ALONG_LOOSER = 1e-12, 1e-11  # tolerances along the curve of one freedom, and of the run beside it
 NUDGE = 1e-7  # of the length, and of the speed: small enough to be a derivative, far above the judge's error
 SMALL = 1e-2  # of the length, and of the speed: a disturbance that is larger no longer grows as a small one
-SEEDS = (1, 2)
+DISTURBANCES = ((1, NUDGE), (2, NUDGE / 10))  # (seed, size): both have to grow exponentially where that is claimed
+HELD = 1e-3  # of a disturbance: where the joints take more of it away, they leave it no freedom
 # A disturbance of a motion that is not chaotic grows about as the time; this many times that is taken as exponential.
 GROWN = 100.0
 
@@ -100,7 +104,7 @@ class IdealMotion:
     trajectory: Trajectory
     looser: Trajectory
     growth: Array  # (times,) how many times a small disturbance of the start has grown
-    horizon: float  # s; the duration if errors grow no faster than about linearly
+    horizon: float  # s; the duration unless two disturbances both grow exponentially from here to its end
     cut: bool = False
 
     @property
@@ -126,13 +130,21 @@ def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float 
     Raises InvalidMechanism where it can't be followed to the end, or not known for a sample.
     """
     motion = TRUTH.build(mechanism, spacing)(samples, 1)
+    looser, run = None, partial(_by_multipliers, samples, spacing)
+    known = _known(mechanism, motion, tolerance)
+    if not known.all() and has_one_freedom(mechanism):
+        runs = [motion_along_curve(mechanism, motion.t, each) for each in (ALONG, ALONG_LOOSER)]
+        along = replace(runs[0], estimate=np.abs(runs[0].pose - runs[1].pose))
+        known_along = _known(mechanism, along, tolerance)
+        if known_along.all():
+            motion, looser, known = along, runs[1], known_along
+            run = partial(motion_along_curve, t=motion.t, tolerance=ALONG)
     sound = np.isfinite(motion.pose).all(axis=(1, 2))
     if not sound.all():
         raise InvalidMechanism(
             f"the ideal motion can't be followed beyond {motion.t[int(np.argmin(sound))]:.4g} s: the joints are in a "
             f"singular position or the forces grow without bound; give a shorter --duration"
         )
-    known = apart(mechanism, motion.pose + np.asarray(motion.estimate), motion.pose) < KNOWN * tolerance
     if not known.all():
         if (last := int(np.argmin(known)) - 1) < 1:
             raise InvalidMechanism(
@@ -140,12 +152,38 @@ def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float 
                 f"{motion.t[max(last, 0)]:.4g} s: the joints are near a singular position; give a larger --tolerance"
             )
         return replace(judged(mechanism, last, spacing), cut=True)
-    looser = LOOSER.build(mechanism, spacing)(samples, 1)
-    growth = np.max([_growth(mechanism, motion, samples, spacing, seed) for seed in SEEDS], axis=0)
+    looser = looser or LOOSER.build(mechanism, spacing)(samples, 1)
+    growths = [_growth(mechanism, motion, looser, run, *each) for each in DISTURBANCES]
     expected = GROWN * (1 + motion.t / mechanism.time_scale)
+    sizes = [size for _, size in DISTURBANCES]
+    begins = [_parting(growth, expected, size) for growth, size in zip(growths, sizes, strict=True)]
+    # A mechanism of one freedom passes its positions in order: neighbours are apart by a time, which does not grow.
+    parts = all(begin < len(motion.t) for begin in begins) and not has_one_freedom(mechanism)
+    horizon = float(motion.t[min(begins) if parts else -1])
+    return IdealMotion(motion, looser, np.max(growths, axis=0), horizon)
+
+
+def _by_multipliers(samples: int, spacing: float, mechanism: Mechanism) -> Trajectory:
+    return TRUTH.build(mechanism, spacing)(samples, 1)
+
+
+def _known(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> NDArray[np.bool_]:
+    """Where (times,) the estimate of a motion's error, and the gaps of its joints, are below KNOWN of a tolerance."""
+    off = apart(mechanism, motion.pose + np.asarray(motion.estimate), motion.pose)
+    if mechanism.row_count:
+        gap = np.abs(np.nan_to_num(mechanism.joint_rows.gap(motion.pose, motion.t)))
+        off = np.maximum(off, (gap / np.where(mechanism.turning, 1.0, mechanism.length_scale)).max(axis=1))
+    return off < KNOWN * tolerance
+
+
+def _parting(growth: Array, expected: Array, size: float) -> int:
+    """The first sample at which a disturbance of this size has grown by more than expected, if it stays so to the end.
+
+    Their count if not. What has grown out of a small disturbance stays: then its size says no more.
+    """
     beyond = growth > expected
-    horizon = float(motion.t[int(np.argmax(beyond))] if beyond.any() else motion.t[-1])
-    return IdealMotion(motion, looser, growth, horizon)
+    stays = beyond[-1] or np.any(beyond & (growth * size > SMALL))
+    return int(np.argmax(beyond)) if stays else len(beyond)
 
 
 def apart(mechanism: Mechanism, pose: Array, other: Array) -> Array:
@@ -162,26 +200,41 @@ def often(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:
     return t, spline(t), spline(t, 1)
 
 
-def _growth(mechanism: Mechanism, motion: Trajectory, samples: int, spacing: float, seed: int) -> Array:
+def _growth(
+    mechanism: Mechanism,
+    motion: Trajectory,
+    looser: Trajectory,
+    run: Callable[[Mechanism], Trajectory],
+    seed: int,
+    nudge: float,
+) -> Array:
+    """How many times (times,) a disturbance of the start has grown, beyond what the judge's own error explains."""
     dynamics, random = Dynamics(mechanism, 0.0), np.random.default_rng(seed)
     unit = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
-    pose = mechanism.pose + NUDGE * unit * random.uniform(-1, 1, mechanism.pose.shape)
-    twist = mechanism.twist + NUDGE / mechanism.time_scale * unit * random.uniform(-1, 1, mechanism.twist.shape)
+    none = np.ones(len(motion.t))
+    pose = mechanism.pose + nudge * unit * random.uniform(-1, 1, mechanism.pose.shape)
+    twist = mechanism.twist + nudge / mechanism.time_scale * unit * random.uniform(-1, 1, mechanism.twist.shape)
     pose, twist = dynamics.project(pose, twist, 0.0)
     if not (np.isfinite(pose).all() and np.isfinite(twist).all()):
-        return np.ones(samples + 1)
+        return none
     bodies = tuple(
         replace(body, pose=tuple(map(float, own)), twist=tuple(map(float, rate)))
         for body, own, rate in zip(mechanism.bodies, pose, twist, strict=True)
     )
     try:
-        disturbed = TRUTH.build(replace(mechanism, bodies=bodies), spacing)(samples, 1)
+        disturbed = run(replace(mechanism, bodies=bodies))
     except InvalidMechanism:  # a position in which nothing small is allowed
-        return np.ones(samples + 1)
-    size = np.hypot(
-        _size(disturbed.pose - motion.pose, unit), mechanism.time_scale * _size(disturbed.twist - motion.twist, unit)
-    )
-    return np.nan_to_num(size, nan=np.inf) / size[0] if size[0] > 0 else np.ones(samples + 1)
+        return none
+
+    def size(other: Trajectory) -> Array:
+        moved, faster = other.pose - motion.pose, other.twist - motion.twist
+        return np.hypot(_size(moved, unit), mechanism.time_scale * _size(faster, unit))
+
+    apart_by = np.nan_to_num(size(disturbed), nan=np.inf)
+    if not apart_by[0] > HELD * nudge:
+        return none
+    # Near a singular position the judge's own error grows as a disturbance does, and is none.
+    return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
 def _size(difference: Array, unit: Array) -> Array:
@@ -190,6 +243,8 @@ def _size(difference: Array, unit: Array) -> Array:
 
 # Of the largest acceleration: rounding of equations that are solved twice, with room for badly scaled masses.
 AGREE = 1e-6
+# Of the mechanism's own speed, and of the largest force: what the judge's answer is known to. Less than that is zero.
+ROUNDED = 1e-9
 UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
 
 
@@ -225,24 +280,34 @@ def errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Errors:
     position = np.hypot(difference[..., 0], difference[..., 1]).max(axis=1)
     kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1))
     span = float(kinetic.max())
-    drift = (
-        np.abs(energy(mechanism, run) - energy(mechanism, truth)) / span if span > 0 else np.full_like(angle, np.nan)
-    )
+    fast = mechanism.length_scale / mechanism.time_scale
+    # At rest but for rounding, an energy that is lost is no part of any other.
+    moves = span > 0.5 * float(mechanism.inertias[:, 0].max()) * (ROUNDED * fast) ** 2
+    drift = np.abs(energy(mechanism, run) - energy(mechanism, truth)) / span if moves else np.full_like(angle, np.nan)
     of = {"angle": angle, "position": position, "reaction": _reaction(mechanism, truth, run), "energy": drift}
     finished = bool(np.isfinite(run.pose).all())
     return Errors(run.t, of, apart(mechanism, run.pose, truth.pose), finished)
 
 
 def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array:
-    """The largest error of the rows that rigid bodies determine (times,), in the largest true one of its kind."""
+    """The largest error of the rows that rigid bodies determine (times,), in the largest true one of its kind.
+
+    Where all true ones of a kind are rounding beside the largest force that acts, by symmetry for example, that force
+    is the measure: times the mechanism's length for torques.
+    """
     out = np.full(len(run.t), np.nan)
     if not mechanism.row_count:
         return out
     told = ~undetermined(mechanism.rows(mechanism.pose), mechanism.length_scale)
-    for rows in (mechanism.turning & told, ~mechanism.turning & told):
+    turning, length = mechanism.turning, mechanism.length_scale
+    acting = mechanism.inertias * mechanism.unconstrained(truth.pose, truth.twist)
+    forces = [acting[..., :2], acting[..., 2] / length, truth.reaction[:, told] / np.where(turning[told], length, 1.0)]
+    whole = max(float(np.abs(each).max()) for each in forces if each.size)
+    for rows, arm in ((turning & told, length), (~turning & told, 1.0)):
         true = truth.reaction[:, rows]
         scale = float(np.abs(true).max()) if true.size else 0.0
-        if scale > 0:
+        scale = scale if scale > ROUNDED * whole * arm else whole * arm
+        if true.size and scale > 0:
             # A row whose force an engine does not know, such as that of a prescribed crank, hides no other.
             off = np.fmax.reduce(np.abs(run.reaction[:, rows] - true), axis=1) / scale
             out = np.fmax(out, off)

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from reports.check.checked import SATURATED, Checked, Parts, Tried, best
+from reports.check.checked import MOST_NAMED, SATURATED, Checked, Parts, Tried, best
 from reports.check.judging import UNITS
 from reports.check.rendering import Section
 from reports.write import tables
 
-MOST_NAMED = 6
 MOST_NOTES = 4  # of what is left out, on the first screen
 CHEAPER = 0.9  # of the user's CPU time: what differs by less may be the clock's noise
 BETTER = 0.9  # of an error: what takes less away is no setting of its own on the first screen
@@ -120,6 +119,8 @@ def _sensitivity(found: Checked) -> str:
     """How fast neighbouring starts part, and what that says of the error."""
     judge = found.judge
     growth = judge.grown
+    if found.facts.locked:
+        return "nothing can move: the joints leave no freedom, and the error is how far they give way"
     if not judge.trajectory.twist.any():
         return "nothing moves: no force has a share in the plane of motion, and the start is at rest"
     if found.facts.freedoms[1] == 0:
@@ -173,7 +174,7 @@ def _advice(found: Checked) -> tuple[str, ...]:
 
 def _decade(found: Checked) -> tuple[str, ...]:
     advised, decade = found.advised, found.decade
-    if advised is None or advised.error == 0 or decade is None:
+    if advised is None or advised.error <= ROUNDING or decade is None:
         return ()
     return (f"A tenth of that error costs {number(_ratio(decade, advised))} times as much: {decade.change.words}.",)
 

@@ -278,7 +278,8 @@ def _along(scene: Scene, joint: int) -> tuple[Any, Any, float]:
     if any(model.jnt_type[each] == SLIDE for each in others) or any(each < joint for each in others):
         reason = "a force along a slide needs a body that slides once, in a direction of its parent"
         raise refuse(name_of(model, JOINT, joint), reason)
-    near = data.xanchor[others[0]] if others else data.xipos[int(model.jnt_bodyid[joint])]
+    centre = scene.frame.both.T @ scene.bodies[scene.group(int(model.jnt_bodyid[joint]))].pose[:2]
+    near = data.xanchor[others[0]] if others else centre  # the point that the slide's slot holds
     length = FAR * max(1.0, float(model.stat.extent))
     return near - length * data.xaxis[joint], near, length
 

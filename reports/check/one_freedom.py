@@ -1,0 +1,111 @@
+"""The ideal motion of a mechanism of one freedom along its own curve, which goes on through singular positions.
+
+With the arc s of the curve in the metric of the mass matrix, q' = tau(q) v and v' = tau . f, where v = s', tau spans
+the null space of the rows with tau^T M tau = 1, and f are the applied forces: ideal joints do no work along tau.
+Multipliers do not occur, so nothing is divided by a singular value. Where two rows become dependent (a dead centre of
+a parallelogram), the null space has more directions, and velocities, which no finite force makes jump, pick the one
+in which the motion arrives.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+# Singular values of the scaled rows, beside the largest, below which directions count as allowed. A direction is then
+# wrong by about as much, for as long a way: the square of it is lost in the rounding of the positions.
+ALLOWED = 1e-6
+MOST_BODIES = 40  # a singular value decomposition of all rows in every evaluation
+
+
+def has_one_freedom(mechanism: Mechanism) -> bool:
+    """Whether one freedom is left and no joint prescribes a rate or holds velocities alone."""
+    return (
+        0 < len(mechanism.bodies) <= MOST_BODIES
+        and mechanism.degrees_of_freedom() == (1, 1)
+        and bool(mechanism.holonomic.all())
+        and not mechanism.rate.any()
+    )
+
+
+def motion_along_curve(mechanism: Mechanism, t: Array, tolerance: float) -> Trajectory:
+    """The motion at times t (times,) [s]; NaN from where it is not known. `tolerance`: relative, of a step.
+
+    The mechanism has one freedom (`has_one_freedom`).
+    """
+    states, tangent, count = _states(mechanism, t, tolerance), _Tangent(mechanism), mechanism.pose.size
+    pose, twist, acceleration = (np.full((len(t), *mechanism.pose.shape), np.nan) for _ in range(3))
+    sound = np.isfinite(states).all(axis=1)
+    for sample in np.flatnonzero(sound):
+        pose[sample] = states[sample, :count].reshape(-1, 3)
+        twist[sample] = (tangent(states[sample, :count]) * states[sample, count]).reshape(-1, 3)
+        acceleration[sample] = _acceleration(mechanism, pose[sample], twist[sample], tangent.last)
+    reaction = np.full((len(t), mechanism.row_count), np.nan)
+    reaction[sound] = mechanism.reaction(pose[sound], acceleration[sound], twist=twist[sound])
+    return Trajectory(t, pose, twist, reaction, 0.0)
+
+
+class _Tangent:
+    """tau (3 bodies,) at a pose (3 bodies,), in the direction of the last one that was asked for."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.mechanism, self.root = mechanism, np.sqrt(mechanism.inertias.reshape(-1))
+        self.last = np.zeros(0)
+        first = self._allowed(mechanism.pose)[0]
+        along = first @ (self.root * mechanism.twist.reshape(-1))
+        self.last = (first if along >= 0 else -first) / self.root
+
+    def __call__(self, pose: Array) -> Array:
+        allowed = self._allowed(pose.reshape(-1, 3))
+        direction = allowed.T @ (allowed @ (self.root * self.last))
+        self.last = direction / np.linalg.norm(direction) / self.root
+        return self.last
+
+    def _allowed(self, pose: Array) -> Array:
+        """(directions, 3 bodies), orthonormal in coordinates that are multiplied by the roots of the inertias."""
+        rows = self.mechanism.joint_rows.dense(pose) / self.root
+        sizes = np.linalg.norm(rows, axis=1, keepdims=True)
+        _, values, right = np.linalg.svd(rows / np.where(sizes > 0, sizes, 1.0), full_matrices=True)
+        rank = int(np.sum(values > ALLOWED * values[0]))
+        return right[min(rank, rows.shape[1] - 1) :]
+
+
+def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
+    """q and v (times, 3 bodies + 1); NaN from where they are not known."""
+    tangent, count = _Tangent(mechanism), mechanism.pose.size
+    unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
+    start = float(tangent.last @ (mechanism.inertias.reshape(-1) * mechanism.twist.reshape(-1)))
+    speed = float(np.linalg.norm(tangent.root * unit)) / mechanism.time_scale
+
+    def rates(at: float, state: Array) -> Array:
+        if not np.isfinite(state).all():
+            return np.full_like(state, np.nan)
+        along = tangent(state[:count])
+        pose, twist = state[:count].reshape(-1, 3), (along * state[count]).reshape(-1, 3)
+        force = mechanism.inertias * mechanism.unconstrained(pose, twist)
+        return np.append(along * state[count], along @ force.reshape(-1))
+
+    allowed: Any = tolerance * np.append(unit, speed)
+    begin = np.append(mechanism.pose.reshape(-1), start)
+    with np.errstate(all="ignore"):
+        found: Any = solve_ivp(rates, (0.0, float(t[-1])), begin, "DOP853", t_eval=t, rtol=tolerance, atol=allowed)
+    out = np.full((len(t), count + 1), np.nan)
+    out[: found.y.shape[1]] = found.y.T
+    return out
+
+
+def _acceleration(mechanism: Mechanism, pose: Array, twist: Array, along: Array) -> Array:
+    """(bodies, 3): along the curve by the forces, across it as far as the rows bend it."""
+    rows = mechanism.joint_rows.dense(pose)
+    bias = mechanism.bias(pose, twist)
+    root = np.sqrt(mechanism.inertias.reshape(-1))
+    across = np.linalg.lstsq(rows / root, bias, rcond=ALLOWED)[0] / root
+    force = (mechanism.inertias * mechanism.unconstrained(pose, twist)).reshape(-1)
+    return (across + along * (along @ force)).reshape(-1, 3)

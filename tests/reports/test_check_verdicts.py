@@ -1,0 +1,256 @@
+"""Verdicts of `crosscheck check` on models of other people, against integrations in a few coordinates of their own."""
+
+# pyright: reportAttributeAccessIssue=false
+# MuJoCo's module has no list of its names.
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+from pymunk import Body as MunkBody
+from pymunk import Space
+from pymunk.constraints import GearJoint, PinJoint, PivotJoint, SimpleMotor
+from scipy.integrate import solve_ivp
+
+from engines.pymunk.reading import read as read_space
+from reference.forces import Damper, Spring
+from reference.joints import Drive, Slot
+from reference.mechanism import Body, Mechanism
+from reports.check.checked import Checked, Plan, check, read
+from reports.check.judging import errors, judged
+from reports.check.telling import answer, sections
+
+INPUTS = Path(__file__).parent / "inputs"
+QUICK = Plan(5.0, quick=True)
+G = 9.81
+
+
+@cache
+def checked(name: str, duration: float, tolerance: float = 1e-4, without: tuple[str, ...] = ()) -> Checked:
+    return check(read(f"{name}.xml", INPUTS, without), name, duration, tolerance, plan=QUICK)
+
+
+def told(found: Checked, label: str) -> str:
+    return dict(answer(found).facts)[label]
+
+
+def solved(rates, start, t):
+    return solve_ivp(rates, (0, t[-1]), start, "DOP853", t_eval=t, rtol=1e-11, atol=1e-12).y
+
+
+def one_coordinate(places, masses, inertias, force, start, t):
+    """A coordinate (times,) whose places(q) are the poses (bodies, 3); force(q, rate): what acts along it."""
+    weights = np.array([masses, masses, inertias]).T
+
+    def inertia(q):
+        along = np.imag(places(q + 1e-30j)) / 1e-30
+        return np.sum(weights * along**2)
+
+    def rates(at, state):
+        q, rate = state
+        slope = (inertia(q + 1e-5) - inertia(q - 1e-5)) / 2e-5
+        return [rate, (force(q, rate) - slope * rate**2 / 2) / inertia(q)]
+
+    return solved(rates, start, t)[0]
+
+
+def along(angle, length):
+    return np.array([length * np.cos(angle), length * np.sin(angle)])
+
+
+def in_mujoco(name: str, t: np.ndarray) -> np.ndarray:
+    """qpos (times, nq) of the model as it is, from its first keyframe."""
+    model = mujoco.MjModel.from_xml_path(str(INPUTS / f"{name}.xml"))
+    data = mujoco.MjData(model)
+    if model.nkey:
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+    steps, out = round(t[1] / model.opt.timestep), [data.qpos.copy()]
+    for _ in t[1:]:
+        mujoco.mj_step(model, data, steps)
+        out.append(data.qpos.copy())
+    return np.array(out)
+
+
+@pytest.mark.parametrize("name", ["b40_slide_spring", "b40_tendon_spring"])
+def test_a_spring_on_a_slide_is_measured_by_the_mechanism_and_not_by_its_far_end(name):
+    found = checked(name, 2.0, 1e-3)
+
+    def rates(at, state):  # angle of the sleeve, extension of the spring
+        angle, q, rate, speed = state
+        r, inertia = 0.4 + q, 0.2 * 0.1**2 + 2e-3 + (0.4 + q) ** 2
+        turning = (-(0.2 * 0.1 + r) * G * np.sin(angle) - 2 * r * speed * rate) / inertia
+        return [rate, speed, turning, r * rate**2 + G * np.cos(angle) - 60 * q]
+
+    angle, q, *_ = solved(rates, [0.002, 0.05, 0.0, 0.0], found.own.t)
+    r = 0.4 + q
+    run = in_mujoco(name, found.own.t)
+    # Of the sense of MuJoCo's hinge only the sign is unknown here, and the motion is symmetric.
+    off = np.hypot(
+        (0.4 + run[:, 1]) * np.sin(run[:, 0]) - r * np.sin(angle),
+        (0.4 + run[:, 1]) * np.cos(run[:, 0]) - r * np.cos(angle),
+    )
+    assert found.facts.length == pytest.approx(0.45)
+    assert off.max() == pytest.approx(4.80e-3, rel=2e-3)
+    assert found.own_errors.largest == pytest.approx(off.max() / 0.45, rel=1e-3)
+    assert not found.met
+    assert not found.chaotic
+
+
+def test_a_cylinder_with_spring_and_damper_is_measured_by_its_boom():
+    found = checked("b02b_cylinder_spring", 2.0)
+    foot, line = np.array([0.5, 0.2]), np.arctan2(0.8, 3)
+    rise, reach = np.arctan2(0.25, 1.2), np.hypot(1.2, 0.25)  # the eye, seen from the boom's pin at (0, 1)
+    (boom, tube, rod) = found.reading.mechanism.bodies
+    tube_at = np.hypot(tube.pose[0] - foot[0], tube.pose[1] - foot[1])
+    rod_at = np.hypot(rod.pose[0] - foot[0], rod.pose[1] - foot[1])
+
+    def cylinder(q):
+        to = np.array([0.0, 1.0]) + along(rise + q, reach) - foot
+        return np.sqrt(to[0] ** 2 + to[1] ** 2), np.arctan(to[1] / to[0])
+
+    begin, angle = cylinder(0.0)
+
+    def places(q):
+        length, turned = cylinder(q)
+        centre = np.array([0.0, 1.0]) + along(line + q, np.hypot(3, 0.8) / 2)
+        return np.array(
+            [
+                [*centre, q],
+                [*(foot + along(turned, tube_at)), turned - angle],
+                [*(foot + along(turned, rod_at + length - begin)), turned - angle],
+            ]
+        )
+
+    masses, inertias = ([getattr(body, field) for body in (boom, tube, rod)] for field in ("mass", "inertia"))
+
+    def force(q, rate):
+        slope = np.imag(cylinder(q + 1e-30j)[0]) / 1e-30
+        way = cylinder(q)[0] - begin
+        falls = np.imag(places(q + 1e-30j))[:, 1] / 1e-30
+        return -np.dot(masses, falls) * G - (9000 * (way - 0.05) + 400 * slope * rate) * slope
+
+    t = found.own.t
+    q = one_coordinate(places, masses, inertias, force, [0.0, 0.0], t)
+    judge = found.judge.trajectory.pose[:, 0, 2]
+    assert np.abs((judge - judge[0]) - q).max() < 1e-8
+    assert found.facts.length == pytest.approx(np.hypot(3, 0.8) / 2, rel=1e-3)
+    assert np.abs(np.abs(in_mujoco("b02b_cylinder_spring", t)[:, 0]) - np.abs(q)).max() <= found.own_errors.largest
+    assert found.own_errors.largest == pytest.approx(5.5e-3, rel=0.02)
+    assert found.judge.grown < 100
+
+
+def test_one_freedom_goes_on_through_a_dead_centre_and_is_judged_to_the_end():
+    found = checked("b21_coupling_rod", 1.0, 0.01)
+    # Three equal cranks, and a rod that only moves in parallel: one angle.
+    begin, inertia = (
+        np.arctan2(0.16, 0.12),
+        sum(body.inertia + 0.01 for body in found.reading.mechanism.bodies if body.name != "rod"),
+    )
+
+    def rates(at, state):
+        return [state[1], -G * (3 * 0.1 + 2 * 0.2) * np.cos(state[0]) / (inertia + 2 * 0.2**2)]
+
+    turned = solved(rates, [begin, -2.0], found.own.t)[0] - begin
+    judge = found.judge.trajectory.pose[:, 0, 2]
+    assert np.abs(judge - judge[0] - turned).max() < 1e-9
+    run = in_mujoco("b21_coupling_rod", found.own.t)  # its hinges turn the other way; the wheels are 0, 2 and 3
+    off = np.abs(-run[:, [0, 2, 3]] - turned[:, None]).max()
+    assert off == pytest.approx(0.656, rel=1e-3)
+    assert found.own_errors.largest == pytest.approx(off, rel=1e-6)
+    assert found.duration == 1.0
+    assert "not exponential" in told(found, "motion")
+    assert found.advised is not None
+    assert found.advised.error == pytest.approx(5.4e-4, rel=0.02)
+
+
+def test_a_torque_that_is_zero_by_symmetry_is_no_measure_of_an_error():
+    found = checked("b04_gripper", 0.3, 1e-4, ("actuation", "limit"))
+    mechanism, truth = found.reading.mechanism, found.judge.trajectory
+    forces, torques = (np.abs(truth.reaction[:, rows]) for rows in (~mechanism.turning, mechanism.turning))
+    assert torques.max() < 1e-9 * forces.max() * found.facts.length
+    assert found.own_errors.worst["reaction"] < 0.01
+    assert found.advised is not None
+    off = np.abs(found.advised.run.reaction - truth.reaction)[:, ~mechanism.turning].max()
+    assert off < 1e-5 * forces.max()  # the compliance that the stiffest loop keeps
+    assert found.advised.reaction == pytest.approx(off / forces.max(), rel=1e-6)
+
+
+def test_a_torque_that_an_engine_invents_is_no_less_wrong_where_the_true_one_is_zero():
+    found = checked("b04_gripper", 0.3, 1e-4, ("actuation", "limit"))
+    mechanism, truth = found.reading.mechanism, found.judge.trajectory
+    wrong = truth.reaction + 0.1 * mechanism.turning * np.abs(truth.reaction).max() * found.facts.length
+    run = type(truth)(truth.t, truth.pose, truth.twist, wrong, 0.0)
+    assert errors(mechanism, truth, run).worst["reaction"] > 0.05
+
+
+def test_a_loop_that_a_weld_locks_is_said_to_be_locked_first_and_that_a_connect_was_perhaps_meant():
+    found = checked("b23_weld_locks", 0.5)
+    assert re.search(
+        r"^b23_weld_locks in MuJoCo can't move, .* \(weld C holds .*; connect, .* was perhaps meant\)", found.verdict
+    )
+    assert np.isnan(found.own_errors.worst["energy"])
+    assert "energy" not in told(found, "forces")
+    assert "nothing can move" in told(found, "motion")
+
+
+@pytest.mark.parametrize("gravity", [0.0, -9.81])
+@pytest.mark.parametrize("second", ["pivot", "gear", "motor"])
+def test_a_locked_space_is_said_to_be_locked(gravity, second):
+    space = Space()
+    space.gravity = (0, gravity)
+    body = MunkBody(2, 0.2)
+    body.position = (0.5, 0)
+    more = {
+        "pivot": PivotJoint(space.static_body, body, (1, 0), (0.5, 0)),
+        "gear": GearJoint(space.static_body, body, 0, 1),
+        "motor": SimpleMotor(space.static_body, body, 0),
+    }
+    space.add(body, PivotJoint(space.static_body, body, (0, 0), (-0.5, 0)), more[second])
+    found = check(read_space(space, 0.01), "gate", 0.5, 1e-4, plan=QUICK)
+    assert "gate in pymunk can't move, since its joints leave no freedom" in found.verdict
+    assert sections(found)
+    assert found.judge.grown == 1
+
+
+def test_a_rod_that_only_the_second_order_locks_is_refused():
+    """In line with the hinge and pushed across: no force of a rigid rod holds it, and no motion is allowed."""
+    space = Space()
+    space.gravity = (0, -9.81)
+    body = MunkBody(2, 0.2)
+    body.position = (0.5, 0)
+    rod = PinJoint(space.static_body, body, (2.5, 0), (1.0, 0))
+    space.add(body, PivotJoint(space.static_body, body, (0, 0), (-0.5, 0)), rod)
+    with pytest.raises(Exception, match="singular position"):
+        judged(read_space(space, 0.01).mechanism, 20, 0.01, 1e-4)
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("far", [0.0, 1e3])
+def test_no_far_point_of_a_line_enters_the_length_or_the_time(scale, far):
+    """A block in a groove of a swinging bar, with spring and damper along it: from the near end and from far away."""
+    bar, block = (
+        Body("bar", 1.0, 0.1 * scale**2, (0, 0, 0.3)),
+        Body("block", 0.5, 1e-3 * scale**2, (*(0.4 * scale * along(0.3, 1)), 0.3)),
+    )
+    end = (-far * scale, 0.0)
+    slot = Slot("groove", "bar", "block", end, 0.0, (0.0, 0.0))
+    ends = ("bar", "block", end, (0.0, 0.0))
+    spring = Spring("spring", *ends, 20.0, (far + 0.5) * scale)
+    own = Mechanism(
+        (bar, block),
+        (slot, Drive("straight", "bar", "block", 0.0, 0.0)),
+        (0.0, -G * scale),
+        (spring, Damper("damper", *ends, 2.0)),
+    )
+    assert own.length_scale == pytest.approx(0.4 * scale)
+    # At the block the bar feels a force as 1 / m + r^2 / I, and the block as 1 / m.
+    assert own.time_scale == pytest.approx(1 / np.sqrt(20 * (1 + 0.4**2 / 0.1 + 2)))
+    # Alone on the ground the extension is all that has a length.
+    groove = Slot("groove", None, "block", (-far * scale, 0.0), 0.0, (0.0, 0.0))
+    held = Spring("spring", None, "block", (-far * scale, 0.0), (0.0, 0.0), 20.0, (far + 0.5) * scale)
+    alone = Mechanism((Body("block", 0.5, 1.0, (0.2 * scale, 0.0, 0.0)),), (groove,), (0.0, 0.0), (held,))
+    assert alone.length_scale == pytest.approx(0.3 * scale)
