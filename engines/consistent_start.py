@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 # The least of the rows in a combination that no velocities satisfy: a row with a smaller weight in it is rounding.
 TAKES_PART = 1e-6
 MOST_NAMED = 4
+DIGITS = 1e-6  # rad: a hundredth of the error that is usually asked for
+FASTEST = 1e150  # m/s, rad/s
 
 
 class _AnyStart(Mechanism):
@@ -41,6 +43,7 @@ def with_consistent_start(
     Raises InvalidMechanism where a position is open, and where no velocities satisfy all rows.
     """
     elements = tuple(joints), gravity, tuple(forces)
+    _refuse_without_digits(bodies)
     own = _AnyStart(tuple(bodies), *elements)
     slip = own.slip(own.pose, own.twist) if joints else np.zeros(0)
     size = np.asarray(own.length_scale)
@@ -59,6 +62,20 @@ def with_consistent_start(
         replace(body, twist=(float(x), float(y), float(turn))) for body, (x, y, turn) in zip(bodies, twist, strict=True)
     )
     return Mechanism(moved, *elements), (_note(own, slip, twist),)
+
+
+def _refuse_without_digits(bodies: Sequence[Body]) -> None:
+    """Raise InvalidMechanism for an angle too large to be one: its own rounding is more than DIGITS of a radian."""
+    for body in bodies:
+        if np.spacing(abs(body.pose[2])) > DIGITS:
+            words = "floating point numbers of that size tell no angle to a millionth of a radian"
+            raise InvalidMechanism(
+                f"{body.name}: its angle at t = 0 is {body.pose[2]:.3g} rad; {words}; give a smaller one"
+            )
+        for value, unit in ((max(abs(body.twist[0]), abs(body.twist[1])), "m/s"), (abs(body.twist[2]), "rad/s")):
+            if value > FASTEST:
+                words = "its square, an energy, is no floating point number; give a smaller one"
+                raise InvalidMechanism(f"{body.name}: its velocity at t = 0 is {value:.3g} {unit}; {words}")
 
 
 def _least_change(own: Mechanism, slip: Array) -> Array:

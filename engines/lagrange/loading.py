@@ -36,6 +36,14 @@ def installed() -> bool:
     return find_spec("numba") is not None
 
 
+def is_cold() -> bool:
+    """Whether the first motion of this installation has to wait until its machine code is compiled: a minute or two."""
+    if not installed() or compiled.cache_info().currsize:
+        return False
+    folder = _folder()
+    return folder is None or not (folder / READY).exists()
+
+
 def _entry() -> Any:
     # By its name as it stands: so fingerprints of rows know what they depend on.
     return import_module("engines.lagrange.compiled.entry")

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from engines import Unsupported
 from engines.entry_points import registered_by_key
+from engines.lagrange.loading import is_cold
 from engines.loading import Kind
 from engines.reading import Change, Reader, Reading
 from reference.checks import InvalidMechanism
@@ -35,6 +36,7 @@ from reports.write.tables import number
 
 PATIENCE = 5.0  # s of CPU time for all settings together
 LONGEST = 1.0  # s of it for one run: smaller steps than that allows are left out
+COMPILING = "compiling the judge's machine code, once for this installation: up to two minutes"
 SEARCH = 60.0  # s of CPU time to look for settings that reach a goal
 
 
@@ -365,7 +367,7 @@ def check(
         raise InvalidMechanism(
             f"--duration is {duration:g} s; the model's own step is {model.dt:g} s; give a longer one"
         )
-    told("following the ideal motion")
+    told(f"{COMPILING}, before the ideal motion is followed" if is_cold() else "following the ideal motion")
     judge = judged(mechanism, samples, every * model.dt, tolerance)
     truth = judge.trajectory
     samples = len(truth.t) - 1

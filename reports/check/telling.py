@@ -75,8 +75,9 @@ def _why(found: Checked) -> str:
     """Softness, step or neither, in a line."""
     parts, engine = found.parts, found.reading.model.engine
     if parts.rest > SATURATED:
+        still = "the run still gives up" if math.isinf(parts.rest) else f"the error is still {number(parts.rest)}"
         return (
-            f"not told: at {parts.smallest * 1e3:.3g} ms the error is still {number(parts.rest)}, and what is off by "
+            f"not told: at {parts.smallest * 1e3:.3g} ms {still}, and what is off by "
             "more than a radian or a length no longer tells softness from step; give a shorter --duration"
         )
     own = "gave up" if math.isinf(parts.step) else number(parts.step)

@@ -33,6 +33,14 @@ SWITCHED_OFF = (
 )
 
 
+# How a check that gave no answer is told, by `Outcome`.
+LOSSES = {
+    "timed out": "{}; give a larger --limit if that was to be expected",
+    "failed": "the check ended with an exception, {}; it comes from a function of the model, or is a defect of ours",
+}
+LOST = "its process was lost: {}"
+
+
 def check(
     model: Annotated[str, typer.Argument(help="model.xml, model.urdf, script.py[:SPACE], or a folder of them.")] = "",
     duration: Annotated[float, typer.Option(help="How long the motion is that is judged [s].")] = 2.0,
@@ -160,7 +168,7 @@ def _answers(requests: list[CheckRequest], limit: float) -> Answers:
     from dataclasses import replace
 
     from reports.check.request import Refused, answered
-    from reports.model.outcomes import Loss, Outcome
+    from reports.model.outcomes import Loss
     from reports.run.files import temporary_folder
     from reports.run.queue import usable
     from reports.run.supervisor import supervise
@@ -172,10 +180,7 @@ def _answers(requests: list[CheckRequest], limit: float) -> Answers:
         try:
             for item, result, _ in supervise(answered, items, limit, len(usable()), watch=tell, wall=limit + 60):
                 if isinstance(result, Loss):
-                    ended = result.outcome == Outcome.TIMED_OUT
-                    how = result.sentence if ended else f"its process was lost: {result.sentence}"
-                    remedy = "; give a larger --limit if that was to be expected" if ended else ""
-                    result = Refused(f"{item.word}: {how}{remedy}")
+                    result = Refused(f"{item.word}: {LOSSES.get(result.outcome, LOST).format(result.sentence)}")
                 found[item.word] = result
                 if len(requests) > 1:
                     tell.show(f"{len(found)} of {len(requests)}: {item.word}")

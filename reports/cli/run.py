@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
@@ -98,11 +99,14 @@ def run_interruptible(
 
     Raises KeyboardInterrupt, having said what is stored.
     """
+    from engines.lagrange.loading import is_cold
     from reports.cli.terminal import interruptible
     from reports.run.cluster import pool
     from reports.run.running import run_into
 
     by = crew or pool(None)
+    if is_cold():
+        print("compiling the judge's machine code, once for this installation: up to two minutes", file=sys.stderr)
     with interruptible(console, store, items, limit, "cells", fresh) as (waiting, done, watch):
         return run_into(store, waiting, True, limit, by.threads, done, watch, supervised=by.supervise)
 

@@ -236,6 +236,17 @@ def test_an_element_that_explains_a_disagreement_is_named():
         refuse_disagreement(changed(reading, forces=()))
 
 
+def test_an_equality_of_which_mujoco_makes_no_row_is_left_out_with_a_note():
+    body = '<body name="a" {}><joint name="j" axis="0 1 0"/><geom size=".1" pos=".4 0 0"/></body>'
+    for turned in ("", 'euler="0 30 0"'):
+        model = f'<mujoco><worldbody>{body.format(turned)}</worldbody><equality><connect body1="a" anchor="0 0 0"/>'
+        reading = read(mujoco.MjModel.from_xml_string(f"{model}</equality></mujoco>"))
+        assert [joint.name for joint in reading.mechanism.joints] == ["j"]
+        assert ("equality 0", True) in [(note.element, "makes no row" in note.reason) for note in reading.notes]
+        assert refuse_disagreement(reading) < 1e-9
+        assert not reading.model.give(np.zeros(2)).stiffness.any()
+
+
 @pytest.mark.parametrize("option", ['density="1000"', 'viscosity="10"'])
 def test_a_fluid_that_is_switched_off_moves_nothing(option):
     model = model_of(PENDULUM, "", option)

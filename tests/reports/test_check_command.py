@@ -10,6 +10,8 @@ import subprocess
 import sys
 import types
 import xml.etree.ElementTree as xml
+from functools import cache
+from pathlib import Path
 from typing import ClassVar
 
 import mujoco
@@ -18,8 +20,10 @@ import pytest
 from pymunk import Space
 
 from engines import Unsupported
+from engines.lagrange import loading
 from engines.mujoco.reading.settings import switch_off as of_mujoco
 from engines.pymunk.reading.own_model import switch_off as of_pymunk
+from reports.check.checked import Plan, check, read
 from reports.check.request import CheckReport, CheckRequest, Refused, answered
 from reports.cli.check import SWITCHED_OFF
 from tests.reports.test_check import FOUR_BAR, PENDULUM, found_in
@@ -54,8 +58,15 @@ def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, 
             60,
             "its process was lost: aborted with signal 6 ... a second time. Failed condition: body->space != space",
         ),
+        (
+            "import pymunk\nclass Mine(pymunk.Space):\n    def step(self, dt):\n"
+            "        raise RuntimeError('no steps')\n"
+            "space, body = Mine(), pymunk.Body(1, 1)\nspace.add(body)\nbody.velocity = 1, 0",
+            60,
+            "the check ended with an exception, RuntimeError: no steps",
+        ),
     ],
-    ids=["endless", "aborted by Chipmunk"],
+    ids=["endless", "aborted by Chipmunk", "raises in a step"],
 )
 def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, text, limit, sentence):
     (here / "script.py").write_text(text)
@@ -184,13 +195,26 @@ BAD = {
         'axis="0 0 1"/><geom name="ball" size=".1"/></body></worldbody></mujoco>',
         "geom 'floor' touches geom 'ball' at 0.1",
     ),
-    "raises.py:space": ("raise RuntimeError('no\\nspace')", "raises.py raised RuntimeError: no space"),
+    "raises.py:space": ("raise RuntimeError('no\\nspace')", "raises.py raised RuntimeError in line 1: no space"),
     "nothing.py:space": ("x = 1", "it has no 'space'"),
     "unnamed.py": ("x = 1", "give the name of the space"),
     "drives.py:space": (
         "import pymunk\nspace = pymunk.Space()\nbody = pymunk.Body(1, 1)\nbody.angular_velocity = 1\n"
         "space.add(body, *[pymunk.SimpleMotor(space.static_body, body, rate) for rate in (1, 2)])",
         "no velocities satisfy SimpleMotor 1, SimpleMotor 2 together",
+    ),
+    "early.py:make": (
+        "class Mine(BaseException):\n    pass\ndef make():\n    raise Mine('not today')",
+        "early.py raised Mine in line 4: not today",
+    ),
+    "far.xml": (
+        '<mujoco><worldbody><body name="a"><joint/><geom size=".1" pos=".2 0 0"/></body></worldbody>'
+        '<keyframe><key qpos="1e300"/></keyframe></mujoco>',
+        "a: its angle at t = 0 is 1e+300 rad; floating point numbers of that size tell no angle",
+    ),
+    "fast.py": (
+        "import pymunk\nspace, body = pymunk.Space(), pymunk.Body(1, 1)\nspace.add(body)\nbody.velocity = 1e200, 0",
+        "its velocity at t = 0 is 1e+200 m/s; its square",
     ),
     "binary.xml": (bytes(range(256)) * 40, "MuJoCo can't compile it"),
     "binary.py:space": (b"\x00\x01\x02", "binary.py raised"),
@@ -232,6 +256,41 @@ def test_a_bad_model_is_one_sentence(tmp_path, word):
     assert "\n" not in answer.sentence
     assert len(answer.sentence) < 600
     assert word.split(":")[0] in answer.sentence
+
+
+def test_a_script_runs_in_its_own_folder_with_its_own_files_and_modules(tmp_path):
+    home, paths = Path.cwd(), list(sys.path)
+    (tmp_path / "length.txt").write_text("0.5")
+    for name in ("csv", "reference", "local"):  # Python's, ours and nobody's
+        (tmp_path / f"{name}.py").write_text("MINE = True")
+    (tmp_path / "swing.py").write_text(
+        "import csv, local, pymunk, reference, sys\nassert csv.MINE and local.MINE and reference.MINE\n"
+        "assert sys.argv == [__file__] and sys.path[0] + '/swing.py' == __file__\n"
+        "with open('length.txt') as file:\n    length = float(file.read())\n"
+        "space, body = pymunk.Space(), pymunk.Body(1, 0.1)\n"
+        "space.gravity, body.position = (0, -9.81), (length, 0)\n"
+        "space.add(body, pymunk.PivotJoint(space.static_body, body, (0, 0), (-length, 0)))\n"
+    )
+    answer = answered(CheckRequest("swing.py", str(tmp_path), 0.1))
+    assert isinstance(answer, CheckReport)
+    assert answer.data["facts"]["length"] == 0.5
+    assert (Path.cwd(), sys.path) == (home, paths)
+    assert "local" not in sys.modules
+    assert not hasattr(sys.modules["reference"], "MINE")
+
+
+def test_who_waits_for_the_first_compilation_knows_it(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(loading, "compiled", cache(lambda: None))
+    assert loading.is_cold() is loading.installed()
+    told: list[str] = []
+    (tmp_path / "swing.py").write_text(PENDULUM)
+    check(read("swing.py:make", tmp_path), "swing", 0.05, 1e-4, told.append, Plan(0.0))
+    assert any("compiling the judge's machine code" in words for words in told) is loading.installed()
+    folder = loading._folder()
+    assert folder is not None
+    (folder / loading.READY).touch()
+    assert not loading.is_cold()
 
 
 @pytest.mark.parametrize(("element", "sentence"), [("rain", "--without is 'rain'"), ("contact", "")])

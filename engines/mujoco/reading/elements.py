@@ -168,9 +168,17 @@ def equalities(scene: Scene) -> list[Joint]:
         if kind not in EQUALITIES:
             raise refuse(element, f"an equality of the kind {kind} has no ideal counterpart here")
         joints = EQUALITIES[kind](scene, index, element)
+        if joints and not len(equality_rows(data, index)):
+            scene.note(element, "it holds what the joints hold already, so MuJoCo makes no row of it, nor do we")
+            joints = []
         scene.held[index] = tuple(joints)
         out += joints
     return out
+
+
+def equality_rows(data: Any, index: int) -> NDArray[np.intp]:
+    """Which of MuJoCo's rows are of an equality."""
+    return np.flatnonzero((data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)) & (data.efc_id == index))
 
 
 def _ends(scene: Scene, index: int, element: str) -> tuple[int, int, Array, Array]:
@@ -208,9 +216,7 @@ def _welded(scene: Scene, index: int, element: str) -> list[Joint]:
     if first == second:
         scene.note(element, "it welds a body to itself")
         return []
-    rows = np.flatnonzero(
-        (scene.data.efc_id == index) & (scene.data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY))
-    )
+    rows = equality_rows(scene.data, index)
     if np.abs(scene.data.efc_pos[rows]).max(initial=0.0) > PLANAR * max(1.0, scene.model.stat.extent):
         raise refuse(element, f"it is open by {np.abs(scene.data.efc_pos[rows]).max():.2g} m or rad at the start")
     label = scene.names.new(plain_name(scene.model, EQUALITY, index))

@@ -16,7 +16,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.mujoco.reading.elements import Scene
+from engines.mujoco.reading.elements import Scene, equality_rows
 from engines.mujoco.stiffness import STIFFEST
 from engines.mujoco.written_file import INTEGRATORS
 from engines.reading import Change, Give
@@ -49,8 +49,7 @@ def declared(scene: Scene, mechanism: Mechanism, directions: Array, drift: Array
     pieces: list[tuple[list[int], Array, Array, float, float, Array]] = []
     for index, joints in scene.held.items():
         own = [place for joint in joints for place in places[joint.name]]
-        equality = data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
-        rows = np.flatnonzero(equality & (data.efc_id == index))
+        rows = equality_rows(data, index)
         if not own or not len(rows):
             continue
         stiffness, damping, impedance = (float(value) for value in data.efc_KBIP[rows[0]][:3])
@@ -92,7 +91,7 @@ def impedance_of(shape: Array, gap: float) -> float:
 def _dense(model: Any, data: Any) -> Array:
     """MuJoCo's rows (rows, nv), whichever way it stores them."""
     if not mujoco.mj_isSparse(model):
-        return data.efc_J.reshape(data.nefc, model.nv).copy()
+        return data.efc_J[: data.nefc * model.nv].reshape(data.nefc, model.nv).copy()
     out = np.zeros((data.nefc, model.nv))
     for row in range(data.nefc):
         begin, size = data.efc_J_rowadr[row], data.efc_J_rownnz[row]

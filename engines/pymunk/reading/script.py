@@ -5,7 +5,9 @@ from __future__ import annotations
 import ast
 import contextlib
 import io
+import os
 import sys
+import traceback
 import types
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -19,6 +21,7 @@ from engines.reading import Change, refuse
 
 MODULE = "crosscheck_check"  # what a script sees as its __name__
 BEGIN, END = "# crosscheck check --apply: these lines are written anew each time", "# crosscheck check --apply: end"
+KEPT = {"pymunk", "builtins", "sys", "os", "__main__"}  # two of these would not know each other's objects
 PARTS = '''
 def in_parts(dt, step={name}.step, space={name}):
     """One step in {parts} equal ones; what pushes a body at its begin pushes it in each of them."""
@@ -73,8 +76,8 @@ def made(path: Path, file: str, name: str) -> Made:
                 exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
             except _Stepped as stepped:
                 return _with_parts(Made(stepped.space, stepped.dt, *_where(path, name, stepped)))
-            except (Exception, SystemExit, KeyboardInterrupt) as reason:
-                raise _raised(file, reason) from None
+            except BaseException as reason:  # of a class of its own, too
+                raise _raised(path, file, reason) from None
             if name or _spaces(module) or _guard(path) is None:
                 break
         value, word = _named(module, file, name)
@@ -86,8 +89,8 @@ def made(path: Path, file: str, name: str) -> Made:
                 return _checked(file, Made(space, None, word, _guard(path), function=True))
             except _Stepped as stepped:
                 return _with_parts(Made(stepped.space, stepped.dt, *_where(path, word, stepped)))
-            except (Exception, SystemExit, KeyboardInterrupt) as reason:
-                raise _raised(file, reason) from None
+            except BaseException as reason:
+                raise _raised(path, file, reason) from None
 
 
 def _checked(file: str, found: Made) -> Made:
@@ -103,9 +106,14 @@ def _with_parts(found: Made) -> Made:
     return replace(found, parts=int(getattr(own, "parts", 1)))
 
 
-def _raised(file: str, reason: BaseException) -> ValueError:
-    words = " ".join(str(reason).split())
-    return ValueError(f"{file} raised {type(reason).__name__}{f': {words}' if words else ''}")
+def _raised(path: Path, file: str, reason: BaseException) -> ValueError:
+    try:
+        words = " ".join(str(reason).split())
+    except Exception:
+        words = "(its message can't be printed)"
+    frames = traceback.extract_tb(reason.__traceback__)
+    line = next((f" in line {frame.lineno}" for frame in reversed(frames) if frame.filename == str(path)), "")
+    return ValueError(f"{file} raised {type(reason).__name__}{line}{f': {words}' if words else ''}")
 
 
 def _named(module: types.ModuleType, file: str, name: str) -> tuple[Any, str]:
@@ -131,15 +139,28 @@ def _spaces(module: types.ModuleType) -> dict[str, pymunk.Space]:
 
 @contextlib.contextmanager
 def _at_home(path: Path, module: types.ModuleType) -> Iterator[None]:
-    """As when a script is run: its folder is looked into for what it imports."""
-    sys.path.insert(0, str(path.parent))
-    sys.modules[MODULE] = module
+    """As when a script is run in its own folder: files beside it are found by their names, and modules before others.
+
+    A module of ours, or of Python's, that is called as a file beside the script is out of the way meanwhile.
+    """
+    home, arguments, paths = os.getcwd(), sys.argv, list(sys.path)
+    beside = {file.stem for file in path.parent.glob("*.py")} | {
+        file.parent.name for file in path.parent.glob("*/__init__.py")
+    }
+    hidden = {name: each for name, each in sys.modules.items() if name.partition(".")[0] in beside - KEPT}
+    for name in hidden:
+        del sys.modules[name]
+    sys.modules[MODULE], sys.argv, sys.path[:] = module, [str(path)], [str(path.parent), *paths]
     try:
+        os.chdir(path.parent)
         with contextlib.redirect_stdout(io.StringIO()):
             yield
     finally:
-        del sys.modules[MODULE]
-        sys.path.remove(str(path.parent))
+        os.chdir(home)
+        for name in [name for name in sys.modules if name == MODULE or name.partition(".")[0] in beside - KEPT]:
+            del sys.modules[name]
+        sys.modules.update(hidden)
+        sys.argv, sys.path[:] = arguments, paths
 
 
 @contextlib.contextmanager
