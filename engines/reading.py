@@ -137,6 +137,10 @@ class OwnModel(Protocol):
         """
         ...
 
+    def remarks(self, run: Trajectory) -> Sequence[Note]:
+        """What the reading has taken for something else, with its effect on a run of the user's own settings."""
+        ...
+
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
         """The user's model in motion: samples + 1 states, `every` of the user's steps apart."""
         ...

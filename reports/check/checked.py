@@ -379,6 +379,7 @@ def check(
     facts = facts_of(mechanism, truth)
     told("running your own settings")
     own = model.run(samples, every)
+    reading = replace(reading, notes=(*model.remarks(own), *reading.notes))
 
     def progress(number: int, count: int) -> None:
         told(f"trying documented settings, {number + 1} of {count}")

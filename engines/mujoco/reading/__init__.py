@@ -17,7 +17,7 @@ import numpy as np
 from engines.consistent_start import with_consistent_start
 from engines.mujoco.reading.elements import Scene, drives, equalities, steady, tree_joints
 from engines.mujoco.reading.forces import forces, off, turns
-from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, find_groups, name_of
+from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, bodies_of, find_frame, find_groups, flattened, name_of
 from engines.mujoco.reading.obstacles import limited_forces
 from engines.mujoco.reading.own_model import OwnMuJoCo, heard
 from engines.mujoco.reading.rewriting import rewritten
@@ -53,6 +53,10 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     mujoco.mj_kinematics(model, started)
     mujoco.mj_comPos(model, started)
     frame = find_frame(model, started)
+    flat, tilt = flattened(model, frame)
+    users, model = model, flat if tilt > PLANAR else model
+    mujoco.mj_kinematics(model, started)
+    mujoco.mj_comPos(model, started)
     groups = find_groups(model, started, frame)
     mujoco.mj_forward(model, started)
     bodies = bodies_of(model, started, frame, groups)
@@ -72,7 +76,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
             raise
         words = "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed"
         raise InvalidMechanism(f"{reason}: {words}") from None
-    own = OwnMuJoCo(scene, mechanism)
+    own = OwnMuJoCo(scene, mechanism, users, tilt if users is not model else 0.0)
     refuse_at_start(own, mechanism)
     title = model.names[: model.names.find(b"\x00")].decode() if isinstance(model.names, bytes) else ""
     return Reading(mechanism, own, (*jumped, *scene.notes), title)

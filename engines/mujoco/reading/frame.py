@@ -9,6 +9,7 @@ the motion: joints hold it, and products of inertia only load them.
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -22,6 +23,10 @@ from reference.joints import Body
 
 Array = NDArray[np.float64]
 PLANAR = 1e-9  # of a unit vector, or of an inertia: what counts as rounding
+# rad. Files with six digits tilt an axis by 2e-6, 1.5708 for a right angle by 4e-6, and chains add the tilts of their
+# bodies up. What is tilted on purpose is tilted by more; 1.57, 8e-4 off, is far above usual tolerances.
+PRINTED = 1e-4
+ROUGH = 1e-2  # rad: what a few digits less may make
 
 FREE, BALL, SLIDE, HINGE = (
     int(getattr(mujoco.mjtJoint, f"mjJNT_{kind}")) for kind in ("FREE", "BALL", "SLIDE", "HINGE")
@@ -66,22 +71,49 @@ def find_frame(model: Any, data: Any) -> Frame:
         raise refuse(name_of(model, joint, index), "a ball joint turns its body out of any plane")
     hinges, slides = np.flatnonzero(kinds == HINGE), np.flatnonzero(kinds == SLIDE)
     normal = data.xaxis[hinges[0]].copy() if len(hinges) else _without_hinges(model, data, slides)
-    normal /= np.linalg.norm(normal)
+    normal = _nearest_axis(normal / np.linalg.norm(normal))
     largest = int(np.argmax(np.abs(normal)))
     # Seen from the side that leaves x to the right: z out of the plane, or y into it.
     if normal[largest] * (-1 if largest == 1 else 1) < 0:
         normal = -normal
+    more = "; if rounding in the file makes that, give its angles and quaternions with six digits or more"
     for index in hinges:
-        if np.linalg.norm(np.cross(normal, data.xaxis[index])) > PLANAR:
+        if (off := float(np.linalg.norm(np.cross(normal, data.xaxis[index])))) > PRINTED:
             first = name_of(model, joint, int(hinges[0]))
-            raise refuse(name_of(model, joint, index), f"it is not parallel to {first}: this model moves in no plane")
+            words = f"it is not parallel to {first}, but {off:.2g} rad off: this model moves in no plane"
+            raise refuse(name_of(model, joint, index), words + more * (off < ROUGH))
     for index in slides:
-        if abs(normal @ data.xaxis[index]) > PLANAR:
-            raise refuse(name_of(model, joint, index), "it slides out of the plane in which the others move")
+        if (off := abs(float(normal @ data.xaxis[index]))) > PRINTED:
+            words = f"it slides out of the plane in which the others move, by {off:.2g} rad"
+            raise refuse(name_of(model, joint, index), words + more * (off < ROUGH))
     upward = np.array([0.0, 1.0, 0.0]) if abs(normal[2]) > 1 - PLANAR else np.array([0.0, 0.0, 1.0])
     up = upward - (upward @ normal) * normal
     up /= np.linalg.norm(up)
     return Frame(np.cross(up, normal), up, normal)
+
+
+def _nearest_axis(normal: Array) -> Array:
+    """A unit vector, or the axis of the world that it is but for the rounding of a file."""
+    axis = np.round(normal)
+    return axis if np.linalg.norm(normal - axis) <= PRINTED else normal
+
+
+def flattened(model: Any, frame: Frame) -> tuple[Any, float]:
+    """A copy whose joints move exactly in the plane, and by how much those of the model are tilted [rad].
+
+    Only the joints' axes are turned, where qpos0 places them: the bodies then stay at their heights above the plane.
+    """
+    flat, data = copy.copy(model), mujoco.MjData(model)
+    data.qpos[:] = model.qpos0
+    mujoco.mj_kinematics(model, data)
+    tilt = 0.0
+    for joint in np.flatnonzero((model.jnt_type == HINGE) | (model.jnt_type == SLIDE)):
+        axis, along = data.xaxis[joint], float(data.xaxis[joint] @ frame.normal)
+        wanted = np.sign(along) * frame.normal if model.jnt_type[joint] == HINGE else axis - along * frame.normal
+        wanted /= np.linalg.norm(wanted)
+        tilt = max(tilt, float(np.linalg.norm(np.cross(wanted, axis))))
+        flat.jnt_axis[joint] = data.xmat[model.jnt_bodyid[joint]].reshape(3, 3).T @ wanted
+    return flat, tilt
 
 
 def _without_hinges(model: Any, data: Any, slides: Any) -> Array:

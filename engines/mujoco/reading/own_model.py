@@ -9,7 +9,7 @@ import copy
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -25,7 +25,7 @@ from engines.mujoco.releases import marks
 from engines.mujoco.running import _listening
 from engines.mujoco.stiffness import STIFFEST
 from engines.mujoco.written_file import INTEGRATORS, SOLVERS
-from engines.reading import Change, Give, Obstacle
+from engines.reading import Change, Give, Note, Obstacle
 from reference.joints import Rod
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -35,10 +35,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class OwnMuJoCo:
-    """The compiled model and its start; see `engines.reading.OwnModel`."""
+    """The compiled model and its start; see `engines.reading.OwnModel`.
+
+    `users`: the user's model, which is run; the scene's is the same, but that its joints move exactly in the plane;
+    `tilt` [rad]: by how much the user's do not.
+    """
 
     scene: Scene
     mechanism: Mechanism
+    users: Any
+    tilt: float = 0.0
     urdf: bool = False  # read from a URDF file without an element of MuJoCo's own: the lines to copy bring one
 
     @property
@@ -131,8 +137,27 @@ class OwnMuJoCo:
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
         return changes(self.scene.model, self.softly_held, smallest, self.urdf, further)
 
+    def remarks(self, run: Trajectory) -> Sequence[Note]:
+        if not self.tilt:
+            return ()
+        samples, every = len(run.t) - 1, max(1, round(float(run.t[1]) / self.dt))
+        flat = replace(self, users=self.scene.model)
+
+        def moved(of: Trajectory, change: Change | None) -> str:
+            off = np.abs(flat.run(samples, every, change).pose - of.pose).max(axis=(0, 1))
+            return f"{max(off[0], off[1]):.2g} m and {off[2]:.2g} rad"
+
+        words = (
+            f"they are up to {self.tilt:.2g} rad off, as rounding of a file makes them, and taken as exact; with exact "
+        )
+        words += f"ones your model moves differently by {moved(run, None)} in {run.t[-1]:.3g} s"
+        if self.softly_held:
+            stiff = self.changes(self.dt)[-1]
+            words += f", with stiff loops by {moved(self.run(samples, every, stiff), stiff)}"
+        return (Note("the directions of joints", words),)
+
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
-        model, spacing = copy.copy(self.scene.model), every * self.dt
+        model, spacing = copy.copy(self.users), every * self.dt
         if change is not None:
             options = dict(change.options)
             model.opt.timestep = change.dt

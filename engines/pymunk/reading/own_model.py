@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pymunk.constraints import Constraint, GrooveJoint, RotaryLimitJoint, SlideJoint
 
 from engines.pymunk.reading.joints import Described
-from engines.reading import Change, Give, Obstacle, refuse
+from engines.reading import Change, Give, Note, Obstacle, refuse
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
@@ -154,6 +154,9 @@ class OwnPymunk:
                 lines.append(f"# call space.step({dt!r}) in your loop; to check the space again, give --step {dt!r}")
                 out.append(Change(words, dt, tuple(lines), (("iterations", iterations), ("bias", bias))))
         return out
+
+    def remarks(self, run: Trajectory) -> Sequence[Note]:
+        return ()
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
         space, bodies = self._fresh()

@@ -1,0 +1,71 @@
+"""Motions of MuJoCo models by equations that share no code with the judge: tree coordinates, multipliers, DOP853."""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+Array = NDArray[Any]
+Rows = Callable[[Any, Any], tuple[Array, Array]]
+
+
+def connected(name: str) -> Rows:
+    """Rows of a connect between bodies: velocities of its point on the first less those on the second."""
+
+    def rows(model: Any, data: Any) -> tuple[Array, Array]:
+        equality = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_EQUALITY, name)
+        out, rates = np.zeros((2, 3, model.nv))
+        for body, part, sign in ((model.eq_obj1id[equality], 0, 1), (model.eq_obj2id[equality], 3, -1)):
+            at = data.xpos[body] + data.xmat[body].reshape(3, 3) @ model.eq_data[equality][part : part + 3]
+            jac, rate = np.zeros((2, 3, model.nv))
+            mujoco.mj_jac(model, data, jac, None, at, body)
+            mujoco.mj_jacDot(model, data, rate, None, at, body)
+            out, rates = out + sign * jac, rates + sign * rate
+        flat = [0, 2]  # the plane of x and z
+        return out[flat], rates[flat] @ data.qvel
+
+    return rows
+
+
+def coupled(*factors: float) -> Rows:
+    """The row of a linear relation of all coordinates."""
+    return lambda model, data: (np.array([factors], dtype=float), np.zeros(1))
+
+
+def motion(model: Any, data: Any, held: list[Rows], t: Array) -> tuple[Array, Array]:
+    """Coordinates (times, nv) of a tree that these rows hold, from the state of `data`, and the forces of
+    the rows (times, rows). MuJoCo gives the mass matrix, and the forces of gravity, springs, dampers and actuators.
+    """
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+
+    def solved(state: Array) -> tuple[Array, Array]:
+        data.qpos[:], data.qvel[:] = np.split(state, 2)
+        mujoco.mj_forward(model, data)
+        mass = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, mass)
+        force = data.qfrc_passive + data.qfrc_actuator - data.qfrc_bias
+        pairs = [rows(model, data) for rows in held]
+        matrix, rate = (np.concatenate([pair[i] for pair in pairs]) for i in (0, 1))
+        whole = np.block([[mass, -matrix.T], [matrix, np.zeros((len(matrix), len(matrix)))]])
+        out = np.linalg.solve(whole, np.concatenate([force, -rate]))
+        return out[: model.nv], out[model.nv :]
+
+    start = np.concatenate([data.qpos, data.qvel])
+    found = solve_ivp(
+        lambda _, state: np.concatenate([state[model.nv :], solved(state)[0]]),
+        (0.0, float(t[-1])),
+        start,
+        "DOP853",
+        t_eval=t,
+        rtol=1e-11,
+        atol=1e-12,
+    )
+    return found.y[: model.nv].T, np.array([solved(state)[1] for state in found.y.T], dtype=np.float64)
