@@ -34,7 +34,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Obstacle:
-    """What a motion meets at `t` [s] that the mechanism lacks, in `words`; `remedy`: what to give the check instead."""
+    """What a motion meets at `t` [s] that the mechanism lacks, in `words`; `remedy`: what helps but a shorter one."""
 
     t: float
     words: str
@@ -56,8 +56,8 @@ class Give:
     """How rows give way by the engine's own declaration: J a = bias - damping slip - stiffness gap - compliance F.
 
     `instead`: at the start, what stands in the place of the bias where the engine leaves it out; NaN elsewhere.
-    All (rows,), of the mechanism's rows; zero where a row holds exactly. stiffness [1/s^2]; damping [1/s]; compliance
-    [1/kg, 1/(kg m^2)].
+    Of the mechanism's rows; zero where a row holds exactly. stiffness (rows,) [1/s^2]; damping (rows,) [1/s];
+    compliance (rows, rows) [1/kg, 1/(kg m^2)].
     """
 
     stiffness: Array
@@ -105,8 +105,8 @@ class OwnModel(Protocol):
         """The engine's accelerations at t = 0 (bodies, 3) [m/s^2, rad/s^2], at the mechanism's velocities."""
         ...
 
-    def give(self, gap: Array) -> Give:
-        """How the joints give way where they are open by `gap` (rows,) [m, rad]."""
+    def give(self, gap: Array, pose: Array) -> Give:
+        """How the joints give way where they are open by `gap` (rows,) [m, rad], at a pose (bodies, 3)."""
         ...
 
     def without(self, element: str) -> Array:
@@ -197,10 +197,15 @@ def refuse(element: str, reason: str) -> Unsupported:
     return Unsupported(f"{element}: {reason}")
 
 
+def left_out(element: str) -> str:
+    """The consequence of leaving out an element that acts in the motion: an option, and no advice."""
+    return f"--without {element} judges your model without it, which moves otherwise"
+
+
 def refuse_at_start(model: OwnModel, mechanism: Mechanism) -> None:
     """Raises Unsupported if the start itself meets what the mechanism lacks."""
     for each in model.obstacles(np.zeros(1), mechanism.pose[None], mechanism.twist[None]):
-        reason = f"so it does at the start; an ideal mechanism doesn't know it: give {each.remedy}"
+        reason = f"so it does at the start, and an ideal mechanism doesn't know it; {each.remedy}"
         raise refuse(each.words, reason)
 
 

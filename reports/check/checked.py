@@ -372,10 +372,8 @@ def check(
     truth = judge.trajectory
     samples = len(truth.t) - 1
     for met in model.obstacles(*often(truth, min(every, LOOKS))):
-        shorter = f"--duration {_below(met.t):g}, or " if met.t > every * model.dt else ""
-        raise Unsupported(
-            f"{met.words} at {met.t:.3g} s, which an ideal mechanism doesn't know: give {shorter}{met.remedy}"
-        )
+        shorter = f"give --duration {_below(met.t):g}; " if met.t > every * model.dt else ""
+        raise Unsupported(f"{met.words} at {met.t:.3g} s, which an ideal mechanism doesn't know; {shorter}{met.remedy}")
     facts = facts_of(mechanism, truth)
     told("running your own settings")
     own = model.run(samples, every)

@@ -20,7 +20,7 @@ from scipy.interpolate import CubicHermiteSpline
 from engines import Unsupported
 from engines.lagrange import TRUTH, Lagrange
 from engines.lagrange.dynamics import Dynamics
-from engines.reading import Give, Reading
+from engines.reading import Give, Reading, left_out
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.rows import solve_symmetric, undetermined
@@ -48,13 +48,13 @@ def accelerations(mechanism: Mechanism, pose: Array, twist: Array, t: float, giv
         gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(t)))
         right = right - give.damping * slip - give.stiffness * gap
         right = right + np.nan_to_num(give.instead - bias)
-        matrix = matrix + np.diag(give.compliance)
+        matrix = matrix + give.compliance
     return (free + inverse * (rows.T @ solve_symmetric(matrix, right))).reshape(-1, 3)
 
 
 def soft_motion(
     mechanism: Mechanism,
-    give: Callable[[Array], Give],
+    give: Callable[[Array, Array], Give],
     t: Array,
     tolerance: float = TOLERANCE,
     twist: Array | None = None,
@@ -73,7 +73,7 @@ def soft_motion(
             return np.full_like(state, np.nan)
         pose, twist = state[:count].reshape(-1, 3), state[count:].reshape(-1, 3)
         gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(at)))
-        change = accelerations(mechanism, pose, twist, at, give(gap))
+        change = accelerations(mechanism, pose, twist, at, give(gap, pose))
         return np.concatenate([state[count:], change.reshape(-1)])
 
     start = np.concatenate([mechanism.pose.reshape(-1), (mechanism.twist if twist is None else twist).reshape(-1)])
@@ -342,7 +342,7 @@ def refuse_disagreement(reading: Reading) -> float:
     disagreement if one does.
     """
     mechanism, model = reading.mechanism, reading.model
-    give = model.give(np.zeros(mechanism.row_count)) if model.softly_held else None
+    give = model.give(np.zeros(mechanism.row_count), mechanism.pose) if model.softly_held else None
     expected = accelerations(mechanism, mechanism.pose, mechanism.twist, 0.0, give)
     found = model.start()
     off = _apart(mechanism, found, expected)
@@ -352,7 +352,7 @@ def refuse_disagreement(reading: Reading) -> float:
         if _apart(mechanism, model.without(element), expected) <= AGREE:
             raise Unsupported(
                 f"at t = 0 the accelerations differ from those of the ideal mechanism by {off:.1g} of themselves, and "
-                f"agree without '{element}': it acts at the start, and in no ideal joint; give --without {element}"
+                f"agree without '{element}': it acts at the start, and in no ideal joint; {left_out(element)}"
             )
     for element, reason in model.suspects.items():
         raise Unsupported(f"{element}: {reason}; at t = 0 the accelerations are wrong by {off:.1g} of themselves")

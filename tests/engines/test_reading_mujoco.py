@@ -14,7 +14,7 @@ from engines import Unsupported
 from engines.mujoco.reading import read
 from engines.mujoco.reading.obstacles import positions
 from engines.mujoco.reading.settings import switch_off
-from engines.reading import Obstacle, Reading
+from engines.reading import Obstacle, Reading, left_out
 from reports.check.judging import apart, refuse_disagreement, soft_motion
 
 # Both sides solve small systems of equations whose numbers differ by a factor of a thousand at most.
@@ -269,8 +269,8 @@ def test_softness_as_declared_is_what_mujoco_does():
     ideal_is_off = apart(reading.mechanism, soft, run.pose).max()
     # RK4 at 0.2 ms: the step's own error is far below; the ideal motion is 1e-3 off.
     assert ideal_is_off < 1e-6
-    stiffer = [replace(reading.model.give(np.zeros(8)), compliance=np.zeros(8))]
-    wrong = soft_motion(reading.mechanism, lambda gap: stiffer[0], run.t)
+    stiffer = [replace(reading.model.give(np.zeros(8), reading.mechanism.pose), compliance=np.zeros((8, 8)))]
+    wrong = soft_motion(reading.mechanism, lambda gap, pose: stiffer[0], run.t)
     assert apart(reading.mechanism, wrong, run.pose).max() > 1e-5
 
 
@@ -289,7 +289,7 @@ def test_a_limit_and_a_contact_are_named_with_their_time():
     turned = free[:, 1, 2] - free[:, 0, 2]
     sign = np.sign(reading.model.scene.data.xaxis[1] @ reading.model.scene.frame.normal)  # type: ignore[attr-defined]
     beyond = (sign * turned > 0.1) | (sign * turned < -0.1)
-    assert met == Obstacle(t[int(np.argmax(beyond))], "joint 'B' reaches its limit", "--without limit")
+    assert met == Obstacle(t[int(np.argmax(beyond))], "joint 'B' reaches its limit", left_out("limit"))
     assert met.t > 0
     assert [note.element for note in without.notes] == ["contacts", "limit"]
 
@@ -307,7 +307,8 @@ def test_a_contact_is_named_with_its_time_and_at_the_start_refused():
     assert met.words.startswith("geom 'floor' touches geom")
     assert 0.1 < met.t < 0.5
     with pytest.raises(
-        Unsupported, match=r"geom 'floor' touches .*: so it does at the start.* give --without contact$"
+        Unsupported,
+        match=r"geom 'floor' touches .*: so it does at the start.* --without contact judges your model without it",
     ):
         read(with_floor(0.0))
 

@@ -24,7 +24,7 @@ from pymunk.constraints import (
 from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.pymunk.reading import read
-from engines.reading import Obstacle
+from engines.reading import Obstacle, left_out
 from reports.check.judging import refuse_disagreement
 
 # Two small steps, extrapolated: what is left is of the order of the step squared, a hundred-millionth.
@@ -211,7 +211,7 @@ def test_a_shape_that_is_touched_on_the_way_is_named():
         "a shape of the ground touches one of body 2",
         "a shape of body 2 touches one of the ground",
     )
-    assert met.remedy == "--without contact"
+    assert met.remedy == left_out("contact")
     fallen = np.sqrt(2 * (0.4 + 1 - 0.06) / 9.81)
     assert fallen <= met.t <= fallen + 0.02
     for shape in space.shapes:
@@ -234,8 +234,8 @@ def test_limits_are_noted_and_named_when_they_are_reached():
     poses[2, 1, 0] = 5.0
     found = reading.model.obstacles(np.arange(3.0), poses, np.zeros_like(poses))
     assert found == [
-        Obstacle(1.0, "RotaryLimitJoint 1 reaches its end", "--without limit"),
-        Obstacle(2.0, "SlideJoint 1 reaches its end", "--without limit"),
+        Obstacle(1.0, "RotaryLimitJoint 1 reaches its end", left_out("limit")),
+        Obstacle(2.0, "SlideJoint 1 reaches its end", left_out("limit")),
     ]
 
 

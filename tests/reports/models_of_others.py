@@ -89,7 +89,7 @@ def tried(reading) -> list[str]:
             return [str(len(found.mechanism.bodies)), " ".join(without), ""]
         except (Unsupported, InvalidMechanism, ValueError) as reason:
             words = " ".join(str(reason).split())
-            advised = re.search(r"give --without (\w+)", words)
+            advised = re.search(r"--without (\w+)", words)
             word = None if advised is None else advised[1]
             if word is None or word in without:
                 return ["", " ".join(without), words]

@@ -200,7 +200,7 @@ def test_a_drive_that_gives_way_is_damped_against_its_own_rate():
     joints = (Pin("hinge", None, "wheel", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "wheel", 3.0, 0.0))
     at_rate = Mechanism((Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 3.0)),), joints)
     none = np.zeros(3)
-    give = Give(none, np.full(3, 10.0), none, np.full(3, np.nan))
+    give = Give(none, np.full(3, 10.0), np.diag(none), np.full(3, np.nan))
     for rate in (3.0, 2.0):
         twist = np.array([[0.0, 0.0, rate]])
         found = accelerations(at_rate, at_rate.pose, twist, 0.0, give)

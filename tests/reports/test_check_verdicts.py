@@ -13,16 +13,20 @@ import numpy as np
 import pytest
 from pymunk import Body as MunkBody
 from pymunk import Space
-from pymunk.constraints import GearJoint, PinJoint, PivotJoint, SimpleMotor
+from pymunk.constraints import GearJoint, PinJoint, PivotJoint, RotaryLimitJoint, SimpleMotor, SlideJoint
 from scipy.integrate import solve_ivp
 
+from engines import Unsupported
+from engines.mujoco.reading import read as read_model
 from engines.pymunk.reading import read as read_space
 from reference.forces import Damper, Spring
 from reference.joints import Drive, Slot
 from reference.mechanism import Body, Mechanism
 from reports.check.checked import Checked, Plan, check, read
-from reports.check.judging import errors, judged
+from reports.check.judging import apart, errors, judged, refuse_disagreement, soft_motion
+from reports.check.request import CheckRequest, Refused, answered
 from reports.check.telling import answer, sections
+from tests.reports.test_check import FOUR_BAR
 
 INPUTS = Path(__file__).parent / "inputs"
 QUICK = Plan(5.0, quick=True)
@@ -254,3 +258,146 @@ def test_no_far_point_of_a_line_enters_the_length_or_the_time(scale, far):
     held = Spring("spring", None, "block", (-far * scale, 0.0), (0.0, 0.0), 20.0, (far + 0.5) * scale)
     alone = Mechanism((Body("block", 0.5, 1.0, (0.2 * scale, 0.0, 0.0)),), (groove,), (0.0, 0.0), (held,))
     assert alone.length_scale == pytest.approx(0.3 * scale)
+
+
+LIMITED = {
+    "weld": (lambda a, b: RotaryLimitJoint(a, b, 0, 0), lambda a, b: GearJoint(a, b, 0, 1)),
+    "rod": (
+        lambda a, b: SlideJoint(a, b, (0, 0), (0, 0), 0.41**0.5, 0.41**0.5),
+        lambda a, b: PinJoint(a, b, (0, 0), (0, 0)),
+    ),
+    "turned ground": (
+        lambda a, b: RotaryLimitJoint(b.space.static_body, b, 0.3, 0.3),
+        lambda a, b: GearJoint(a.space.static_body, b, 0.3, 1),
+    ),
+}
+
+
+def limited(kind: str, both_sided: bool) -> Space:
+    space = Space()
+    space.gravity = (0, -G)
+    upper, lower = MunkBody(2, 0.2), MunkBody(1, 0.1)
+    upper.position, lower.position = (0.5, 0), (1.0, -0.4)
+    space.add(upper, lower)
+    if kind == "turned ground":  # the angle of a body that stands still counts as it does in pymunk
+        lower.angle = 0.5
+        lower.position = (1.0 + 0.4 * np.sin(0.5), -0.4 * np.cos(0.5))
+        space.static_body.angle = 0.2
+    hinge = PivotJoint(space.static_body, upper, space.static_body.world_to_local((0, 0)), (-0.5, 0))
+    space.add(hinge, PivotJoint(upper, lower, (0.5, 0), (0, 0.4)), LIMITED[kind][both_sided](upper, lower))
+    return space
+
+
+@pytest.mark.parametrize("kind", LIMITED)
+def test_a_limit_whose_ends_are_one_is_the_joint_that_holds_it(kind):
+    found = check(read_space(limited(kind, False), 1e-3), kind, 0.5, 1e-4, plan=QUICK)
+    same = read_space(limited(kind, True), 1e-3).mechanism
+    own = found.reading.mechanism
+    assert own.degrees_of_freedom() == same.degrees_of_freedom() == (1, 1)
+    truth = judged(same, 20, 0.025).trajectory
+    np.testing.assert_allclose(judged(own, 20, 0.025).trajectory.pose, truth.pose, rtol=0, atol=1e-10)
+    assert any("its min and max are equal" in note.reason for note in found.reading.notes)
+    assert found.own_errors.largest < 0.02  # pymunk follows the joint, to the first order of its step
+    # It is no limit, so leaving limits out leaves it in.
+    assert read_space(limited(kind, False), 1e-3, ("limit",)).mechanism.degrees_of_freedom() == (1, 1)
+
+
+def test_a_distance_of_zero_is_refused_with_the_joint_that_holds_it():
+    space = limited("weld", True)
+    upper, lower = space.bodies
+    space.add(SlideJoint(upper, lower, (0.5, 0), (0, 0.4), 0, 0))
+    with pytest.raises(Unsupported, match="its min and max are zero, which has no direction; give a PivotJoint"):
+        read_space(space, 1e-3)
+
+
+def test_a_range_without_a_width_limits_nothing_in_mujoco_and_check_says_so():
+    text = (
+        '<mujoco><worldbody><body><joint name="j" axis="0 1 0" range="30 30"/><geom size=".1" pos=".3 0 0"/></body>'
+        "</worldbody></mujoco>"
+    )
+    reading = read_model(mujoco.MjModel.from_xml_string(text))
+    assert [note.element for note in reading.notes] == ["joint 'j'"]
+    assert reading.notes[0].reason.startswith("MuJoCo does not limit it")
+    assert reading.mechanism.degrees_of_freedom() == (1, 1)
+
+
+ACTING = {
+    "limit": 'range="-5 5"',
+    "frictionloss": 'frictionloss="0.1"',
+}
+
+
+@pytest.mark.parametrize("element", [*ACTING, "contact", "fluid", "sleep"])
+def test_nothing_that_acts_in_the_motion_is_advised_to_be_left_out(tmp_path, element):
+    option = {"fluid": 'viscosity="1"'}.get(element, "")
+    flag = '<flag sleep="enable"/>' if element == "sleep" else ""
+    floor = '<geom type="plane" size="1 1 1" pos="0 0 -.2"/>' if element == "contact" else ""
+    (tmp_path / "model.xml").write_text(
+        f"<mujoco><option {option}>{flag}</option><worldbody>{floor}<body>"
+        f'<joint axis="0 1 0" {ACTING.get(element, "")}/><geom size=".1" pos=".3 0 0"/></body></worldbody></mujoco>'
+    )
+    refused = answered(CheckRequest("model.xml", str(tmp_path), 1.0, 1e-2, quick=True))
+    assert isinstance(refused, Refused)
+    assert refused.sentence.endswith(f"--without {element} judges your model without it, which moves otherwise")
+    assert "give --without" not in refused.sentence
+    assert "or --without" not in refused.sentence
+
+
+@pytest.mark.parametrize(("flag", "stands"), [("enable", True), ("disable", False)])
+def test_a_pendulum_falls_asleep_at_its_turning_point(flag, stands):
+    """Why the flag is refused: 0.01 rad from its equilibrium it never moves again."""
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option><flag sleep="{flag}"/></option><worldbody><body><joint axis="0 1 0"/><geom size=".05" '
+        'pos="0 0 -1"/></body></worldbody><keyframe><key qpos="0.01"/></keyframe></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    angles = []
+    for _ in range(2000):
+        mujoco.mj_step(model, data)
+        angles.append(float(data.qpos[0]))
+    assert (np.ptp(angles[-1000:]) == 0) == stands
+    assert np.ptp(angles) > 0.019
+
+
+LOOPS = {
+    "as shipped": "",
+    "stiff": 'solref="0.01 1" solimp="0.9999 0.9999 0.001 0.5 1"',
+}
+CONNECT = '<connect name="C" body1="coupler" body2="rocker" anchor="0.8 0 0.3"'
+
+
+@pytest.mark.parametrize("turned", ["0 0 0", "20 35 10"])
+@pytest.mark.parametrize("values", LOOPS)
+def test_the_declared_softness_of_a_loop_follows_the_diagonal_that_the_flag_selects(values, turned):
+    """In MuJoCo's rows, the world's axes: in a turned plane the compliance of a loop is no multiple of one number."""
+    run, soft = {}, {}
+    for flag in ("enable", "disable"):
+        text = FOUR_BAR.replace(
+            '<option timestep="0.002"/>',
+            f'<option timestep="1e-4" integrator="RK4"><flag diagexact="{flag}"/></option>',
+        )
+        text = text.replace(CONNECT, f"{CONNECT} {LOOPS[values]}")
+        text = text.replace("<worldbody>", f'<worldbody><body euler="{turned}">').replace(
+            "</worldbody>", "</body></worldbody>"
+        )
+        reading = read_model(mujoco.MjModel.from_xml_string(text))
+        assert refuse_disagreement(reading) < 1e-7
+        run[flag] = reading.model.run(10, 200)
+        soft[flag] = soft_motion(reading.mechanism, reading.model.give, run[flag].t)
+        assert apart(reading.mechanism, soft[flag], run[flag].pose).max() < 1e-8
+    assert apart(reading.mechanism, soft["enable"], run["disable"].pose).max() > 1e-7  # the flag matters
+
+
+@pytest.mark.parametrize(
+    "loop", ['<weld name="C" body1="coupler" body2="rocker"/>', '<joint joint1="A" joint2="D" polycoef="0 .5 0 0 0"/>']
+)
+def test_the_exact_diagonal_of_a_weld_and_of_a_coupling_is_read_too(loop):
+    text = re.sub(r"<connect.*?/>", loop, FOUR_BAR).replace(
+        '<option timestep="0.002"/>', '<option timestep="1e-4" integrator="RK4"><flag diagexact="enable"/></option>'
+    )
+    reading = read_model(mujoco.MjModel.from_xml_string(text))
+    assert refuse_disagreement(reading) < 1e-7
+    run = reading.model.run(5, 200)
+    soft = soft_motion(reading.mechanism, reading.model.give, run.t)
+    assert apart(reading.mechanism, soft, run.pose).max() < 1e-7

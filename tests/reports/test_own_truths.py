@@ -17,6 +17,7 @@ from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.mujoco.reading import read as read_mjcf
 from engines.pymunk.reading import read as read_space
+from engines.reading import left_out
 from reference.checks import InvalidMechanism
 from reports.check.checked import check
 from reports.check.judging import refuse_disagreement
@@ -103,9 +104,9 @@ def test_a_limit_of_a_servos_force_is_named_with_the_time_at_which_it_is_reached
     told = float(str(refused.value).split(" at ")[1].split(" s")[0])
     assert at <= told <= at + 0.005  # the looks are 1 ms apart, and three digits are told
     words = str(refused.value)
-    assert words.endswith("or --without forcelimit")
+    assert words.endswith(left_out("forcelimit"))
     # For as long as it is told, and with the limit gone, the same model is checked, and the limit is noted.
-    duration = float(words.split("--duration ")[1].split(",")[0])
+    duration = float(words.split("--duration ")[1].split(";")[0])
     assert check(reading, "servo", duration, 1e-3).met
     assert any("its force is limited" in note.reason for note in reading.notes)
     without = read_mjcf(reading.model.scene.model, reading.model.scene.data, ("forcelimit",))  # type: ignore[attr-defined]
@@ -171,7 +172,7 @@ def test_what_is_applied_to_joints_and_bodies_acts_in_its_direction(flag):
 
 
 def test_a_model_that_may_sleep_is_refused_by_name():
-    with pytest.raises(Unsupported, match=r"^flag sleep: .* give --without sleep$"):
+    with pytest.raises(Unsupported, match=r"^flag sleep: .* --without sleep judges your model without it"):
         mjcf(WHEEL, flags='sleep="enable"')
 
 
@@ -238,7 +239,7 @@ def test_both_ends_of_a_groove_are_ends(speed):
     space = space_of(body)
     space.add(GrooveJoint(space.static_body, body, (-0.6, 0.0), (0.6, 0.0), (0.0, 0.0)))
     with pytest.raises(
-        Unsupported, match=r"GrooveJoint 1 reaches its end at 0.[57]0?[0-9]? s.*or a longer groove"
+        Unsupported, match=r"GrooveJoint 1 reaches its end at 0.[57]0?[0-9]? s.*give a longer groove"
     ) as found:
         check(read_space(space, 0.01), "groove", 2.0, 1e-3)
     assert f"at {0.5 if speed > 0 else 0.7:.3g}" in str(found.value)
@@ -293,7 +294,9 @@ def swinging(threshold, idle):
 def test_a_body_that_may_fall_asleep_is_named_with_the_time():
     """Slower than 0.02 m/s, as pymunk counts, for 0.3 s and longer."""
     space = swinging(0.3, 0.02)
-    with pytest.raises(Unsupported, match=r"^body 1 may fall asleep at 0\.30?\d? s.* or --without sleep$"):
+    with pytest.raises(
+        Unsupported, match=r"^body 1 may fall asleep at 0\.30?\d? s.* --without sleep judges your model without it"
+    ):
         check(read_space(space, 0.01), "asleep", 1.0, 1e-1)
     for _ in range(100):
         space.step(0.01)

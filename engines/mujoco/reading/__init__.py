@@ -22,7 +22,7 @@ from engines.mujoco.reading.obstacles import limited_forces
 from engines.mujoco.reading.own_model import OwnMuJoCo, heard
 from engines.mujoco.reading.rewriting import rewritten
 from engines.mujoco.reading.settings import switch_off
-from engines.reading import Note, Reading, Source, refuse, refuse_at_start
+from engines.reading import Note, Reading, Source, left_out, refuse, refuse_at_start
 from reference.checks import InvalidMechanism
 from reference.forces import Force
 
@@ -47,7 +47,8 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     if model.nv == 0:
         raise refuse("the model", "nothing in it can move")
     if model.opt.enableflags & int(getattr(mujoco.mjtEnableBit, "mjENBL_SLEEP", 0)):
-        raise refuse("flag sleep", "a tree of bodies that rests is no longer moved by anything; give --without sleep")
+        words = "MuJoCo stops a tree of bodies that is slow, even a pendulum at its turning point, which no joint does"
+        raise refuse("flag sleep", f"{words}; {left_out('sleep')}")
     _refuse_not_finite(model, started)
     # No contacts and no solver: a model of thousands of bodies is refused before that.
     mujoco.mj_kinematics(model, started)
@@ -118,6 +119,10 @@ def _note_what_may_act(scene: Scene) -> None:
     model, limit = scene.model, "its limit is left out, since it is not reached in the judged motion"
     for element in limited_forces(model):
         scene.note(element, f"its force is limited; {limit}")
+    low, high = model.jnt_range.T
+    for index in np.flatnonzero((low == high) & (low != 0) & (model.jnt_limited == 0)):
+        words = f"MuJoCo does not limit it, since both ends of its range are {low[index]:g}; an equality holds it there"
+        scene.note(name_of(model, mujoco.mjtObj.mjOBJ_JOINT, index), words)
     if off(model, "CONSTRAINT"):
         return
     if not off(model, "LIMIT"):
@@ -148,8 +153,8 @@ def _with_armature(scene: Scene) -> tuple[tuple[Any, ...], list[Force]]:
                 label = scene.names.new(f"{body.name}: armature has no weight")
                 weights.append(Force(label, body.name, (0.0, 0.0), weight))
         else:
-            words = "its armature is an inertia of a relative motion, which no body has; give --without armature"
-            raise refuse(element, words)
+            words = "its armature is an inertia of a relative motion, which no body has"
+            raise refuse(element, f"{words}; {left_out('armature')}")
     return tuple(bodies), weights
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from engines.mujoco.reading.elements import JOINT, Scene, angle_weights, straight, wrapped_joints
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, SLIDE, name_of, plain_name
-from engines.reading import refuse
+from engines.reading import left_out, refuse
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
 TENDON, ACTUATOR = mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtObj.mjOBJ_ACTUATOR
@@ -29,14 +29,14 @@ def _refuse_what_has_no_counterpart(scene: Scene) -> None:
     model = scene.model
     if (model.opt.density or model.opt.viscosity) and not off(model, "PASSIVE"):
         raise refuse(
-            "option density or viscosity", "the drag of a fluid has no ideal counterpart; give --without fluid"
+            "option density or viscosity", f"the drag of a fluid has no ideal counterpart; {left_out('fluid')}"
         )
     if model.nplugin or model.nflex:
         raise refuse("a plugin or a flexible body", "its forces have no ideal counterpart")
     if not (off(model, "FRICTIONLOSS") or off(model, "CONSTRAINT")):
         for dof in np.flatnonzero(model.dof_frictionloss):
             element = name_of(model, JOINT, int(model.dof_jntid[dof]))
-            raise refuse(element, "its friction loss has no ideal counterpart; give --without frictionloss")
+            raise refuse(element, f"its friction loss has no ideal counterpart; {left_out('frictionloss')}")
         for tendon in np.flatnonzero(model.tendon_frictionloss):
             raise refuse(name_of(model, TENDON, int(tendon)), "its friction loss has no ideal counterpart")
     for table, word in ((model.jnt_stiffnesspoly, "stiffness"), (model.tendon_stiffnesspoly, "stiffness")):

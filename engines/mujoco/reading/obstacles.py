@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from engines.mujoco.reading.elements import Scene
 from engines.mujoco.reading.forces import FAR, limited_servos
 from engines.mujoco.reading.frame import FREE, HINGE, SLIDE, name_of
-from engines.reading import Obstacle
+from engines.reading import Obstacle, left_out
 from reference.plane import rotated
 
 ACTUATOR, JOINT, TENDON = mujoco.mjtObj.mjOBJ_ACTUATOR, mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_TENDON
@@ -118,7 +118,7 @@ def obstacles(
     free = unlimited(model) if limited_forces(model) else None
 
     def meets(at: float, words: str, without: str) -> None:
-        found.setdefault(words, Obstacle(float(at), words, f"--without {without}"))
+        found.setdefault(words, Obstacle(float(at), words, left_out(without)))
 
     kinds = mujoco.mjtConstraint
     limits = {int(kinds.mjCNSTR_LIMIT_JOINT): JOINT, int(kinds.mjCNSTR_LIMIT_TENDON): TENDON}
@@ -151,5 +151,5 @@ def beyond_springs(scene: Scene, t: Any, places: Any) -> Obstacle | None:
             if np.any(way < -0.9 * length):
                 words = f"{name_of(model, JOINT, int(joint))} slides further than the spring that stands for its own"
                 at = float(t[int(np.argmax(way < -0.9 * length))])
-                return Obstacle(at, words, "--without spring and --without damper")
+                return Obstacle(at, words, "no longer slide can be judged")
     return None

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from engines.mujoco.reading.elements import Scene
 from engines.mujoco.reading.frame import angles_of, name_of
-from engines.mujoco.reading.obstacles import obstacles
+from engines.mujoco.reading.obstacles import obstacles, positions
 from engines.mujoco.reading.settings import TIED_STEPS, changes, declared, switch_off
 from engines.mujoco.releases import marks
 from engines.mujoco.running import _listening
@@ -118,7 +118,14 @@ class OwnMuJoCo:
 
     @cached_property
     def _give(self) -> Any:
-        return declared(self.scene, self.mechanism, self._directions(self.scene.data), self._drift())
+        data = self._fresh(self.scene.model)
+
+        def moved(pose: Array) -> Any:
+            data.qpos[:] = positions(self.scene, pose[None])[0]
+            mujoco.mj_fwdPosition(self.scene.model, data)
+            return data
+
+        return declared(self.scene, self.mechanism, self._directions(self.scene.data), self._drift(), moved)
 
     def _drift(self) -> Array:
         """Accelerations (3 bodies,) at the start with MuJoCo's coordinates at a steady rate."""
@@ -128,8 +135,8 @@ class OwnMuJoCo:
         data.qacc[:] = 0.0
         return self._motion(model, data)[1].reshape(-1)
 
-    def give(self, gap: Array) -> Give:
-        return self._give(gap)
+    def give(self, gap: Array, pose: Array) -> Give:
+        return self._give(gap, pose)
 
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
         return obstacles(self.scene, self._fresh(self.scene.model), self._directions, t, pose, twist)

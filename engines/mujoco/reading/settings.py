@@ -1,6 +1,6 @@
 """How the loops of a user's model give way, as MuJoCo declares it, and what can be changed in the model.
 
-A row obeys a + b v + k d r = -R f with R = (1 - d) / d times an estimate of the inertia, and an impedance d that grows
+A row obeys a + b v + k d r = -R f. R is (1 - d) / d times a diagonal for the inverse inertia, and the impedance d grows
 with the gap ("Computation: Constraint model" and "Modeling: Solver parameters" in MuJoCo's documentation).
 """
 
@@ -10,6 +10,7 @@ with the gap ("Computation: Constraint model" and "Modeling: Solver parameters" 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import mujoco
@@ -27,13 +28,32 @@ Array = NDArray[np.float64]
 LEAST_IMPEDANCE, MOST_IMPEDANCE = 1e-4, 0.9999  # mjMINIMP and mjMAXIMP
 
 
-def declared(scene: Scene, mechanism: Mechanism, directions: Array, drift: Array) -> Callable[[Array], Give]:
-    """Of a gap (rows,) [m, rad] of the mechanism's rows, how each gives way there.
+@dataclass(frozen=True, eq=False)
+class _Held:
+    """An equality and its ideal rows `places`. `blocks`: which of its rows in MuJoCo (slice) are which multiples
+    (rows, places) of which of ours (slice); `factors` (places,): the lengths of these multiples.
+    """
+
+    equality: int
+    places: list[int]
+    blocks: tuple[tuple[slice, slice, Array], ...]
+    factors: Array
+    shape: Array  # solimp (5,)
+    stiffness: float
+    damping: float
+
+
+def declared(
+    scene: Scene, mechanism: Mechanism, directions: Array, drift: Array, moved: Callable[[Array], Any]
+) -> Callable[[Array, Array], Give]:
+    """How each row gives way at a gap (rows,) [m, rad] and a pose (bodies, 3).
 
     directions (3 bodies, nv): how MuJoCo's coordinates move the bodies at the start, where its rows are compared with
     the mechanism's: a row that is a multiple of ours has a compliance of another size. drift (3 bodies,): the bodies'
     accelerations there with MuJoCo's coordinates at a steady rate: an equality of a tendon, which has no term of
-    velocities (up to 4.0.1), holds these steady.
+    velocities (up to 4.0.1), holds these steady. moved: gives a mujoco.MjData at a pose, after mj_fwdPosition; asked
+    for with the flag `diagexact` alone, whose diagonal is that of the pose. Without it the diagonal is an estimate of
+    the compiler's, the same at all poses.
     """
     model, data = scene.model, scene.data
     places, start = dict[str, range](), 0
@@ -46,32 +66,48 @@ def declared(scene: Scene, mechanism: Mechanism, directions: Array, drift: Array
         instead[places[name]] = mechanism.rows(mechanism.pose)[places[name]] @ drift
     ours = mechanism.rows(mechanism.pose) @ directions
     theirs = _dense(model, data)
-    pieces: list[tuple[list[int], Array, Array, float, float, Array]] = []
+    held: list[_Held] = []
     for index, joints in scene.held.items():
         own = [place for joint in joints for place in places[joint.name]]
         rows = equality_rows(data, index)
         if not own or not len(rows):
             continue
-        stiffness, damping, impedance = (float(value) for value in data.efc_KBIP[rows[0]][:3])
-        factors, estimates = np.ones(len(own)), np.zeros(len(own))
-        for number, place in enumerate(own):
-            along = number < 2 and len(own) > 1  # a connect, or the first rows of a weld: as long as ours
-            like = rows[0] if along or len(rows) == 1 else rows[-1]
-            if not along:
-                norm = float(np.linalg.norm(theirs[rows[3:] if len(rows) > 3 else rows]))
-                factors[number] = norm / float(np.linalg.norm(ours[place]) or 1.0)
-            estimates[number] = data.efc_R[like] * impedance / (1 - impedance)
-        pieces.append((own, factors, model.eq_solimp[index].copy(), stiffness, damping, estimates))
+        blocks, factors = [], np.ones(len(own))
+        if len(own) > 1:  # a connect, or the first rows of a weld: along the axes of the world
+            blocks.append((slice(0, 3), slice(0, 2), scene.frame.both.T))
+        if len(own) != 2:
+            place, turning = own[-1], slice(3 if len(own) > 1 else 0, len(rows))
+            length = float(ours[place] @ ours[place])
+            multiple = theirs[rows[turning]] @ ours[place] / length if length else np.ones(len(rows[turning]))
+            blocks.append((turning, slice(len(own) - 1, len(own)), multiple[:, None]))
+            factors[-1] = np.linalg.norm(multiple)
+        stiffness, damping, _ = (float(value) for value in data.efc_KBIP[rows[0]][:3])
+        held.append(_Held(index, own, tuple(blocks), factors, model.eq_solimp[index].copy(), stiffness, damping))
+    exact = bool(model.opt.enableflags & int(getattr(mujoco.mjtEnableBit, "mjENBL_DIAGEXACT", 0)))
+    usual = {each.equality: _estimates(data, each.equality) for each in held}
 
-    def give(gap: Array) -> Give:
-        out = np.zeros((3, mechanism.row_count))
-        for own, factors, shape, stiffness, damping, estimates in pieces:
-            d = impedance_of(shape, float(np.linalg.norm(factors * gap[own])))
-            out[0, own], out[1, own] = stiffness * d, damping
-            out[2, own] = (1 - d) / d * estimates / factors**2
-        return Give(out[0], out[1], out[2], instead)
+    def give(gap: Array, pose: Array) -> Give:
+        stiffness, damping = np.zeros((2, mechanism.row_count))
+        compliance = np.zeros((mechanism.row_count, mechanism.row_count))
+        now = moved(pose) if exact else None
+        for each in held:
+            d = impedance_of(each.shape, float(np.linalg.norm(each.factors * gap[each.places])))
+            stiffness[each.places], damping[each.places] = each.stiffness * d, each.damping
+            estimates = usual[each.equality] if now is None else _estimates(now, each.equality)
+            for rows, which, multiples in each.blocks:
+                # R f = a_ref - a in MuJoCo's rows, which are these multiples of ours.
+                stiff = multiples.T @ (multiples / estimates[rows, None])
+                compliance[np.ix_(each.places[which], each.places[which])] = (1 - d) / d * np.linalg.inv(stiff)
+        return Give(stiffness, damping, compliance, instead)
 
     return give
+
+
+def _estimates(data: Any, equality: int) -> Array:
+    """The diagonal (rows,) that stands for the inverse inertia in the rows of an equality."""
+    rows = equality_rows(data, equality)
+    impedance = data.efc_KBIP[rows, 2]
+    return data.efc_R[rows] * impedance / (1 - impedance)
 
 
 def impedance_of(shape: Array, gap: float) -> float:

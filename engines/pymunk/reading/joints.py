@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import inf, isinf
+from typing import Any
 
 import pymunk
 from pymunk.constraints import (
@@ -26,6 +27,8 @@ from reference.forces import Damper, Force, ForceElement, Spring, Torque, Torsio
 from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Slot, Vector
 
 LIMITS = (SlideJoint, RotaryLimitJoint)
+EQUALITY = "its min and max are equal, so it is taken as a {}; pymunk's {} holds from both sides at once"
+SAME = 1e-12  # rad, or of a length: ends of a limit that differ by rounding
 STILL = 0.0
 
 
@@ -148,7 +151,7 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
     if any(_moves(body) and body.space is not out.space for body in (a, b)):
         raise refuse(label, "it holds a body that is not in the space; add the body too")
     first, second = out.name(a), out.name(b)
-    if isinstance(constraint, LIMITS):
+    if isinstance(constraint, LIMITS) and not is_equality(constraint):
         out.notes.append(Note(label, "its limit is left out, since it is not reached in the judged motion"))
         return
     if first == second:
@@ -181,6 +184,16 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
                 out.joints.append(Rod(label, first, second, *points, float(constraint.distance)))
             else:
                 raise refuse(label, "its distance is zero, which has no direction; give a PivotJoint")
+        case SlideJoint():
+            if not constraint.min:
+                raise refuse(label, "its min and max are zero, which has no direction; give a PivotJoint")
+            points = out.own(a, constraint.anchor_a), out.own(b, constraint.anchor_b)
+            out.joints.append(Rod(label, first, second, *points, float(constraint.min)))
+            out.notes.append(Note(label, EQUALITY.format("rod", "PinJoint")))
+        case RotaryLimitJoint():
+            turned = float(constraint.min) + out.standing(a) - out.standing(b)
+            out.joints.append(Drive(label, first, second, 0.0, turned))
+            out.notes.append(Note(label, EQUALITY.format("joint that holds the angle", "GearJoint")))
         case GearJoint():
             out.joints.append(_geared(out, constraint, label))
         case SimpleMotor():
@@ -206,6 +219,20 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
             raise refuse(label, "a ratchet has no ideal counterpart")
         case _:
             raise refuse(label, f"a {type(constraint).__name__} has no ideal counterpart here")
+
+
+def is_equality(constraint: Constraint) -> bool:
+    """Whether it is a limit whose two ends are one, which holds as a joint does."""
+    return isinstance(constraint, LIMITS) and constraint.max - constraint.min <= SAME * max(1.0, abs(constraint.max))
+
+
+def both_sided(limit: Any) -> Constraint:
+    """The joint of pymunk's that an `is_equality` limit stands for."""
+    if isinstance(limit, SlideJoint):
+        rod = PinJoint(limit.a, limit.b, limit.anchor_a, limit.anchor_b)
+        rod.distance = limit.min
+        return rod
+    return GearJoint(limit.a, limit.b, limit.min, 1.0)
 
 
 def _turns(body: pymunk.Body) -> bool:

@@ -17,8 +17,8 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk.constraints import Constraint, GrooveJoint, RotaryLimitJoint, SlideJoint
 
-from engines.pymunk.reading.joints import Described
-from engines.reading import Change, Give, Note, Obstacle, refuse
+from engines.pymunk.reading.joints import LIMITS, Described, both_sided, is_equality
+from engines.reading import Change, Give, Note, Obstacle, left_out, refuse
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
@@ -39,7 +39,7 @@ def switch_off(space: pymunk.Space, element: str) -> None:
     elif element == "damping":
         space.damping = 1.0
     elif element == "limit":
-        space.remove(*[each for each in space.constraints if isinstance(each, SlideJoint | RotaryLimitJoint)])
+        space.remove(*[each for each in space.constraints if isinstance(each, LIMITS) and not is_equality(each)])
     elif element == "sleep":
         space.sleep_time_threshold = inf
     else:
@@ -119,15 +119,19 @@ class OwnPymunk:
         space, bodies = self._fresh()
         if element is not None:
             switch_off(space, element)
+        for limit in [each for each in space.constraints if is_equality(each)]:
+            # It pushes from outside alone, so at the start, where it is closed, it does not act yet.
+            space.remove(limit)
+            space.add(both_sided(limit))
         space.iterations = max(space.iterations, SWEEPS)
         for body, (x, y, turn) in zip(bodies, self.mechanism.twist.tolist(), strict=True):
             body.velocity, body.angular_velocity = (x, y), turn
         self._stepper(space, bodies)(step)
         return (_twists(bodies) - self.mechanism.twist) / step
 
-    def give(self, gap: Array) -> Give:
+    def give(self, gap: Array, pose: Array) -> Give:
         none = np.zeros(self.mechanism.row_count)
-        return Give(none, none, none, np.full_like(none, np.nan))
+        return Give(none, none, np.diag(none), np.full_like(none, np.nan))
 
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
         space, bodies = self._fresh()
@@ -265,7 +269,7 @@ def obstacles(
     limits = [
         (mine, label)
         for mine, label in zip(space.constraints, labels, strict=True)
-        if isinstance(mine, SlideJoint | RotaryLimitJoint | GrooveJoint)
+        if isinstance(mine, SlideJoint | RotaryLimitJoint | GrooveJoint) and not is_equality(mine)
     ]
     names = {id(body): word for body, word in zip(bodies, words, strict=True)}
     for at, poses in zip(t, pose, strict=True):
@@ -277,11 +281,11 @@ def obstacles(
         for one, other in pairs:
             if one.bb.intersects(other.bb) and _touch(one, other):
                 who = [names.get(id(shape.body), "the ground") for shape in (one, other)]
-                meets(at, f"a shape of {who[0]} touches one of {who[1]}", "--without contact")
+                meets(at, f"a shape of {who[0]} touches one of {who[1]}", left_out("contact"))
         for limit, label in limits:
             if _reached(limit):
                 groove = isinstance(limit, GrooveJoint)
-                meets(at, f"{label} reaches its end", "a longer groove" if groove else "--without limit")
+                meets(at, f"{label} reaches its end", "give a longer groove" if groove else left_out("limit"))
     return sorted(found.values(), key=lambda each: each.t)
 
 
@@ -305,7 +309,7 @@ def sleepers(found: Described, step: float, t: Array, twist: Array) -> list[Obst
         for at, idle in zip(t, speed**2 + turning <= allowed**2, strict=True):
             since = min(since, at) if idle else np.inf
             if at - since >= space.sleep_time_threshold:
-                out.append(Obstacle(float(at), f"{word} may fall asleep", "--without sleep"))
+                out.append(Obstacle(float(at), f"{word} may fall asleep", left_out("sleep")))
                 break
     return out
 
