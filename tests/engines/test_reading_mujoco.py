@@ -244,7 +244,7 @@ def test_an_equality_of_which_mujoco_makes_no_row_is_left_out_with_a_note():
         assert [joint.name for joint in reading.mechanism.joints] == ["j"]
         assert ("equality 0", True) in [(note.element, "makes no row" in note.reason) for note in reading.notes]
         assert refuse_disagreement(reading) < 1e-9
-        assert not reading.model.give(np.zeros(2)).stiffness.any()
+        assert not reading.model.give(np.zeros(2), reading.mechanism.pose).stiffness.any()
 
 
 @pytest.mark.parametrize("option", ['density="1000"', 'viscosity="10"'])
