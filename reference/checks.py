@@ -48,6 +48,10 @@ class InvalidMechanism(ValueError):
     """A body, joint, setting or argument that can't be: which value, why, and what would be valid."""
 
 
+class NotFinite(InvalidMechanism, ArithmeticError):
+    """An argument that overflowed or is NaN where a finite number must be."""
+
+
 def shown(value: Any) -> str:
     """A value in one short line."""
     try:
@@ -59,7 +63,14 @@ def shown(value: Any) -> str:
 
 def refusal(owner: str, name: str, value: Any, words: str) -> InvalidMechanism:
     """The error for a value that isn't what the words say."""
-    return InvalidMechanism(f"{owner}: {name} is {shown(value)}; it must be {words}")
+    error = InvalidMechanism if _is_finite(value) else NotFinite
+    return error(f"{owner}: {name} is {shown(value)}; it must be {words}")
+
+
+def _is_finite(value: Any) -> bool:
+    """False for a number or an array with an infinity or NaN; True for everything else, iterators without end too."""
+    plain = isinstance(value, float | complex | np.ndarray | np.generic)
+    return not plain or np.asarray(value).dtype.kind not in "fc" or bool(np.isfinite(value).all())
 
 
 _plans: dict[Any, tuple[tuple[str, Callable[[Any], Any], Kind], ...]] = {}

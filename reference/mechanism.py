@@ -265,6 +265,14 @@ ROUNDINGS = 64  # of a coordinate: what placing a body and its joints may take
 
 def refuse_a_bad_start(mechanism: Mechanism) -> None:
     """Raise InvalidMechanism for a start that no engine could begin with, in a sentence that names the row or force."""
+    with np.errstate(over="ignore"):
+        energies = 0.5 * np.sum(mechanism.inertias * mechanism.twist**2, axis=-1)
+    for body, energy in zip(mechanism.bodies, energies.tolist(), strict=True):
+        if not np.isfinite(energy):
+            raise InvalidMechanism(
+                f"body {body.name!r}: its kinetic energy at t = 0 is {energy} J, which is not finite: its twist is "
+                f"{body.twist}, its mass {body.mass:g} kg and its inertia {body.inertia:g} kg m^2"
+            )
     _refuse_open_joints(mechanism)
     for element in mechanism.forces:
         still = np.zeros(3)

@@ -8,9 +8,10 @@ import inspect
 import math
 import typing
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import MISSING, fields, replace
-from functools import cached_property
+from functools import cached_property, wraps
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -38,6 +39,10 @@ Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # of all bodies; NaN w
 TIMES = (("duration", Positive), ("horizon", Positive), ("samples", Count))  # what a scene's times may be
 
 
+class NoMotion(InvalidMechanism):
+    """The numbers of a scene are valid each, and no finite motion can be computed from them."""
+
+
 class Scene(Valid, ABC):
     """Subclasses are frozen dataclasses, and their fields are the only place where a number is written.
 
@@ -50,6 +55,12 @@ class Scene(Valid, ABC):
     reach: ClassVar[float] = 10.0  # durations, see `latest`
     duration: float
     horizon: float
+
+    def __init_subclass__(cls, **named: Any) -> None:
+        """Failed arithmetic in the `mechanism` of any scene, ours or a user's, becomes a sentence with its name."""
+        super().__init_subclass__(**named)
+        if "mechanism" in vars(cls):
+            cls.mechanism = _in_words(vars(cls)["mechanism"])  # type: ignore[method-assign]
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -75,15 +86,14 @@ class Scene(Valid, ABC):
     def motion(self, t: ArrayLike) -> Trajectory:
         """The truth at times t (times,) [s], or at one: poses, twists, reactions.
 
-        Raises InvalidMechanism unless all times are finite and lie from 0 to `latest`, or where the motion itself ends.
+        Raises InvalidMechanism unless all times are finite and lie from 0 to `latest`, or where the motion itself ends;
+        NoMotion where it can't be computed, or is not finite.
         """
         times = self.times(t)
-        try:
+        until = f"no motion is known up to {times.max(initial=0.0):.9g} s"
+        with np.errstate(all="ignore"), _named(self._owner(), until):
             motion = self._motion(times if times.size else np.zeros(1))
-        except ArithmeticError as reason:
-            raise InvalidMechanism(
-                f"{self._owner()}: no motion is known up to {times.max():.9g} s: {reason}"
-            ) from reason
+            self._refuse_not_finite(motion)
         if times.size:
             return motion
         return Trajectory(times, motion.pose[:0], motion.twist[:0], motion.reaction[:0])
@@ -91,6 +101,20 @@ class Scene(Valid, ABC):
     @abstractmethod
     def _motion(self, times: Floats) -> Trajectory:
         """The truth at times (times,) [s] that `motion` has checked; at least one."""
+
+    def _refuse_not_finite(self, motion: Trajectory) -> None:
+        """Raise OverflowError for a motion with which nothing can be compared; unknown reactions are NaN.
+
+        Energies and accelerations are made of the squares of velocities.
+        """
+        for name, numbers, finite in (
+            ("poses", motion.pose, np.isfinite),
+            ("squares of velocities", motion.twist**2, np.isfinite),
+            ("reactions", motion.reaction, lambda reaction: ~np.isinf(reaction)),
+        ):
+            at_instants = finite(numbers).reshape(len(motion.t), -1).all(axis=1)
+            if not at_instants.all():
+                raise OverflowError(f"its {name} are not finite numbers at {motion.t[np.argmin(at_instants)]:.6g} s")
 
     def times(self, t: ArrayLike) -> Floats:
         """Times [s], or one, as an array (times,); InvalidMechanism unless each is finite and from 0 to `latest`."""
@@ -158,7 +182,34 @@ class PlacedScene(Scene):
 
     def _motion(self, times: Floats) -> Trajectory:
         pose, twist, acceleration = self.placement(times)
-        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration, twist=twist))
+        reaction = self._mechanism.reaction(pose, acceleration, twist=twist)
+        if not np.isfinite(reaction).all():
+            raise OverflowError("the reactions that its accelerations need are not finite")
+        return Trajectory(times, pose, twist, reaction)
+
+
+@contextmanager
+def _named(owner: str, trouble: str) -> Iterator[None]:
+    """Failed arithmetic within becomes NoMotion, and every refusal begins with the owner's name."""
+    try:
+        yield
+    except InvalidMechanism as reason:
+        if isinstance(reason, ArithmeticError):
+            raise NoMotion(f"{owner}: {trouble}: {reason}") from reason
+        if str(reason).startswith(owner):
+            raise
+        raise type(reason)(f"{owner}: {reason}") from reason
+    except (ArithmeticError, np.linalg.LinAlgError, MemoryError) as reason:
+        raise NoMotion(f"{owner}: {trouble}: {reason.args[-1] if reason.args else type(reason).__name__}") from reason
+
+
+def _in_words(mechanism: Callable[[Any], Mechanism]) -> Callable[[Any], Mechanism]:
+    @wraps(mechanism)
+    def in_words(scene: Scene) -> Mechanism:
+        with np.errstate(all="ignore"), _named(scene._owner(), "its numbers make no mechanism"):
+            return mechanism(scene)
+
+    return in_words
 
 
 def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:

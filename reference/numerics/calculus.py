@@ -33,6 +33,9 @@ def _series_at(series: NDArray[Any], place: NDArray[np.float64]) -> NDArray[Any]
     return series[:, 0] + place * later - latest
 
 
+MOST_PANELS = 100_000  # 40 MB of nodes; a scene of this suite has at most a few hundred
+
+
 class Antiderivative:
     """int_0^t f, for a real or complex f that takes an array of times; grows as far as it is asked, never shrinks.
 
@@ -52,7 +55,10 @@ class Antiderivative:
 
     def _extend(self, end: float) -> None:
         """Add panels up to `end`, halving those whose series has not come to its end."""
-        count = max(1, int(np.ceil((end - self._edges[-1]) / self._panel)))
+        wanted = np.ceil((end - self._edges[-1]) / self._panel)
+        if not wanted <= MOST_PANELS:
+            raise OverflowError(f"an integral to {end:.3g} in panels of {self._panel:.3g} has too many of them")
+        count = max(1, int(wanted))
         edges = np.linspace(self._edges[-1], self._edges[-1] + count * self._panel, count + 1)
         left, width = edges[:-1], np.full(count, self._panel)
         rights: list[NDArray[np.float64]] = []

@@ -77,14 +77,24 @@ def run(
         with elsewhere(scheduler) as crew, opened(results / STORE) as store:
             store.remember(each.text() for each in known.given)
             count = run_interruptible(console, store, items, fresh, limit, crew or pool(workers))
-            print_summary(console, list(store.get(cells).values()))
+            rows = list(store.get(cells).values())
+            print_summary(console, rows)
         if engine is not None and not (every or step):
             for cell, why in left_out(scenes, engines, known.pages, full, cells):
                 method = f"{cell.engine.name} {cell.engine.variant}"
                 told = f"{cell.scene.name}, {method}: no step of {cell.step:.4g} s, since {why}"
                 console.tell(f"{told}; --every {cell.every} runs it")
         following = with_folder("crosscheck report", results)
+        refuse_without_motion(rows)
         console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
+
+
+def refuse_without_motion(rows: Sequence[Measurement]) -> None:
+    """Raises BadInput if the numbers of the scenes were refused in every cell."""
+    from reports.model.outcomes import Outcome
+
+    if rows and all(row.outcome == Outcome.REFUSED for row in rows):
+        raise BadInput(rows[0].sentence)
 
 
 def run_interruptible(

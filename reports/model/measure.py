@@ -17,7 +17,7 @@ from engines.contract import flaw
 from reference.checks import fixed
 from reference.kinds import Floats
 from reference.mechanism import Mechanism
-from reference.scene import Scene
+from reference.scene import NoMotion, Scene
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell, mechanism_of
 from reports.model.errors import branch_flips, constraint_errors, motion_errors, usable_samples
@@ -232,6 +232,8 @@ def compare(
         truth = _truth(cell, finite.t, truths)
         errors |= motion_errors(cell.scene, mechanism, truth, finite)
         errors["flips"] = branch_flips(cell.scene, truth, finite)
+    except NoMotion as reason:  # no motion of these numbers is known, so that nothing can be held against an engine
+        return replace(row, outcome=Outcome.REFUSED, sentence=str(reason))
     except ValueError as reason:  # the textbook refuses: there is no such motion, whatever the engine makes of it
         note = "; ".join(filter(None, (f"the reference refuses: {reason}", note)))
     if trajectory.estimate is not None and not np.isnan(trajectory.estimate[..., 2]).all():

@@ -22,7 +22,7 @@ from reference.scenes.four_bar.forces import Densities, Forces, bar_forces
 from reference.scenes.four_bar.rate_integration import RateIntegration, integrate_rates
 
 
-class Unreachable(ValueError):
+class Unreachable(InvalidMechanism):
     """A crank angle at which the loop can't close: the message names it and the range that is possible."""
 
 
