@@ -5,10 +5,10 @@ no contact is the subject. A Pin is a revolute joint, a Weld a weld joint, a Rod
 without its spring (a point on a line that is free to turn), or a prismatic joint where a Drive of rate zero keeps the
 angle. A Drive is the motor of the Pin or Slot between the same two bodies, with more torque than it can need. Version 3
 has no gears. Its prismatic and wheel joints hold a point on a line that is fixed in a body, so a place; a blade needs a
-velocity across a line that moves along with it, which may be anywhere, and there is no joint for that (3.1, in pyb2d3
-0.11.1). Rolling is contact with friction, and no contact is built here. Its springs are given a frequency, and their
-stiffness is that of the mass which they feel, pose by pose; so what springs, dampers, forces and torques do to bodies
-is worked out by our code before a step and applied as forces, as users do.
+velocity across a line that moves along with it, which may be anywhere, and there is no joint for that (in
+3.1.1, which pyb2d3 0.11.1 holds). Rolling is contact with friction; none is built here. Its springs have a frequency,
+and their stiffness is that of the mass which they feel, pose by pose; so what springs, dampers, forces and torques do
+to bodies is worked out by our code before a step and applied as forces, as users do.
 
 What one step does (its solver.c): `substeps` times with h = dt / substeps it kicks, lets every joint correct the
 velocities once with a push against its gap (soft, below), drifts by p += v h, and corrects once more without the push.

@@ -12,7 +12,18 @@ from reports.model.quantities import quantity
 from reports.model.usual_steps import is_step
 from reports.plots.engines_compared import Compared, engines_compared
 from reports.plots.theme import svg
-from reports.write.columns import NO_JOINT, NOT_BUILT, Column, Line, empty, lines, reached, runs_of, within_budget
+from reports.write.columns import (
+    NO_JOINT,
+    NOT_BUILT,
+    Column,
+    Line,
+    empty,
+    lines,
+    means,
+    reached,
+    runs_of,
+    within_budget,
+)
 from reports.write.page_tables import COMPARED
 from reports.write.tables import NOTHING, error_words, markdown
 
@@ -95,4 +106,4 @@ def _cell(line: Line, column: Column) -> str:
     engine, rows = line.columns[column][-1]
     at_step = error_words(next((row for row in rows if is_step(row.step, COMPARED)), None), line.name)
     runs = runs_of(engine, line.scene, COMPARED)
-    return f"{within_budget(line, column)} ({at_step}{'; ' + runs if runs else ''})"
+    return f"{within_budget(line, column)} ({at_step}{'; ' + runs if runs else ''}){means(line, column)}"

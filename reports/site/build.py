@@ -15,6 +15,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
+from reports.model.outcomes import Outcome
 from reports.model.tasks import Motion
 from reports.plots.theme import DARK, LIGHT, Theme
 from reports.site import markdown
@@ -177,8 +178,10 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
         write("reference/index.html", "article.html", title="Reference", body=body)
     guides = [(path.stem, path.read_text(encoding="utf-8")) for path in sorted((HERE / "howto").glob("*.md"))]
     below = {f"../results/{name}": f"../results/{page}" for name, page in names.items()}
+    meanings = {str(outcome): outcome.meaning for outcome in Outcome}
     for name, text in guides:
-        told = environment.from_string(text).render(contributing=lambda part: Markup(_quoted(source, part)))
+        quoted = {"contributing": lambda part: Markup(_quoted(source, part)), "meanings": meanings}
+        told = environment.from_string(text).render(quoted)
         body = markdown.linked(markdown.html(told), below, _elsewhere)
         write(f"howto/{name}.html", "article.html", title=markdown.title(text), body=Markup(body))
     titles = [(name, markdown.title(text)) for name, text in guides]

@@ -111,10 +111,17 @@ def _told(line: Line, column: Column, cell: Cell) -> str:
         return f"*{word}*"
     if not any(own for _, own in line.columns[column]):
         return NOTHING
+    return cell(line, column) + means(line, column)
+
+
+def means(line: Line, column: Column) -> str:
+    """ ", contact" where a contact with friction stands for a joint, and the variant where it has no usual name."""
     joints = mechanism_of(line.scene).joints
     engine_holds = column in (Column.SHIPPED, Column.SETTINGS)
     contact = engine_holds and any(isinstance(joint, Skate | Roll) for joint in joints)
-    return cell(line, column) + (", contact" if contact else "")
+    engine_names = [engine.variant for engine, _ in line.columns[column]]
+    unusual = [] if column is Column.WHOLE else [f"*{name}*" for name in engine_names if name not in VARIANTS]
+    return "".join(f", {word}" for word in [*(["contact"] if contact else []), *dict.fromkeys(unusual)])
 
 
 def _table(

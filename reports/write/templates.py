@@ -10,6 +10,7 @@ from typing import Any
 
 from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined, Template
 
+from reports.model.outcomes import SATURATED, TORN
 from reports.model.page import Page
 from reports.write import unmeasured
 
@@ -107,6 +108,7 @@ def _environment(folder: Path, filters: Filters) -> Environment:
         finalize=unmeasured.marked,
     )
     out.filters |= dict(filters) | {"anchor": anchor}
+    out.globals |= {"torn": f"{TORN:g}", "saturated": f"{SATURATED:g}"}
     return out
 
 

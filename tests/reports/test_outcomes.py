@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import reports
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.measure import compare, measure
@@ -161,3 +164,13 @@ def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_three_can_be_compar
         "finished", "converged", "plateau", "unresolved", "saturated", "branch flip", "torn", "diverged", "reset",
         "refused", "unsupported", "aborted", "timed out", "failed", "lost",
     }  # fmt: skip
+
+
+def test_a_threshold_stands_in_no_text_by_hand():
+    """The site's how-to said a thousandth where the code has a twentieth."""
+    assert f"more than {TORN:g} of" in Outcome.TORN.meaning
+    assert f"more than {SATURATED:g} rad" in Outcome.SATURATED.meaning
+    folder = Path(reports.__file__).parent
+    for path in [*folder.glob("pages/*/*.md"), *folder.glob("site/**/*.md"), *folder.glob("pages/*.md")]:
+        text = " ".join(path.read_text(encoding="utf-8").split())
+        assert not re.search(r"(twentieth|thousandth|half) (of the mechanism's length|a radian)", text), path

@@ -17,7 +17,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes, svg
-from reports.versions.catalogue import changes_between
+from reports.versions.catalogue import COST_ROSE_IN, changes_between
 from reports.versions.comparison import Step, by_version, steps
 from reports.versions.table import ACCELERATION, Entry, Table, catalogued, read
 from reports.write.tables import markdown, number
@@ -238,7 +238,7 @@ def words(material: Material) -> Mapping[str, Any]:
                 "lines": len({(entry.scene, entry.variant) for entry in entries}),
             }
         )
-    return {"engines": told}
+    return {"engines": told, "cost_rose_in": COST_ROSE_IN}
 
 
 def figures(material: Material) -> Mapping[str, str]:
