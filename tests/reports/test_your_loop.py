@@ -18,8 +18,13 @@ from engines.mujoco.writers import MJCF
 from engines.pymunk.written_script import SCRIPT
 from reference.scene import Scene
 from reports.model.page import Material
+from reports.model.tasks import answered
+from reports.pages.guides.experiments import CUTS
+from reports.pages.guides.page import PAGES
+from reports.pages.rendering import render_page
 from reports.pages.your_loop.page import CHAIN, DISC, EVERY, LINES, LOOP, MUJOCO, PYMUNK, SLIDER, aimed, cell, words
 from reports.pages.your_model.experiments import MODELS
+from reports.write.tables import number
 from tests.committed_rows import committed_rows
 
 STEP = 1e-3
@@ -135,3 +140,55 @@ def test_without_rows_there_are_lines_and_no_tables():
     told = words(Material({}))
     assert (told["mujoco"], told["pymunk"]) == ("", "")
     assert set(told["lines"]) == {"options", "compiled", "rolling", "joints", "start"}
+
+
+PLAIN = (MODELS / "four_bar.xml").read_text(encoding="utf-8")
+
+
+def pasted_into(text: str):
+    return mujoco.MjModel.from_xml_string(text.replace("</mujoco>", f"{lines('options')}</mujoco>"))
+
+
+@pytest.mark.parametrize("says", ['<joint damping="0.1"/>', '<equality solref="0.03 1"/>'])
+def test_an_equality_of_a_class_keeps_the_values_that_its_class_began_with_as_the_page_says(says):
+    """Even if the class sets none for equalities: it has copied its parent's before the lines come."""
+    classy = PLAIN.replace("<worldbody>", f'<default><default class="own">{says}</default></default><worldbody>', 1)
+    classy = classy.replace("<connect ", '<connect class="own" ')
+    model = pasted_into(classy)
+    kept = 0.03 if "equality" in says else 0.02
+    assert model.eq_solref.tolist() == [[kept, 1.0]]
+    exec(lines("compiled"), {"model": model, "mujoco": mujoco})
+    assert model.eq_solref.tolist() == [[0.005, 1.0]]
+    told = " ".join((LINES.parent / "page.md").read_text(encoding="utf-8").split())
+    assert "or is of a class, even one that sets none, keeps" in told
+
+
+def test_a_model_that_is_attached_keeps_its_stiff_loop_and_gets_the_options_of_its_parent():
+    child = mujoco.MjSpec.from_string(PLAIN.replace("</mujoco>", f"{lines('options')}</mujoco>"))
+    child.option.gravity = [0, 0, -1.6]
+    parent = mujoco.MjSpec()
+    frame = parent.worldbody.add_frame()
+    parent.attach(child, prefix="a_", frame=frame)
+    with pytest.warns(UserWarning, match="Attach conflict"):
+        model = parent.compile()
+    usual = mujoco.MjSpec().compile()
+    assert model.eq_solref.tolist() == [[0.005, 1.0]]
+    for option in ("timestep", "integrator", "tolerance"):
+        assert getattr(model.opt, option) == getattr(usual.opt, option)
+    assert model.opt.gravity.tolist() == usual.opt.gravity.tolist()
+
+
+def test_the_place_where_a_loop_is_cut_changes_its_error_and_the_page_has_each():
+    answers = {task: answered(task) for task in CUTS.values()}
+    error = {place: answers[task].number("angle") for place, task in CUTS.items()}
+    case, _ = CASES[LOOP.name]
+    assert error["C", False] == pytest.approx(row(case, case.after[0]), rel=0.02)  # the tree of the page's own model
+    usual = [error[pin, False] for pin in "ABCD"]
+    assert max(usual) > 30 * min(usual)
+    assert error["C", True] > 3 * error["C", False]
+    (page,) = (page for page in PAGES if page.name == "settings")
+    text = render_page(page, Material({}, answers), "the command")["settings.md"]
+    for pin in "ABCD":
+        assert f"| `connect` at pin {pin} | {number(error[pin, False])} | {number(error[pin, True])} |" in text
+    assert "which is larger here, so that the loop is softer" in text
+    assert "`connect` at pin" not in render_page(page, Material({}), "the command")["settings.md"]
