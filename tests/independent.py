@@ -17,19 +17,22 @@ Array = NDArray[Any]
 Rows = Callable[[Any, Any], tuple[Array, Array]]
 
 
-def connected(name: str) -> Rows:
-    """Rows of a connect between bodies: velocities of its point on the first less those on the second."""
+def connected(name: str | int) -> Rows:
+    """Rows of a connect between bodies or sites: velocities of its point on the first less those on the second."""
 
     def rows(model: Any, data: Any) -> tuple[Array, Array]:
-        equality = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_EQUALITY, name)
+        equality = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_EQUALITY, name) if isinstance(name, str) else name
+        of_sites = model.eq_objtype[equality] == mujoco.mjtObj.mjOBJ_SITE
         out, rates = np.zeros((2, 3, model.nv))
-        for body, part, sign in ((model.eq_obj1id[equality], 0, 1), (model.eq_obj2id[equality], 3, -1)):
-            at = data.xpos[body] + data.xmat[body].reshape(3, 3) @ model.eq_data[equality][part : part + 3]
+        for thing, part, sign in ((model.eq_obj1id[equality], 0, 1), (model.eq_obj2id[equality], 3, -1)):
+            body = model.site_bodyid[thing] if of_sites else thing
+            inside = data.xmat[body].reshape(3, 3) @ model.eq_data[equality][part : part + 3]
+            at = data.site_xpos[thing] if of_sites else data.xpos[body] + inside
             jac, rate = np.zeros((2, 3, model.nv))
             mujoco.mj_jac(model, data, jac, None, at, body)
             mujoco.mj_jacDot(model, data, rate, None, at, body)
             out, rates = out + sign * jac, rates + sign * rate
-        flat = [0, 2]  # the plane of x and z
+        flat = np.abs(out).max(axis=1) > 1e-6 * np.abs(out).max()  # none across the plane
         return out[flat], rates[flat] @ data.qvel
 
     return rows
@@ -38,6 +41,26 @@ def connected(name: str) -> Rows:
 def coupled(*factors: float) -> Rows:
     """The row of a linear relation of all coordinates."""
     return lambda model, data: (np.array([factors], dtype=float), np.zeros(1))
+
+
+def equalities(model: Any) -> list[Rows]:
+    """The rows of all equalities of a model of hinges and slides: connects, and linear ones of joints and tendons."""
+
+    def factors(equality: int) -> Array:
+        row = np.zeros(model.nv)
+        first, second, slope = model.eq_obj1id[equality], model.eq_obj2id[equality], model.eq_data[equality][1]
+        assert not model.eq_data[equality][2:5].any()
+        for thing, share in ((first, 1.0), (second, -slope)):
+            if thing >= 0 and model.eq_type[equality] == mujoco.mjtEq.mjEQ_JOINT:
+                row[model.jnt_dofadr[thing]] += share
+            elif thing >= 0:
+                span = slice(model.tendon_adr[thing], model.tendon_adr[thing] + model.tendon_num[thing])
+                for joint, factor in zip(model.wrap_objid[span], model.wrap_prm[span], strict=True):
+                    row[model.jnt_dofadr[joint]] += share * factor
+        return row
+
+    connects = [kind == mujoco.mjtEq.mjEQ_CONNECT for kind in model.eq_type]
+    return [connected(number) if is_point else coupled(*factors(number)) for number, is_point in enumerate(connects)]
 
 
 def motion(model: Any, data: Any, held: list[Rows], t: Array) -> tuple[Array, Array]:

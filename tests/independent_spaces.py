@@ -1,0 +1,138 @@
+"""Motions of pymunk spaces by equations that share no code with the judge: absolute coordinates, multipliers, DOP853.
+
+Rows of joints are differentiated by complex steps; only the numbers are the space's.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pymunk
+from numpy.typing import NDArray
+from pymunk.constraints import (
+    DampedRotarySpring,
+    DampedSpring,
+    GearJoint,
+    GrooveJoint,
+    PinJoint,
+    PivotJoint,
+    RotaryLimitJoint,
+    SimpleMotor,
+)
+from scipy.integrate import solve_ivp
+
+Array = NDArray[Any]
+TINY = 1e-30
+
+
+class Equations:
+    """The rows and forces of a space; coordinates (3 bodies, columns): x, y and angle of each body."""
+
+    def __init__(self, space: pymunk.Space) -> None:
+        self.space, self.bodies = space, list(space.bodies)
+        self.places = {body: 3 * number for number, body in enumerate(self.bodies)}
+        self.inverse = np.array([1 / value for b in self.bodies for value in (b.mass, b.mass, b.moment)])
+        self.start = np.array([value for b in self.bodies for value in (*b.position, b.angle)])
+        self.speed = np.array([value for b in self.bodies for value in (*b.velocity, b.angular_velocity)])
+        self.weight = np.array([value for b in self.bodies for value in (*(b.mass * space.gravity), 0.0)])
+        self.rates = np.concatenate([np.zeros(0), *[self._rates(joint) for joint in space.constraints]])
+
+    def _pose(self, q: Array, body: pymunk.Body) -> Array:
+        if body in self.places:
+            return q[self.places[body] : self.places[body] + 3]
+        return np.array([[body.position.x], [body.position.y], [body.angle]])
+
+    def _point(self, q: Array, body: pymunk.Body, at: Any) -> Array:
+        x, y, angle = self._pose(q, body)
+        c, s = np.cos(angle), np.sin(angle)
+        return np.array([x + c * at[0] - s * at[1], y + s * at[0] + c * at[1]])
+
+    def _between(self, q: Array, joint: Any) -> Array:
+        """From the anchor of the first body to that of the second."""
+        return self._point(q, joint.b, joint.anchor_b) - self._point(q, joint.a, joint.anchor_a)
+
+    def _turned(self, q: Array, joint: Any) -> Array:
+        return self._pose(q, joint.b)[2] - self._pose(q, joint.a)[2]
+
+    def _rates(self, joint: Any) -> list[float]:
+        if isinstance(joint, SimpleMotor):
+            return [-joint.rate]
+        return [0.0] * (
+            2 if isinstance(joint, PivotJoint) else not isinstance(joint, DampedSpring | DampedRotarySpring)
+        )
+
+    def _rows(self, q: Array) -> Array:
+        out: list[Array] = []
+        for joint in self.space.constraints:
+            match joint:
+                case PivotJoint():
+                    out.extend(self._between(q, joint))
+                case PinJoint():
+                    out.append(np.sqrt(np.sum(self._between(q, joint) ** 2, axis=0)))
+                case GrooveJoint():
+                    begin, end = (self._point(q, joint.a, at) for at in (joint.groove_a, joint.groove_b))
+                    (x, y), (u, v) = end - begin, self._point(q, joint.b, joint.anchor_b) - begin
+                    out.append((x * v - y * u) / (joint.groove_b - joint.groove_a).length)
+                case GearJoint():
+                    out.append(joint.ratio * self._pose(q, joint.b)[2] - self._pose(q, joint.a)[2])
+                case SimpleMotor():
+                    out.append(self._turned(q, joint))
+                case RotaryLimitJoint() if joint.min == joint.max:
+                    out.append(self._turned(q, joint))
+                case DampedSpring() | DampedRotarySpring():
+                    pass
+                case _:
+                    raise NotImplementedError(joint)
+        return np.array([np.broadcast_to(row, q.shape[1:]) for row in out])
+
+    def _springs(self, q: Array) -> Array:
+        """Lengths and angles that springs and dampers act along, in the order of the constraints."""
+        out = []
+        for joint in self.space.constraints:
+            if isinstance(joint, DampedSpring):
+                out.append(np.sqrt(np.sum(self._between(q, joint) ** 2, axis=0)))
+            elif isinstance(joint, DampedRotarySpring):
+                out.append(-self._turned(q, joint))
+        return np.array([np.broadcast_to(row, q.shape[1:]) for row in out]).reshape(-1, q.shape[1])
+
+    def _slopes(self, function: Any, q: Array) -> Array:
+        return np.imag(function(q[:, None] + TINY * 1j * np.eye(q.size))) / TINY
+
+    def forces(self, q: Array, speed: Array) -> Array:
+        joints = [j for j in self.space.constraints if isinstance(j, DampedSpring | DampedRotarySpring)]
+        slopes, lengths = self._slopes(self._springs, q), self._springs(q[:, None])[:, 0]
+        out = self.weight.copy()
+        for joint, slope, length in zip(joints, slopes, lengths, strict=True):
+            rest = joint.rest_length if isinstance(joint, DampedSpring) else joint.rest_angle
+            out -= slope * (joint.stiffness * (length - rest) + joint.damping * (slope @ speed))
+        return out
+
+    def _held(self, q: Array, speed: Array, wanted: Array) -> Array:
+        """The least change of speeds (or accelerations), by mass, that brings the rows' rates to `wanted`."""
+        root = np.sqrt(self.inverse)
+        rows = self._slopes(self._rows, q)
+        return speed + root * np.linalg.lstsq(rows * root, wanted - rows @ speed, rcond=1e-11)[0]
+
+    def accelerations(self, q: Array, speed: Array) -> Array:
+        step = 1e-3 / (np.abs(speed[2::3]).max() + 1e-6)  # an angle of 1e-3: the stencil is good to 1e-12
+
+        def rates(ahead: float) -> Array:
+            return np.imag(self._rows((q + (ahead + TINY * 1j) * speed)[:, None]))[:, 0] / TINY
+
+        bias = (8 * (rates(step) - rates(-step)) - rates(2 * step) + rates(-2 * step)) / (12 * step)
+        return self._held(q, self.inverse * self.forces(q, speed), -bias)
+
+    def motion(self, t: Array) -> Array:
+        """Poses (times, bodies, 3), from the nearest speeds that the joints allow."""
+        count = self.start.size
+        found = solve_ivp(
+            lambda _, state: np.concatenate([state[count:], self.accelerations(*np.split(state, 2))]),
+            (0.0, float(t[-1])),
+            np.concatenate([self.start, self._held(self.start, self.speed, self.rates)]),
+            "DOP853",
+            t_eval=t,
+            rtol=1e-11,
+            atol=1e-11,
+        )
+        return found.y[:count].T.reshape(len(t), -1, 3)
