@@ -42,7 +42,7 @@ SYMPTOMS: tuple[Symptom, ...] = (
     ),
     Symptom(
         "My joints drift apart, or give like rubber (pymunk).",
-        "Set `error_bias = 0` on each constraint, and more iterations.",
+        "Close the whole gap in every step, with as many iterations as a trial on a copy shows to be enough.",
         "your_loop",
         "Your loop in pymunk",
     ),
@@ -126,9 +126,9 @@ SYMPTOMS: tuple[Symptom, ...] = (
     ),
     Symptom(
         "The joint forces look wrong.",
-        "They may be, although the motion is right; compare two steps and two numbers of iterations.",
-        "person",
-        "",
+        "Which number is which force, with which sign, and why it may be wrong although the motion is right.",
+        "settings",
+        "Reactions",
     ),
     Symptom(
         "My chain of hundreds of bodies is too slow.",

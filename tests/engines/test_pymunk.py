@@ -237,3 +237,21 @@ print([each for each in gc.get_objects() if isinstance(each, (pymunk.Space, pymu
 """
     told = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
     assert (told.returncode, told.stdout, told.stderr) == (0, "[]\n", "")
+
+
+@pytest.mark.parametrize("rest", [1.0, 3.0])
+def test_the_impulse_of_a_spring_has_a_sign_as_the_page_on_settings_says(rest):
+    pushes = 1 if rest > 2 else -1  # at a length of 2
+    for spring, speed in (
+        (lambda a, b: pymunk.constraints.DampedSpring(a, b, (0, 0), (0, 0), rest, 50, 0), lambda b: b.velocity.x),
+        (lambda a, b: pymunk.constraints.DampedRotarySpring(a, b, rest - 2, 50, 0), lambda b: b.angular_velocity),
+    ):
+        space, body = pymunk.Space(), pymunk.Body(1, 1)
+        body.position = 2, 0
+        joint = spring(space.static_body, body)
+        space.add(body, joint)
+        space.step(0.01)
+        assert abs(joint.impulse) > 0.1
+        if isinstance(joint, pymunk.constraints.DampedSpring):
+            assert joint.impulse * pushes > 0
+        assert joint.impulse == pytest.approx(speed(body))

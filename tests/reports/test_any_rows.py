@@ -38,6 +38,7 @@ from reports.pages.rendering import render_page
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.skate import experiments as turning_round
 from reports.pages.wheels.experiments import Folding
+from reports.pages.your_loop.experiments import BeforeAndAfter, Fresh
 from reports.pages.your_model.experiments import Walk
 from reports.plots import theme
 from reports.write.experiments import observe
@@ -284,6 +285,10 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = dict.fromkeys(("drift", "rounded"), np.full(len(published.ACROBOT_STEPS), 1e-3))
         case Walk():
             values = {"found": json.dumps(WALKED), "shown": SHOWN.as_text()}
+        case Fresh():
+            values = {"error": np.full(3, 1e-3)}
+        case BeforeAndAfter():
+            values = {"gap": np.array([0.1, 0.01]), "angle": np.full(2, 0.1), "iterations": np.asarray(16.0)}
         case OpenWork():
             values = {"lost": np.asarray(-0.1), "work": np.full(8, -0.01)}
         case VelocityTerm():

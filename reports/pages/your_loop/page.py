@@ -1,11 +1,14 @@
-"""The one screen: what to paste into a model of one's own, and what it wins, for MuJoCo and pymunk."""
+"""The lines to paste into a user's model, and the errors before and after, for MuJoCo and pymunk."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from reference.scene import Scene
@@ -15,13 +18,14 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.pages.versions.page import table as versions
+from reports.pages.your_loop.experiments import COMMIT, COUNT, EVERY, BeforeAndAfter, Fresh
+from reports.pages.your_loop.linkages import LINKAGES
 from reports.write.programs import program
-from reports.write.tables import NOTHING, error_words, markdown, milliseconds
+from reports.write.tables import NOTHING, error_words, markdown, milliseconds, number
 from reports.write.unmeasured import UNMEASURED
 
 NAME = "your_loop"
 LINES = Path(__file__).parent / "lines"
-EVERY = 10  # samples of these scenes are 1e-2 s apart: steps of a millisecond
 LOOP, SLIDER, CHAIN, DISC, SKATE = map(
     scene, ("free_four_bar", "free_slider_crank", "pendulum_10", "rolling_disc", "sleigh")
 )
@@ -29,29 +33,37 @@ LOOP, SLIDER, CHAIN, DISC, SKATE = map(
 
 @dataclass(frozen=True)
 class Case:
-    """What a user builds: `before` as shipped, None without such a joint; `after`: with the lines of the page."""
+    """A kind of mechanism: `before` as shipped, None without such a joint; `after` with the lines of the page."""
 
-    what: str
+    title: str
     page: str
     scene: Scene
     before: Engine | None
-    after: tuple[Engine, ...]
+    after: Engine
     quantity: str = "angle"
+
+    @property
+    def engines(self) -> tuple[Engine, ...]:
+        return (self.after,) if self.before is None else (self.before, self.after)
+
+    @property
+    def fresh(self) -> tuple[Fresh, ...]:
+        return tuple(Fresh(self.scene, engine, self.quantity) for engine in self.engines)
 
 
 MUJOCO = (
-    Case("closed linkage", "four_bar", LOOP, mujoco.DEFAULT, (mujoco.TUNED,)),
-    Case("slider", "slider_crank", SLIDER, mujoco.DEFAULT, (mujoco.TUNED,)),
-    Case("chain of ten", "pendulum", CHAIN, mujoco.DEFAULT, (mujoco.TUNED,)),
-    Case("disc that rolls", "rolling", DISC, mujoco.DEFAULT, (mujoco.TUNED,)),
-    Case("skate", "skate", SKATE, mujoco.DEFAULT, (mujoco.TUNED,), "position"),
+    Case("closed linkage", "four_bar", LOOP, mujoco.DEFAULT, mujoco.TUNED),
+    Case("slider", "slider_crank", SLIDER, mujoco.DEFAULT, mujoco.TUNED),
+    Case("chain of ten", "pendulum", CHAIN, mujoco.DEFAULT, mujoco.TUNED),
+    Case("disc that rolls", "rolling", DISC, mujoco.DEFAULT, mujoco.TUNED),
+    Case("skate", "skate", SKATE, mujoco.DEFAULT, mujoco.TUNED, "position"),
 )
 PYMUNK = (
-    Case("closed linkage", "four_bar", LOOP, pymunk.DEFAULT, (pymunk.TUNED, pymunk.LEAPFROG)),
-    Case("slider", "slider_crank", SLIDER, pymunk.DEFAULT, (pymunk.TUNED, pymunk.LEAPFROG)),
-    Case("chain of ten", "pendulum", CHAIN, pymunk.DEFAULT, (pymunk.TUNED, pymunk.LEAPFROG)),
-    Case("disc that rolls", "rolling", DISC, pymunk.DEFAULT, (pymunk.TUNED,)),
-    Case("skate", "skate", SKATE, None, (pymunk.TUNED,), "position"),
+    Case("closed linkage", "four_bar", LOOP, pymunk.DEFAULT, pymunk.LEAPFROG),
+    Case("slider", "slider_crank", SLIDER, pymunk.DEFAULT, pymunk.LEAPFROG),
+    Case("chain of ten", "pendulum", CHAIN, pymunk.DEFAULT, pymunk.LEAPFROG),
+    Case("disc that rolls", "rolling", DISC, pymunk.DEFAULT, pymunk.TUNED),
+    Case("skate", "skate", SKATE, None, pymunk.TUNED, "position"),
 )
 
 
@@ -61,28 +73,61 @@ def cell(case: Case, engine: Engine) -> Cell:
     return Cell(case.scene, engine, EVERY, "beside" if own else "sweep")
 
 
-ASKED = tuple(cell(case, engine) for case in (*MUJOCO, *PYMUNK) for engine in (case.before, *case.after) if engine)
+ASKED = tuple(cell(case, engine) for case in (*MUJOCO, *PYMUNK) for engine in case.engines)
 OWN = tuple(each for each in ASKED if each.purpose == "beside")
+FRESH = tuple(dict.fromkeys(task for case in (*MUJOCO, *PYMUNK) for task in case.fresh))
+PASTED = "\n\n".join((LINES / f"{name}.txt").read_text(encoding="utf-8") for name in ("close", "choose"))
+BUILT = tuple(BeforeAndAfter(name, PASTED) for name in LINKAGES)
 
 
-def table(material: Material, cases: tuple[Case, ...], heads: tuple[str, ...]) -> str:
-    """A line a case: errors before and after, and CPU times; empty without rows."""
-
-    def told(case: Case, engine: Engine | None) -> tuple[str, str]:
-        if engine is None:
-            return "*no such joint*", NOTHING
-        row = material.rows.get(cell(case, engine))
-        return error_words(row, case.quantity), NOTHING if row is None else milliseconds(row.cpu)
-
+def table(material: Material, cases: tuple[Case, ...]) -> str:
+    """A line a case: the errors of fresh mechanisms before and after, those of the page's scene, and CPU times."""
     body = []
     for case in cases:
-        pairs = [told(case, engine) for engine in (case.before, *case.after)]
-        pairs += [(NOTHING, NOTHING)] * (len(heads) - len(pairs))
-        costs = " → ".join(dict.fromkeys(cost for _, cost in pairs if cost != NOTHING))
-        name = f"[{case.what}]({case.page}.md), {quantity(case.quantity).unit}"
-        body.append([name, *(error for error, _ in pairs), costs or NOTHING])
+        rows = [material.rows.get(cell(case, engine)) for engine in case.engines]
+        spreads = [spread_words(material, task) for task in case.fresh]
+        if case.before is None:
+            spreads.insert(0, "*no such joint*")
+        example = " → ".join(error_words(row, case.quantity) for row in rows)
+        costs = " → ".join(NOTHING if row is None else milliseconds(row.cpu) for row in rows)
+        body.append([f"[{case.title}]({case.page}.md), {quantity(case.quantity).unit}", *spreads, example, costs])
     known = any(each in material.rows for each in ASKED)
-    return markdown(["at 1 ms", *heads, "CPU [ms/s]"], body, left=1) if known else ""
+    head = ["at 1 ms", "as shipped", "with the lines", "the page's example", "CPU of the example [ms/s]"]
+    return markdown(head, body, left=1) if known else ""
+
+
+def spread(material: Material, task: Fresh) -> tuple[float, float, float] | None:
+    """(median, least, largest) error of the fresh mechanisms, if they were run."""
+    answer = material.finished(task)
+    if answer is None:
+        return None
+    error = answer.array("error")
+    return float(np.median(error)), float(error.min()), float(error.max())
+
+
+def spread_words(material: Material, task: Fresh) -> str:
+    """'1e-3 (1e-5 to 0.2)', or that it was not run."""
+    values = spread(material, task)
+    if values is None:
+        return NOTHING
+    median, least, largest = (number(value) if isfinite(value) else "gave up" for value in values)
+    return f"{median} ({least} to {largest})"
+
+
+def before_and_after(material: Material) -> str:
+    """A line a linkage of pymunk's users; empty where none was run."""
+    body = []
+    for task in BUILT:
+        answer = material.finished(task)
+        if answer is not None:
+            count = round(answer.number("iterations"))
+            cells = [
+                " → ".join(number(value) if isfinite(value) else NOTHING for value in answer.array(name).tolist())
+                for name in ("gap", "angle")
+            ]
+            angle = cells[1] if np.isfinite(answer.array("angle")).any() else NOTHING
+            body.append([task.linkage, str(count) if count else "as shipped", cells[0], angle])
+    return markdown(["linkage", "iterations", "largest gap, px", "angle error, rad"], body, left=1) if body else ""
 
 
 def error_at(material: Material, case: Case, engine: Engine) -> Any:
@@ -98,22 +143,30 @@ def aimed(engine: str) -> str:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """The lines and tables; `reactions`: relative errors of the joints' forces on the loop, by engine."""
+    """The lines and tables; `reactions`: relative errors of the joints' forces on the loop, by engine; `fresh`: by
+    engine the spreads as shipped and with the lines, of the closed linkage."""
     old = [e.error for e in versions().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
-    rows = {
-        "mujoco": material.rows.get(cell(MUJOCO[0], mujoco.TUNED)),
-        "pymunk": material.rows.get(cell(PYMUNK[0], pymunk.LEAPFROG)),
-    }
+    first = {"mujoco": MUJOCO[0], "pymunk": PYMUNK[0]}
+    rows = {name: material.rows.get(cell(case, case.after)) for name, case in first.items()}
+    counts = [answer.number("iterations") for answer in map(material.finished, BUILT) if answer is not None]
     return {
-        "mujoco": table(material, MUJOCO, ("as shipped", "with the lines")),
-        "pymunk": table(material, PYMUNK, ("as shipped", "with the first lines", "and started ahead")),
+        "mujoco": table(material, MUJOCO),
+        "pymunk": table(material, PYMUNK),
+        "built": before_and_after(material),
+        "built_count": len(LINKAGES),
+        "left_as_shipped": sum(not count for count in counts) if counts else UNMEASURED,
         "lines": {path.stem: path.read_text(encoding="utf-8").rstrip() for path in sorted(LINES.iterdir())},
         "aimed": {engine: aimed(engine) for engine in ("mujoco", "pymunk")},
         "reactions": {engine: UNMEASURED if row is None else row.reaction for engine, row in rows.items()},
-        "linkage": {
-            "mujoco": [error_at(material, MUJOCO[0], engine) for engine in (mujoco.DEFAULT, mujoco.TUNED)],
-            "pymunk": [error_at(material, PYMUNK[0], engine) for engine in (pymunk.DEFAULT, pymunk.LEAPFROG)],
+        "fresh": {
+            name: [[UNMEASURED] * 3 if (values := spread(material, task)) is None else values for task in case.fresh]
+            for name, case in first.items()
         },
+        "linkage": {
+            name: [error_at(material, case, engine) for engine in case.engines] for name, case in first.items()
+        },
+        "fresh_count": COUNT,
+        "fresh_commit": COMMIT,
         "before_term": old[0] if old and rows["mujoco"] is not None else UNMEASURED,
     }
 
@@ -128,4 +181,5 @@ PAGE = Page(
     borrowed=tuple(each for each in ASKED if each not in OWN),
     cells=OWN,
     words=words,
+    tasks=(*FRESH, *BUILT),
 )
