@@ -135,10 +135,19 @@ def test_dampers_that_are_much_faster_than_the_motion_keep_their_declared_motion
 def test_an_equality_with_values_of_its_own_is_told_that_a_default_does_not_reach_it(tmp_path):
     own = FOUR_BAR.replace('<connect name="C"', '<connect name="C" solref="0.04 1"')
     lines = answer(found_in(tmp_path, own)).code
-    assert "of its own needs these values there" in lines[-1]
+    assert "or with its own values, needs these values there" in lines[-1]
     values = re.search(r"(solref=.*)/></default>", lines[1])[1]  # type: ignore[index]
     mended = own.replace('solref="0.04 1"', values).replace("</mujoco>", f"{lines[0]}</mujoco>")
     assert found_in(tmp_path, mended).met
+
+
+def test_an_equality_of_a_class_that_sets_nothing_is_told_that_a_default_does_not_reach_it(tmp_path):
+    """The class has copied its parent's values before the lines come, so the model would stay soft without a word."""
+    classes = '<default><default class="own"><joint damping="0"/></default></default><worldbody>'
+    own = FOUR_BAR.replace("<worldbody>", classes, 1).replace('<connect name="C"', '<connect class="own" name="C"')
+    lines = answer(found_in(tmp_path, own)).code
+    assert "an equality of a class" in lines[-1]
+    assert not found_in(tmp_path, own.replace("</mujoco>", f"{''.join(lines[:2])}</mujoco>")).met
 
 
 def test_a_driven_linkage_of_pymunk_is_judged_with_all_forces_but_the_cranks(tmp_path):

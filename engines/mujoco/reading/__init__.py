@@ -208,10 +208,11 @@ class Reader:
             lambda other: self.read(other.name, other.parent, without, key, None),
         )
         reading = replace(reading, notes=notes, source=None if path.suffix.lower() == ".mjb" else source)
-        if path.suffix.lower() != ".urdf" or "<mujoco" in path.read_text(encoding="utf-8", errors="replace"):
-            return reading
         assert isinstance(reading.model, OwnMuJoCo)
-        return replace(reading, model=replace(reading.model, urdf=True))
+        text = "" if reading.source is None else path.read_text(encoding="utf-8", errors="replace")
+        urdf = path.suffix.lower() == ".urdf" and "<mujoco" not in text
+        classes = "class=" in text or "<include" in text
+        return replace(reading, model=replace(reading.model, urdf=urdf, classes=classes))
 
 
 def _key(model: Any, key: str) -> int:

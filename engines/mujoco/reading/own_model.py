@@ -46,6 +46,7 @@ class OwnMuJoCo:
     users: Any
     tilt: float = 0.0
     urdf: bool = False  # read from a URDF file without an element of MuJoCo's own: the lines to copy bring one
+    classes: bool = False  # the file may have classes of its own, which a default that is copied does not reach
 
     @property
     def engine(self) -> str:
@@ -142,7 +143,7 @@ class OwnMuJoCo:
         return obstacles(self.scene, self._fresh(self.scene.model), self._directions, t, pose, twist)
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
-        return changes(self.scene.model, self.softly_held, smallest, self.urdf, further)
+        return changes(self.scene.model, self.softly_held, smallest, self.urdf, self.classes, further)
 
     def remarks(self, run: Trajectory) -> Sequence[Note]:
         if not self.tilt:

@@ -174,10 +174,13 @@ def tied_values(dt: float) -> dict[str, str]:
     return {"solref": f"{TIED_STEPS * dt:.9g} 1", "solimp": " ".join(f"{value:g}" for value in STIFFEST)}
 
 
-def changes(model: Any, soft: bool, smallest: float, urdf: bool = False, further: bool = False) -> list[Change]:
+def changes(
+    model: Any, soft: bool, smallest: float, urdf: bool = False, classes: bool = False, further: bool = False
+) -> list[Change]:
     """Steps down to `smallest` [s], by the model's own integrator and RK4; `soft`: loops as they are, and stiffer.
 
-    `urdf`: the lines to copy bring the element in which a URDF file holds MuJoCo's options. `further`: more halvings.
+    `urdf`: the lines to copy bring the element in which a URDF file holds MuJoCo's options. `classes`: the
+    file has classes, which have copied what their parent had before. `further`: more halvings.
     """
     own_step = float(model.opt.timestep)
     own = mujoco.mjtIntegrator(model.opt.integrator).name.split("_")[1]
@@ -196,8 +199,10 @@ def changes(model: Any, soft: bool, smallest: float, urdf: bool = False, further
                 if tied:
                     values = " ".join(f'{name}="{value}"' for name, value in tied_values(dt).items())
                     lines.append(f"<default><equality {values}/></default>")
-                    if _set_by_hand(model):
-                        lines.append("<!-- an equality with a solref or solimp of its own needs these values there -->")
+                    if classes or _set_by_hand(model):
+                        lines.append(
+                            "<!-- an equality of a class, or with its own values, needs these values there -->"
+                        )
                 out.append(Change(words, dt, tuple(lines), (("integrator", integrator), ("tied", tied))))
     return out
 
