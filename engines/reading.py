@@ -170,6 +170,12 @@ class Reading:
     title: str = ""
     source: Source | None = None
 
+    @property
+    def jumps(self) -> bool:
+        """Whether the model starts with velocities that its joints do not allow, so that the ideal motion begins after
+        an impulse."""
+        return bool(np.any(self.model.own_twist != self.mechanism.twist))
+
 
 class Reader(Protocol):
     """Under `crosscheck.readers`: it says what it reads, and reads it."""

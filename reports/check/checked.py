@@ -117,7 +117,7 @@ def tried(
     changes = model.changes(min(smallest, model.dt), plan.goal is not None)
     order = sorted(_few(changes) if plan.quick else range(1, len(changes)), key=lambda index: -changes[index].dt)
     begin, rates = time.process_time(), {changes[0].options: max(own.stepping, 1e-5) / (samples * every)}
-    found = [(0, Tried(changes[0], errors(mechanism, truth, own), own))]
+    found = [(0, Tried(changes[0], errors(mechanism, truth, own, reading.jumps), own))]
     for place, index in enumerate(order):
         done, change = [each for _, each in found], changes[index]
         alike = [each for each in done if each.change.options == change.options]
@@ -134,7 +134,7 @@ def tried(
             continue
         run = model.run(samples, every, change)
         rates[change.options] = max(run.stepping / steps, rates.get(change.options, 0.0))
-        found.append((index, Tried(change, errors(mechanism, truth, run), run)))
+        found.append((index, Tried(change, errors(mechanism, truth, run, reading.jumps), run)))
     table = [each for _, each in sorted(found, key=lambda pair: pair[0])]
     front = best(table)
     return [replace(each, front=each in front) for each in table]

@@ -273,8 +273,12 @@ class Errors:
         return {"t": self.t.tolist(), **{name: values.tolist() for name, values in self.of.items()}}
 
 
-def errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Errors:
-    """Of a run at the judge's instants."""
+def errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jumps: bool = False) -> Errors:
+    """Of a run at the judge's instants.
+
+    jumps: the run starts with velocities that its joints do not allow. The impulse that changes them at once in the
+    ideal motion takes the run a step or more, so that forces and energy at the first two samples are not compared.
+    """
     difference = run.pose - truth.pose
     angle = np.abs(difference[..., 2]).max(axis=1)
     position = np.hypot(difference[..., 0], difference[..., 1]).max(axis=1)
@@ -284,33 +288,42 @@ def errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Errors:
     # At rest but for rounding, an energy that is lost is no part of any other.
     moves = span > 0.5 * float(mechanism.inertias[:, 0].max()) * (ROUNDED * fast) ** 2
     drift = np.abs(energy(mechanism, run) - energy(mechanism, truth)) / span if moves else np.full_like(angle, np.nan)
-    of = {"angle": angle, "position": position, "reaction": _reaction(mechanism, truth, run), "energy": drift}
+    reaction = _reaction(mechanism, truth, run)
+    if jumps:
+        reaction[:2], drift[:2] = np.nan, np.nan
+    of = {"angle": angle, "position": position, "reaction": reaction, "energy": drift}
     finished = bool(np.isfinite(run.pose).all())
     return Errors(run.t, of, apart(mechanism, run.pose, truth.pose), finished)
 
 
 def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array:
-    """The largest error of the rows that rigid bodies determine (times,), in the largest true one of its kind.
+    """The largest error of the joints' forces and moments that rigid bodies determine (times,), in the largest true one
+    of its kind; NaN where it is not known.
 
-    Where all true ones of a kind are rounding beside the largest force that acts, by symmetry for example, that force
-    is the measure: times the mechanism's length for torques.
+    The rows of a joint that hold a point are one vector, so that the error does not depend on the axes. Where all true
+    ones of a kind are rounding beside the largest force that acts, by symmetry for example, that force is the measure:
+    times the mechanism's length for moments.
     """
     out = np.full(len(run.t), np.nan)
     if not mechanism.row_count:
         return out
-    told = ~undetermined(mechanism.rows(mechanism.pose), mechanism.length_scale)
+    determined = ~undetermined(mechanism.rows(mechanism.pose), mechanism.length_scale)
     turning, length = mechanism.turning, mechanism.length_scale
+    joint_of_row = np.repeat(np.arange(len(mechanism.joints)), [joint.size for joint in mechanism.joints])
     acting = mechanism.inertias * mechanism.unconstrained(truth.pose, truth.twist)
-    forces = [acting[..., :2], acting[..., 2] / length, truth.reaction[:, told] / np.where(turning[told], length, 1.0)]
-    whole = max(float(np.abs(each).max()) for each in forces if each.size)
-    for rows, arm in ((turning & told, length), (~turning & told, 1.0)):
-        true = truth.reaction[:, rows]
-        scale = float(np.abs(true).max()) if true.size else 0.0
-        scale = scale if scale > ROUNDED * whole * arm else whole * arm
-        if true.size and scale > 0:
-            # A row whose force an engine does not know, such as that of a prescribed crank, hides no other.
-            off = np.fmax.reduce(np.abs(run.reaction[:, rows] - true), axis=1) / scale
-            out = np.fmax(out, off)
+    forces = [acting[..., :2], acting[..., 2] / length]
+    forces += [truth.reaction[:, determined] / np.where(turning[determined], length, 1.0)]
+    largest_force = max(float(np.abs(force).max()) for force in forces if force.size)
+    for of_kind, arm in ((turning & determined, length), (~turning & determined, 1.0)):
+        rows = [np.flatnonzero(of_kind & (joint_of_row == joint)) for joint in np.unique(joint_of_row[of_kind])]
+        if not rows:
+            continue
+        scale = max(float(np.linalg.norm(truth.reaction[:, row], axis=1).max()) for row in rows)
+        scale = scale if scale > ROUNDED * largest_force * arm else largest_force * arm
+        if scale > 0:
+            off = [np.linalg.norm(run.reaction[:, row] - truth.reaction[:, row], axis=1) / scale for row in rows]
+            # A joint whose force an engine does not know, such as that of a prescribed crank, hides no other.
+            out = np.fmax(out, np.fmax.reduce(off, axis=0))
     return out
 
 

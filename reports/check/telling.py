@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from reports.check.checked import MOST_NAMED, SATURATED, Checked, Parts, Tried, best
 from reports.check.judging import UNITS
 from reports.check.rendering import Section
@@ -106,14 +108,17 @@ def _why(found: Checked) -> str:
 
 
 def _forces(found: Checked) -> str:
-    reaction, energy = (found.own_errors.worst[name] for name in ("reaction", "energy"))
-    told = []
-    if not math.isnan(reaction):
-        size = number(reaction)
-        told.append(f"reactions (forces and moments of the joints' rows) are off by {size} of the largest true one")
-    if not math.isnan(energy):
-        told.append(f"energy (kinetic, and of gravity and springs) by {number(energy)} of the largest kinetic one")
-    return "; ".join(told)
+    errors = found.own_errors
+    sentences = []
+    for name, start, end in (
+        ("reaction", "reactions (forces and moments of the joints) are off by", "of the largest true one"),
+        ("energy", "energy (kinetic, and of gravity and springs) by", "of the largest kinetic one"),
+    ):
+        if not math.isnan(worst := errors.worst[name]):
+            # After a start that jumps, an engine takes some steps to make the impulse: a reader has to see that.
+            when = f", at {errors.t[int(np.nanargmax(errors.of[name]))]:.3g} s" if found.reading.jumps else ""
+            sentences.append(f"{start} {number(worst)} {end}{when}")
+    return "; ".join(sentences)
 
 
 def _sensitivity(found: Checked) -> str:

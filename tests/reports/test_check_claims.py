@@ -267,7 +267,7 @@ def test_reactions_that_rigid_bodies_do_not_determine_are_not_compared_and_said_
 
 def test_what_the_quantities_are_is_said_where_they_are_printed(soft):
     assert "energy (kinetic, and of gravity and springs) by" in told(soft, "forces")
-    assert "reactions (forces and moments of the joints' rows) are off by" in told(soft, "forces")
+    assert "reactions (forces and moments of the joints) are off by" in told(soft, "forces")
     truth, mechanism = soft.judge.trajectory, soft.reading.mechanism
     # Lifting everything by 1 mm adds m g h, in the largest kinetic energy.
     lifted = replace(truth, pose=truth.pose + np.array([0.0, 1e-3, 0.0]))
