@@ -90,7 +90,7 @@ def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, t
         (("export", "pendulum_1", "--to", "usd"), "--to is 'usd'; it must be one of mjcf, pymunk, urdf"),
         (("export", "pendulum_1", "--variant", "best"), "--variant is 'best'"),
         (("export", "pendulum_1", "--step", 0), "--step is 0"),
-        (("export", "free_four_bar", "--to", "urdf"), "a URDF can.t hold"),
+        (("export", "free_four_bar", "--to", "urdf"), "a URDF can't hold"),
         (("export", "sleigh", "--to", "pymunk", "--variant", "tuned"), "pymunk has no such joint"),
         (("export", "penduum_1"), "did you mean"),
         (("view", "penduum_1"), "did you mean"),
