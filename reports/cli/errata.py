@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from reports.model.ending import BadInput
+
+if TYPE_CHECKING:
+    from reference.chapter.errata.erratum import Erratum, Values
 
 HEADER = (
     "no.",
@@ -57,11 +60,19 @@ def errata(
             wide.print(sentence, markup=False)
 
 
+def _missed(erratum: Erratum, values: Values) -> str:
+    from reports.write.tables import number
+
+    if erratum.by_tolerance is None:
+        return f"off by {number(values.miss)}, right by {number(values.agreement)}"
+    misses = (f"{number(miss)} at rtol {number(each)}" for each, miss in erratum.by_tolerance().items())
+    return f"the claim; integration off by {', '.join(misses)} (ours); formula by {number(values.agreement)}"
+
+
 def rows_of_slips() -> list[tuple[str, ...]]:
     """A row a slip under HEADER, by number; those in words have no values."""
     from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS
     from reports.pages.errata.page import digits
-    from reports.write.tables import number
 
     found: dict[int, tuple[str, ...]] = {}
     for erratum in ERRATA:
@@ -73,7 +84,7 @@ def rows_of_slips() -> list[tuple[str, ...]]:
             f"{erratum.printed}\n= {digits(values.printed)}",
             f"{erratum.right}\n= {digits(values.right)}",
             f"{digits(values.decides)}\n{erratum.unit}",
-            f"off by {number(values.miss)}, right by {number(values.agreement)}; {eyes}",
+            f"{_missed(erratum, values)}; {eyes}",
         )
     for slip in WORD_SLIPS:
         found[slip.number] = (str(slip.number), slip.where, slip.printed, slip.right, "-", f"words: {slip.reason}")

@@ -28,6 +28,17 @@ def test_the_correction_is_the_derivative_and_the_printed_formula_is_not(erratum
     assert np.abs(values.printed - values.decides).max() > least
 
 
+def test_the_miss_of_the_claim_is_that_of_our_tolerance_and_not_of_the_printed_rates() -> None:
+    (claim,) = [erratum for erratum in ERRATA if erratum.by_tolerance is not None]
+    assert claim.number == 19
+    assert claim.by_tolerance is not None
+    misses = claim.by_tolerance()
+    assert misses[1e-3] == claim.values().miss
+    # Over a turn and a bit an error grows by less than ten times its tolerance.
+    assert all(miss < 10 * tolerance for tolerance, miss in misses.items())
+    assert min(misses) <= 1e-12
+
+
 def test_every_computable_slip_of_class_e_is_there_once() -> None:
     """Ten of the thirteen: 10 (names of curves exchanged) and 18 (a letter in a sentence) have nothing to compute."""
     assert [erratum.number for erratum in ERRATA] == [1, 2, 11, 19, 23, 24, 25, 26, 27, 28]

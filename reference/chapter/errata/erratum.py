@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +35,9 @@ class Erratum:
     """One slip: its number in the list of errata, where it is, what is printed, what is right, and why; `values()`.
 
     quoted: the printed formula as the chapter sets it (LaTeX), or its words; corrected: the same without the slip.
-    deciding: what decides, in words. dimensions: whether they alone show that something is wrong.
+    deciding: what decides, in words. dimensions: whether they alone show that something is wrong; the size of the miss
+    then depends on the units. by_tolerance: where a claim is wrong and what is printed beside it is a right method
+    whose tolerance the chapter does not state, the method's miss at tolerances of ours.
     """
 
     number: int
@@ -49,3 +51,4 @@ class Erratum:
     deciding: str
     dimensions: bool
     values: Callable[[], Values]
+    by_tolerance: Callable[[], Mapping[float, float]] | None = None

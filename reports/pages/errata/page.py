@@ -35,14 +35,21 @@ class Told:
 
 def verdict(erratum: Erratum, values: Values, said: Sequence[Ruling]) -> str:
     """By how much the printed and the right formula miss the derivative that decides, and each engine's own motion."""
-    told = (
-        f"Decides ({erratum.deciding}): {digits(values.decides)} {erratum.unit}. The printed formula misses it by "
-        f"{number(values.miss)}, the right one by {number(values.agreement)}."
-    )
+    missed = f"The printed formula misses it by {number(values.miss)}, the right one by {number(values.agreement)}."
+    if erratum.by_tolerance is not None:
+        misses = erratum.by_tolerance().items()
+        at_each = " and ".join(f"{number(miss)} at a relative tolerance of {number(each)}" for each, miss in misses)
+        missed = (
+            f"The closed form misses it by {number(values.agreement)}. The integration misses it by {at_each}: the "
+            "tolerance is ours, since the chapter states none."
+        )
+    told = f"Decides ({erratum.deciding}): {digits(values.decides)} {erratum.unit}. {missed}"
     if not said:
         return told
     least, most = min(ruling.values.miss for ruling in said), max(ruling.values.agreement for ruling in said)
     methods, motions = (", ".join(dict.fromkeys(getattr(each, name) for each in said)) for name in ("method", "about"))
+    if erratum.by_tolerance is not None:
+        return f"{told} Engines ({methods}; {motions}): the closed form misses their motion by {number(most)} at most."
     return (
         f"{told} Engines ({methods}; {motions}): the printed one misses their motion by {number(least)} or more, "
         f"the right one by {number(most)} at most."

@@ -20,7 +20,7 @@ from reports.pages.versions.page import table
 from reports.plots import mechanisms as drawings
 from reports.plots.theme import svg
 from reports.write.rows import lookups
-from reports.write.tables import step_words
+from reports.write.tables import markdown, number, step_words
 from reports.write.unmeasured import UNMEASURED
 
 NAME = "four_bar"
@@ -55,6 +55,19 @@ def figures(material: Material) -> dict[str, str]:
     return {"configurations": svg(figure, "The nine configurations of Fig. 18.66, from the closed form")}
 
 
+def assemblies() -> str:
+    """Both positions of the sample's loop at its first crank angle, each with the gap that is left at C."""
+    scene = DrivenFourBar()
+    bars, theta = scene.four_bar, scene.start
+    b = bars.crank * np.exp(1j * theta)
+    body = []
+    for branch in (1, -1):
+        beta, phi = bars.angles(theta, branch)
+        gap = abs(b + bars.coupler * np.exp(1j * beta) - complex(*bars.ground) - bars.rocker * np.exp(1j * phi))
+        body.append([f"{branch:+d}", *(f"{np.degrees(angle):.2f}" for angle in (theta, beta, phi)), number(gap)])
+    return markdown(["assembly", "θ [°]", "β [°]", "φ [°]", "gap at C [m]"], body)
+
+
 def words(material: Material) -> Mapping[str, Any]:
     """Rows and sweeps by method, for sentences; what MuJoCo's regularisation yields, and how pymunk closes a gap."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
@@ -63,6 +76,7 @@ def words(material: Material) -> Mapping[str, Any]:
     ]
     return {
         **lookups(material, SCENES),
+        "assemblies": assemblies(),
         "soft_share": [1 / d - 1 for d in soft[:2]],  # with a closed gap, and with one of a millimetre or more
         "stiff_share": 1 / hard[0] - 1,
         "before_term": before[0] if before else UNMEASURED,  # rad, of the last release without the loops' velocity term

@@ -6,8 +6,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from engines import mujoco
 from engines.registry import VARIANTS
+from reference.chapter.errata import linkages
+from reference.numerics.calculus import derivative
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reports.model.checks import Deviation
@@ -17,6 +21,7 @@ from reports.pages.pendulum.experiments import FAILURES, SOLVED
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.rows import lookups
+from reports.write.tables import markdown, number
 
 NAME = "pendulum"
 SCENES = (BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks(), PointPendulum())
@@ -39,9 +44,26 @@ def figures(material: Material) -> dict[str, str]:
     return {"stroboscope": svg(stroboscope(strips), "Pendulums of one, two, ten and a hundred links in motion")}
 
 
+def answers() -> str:
+    """Problems 18.5.1 and 18.5.2 at the errata's numbers: by the formula, and by the derivative of a position."""
+    length, angles, rates, turning = linkages.BAR, linkages.PHI, linkages.PHI_RATE, linkages.PHI_ACCELERATION
+    first = linkages.velocities(length, angles, rates)
+    second = linkages.accelerations(length, angles, rates, turning)
+    a, b_relative_to_a = ((lambda t, bar=bar: linkages.bar_end(t, bar)) for bar in (0, 1))
+    positions = {"a": a, "b_relative_to_a": b_relative_to_a, "b": lambda t: a(t) + b_relative_to_a(t)}
+    body = []
+    for problem, found, order, unit in (("18.5.1", first, 1, "m/s"), ("18.5.2", second, 2, "m/s²")):
+        for part, (name, position) in zip("abc", positions.items(), strict=True):
+            answer = getattr(found, name)
+            miss = np.abs(answer - derivative(position, 0.0, order)).max()
+            body.append([f"{problem} {part}", f"({answer[0]:.5f}, {answer[1]:.5f}) {unit}", number(float(miss))])
+    return markdown(["problem", "answer", "off the derivative by"], body, left=2)
+
+
 def words(material: Material) -> Mapping[str, Any]:
-    """Rows by method."""
-    return lookups(material, SCENES)
+    """Rows by method, and the answers to the chapter's problems."""
+    numbers = (linkages.BAR, *linkages.PHI, *linkages.PHI_RATE, *linkages.PHI_ACCELERATION)
+    return {**lookups(material, SCENES), "answers": answers(), "numbers": numbers}
 
 
 # Where a method is known to fall short on the pendulums, each with its reason.

@@ -14,6 +14,7 @@ from engines import Engine, Promise
 from engines.registry import VARIANTS
 from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.chapter.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
+from reference.chapter.skates import coriolis_factors, frobenius, skate_of
 from reference.joints import Triple
 from reference.scene import Scene
 from reference.scenes.skates.pinned_body import FreelyPinnedBody, PinnedBody
@@ -214,6 +215,17 @@ def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> 
     return tables.markdown(header, body, left=5)
 
 
+def only() -> str:
+    """Conditions (a, b, c) on one body, the skate that each is, and Frobenius' number at a pose."""
+    body = []
+    for row in ((0.0, 1.0, 0.5), (1.0, 0.0, 0.0), (3.0, 4.0, -2.0), (0.0, 0.0, 1.0)):
+        skate, curl = skate_of(row), frobenius(row, np.array([0.3, -0.2, 0.8]))
+        place = () if skate is None else (*skate.second_point, math.degrees(skate.angle))
+        at = "({:.3g}, {:.3g}) m, {:.3g}°".format(*(each + 0.0 for each in place)) if place else "none"
+        body.append([f"({', '.join(f'{each:g}' for each in row)})", at, f"{curl + 0:.6g}"])
+    return tables.markdown(["(a, b, c)", "skate: its point, its blade's angle", "w · curl w"], body, left=2)
+
+
 def words(material: Material) -> Mapping[str, Any]:
     """`constructions` (one of each kind) and `counted` as tables.
 
@@ -235,6 +247,8 @@ def words(material: Material) -> Mapping[str, Any]:
     commutator = commutator_displacement(0.1, 0.1)
     held = holders(cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep")
     return {
+        "only": only(),
+        "coriolis": coriolis_factors(1.3, 1.7, -0.6),
         "constructions": constructions([row for row in rows if usual_series(row) or row.method in LISTED], held),
         "counted": counted(SCENES),
         "at": at,
