@@ -23,7 +23,7 @@ from engines.mujoco.reading import read as read_model
 from engines.pymunk import DEFAULT
 from engines.pymunk.reading import read as read_space
 from reference.forces import Damper, Spring
-from reference.joints import Drive, Slot
+from reference.joints import Drive, Pin, Slot, bodies_of
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.check.checked import Checked, Plan, check, read
@@ -173,6 +173,44 @@ def test_one_freedom_goes_on_through_a_dead_centre_and_is_judged_to_the_end():
     assert "not exponential" in told(found, "motion")
     assert found.advised is not None
     assert found.advised.error == pytest.approx(5.4e-4, rel=0.02)
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_a_parallelogram_passes_its_dead_centres_on_the_branch_on_which_it_arrives(scale):
+    """Where two curves cross: there the multipliers of one row are lost, and velocities go on."""
+    crank, start = 0.2 * scale, np.arctan2(0.16, 0.12)
+    names, at = ("left", "rod", "right"), (0.0, 1.0 * scale)
+    pin = [np.array([x, 0.0]) for x in at]
+    tip = along(start, crank)
+    rate = -2.0
+    speed = crank * rate * np.array([-np.sin(start), np.cos(start)])
+    centres = [pin[0] + tip / 2, pin[0] + tip + [scale / 2, 0.0], pin[1] + tip / 2]
+    poses = [(*centre, angle) for centre, angle in zip(centres, (start, 0.0, start), strict=True)]
+    twists = [(*speed / 2, rate), (*speed, 0.0), (*speed / 2, rate)]
+    masses = np.array([1.0, 2.0, 1.0])
+    own = Mechanism(
+        bodies_of(names, masses, 0.01 * masses * scale**2, poses, twists),
+        (
+            Pin("A", None, "left", (0.0, 0.0), (-crank / 2, 0.0)),
+            Pin("B", "left", "rod", (crank / 2, 0.0), (-scale / 2, 0.0)),
+            Pin("C", "rod", "right", (scale / 2, 0.0), (crank / 2, 0.0)),
+            Pin("D", None, "right", (scale, 0.0), (-crank / 2, 0.0)),
+        ),
+        (0.0, -G * scale),
+    )
+    inertia = 2 * (0.01 * scale**2 + crank**2 / 4) + 2 * crank**2
+
+    def rates(at, state):
+        return [state[1], -G * scale * (crank + 2 * crank) * np.cos(state[0]) / inertia]
+
+    judge = judged(own, 200, 0.01, 1e-4)
+    turned = solved(rates, [start, rate], judge.trajectory.t)[0]
+    assert np.count_nonzero(np.diff(np.floor(turned / np.pi))) >= 2  # dead centres
+    assert np.abs(judge.trajectory.pose[:, 0, 2] - turned).max() < 1e-7
+    assert judge.horizon == judge.trajectory.t[-1]
+    assert not judge.cut
+    # Forces and accelerations belong to the motion: M a = f + J^T F.
+    assert np.isfinite(judge.trajectory.reaction).all()
 
 
 def test_a_torque_that_is_zero_by_symmetry_is_no_measure_of_an_error():
