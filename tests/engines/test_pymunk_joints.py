@@ -10,10 +10,12 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pymunk
 import pytest
 
 from engines import Promise, Unpromised, Unsupported
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Contact, Pymunk, methods
+from engines.pymunk.joints.roll import MovedPivot
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Line, Placed, Side
@@ -44,6 +46,22 @@ def truth(scene: Scene) -> Trajectory:
 
 def angle_error(engine, scene: Scene, every: int) -> float:
     return largest(run(engine, scene, every).pose[..., 2] - truth(scene).pose[..., 2])
+
+
+def test_a_pivot_is_aimed_at_where_two_turning_bodies_will_touch():
+    """By what both turn until then: as if they stood there already."""
+    joint = next(joint for joint in EllipticGears().mechanism().joints if isinstance(joint, Roll))
+
+    def anchors(ahead: float, gone: float) -> list[float]:
+        bodies = [pymunk.Body(1.0, 1.0) for _ in range(2)]
+        for body, angle, rate in zip(bodies, (0.3, -0.4), (2.0, -1.5), strict=True):
+            body.angle, body.angular_velocity = angle + gone * rate, rate
+        pivot = MovedPivot(joint, bodies[0], bodies[1], ((0.0, 0.0), (0.0, 0.0)))
+        pivot(ahead)
+        return [*pivot.constraint.anchor_a, *pivot.constraint.anchor_b]
+
+    assert anchors(0.1, 0.0) == pytest.approx(anchors(0.0, 0.1))
+    assert anchors(0.1, 0.0) != pytest.approx(anchors(0.0, 0.0), rel=1e-3)
 
 
 def test_a_polygon_stays_away_from_the_ellipse_by_its_corners_however_small_the_step():

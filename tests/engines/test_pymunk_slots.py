@@ -105,6 +105,10 @@ def test_sweeps_are_counted_for_the_worst_pose_of_the_motion():
     # A rough run of soft joints looks at some poses, beside those of the motion: it may count one sweep more or less.
     assert abs(sweeps(worst_contraction(mechanism, scene.duration)) - sweeps(worst)) <= 1
     assert worst_contraction(mechanism, 0.0) == contraction(mechanism)
+    # The same motion in bars a thousand times as long: gaps of metres are as small a part of them.
+    longer = {name: 1e3 * getattr(scene, name) for name in ("crank", "coupler", "rocker")}
+    larger = replace(scene, **longer, ground=(1200.0, 0.0), gravity=(0.0, -9810.0)).mechanism()
+    assert worst_contraction(larger, scene.duration) == pytest.approx(worst_contraction(mechanism, scene.duration))
     assert LEAPFROG.sweeping(mechanism, scene.duration).iterations > LEAPFROG.sweeping(mechanism).iterations
     assert LEAPFROG.sweeping(mechanism, scene.duration).gain == 1
 

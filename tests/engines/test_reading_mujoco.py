@@ -395,3 +395,30 @@ def test_poses_go_back_to_mujocos_positions(name):
     for sample in range(21):
         np.testing.assert_allclose(found[sample], again.qpos, atol=1e-10)
         mujoco.mj_step(model, again, nstep=10)
+
+
+def test_a_run_begins_with_the_mocap_body_where_the_state_has_it():
+    """A pendulum whose pin a keyframe has moved, and turned about the body's origin, together with the mocap body."""
+    model = model_of(
+        '<body name="post" mocap="true"/><body name="bob"><joint type="slide" axis="1 0 0"/>'
+        '<joint type="slide" axis="0 0 1"/><joint/><inertial pos=".2 0 0" mass="1" diaginertia=".1 .1 .1"/></body>',
+        '<equality><connect body1="bob" body2="post" anchor=".1 0 0"/></equality>'
+        '<keyframe><key qpos=".2 .1 0" mpos=".3 0 .2" mquat="0.5 0 0.5 0"/></keyframe>',
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    reading = read(model, data)
+    run = reading.model.run(10, 5)
+    assert np.ptp(run.pose[:, 0, 2]) > 0.01
+    # As soft as a connect is as shipped: its weight opens it by a part of a millimetre.
+    assert np.abs(reading.mechanism.gap(run.pose, run.t)).max() < 2e-3
+
+
+@pytest.mark.parametrize("sample", [11, 20])  # a sum of steps of 0.1 s is a rounding below 1.1, and above 2
+def test_the_samples_from_a_reset_on_are_no_numbers(sample):
+    """The state in which MuJoCo begins anew has a velocity above mjMAXVAL = 1e10, and would be taken for an error."""
+    body = '<body><joint type="slide" axis="1 0 0"/><geom fromto="0 0 0 .1 0 0"/></body>'
+    gravity = 1e10 / (0.1 * (sample - 0.5))
+    run = read(model_of(body, option=f'gravity="{gravity} 0 0" timestep="0.1"')).model.run(30, 1)
+    assert run.reset_at == pytest.approx(0.1 * sample)
+    np.testing.assert_array_equal(np.isfinite(run.pose).all(axis=(1, 2)), np.arange(31) < sample)

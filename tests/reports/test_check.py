@@ -233,16 +233,18 @@ def test_freedoms_modes_and_singular_positions_are_told():
     assert rows - independent == 1
 
 
-def test_a_stiff_spring_is_the_stiffest_mode():
+@pytest.mark.parametrize(("damping", "rate"), [(0.0, 10.0), (80.0, 20.0 + 300.0**0.5)])  # x'' = -d/2 x' - 100 x
+def test_the_stiffest_mode_is_that_of_a_spring_and_a_damper(damping, rate):
     text = (
-        '<mujoco><option gravity="0 0 0"/><worldbody><body><joint type="slide" axis="1 0 0" stiffness="200"/>'
+        '<mujoco><option gravity="0 0 0"/><worldbody><body><joint type="slide" axis="1 0 0" stiffness="200" '
+        f'damping="{damping}"/>'
         '<inertial pos="0 0 0" mass="2" diaginertia=".1 .1 .1"/></body></worldbody></mujoco>'
     )
     data = mujoco.MjData(model := mujoco.MjModel.from_xml_string(text))  # type: ignore[attr-defined]
     data.qvel[0] = 0.1
     mechanism = read_model(model, data).mechanism
     facts = facts_of(mechanism, judged(mechanism, 5, 0.01).trajectory)
-    assert facts.stiffest_mode == pytest.approx(10.0, rel=1e-4)
+    assert facts.stiffest_mode == pytest.approx(rate, rel=1e-4)
 
 
 def test_chaos_ends_the_horizon_and_a_disturbance_that_grows_as_the_time_does_not():

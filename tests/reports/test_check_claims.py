@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from engines import Unsupported
+from engines.reading import Reading
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar
@@ -15,7 +19,7 @@ from reference.trajectory import Trajectory
 from reports.check.checked import Checked, Plan, parts_of, tried
 from reports.check.document import data
 from reports.check.facts import facts_of
-from reports.check.judging import errors, opening
+from reports.check.judging import errors, opening, refuse_disagreement
 from reports.check.telling import answer, number, sections
 from tests.reports.test_check import FOUR_BAR, PENDULUM, found_in
 
@@ -220,6 +224,17 @@ def test_growth_and_the_fastest_motion_are_told_as_they_are(soft):
     assert "a radian of the fastest takes 0.025 s, 12 of your steps." in read(fast)
 
 
+@pytest.mark.parametrize("rate", [1e-3, 1e3])
+def test_accelerations_that_should_be_zero_are_compared_with_those_of_the_mechanisms_own_size(rate):
+    """A wheel that turns steadily: a thousandth of the square of its rate is a thousandth in any unit of time."""
+    wheel = Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, rate))
+    mechanism = Mechanism((wheel,), (Pin("axle", None, "wheel", (0.0, 0.0), (0.0, 0.0)),), (0.0, 0.0))
+    off = np.array([[0.0, 0.0, 1e-3 * mechanism.time_scale**-2]])
+    model = SimpleNamespace(engine="toy", softly_held=False, elements=(), suspects={}, start=lambda: off)
+    with pytest.raises(Unsupported, match=r"differ from those of the ideal mechanism by 0\.001 of"):
+        refuse_disagreement(Reading(mechanism, cast(Any, model), ()))
+
+
 def test_what_opens_by_an_angle_is_told_in_radians():
     body = Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     joints = (Pin("axle", None, "wheel", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "wheel", 0.0, 0.0))
@@ -230,6 +245,14 @@ def test_what_opens_by_an_angle_is_told_in_radians():
     found = opening(mechanism, run)
     assert found is not None
     assert (found.gap, found.unit, found.t) == (pytest.approx(0.2), "rad", 1.0)
+    # A kilometre long, 1 m of it is less than 0.2 rad.
+    bodies = (replace(body, name="cabin", pose=(1e3, 0.0, 0.0)), body)
+    joints = (*joints, Pin("cable", None, "cabin", (0.0, 0.0), (-1e3, 0.0)))
+    pose = np.array([[[1e3, 0.0, 0.0], [0.0, 0.0, 0.0]], [[1001.0, 0.0, 0.0], [0.0, 0.0, 0.2]]])
+    run = Trajectory(np.arange(2.0), pose, np.zeros_like(pose), np.zeros((2, 5)), 0.0)
+    found = opening(Mechanism(bodies, joints, (0.0, 0.0)), run)
+    assert found is not None
+    assert (found.gap, found.unit) == (pytest.approx(0.2), "rad")
 
 
 # ------------------------------------------------------------------------------------------------------- reactions

@@ -55,7 +55,11 @@ def test_a_linkage_is_bars_between_points_that_stand_where_they_are_said_to():
     more = linkage({**POINTS, "E": (1.5, 0.6)}, {**BARS, "arm": "CE"}, "AD")
     assert [joint.name for joint in more.joints] == ["A", "B", "D", "C", "C 2"]
     assert more.degrees_of_freedom() == (2, 2)
-    xml.fromstring(planar_crosscheck.draw(more)._repr_svg_())
+    drawings = [
+        planar_crosscheck.draw(more, pose)._repr_svg_() for pose in (None, more.pose, more.pose + np.array([0.3, 0, 1]))
+    ]
+    xml.fromstring(drawings[0])
+    assert drawings[0] == drawings[1] != drawings[2]
 
 
 @pytest.mark.parametrize(

@@ -28,8 +28,8 @@ from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome
 from reports.model.quantities import OF, QUANTITIES, agrees, quantity
 from reports.pages.four_bar.page import PAGE
-from reports.write import kept_numbers
-from reports.write.csv_files import as_csv
+from reports.write import csv_files, kept_numbers
+from reports.write.csv_files import IDENTITY, as_csv
 from reports.write.kept_numbers import ERRORS, NOISE, as_published, kept
 from reports.write.provenance import machine
 from tests import ROOT
@@ -138,8 +138,9 @@ def test_an_error_keeps_its_text_within_rounding_alone(name, before):
 def test_a_time_is_kept_within_noise_and_on_the_same_machine(name, noise, before):
     published = getattr(ROW, name)
     within, beyond = (replace(ROW, **{name: published * factor}) for factor in (0.99 * noise, 1.01 * noise))
-    assert getattr(kept(within, before, True), name) == published
-    assert getattr(kept(within, before, False), name) != published
+    for where, same in ((machine(), True), ("another machine", False)):
+        of_run = kept_numbers.Published({tuple(csv_files.told(ROW, column) for column in IDENTITY): before}, where)
+        assert (getattr(as_published({CELLS[0]: within}, of_run)[CELLS[0]], name) == published) == same
     assert getattr(kept(beyond, before, True), name) != published
 
 

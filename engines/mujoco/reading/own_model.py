@@ -190,7 +190,7 @@ class OwnMuJoCo:
             reset = complaints.reset_at
             sound = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
             if reset is not None:
-                sound &= t < reset
+                sound &= t < reset - model.opt.timestep / 2  # a sum of steps is rounded
             pose, twist, acceleration = self._read(model, data, qpos, qvel, sound)
             warnings = (*complaints.said, *marks())
         reaction = np.full((samples + 1, self.mechanism.row_count), np.nan)
