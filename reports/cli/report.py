@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,6 +13,9 @@ from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, SEARCH, STORE, Folder, with_folder
 from reports.model.ending import BadInput
 from reports.run.files import write_whole
+
+if TYPE_CHECKING:
+    from reports.model.page import Material
 
 CHECKOUT = Path(__file__).parents[2]
 SEARCHED = ("search.md", "search_errors.svg")
@@ -87,6 +90,7 @@ def report(
         words = () if publish else store.remembered()
     made = drawn(material, words, command, published()) if many else {}
     files = render_all(material, command, searched, made)
+    files |= moving_picture(material.values())
     timings = published() / "timings.csv"
     if publish and timings.is_file() and "timings.csv" in files:
         old = timings.read_text(encoding="utf-8")
@@ -108,6 +112,22 @@ def report(
         from reports.cli.terminal import Terminal
 
         Terminal(140).say(grid)
+
+
+def moving_picture(material: Iterable[Material]) -> dict[str, str]:
+    """The picture of README that moves, by its name; nothing where not all of its motions are stored."""
+    from reports.pages.four_bar.page import MOVED, MOVING, MOVING_EVERY, MOVING_PICTURE
+    from reports.site.animated import animation, shown
+    from reports.site.lessons import take_like
+    from reports.write.tables import step_words
+
+    answers = {task: answer for each in material for task, answer in each.answers.items() if task in MOVED}
+    if any(task not in answers for task in MOVED):
+        return {}
+    scene = MOVED[0].cell.scene
+    take = take_like(scene, tuple((word, engine, MOVING_EVERY) for word, engine in MOVING.items()))
+    title = f"A four-bar linkage falls: the exact motion, and engines at steps of {step_words(MOVED[0].cell.step)}"
+    return {MOVING_PICTURE: animation(shown(take, answers), title)}
 
 
 def same_but_for_the_date(old: str, new: str) -> bool:

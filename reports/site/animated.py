@@ -284,6 +284,5 @@ def _chart(panel: Axes, shown: Shown, theme: Theme) -> Growing:
     low, high = decades([error for _, error in out])
     panel.set_ylim(10.0**low, 10.0**high)
     panel.plot([], [], color=theme.ink, linewidth=2.0, label="the exact motion")
-    style_legend = {"labelcolor": theme.ink, "facecolor": theme.paper, "edgecolor": theme.grid}
-    panel.legend(fontsize=11, loc="lower right", **style_legend)
+    panel.figure.legend(fontsize=11, loc="outside lower right", ncols=2, labelcolor=theme.ink)
     return out

@@ -22,6 +22,7 @@ from typer.main import get_command
 from reports.cli.commands import app
 from reports.model.catalogue import PAGES
 from reports.pages.comparison import PICTURE
+from reports.pages.four_bar.page import MOVING_PICTURE
 from reports.pages.your_loop.page import LINES
 from tests import ROOT
 
@@ -45,7 +46,10 @@ def test_the_readme_is_short_and_leads_to_the_lines_to_paste_to_the_lecture_and_
     first = "\n".join(told[: len(told) // 3])
     assert "](lecture.ipynb)" in first
     assert "`crosscheck site" in first
-    pages = {f"reports/results/{name}" for name in ("index.md", PICTURE, *(f"{page.name}.md" for page in PAGES))}
+    pages = {
+        f"reports/results/{name}"
+        for name in ("index.md", PICTURE, MOVING_PICTURE, *(f"{page.name}.md" for page in PAGES))
+    }
     own = {link.partition("#")[0] for link in links if "://" not in link} - pages
     assert [link for link in own if not (ROOT / link).exists()] == []
 

@@ -33,6 +33,16 @@ SAMPLES_A_PART = 8  # so that the engines' step is about 1e-2 s
 OVERLAID = {"pymunk default": ("first", "--"), "mujoco default": ("second", ":")}
 
 
+# The moving picture of README, over the exact motion, at this many steps between samples: a millisecond.
+MOVING_PICTURE = "moving.svg"
+MOVING_EVERY = 10
+MOVING = {
+    "pymunk as shipped": pymunk.DEFAULT,
+    "MuJoCo as shipped": mujoco.DEFAULT,
+    "MuJoCo with the lines below": mujoco.TUNED,
+}
+MOVED = tuple(Motion(Cell(FreeFourBar(), engine, MOVING_EVERY, "failure")) for engine in MOVING.values())
+
 POSED = {
     f"{engine.name} {engine.variant}": Cell(DrivenFourBar(), engine, 1, samples=PARTS * SAMPLES_A_PART)
     for engine in ENGINES
@@ -111,5 +121,5 @@ PAGE = Page(
     figures=figures,
     words=words,
     known=KNOWN,
-    tasks=tuple(map(Motion, POSED.values())),
+    tasks=(*map(Motion, POSED.values()), *MOVED),
 )
