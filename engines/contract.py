@@ -11,7 +11,8 @@
    sentence. It sees no scene, so it can't see the answer. A mechanism may have `forces` besides joints: an engine that
    knows none begins with `refuse_forces(mechanism, self.name)`.
 4. `run(samples, every)` steps `samples * every` times and gives samples + 1 states, the first at t = 0. One shot: build
-   again to repeat. Pose and twist belong to the same instant; reactions too, NaN where the engine can't tell.
+   again to repeat. Pose and twist belong to the same instant; reactions too, NaN where the engine can't tell: in all
+   samples of a row, or in the first alone.
 5. `Trajectory.stepping` is the CPU time of the stepping loop, recording included; reading it out afterwards is not.
    Rough runs that plan it, by which a method chooses its steps or sweeps, are part of it.
 6. An engine that resets itself says when (`reset_at`), one that warns says so (`warnings`), one that estimates an error
@@ -312,7 +313,27 @@ def flaw_of_stepping(run: Trajectory) -> Flaw | None:
     return f"stepping = {run.stepping!r} s", "CPU seconds from 0 on"
 
 
+def flaw_of_reactions(run: Trajectory) -> Flaw | None:
+    """The first row whose reactions are numbers at some samples of a finite motion and not at others; None if none is.
+
+    The first sample may lack them: an engine that reads the impulses of a step has none before the first step.
+    """
+    if not (np.isfinite(run.pose).all() and np.isfinite(run.twist).all()):
+        return None  # it diverges, and its last states may be too large for a force
+    known = np.isfinite(run.reaction[1:])
+    rows = np.flatnonzero(known.any(axis=0) & ~known.all(axis=0))
+    if not rows.size:
+        return None
+    at = run.t[1 + int(np.argmin(known[:, rows[0]]))]
+    return f"no reaction of row {rows[0]} at {at:.4g} s", "a number at every sample after the first, or at none"
+
+
 def flaw(run: Any, mechanism: Mechanism, dt: float, samples: int, every: int) -> str:
     """What of a run's answer is not as sentences 4 and 5 ask, one sentence; empty if nothing is."""
-    found = flaw_of_shapes(run, mechanism, samples) or flaw_of_times(run, dt, samples, every) or flaw_of_stepping(run)
+    found = (
+        flaw_of_shapes(run, mechanism, samples)
+        or flaw_of_times(run, dt, samples, every)
+        or flaw_of_stepping(run)
+        or flaw_of_reactions(run)
+    )
     return f"its run gave {found[0]}; the contract of engines asks for {found[1]}" if found else ""

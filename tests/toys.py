@@ -147,6 +147,8 @@ class FailingToy(Toy):
                 exact.pose[3:] = np.nan
             case "blind":
                 exact.twist[3:] = np.nan
+            case "mute":
+                exact.reaction[len(exact.t) // 2 :] = np.nan
             case "flip":
                 exact.pose[5:, 0, 2] += 3.0
             case "tear":
@@ -166,6 +168,7 @@ FAILURES = {
     "raise": "failed",
     "nan": "diverged",
     "blind": "diverged",
+    "mute": "failed",
     "refuse": "refused",
     "unsupported": "unsupported",
     "tear": "torn",
