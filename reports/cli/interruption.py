@@ -58,7 +58,7 @@ def ending_at_once() -> Any:
 
 @contextmanager
 def kept() -> Iterator[Callable[[], None]]:
-    """Inside, a signal is kept until the function given is called, which then raises Interrupted.
+    """Inside, a signal is kept until the function given is called, or the context is left: that raises Interrupted.
 
     So work is left only where it can be left. The second signal does not wait: it raises at once.
     """
@@ -74,7 +74,10 @@ def kept() -> Iterator[Callable[[], None]]:
             raise Interrupted(pressed[0])
 
     with _handled(keep):
-        yield check
+        try:
+            yield check
+        finally:
+            check()
 
 
 def from_now_on_ignored() -> None:

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
@@ -234,17 +234,20 @@ def count_of_rows(path):
     return 0
 
 
-def test_a_ctrl_c_that_is_kept_raises_when_asked_and_the_second_at_once():
+def test_a_ctrl_c_that_is_kept_raises_when_asked_at_the_second_and_when_the_context_is_left():
     before = signal.getsignal(signal.SIGINT)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        with interruption.kept() as check:
+        with ExitStack() as leaving:
+            check = leaving.enter_context(interruption.kept())
             check()
             signal.raise_signal(signal.SIGINT)
             with pytest.raises(KeyboardInterrupt):
                 check()
             with pytest.raises(KeyboardInterrupt):
                 signal.raise_signal(signal.SIGINT)
+            with pytest.raises(interruption.Interrupted):
+                leaving.close()
         assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         with interruption.kept() as check, interruption.ending_at_once():
