@@ -15,6 +15,7 @@ from typing import Any
 
 from engines import Engine
 from engines.entry_points import registered
+from engines.imported_release import other_release
 from engines.loading import Kind
 from engines.loading import load as load_values
 
@@ -75,3 +76,8 @@ INSTALLED: tuple[Engine, ...] = tuple(engine for engine in OTHERS if not engine.
 # By an engine's name the sentence that says which extra installs it.
 ABSENT: dict[str, str] = {engine.name: engine.missing for engine in OTHERS if engine.missing}
 TROUBLES = (*_variants.troubles, *_methods.troubles, *_optional.troubles)
+
+
+def mislabelled(elsewhere: bool = True) -> str:
+    """Which registered engine's code is of another release than its metadata say; see `other_release`."""
+    return other_release((*ENGINES, *INSTALLED), elsewhere)

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from engines import Engine
 from engines.conformance import members, moving, refusing, same, sampled
 from engines.conformance.check import Case, Check, Result, Status, Subject
+from engines.imported_release import other_release
 
 CHECKS: tuple[Check, ...] = (
     *refusing.CHECKS,
@@ -32,8 +33,11 @@ def conform(engine: Engine, expected_failures: Mapping[str, str] | None = None) 
     """Ask an engine everything; every case and what came of it.
 
     expected_failures: by a check's name, or by `check: mechanism`, why it fails. Raises AssertionError, with a line for
-    each check that fails and was not expected to, for each that was and does not, and for each name that no check has.
+    each check that fails and was not expected to, for each that was and does not, and for each name that no check has;
+    ValueError where the engine's code is of another release than its metadata say.
     """
+    if sentence := other_release([engine]):
+        raise ValueError(sentence)
     expected = dict(expected_failures or {})
     results = tuple((case, case.result()) for case in cases(engine))
     came, wrong = set[str](), list[str]()

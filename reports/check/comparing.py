@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from engines import Engine, registry
+from engines.imported_release import other_release
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory, ground_points
 from reports.check import rendering
@@ -93,6 +94,8 @@ def compared(mechanism: Mechanism, engine: Engine | str, dt: float, duration: fl
     if not (np.isfinite(dt) and np.isfinite(duration) and 0 < dt <= duration):
         raise ValueError(f"dt is {dt!r} s and duration {duration!r} s; both must be above zero, and dt the smaller")
     chosen = _named(engine) if isinstance(engine, str) else engine
+    if sentence := other_release([chosen]):
+        raise ValueError(sentence)
     every = max(1, round(duration / SAMPLES / dt))
     samples = max(1, round(duration / (every * dt)))
     judge = judged(mechanism, samples, every * dt)

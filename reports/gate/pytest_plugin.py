@@ -148,6 +148,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Bad files are one line, before anything is run."""
+    if sentence := registry.mislabelled():
+        raise pytest.UsageError(sentence)
     try:
         config.stash[KNOWN] = read_baseline(_option(config, "--baseline"))
     except BadBaseline as error:

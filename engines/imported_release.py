@@ -1,0 +1,91 @@
+"""Whether the code of an engine that is imported is of the release that its distribution's metadata name.
+
+Versions in reports and cache keys come from metadata. pip writes the files of one distribution over those of another
+without a word (`mujoco` 3.17.0 over `mujoco-core`), and an editable installation keeps the version of its first day.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+import sys
+from collections.abc import Iterable
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+
+from engines.contract import Engine
+
+RELEASE = re.compile(r"v?(\d+(?:\.\d+)*)")  # of a version; what follows names a build of it: 7.3.1+patched
+
+
+def other_release(engines: Iterable[Engine], elsewhere: bool = True) -> str:
+    """Which distribution of these engines has another version than its module that is imported, and what mends it: one
+    line; empty if none has.
+
+    A module whose files are all as they were installed may call itself anything: pymunk 7.0.0 says 2.0.0. `elsewhere`:
+    modules outside the distribution's folder count too, of an editable installation or of a folder on the path.
+    """
+    packages = {package: engine.modules for engine in engines for package in engine.packages}
+    differences = (_difference(package, _modules(package, names), elsewhere) for package, names in packages.items())
+    return next(filter(None, differences), "")
+
+
+@cache
+def _modules(package: str, names: tuple[str, ...]) -> tuple[str, ...]:
+    """The top-level modules of a distribution, as it says itself, else `names`; none if it is not installed."""
+    try:
+        words = (metadata.distribution(package).read_text("top_level.txt") or "").split()
+    except metadata.PackageNotFoundError:
+        return ()
+    return tuple(words) or names or (package,)
+
+
+def _difference(package: str, modules: tuple[str, ...], elsewhere: bool) -> str:
+    found = (_difference_of(package, module, elsewhere) for module in modules if module in sys.modules)
+    return next(filter(None, found), "")
+
+
+@cache
+def _difference_of(package: str, module: str, elsewhere: bool) -> str:
+    distribution, imported = metadata.distribution(package), sys.modules[module]
+    values = (getattr(imported, name, None) for name in ("__version__", "version"))
+    version = next((value for value in values if _release(value)), None)
+    if version is None or _release(version) == _release(distribution.version):
+        return ""
+    folder, home = Path(imported.__file__ or "").resolve().parent, Path(str(distribution.locate_file(""))).resolve()
+    line = f"{package} is {distribution.version} by its metadata, and {module} that is imported is {version}"
+    if not folder.is_relative_to(home):
+        mend = "install that folder (pip install, with -e if it was), or take it off the path"
+        return f"{line}, from {folder}: {mend}" if elsewhere else ""
+    files = [file for file in distribution.files or () if Path(str(file.locate())).resolve().is_relative_to(folder)]
+    if not any(file.name == "__init__.py" and file.parent.name == module for file in files):
+        return ""  # it adds to a package of another distribution, as mujoco-mjx to mujoco
+    if not any(map(_is_changed, files)):
+        return ""
+    own = {*map(str, files)}
+    others = [
+        f"{other.name} {other.version}"
+        for other in metadata.distributions()
+        if other.name != distribution.name and not own.isdisjoint(map(str, other.files or ()))
+    ]
+    cause = f"files of {', '.join(others)} lie over its own" if others else "its files were changed"
+    return f"{line}, since {cause}: pip install --force-reinstall --no-deps {package}=={distribution.version}"
+
+
+def _release(version: object) -> tuple[int, ...]:
+    """(7, 3, 1) of '7.3.1+patched', (4, 1) of '4.1.0'; empty for what is no version."""
+    found = RELEASE.match(version) if isinstance(version, str) else None
+    return tuple(map(int, re.sub(r"(\.0+)+$", "", found[1]).split("."))) if found else ()
+
+
+def _is_changed(file: metadata.PackagePath) -> bool:
+    """Whether a file is not the one that was installed; False where the installation has recorded no digest."""
+    if file.hash is None or file.hash.mode != "sha256":
+        return False
+    try:
+        digest = hashlib.sha256(Path(str(file.locate())).read_bytes()).digest()
+    except OSError:
+        return True
+    return base64.urlsafe_b64encode(digest).rstrip(b"=").decode() != file.hash.value

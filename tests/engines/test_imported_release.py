@@ -1,0 +1,144 @@
+"""The release of imported code beside that of its metadata: files laid over, builds, and modules that say anything."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import sys
+from dataclasses import dataclass
+
+import mujoco
+import pytest
+
+import planar_crosscheck
+from engines import imported_release, registry
+from engines.imported_release import other_release
+from reports.model.ending import REFUSED
+from tests.reports.test_command_line import call, here, one_line  # noqa: F401 (here is a fixture)
+from tests.toys import Toy
+
+NAME = "crosscheck_toy_release"
+MEND = f"pip install --force-reinstall --no-deps {NAME}==2.0.1"
+
+
+@dataclass(frozen=True)
+class Released(Toy):
+    packages = (NAME,)
+
+
+def distribution(folder, name, version, says, module=NAME):
+    """Install a distribution with one module as pip does: files, metadata and a digest of each file."""
+    package = folder / module
+    package.mkdir(parents=True, exist_ok=True)
+    (package / "__init__.py").write_text(f"__version__ = {says!r}\n")
+    digest = base64.urlsafe_b64encode(hashlib.sha256((package / "__init__.py").read_bytes()).digest()).rstrip(b"=")
+    info = folder / f"{name}-{version}.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n")
+    (info / "RECORD").write_text(f"{module}/__init__.py,sha256={digest.decode()},\n{info.name}/METADATA,,\n")
+
+
+@pytest.fixture
+def answer(tmp_path, monkeypatch):
+    """What `other_release` says once the module was imported from these folders."""
+
+    def asked(*folders, elsewhere=True):
+        for folder in reversed(folders):
+            monkeypatch.syspath_prepend(folder)
+        __import__(NAME)
+        return other_release([Released()], elsewhere)
+
+    imported_release._difference_of.cache_clear()
+    imported_release._modules.cache_clear()
+    yield asked
+    sys.modules.pop(NAME, None)
+    imported_release._difference_of.cache_clear()
+    imported_release._modules.cache_clear()
+
+
+@pytest.mark.parametrize("says", ["2.0.1", "2.0.1.0", "2.0.1+patched", "2.0.1.dev3", "2", "1999", None])
+def test_a_module_whose_files_are_as_installed_may_call_itself_anything(tmp_path, answer, says):
+    distribution(tmp_path, NAME, "2.0.1", says)
+    assert answer(tmp_path) == ""
+
+
+@pytest.mark.parametrize("version", ["2.0.1+patched", "2.0.1.post1", "2.0.1rc1"])
+def test_a_build_of_a_release_is_of_that_release(tmp_path, answer, version):
+    distribution(tmp_path, NAME, version, "2.0.1")
+    (tmp_path / NAME / "__init__.py").write_text("__version__ = '2.0.1' \n")  # as the author changed it since
+    assert answer(tmp_path) == ""
+
+
+def test_files_of_another_distribution_over_its_own_are_told_with_what_mends_it(tmp_path, answer):
+    distribution(tmp_path, NAME, "2.0.1", "2.0.1")
+    distribution(tmp_path, "bundle", "1.17.0", "1.17.0")
+    sentence = answer(tmp_path, elsewhere=False)
+    assert "bundle 1.17.0" in sentence
+    assert sentence.endswith(MEND)
+    assert "\n" not in sentence
+
+
+def test_a_distribution_that_adds_to_a_package_of_another_one_has_a_version_of_its_own(tmp_path, answer):
+    """As mujoco-mjx, installed without what it requires, adds mujoco/mjx to mujoco-core's package."""
+    distribution(tmp_path, "core", "2.0.1", "2.0.1")
+    info = tmp_path / f"{NAME}-1.17.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {NAME}\nVersion: 1.17.0\n")
+    (info / "RECORD").write_text(f"{NAME}/more/__init__.py,,\n")
+    assert answer(tmp_path) == ""
+
+
+def test_a_folder_on_the_path_that_hides_what_is_installed_is_told_unless_it_is_meant(tmp_path, answer):
+    distribution(tmp_path / "installed", NAME, "2.0.1", "2.0.1")
+    build = tmp_path / "build" / NAME
+    build.mkdir(parents=True)
+    (build / "__init__.py").write_text("__version__ = '2.1.0'\n")
+    sentence = answer(tmp_path / "build", tmp_path / "installed")
+    assert "is 2.1.0" in sentence
+    assert str(tmp_path / "build") in sentence
+    assert other_release([Released()], elsewhere=False) == ""  # a build that `compare` runs
+
+
+@pytest.fixture
+def overlaid(monkeypatch):
+    """As with the files of mujoco 3.17.0 over those of mujoco-core."""
+    imported_release._difference_of.cache_clear()
+    monkeypatch.setattr(mujoco, "__version__", "3.17.0")
+    monkeypatch.setattr(imported_release, "_is_changed", lambda file: True)
+    yield
+    imported_release._difference_of.cache_clear()
+
+
+COMMANDS = (
+    "run free_four_bar --engine mujoco --every 10",
+    "search --engine mujoco --cases 2",
+    "conform mujoco --variant default",
+    "atlas",
+)
+
+
+@pytest.mark.usefixtures("overlaid")
+@pytest.mark.parametrize("words", COMMANDS)
+def test_no_command_runs_another_release_than_it_names(words, here, capfd):  # noqa: F811
+    assert call(*words.split()) == REFUSED
+    sentence = one_line(capfd.readouterr().err)
+    assert "3.17.0" in sentence
+    assert "pip install --force-reinstall --no-deps mujoco-core==" in sentence
+    assert not list(here.glob("**/truths"))
+
+
+@pytest.mark.usefixtures("overlaid")
+@pytest.mark.parametrize("asked", [planar_crosscheck.check, lambda model: planar_crosscheck.conform(mujoco_default())])
+def test_nor_does_a_notebook_or_a_test(asked):
+    with pytest.raises(ValueError, match=r"mujoco-core is .* by its metadata, and mujoco that is imported is 3.17.0"):
+        asked(mujoco.MjModel.from_xml_string("<mujoco/>"))  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def mujoco_default():
+    return next(engine for engine in registry.VARIANTS if engine.name == "mujoco")
+
+
+def test_every_engine_that_is_installed_is_of_the_release_that_its_metadata_name():
+    for module in ("mujoco", "pymunk", "exudyn", "pinocchio", "jax", "numba"):
+        pytest.importorskip(module) if module not in ("mujoco", "pymunk") else __import__(module)
+    assert registry.mislabelled() == ""
