@@ -19,6 +19,10 @@ from __future__ import annotations
 
 import os
 import sys
+
+if __name__ == "__main__" and not sys.flags.safe_path:
+    sys.path[0] = os.path.dirname(os.path.realpath(__file__))  # instead of the current folder (`python -m`)
+
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path

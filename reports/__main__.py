@@ -5,6 +5,7 @@ Only what is loaded anyway is imported up here: Ctrl-C is taken care of before a
 
 from __future__ import annotations
 
+import os
 import sys
 
 
@@ -35,7 +36,7 @@ def _ended(arguments: list[str]) -> int:
     """Run a command; its exit status. What is wrong is told on stderr."""
     from contextlib import suppress
 
-    from reports.model.ending import REFUSED, UNREAD, BadInput, Ending
+    from reports.model.ending import REFUSED, UNREAD, BadInput, Ending, visible
 
     try:
         from planar_crosscheck import clash
@@ -58,9 +59,11 @@ def _ended(arguments: list[str]) -> int:
             raise
         status, sentence = REFUSED, told()
     with suppress(OSError):
-        print(f"crosscheck: {' '.join(sentence.split())}", file=sys.stderr, flush=True)
+        print(f"crosscheck: {visible(' '.join(sentence.split()))}", file=sys.stderr, flush=True)
     return status
 
 
 if __name__ == "__main__":
+    if not sys.flags.safe_path:  # `python -m` has put the current folder first
+        sys.path[0] = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
     main()

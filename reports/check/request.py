@@ -95,6 +95,7 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
     # Here: who only asks is sooner there.
     from engines import Unsupported
     from engines.importers import read_object
+    from engines.registry import mislabelled
     from reference.checks import InvalidMechanism
     from reports.check.applying import applied
     from reports.check.checked import check, read
@@ -106,6 +107,8 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
             Path(request.notes).write_text(words, encoding="utf-8")
 
     tolerance = USUAL_TOLERANCE if request.tolerance is None else request.tolerance
+    if sentence := mislabelled():
+        return Refused(sentence)
     try:
         told("reading")
         if model is None:

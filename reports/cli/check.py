@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.cli.options import refuse_existing
-from reports.model.ending import BadInput, Broken
+from reports.cli.options import STDOUT, refuse_existing
+from reports.model.ending import BadInput, Broken, visible
 
 if TYPE_CHECKING:
     from reports.check.folder import Answers
@@ -37,6 +37,7 @@ SWITCHED_OFF = (
 LOSSES = {
     "timed out": "{}; give a larger --limit if that was to be expected",
     "failed": "the check ended with an exception, {}; it comes from a function of the model, or is a defect of ours",
+    "lost": "{}",
 }
 LOST = "its process was lost: {}"
 
@@ -141,6 +142,8 @@ def _refuse_bad(
     given = {f"--{name}": path for name, path in files.items() if path is not None}
     own = {Path(word).resolve() for word in (model, model.rpartition(":")[0])}
     for name, path in given.items():
+        if path == STDOUT:
+            raise BadInput(f"{name} is '-', and standard output has the answer already; give a file")
         if not path.name or path.is_dir():
             raise BadInput(f"{name} is {str(path)!r}, which is a folder; give a file")
         if name != "--apply" and path.resolve() in own:
@@ -203,6 +206,7 @@ class _Progress:
     def show(self, words: str) -> None:
         if words and words != self._said:
             self._said, line = words, f"{monotonic() - self._begin:5.1f} s  {words}"
+            line = visible(line)
             told, end = (f"{OVERWRITE}{line}", "") if sys.stderr.isatty() else (line, "\n")
             print(told, end=end, file=sys.stderr, flush=True)
 
@@ -265,4 +269,4 @@ def _say(text: str) -> None:
     from reports.cli.streams import written
 
     with written():
-        print(text)
+        print(visible(text))

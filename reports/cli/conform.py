@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.options import REFERENCES, AsJson, AsMarkdown
-from reports.model.ending import Broken
+from reports.model.ending import BadInput, Broken
 
 if TYPE_CHECKING:
     from engines.conformance import Case, Result, Status
@@ -24,9 +24,12 @@ def conform(
     as_markdown: AsMarkdown = False,
 ) -> None:
     """Check that an engine keeps the contract: signs, instants, orders, refusals, and any description alike."""
+    from engines.registry import mislabelled
     from reports.cli.supervised_checks import Named, asked
     from reports.cli.terminal import print_table, telling
 
+    if sentence := mislabelled():
+        raise BadInput(sentence)
     with telling(WIDTH, as_json, as_markdown) as screen:
         broken = []
         for each, results in asked(Named.here(engine, variant)):

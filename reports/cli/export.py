@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.cli.options import REFERENCES, refuse_existing
+from reports.cli.options import REFERENCES, STDOUT, refuse_existing
 from reports.cli.streams import written
-from reports.model.ending import BadInput
+from reports.model.ending import BadInput, visible
 from reports.run.files import is_stream, write_whole
 
 if TYPE_CHECKING:
@@ -39,12 +39,7 @@ def export(
         raise BadInput(f"--step is {step:g}; it must be a finite time above zero")
     from reports.cli.known import one_scene
 
-    text = _written(known[to], one_scene(scene)[1], step, variant)
-    if out is None:
-        with written():
-            print(text, end="")
-        return
-    _write(out, text, force)
+    _write(out or STDOUT, _written(known[to], one_scene(scene)[1], step, variant), force)
 
 
 def view(
@@ -125,7 +120,11 @@ def told(scene: Scene) -> list[str]:
 
 
 def _write(path: Path, text: str, force: bool) -> None:
+    if path == STDOUT:
+        with written():
+            print(text, end="")
+        return
     refuse_existing([path], "--out", force)
     write_whole({path: text}, "give another --out")
     if not is_stream(path):  # which may be the standard output, where a file would get this line
-        print(f"written: {path}")
+        print(visible(f"written: {path}"))

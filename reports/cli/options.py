@@ -15,6 +15,7 @@ from reports.run.files import is_stream
 # Below the current folder, in the checkout too: no command writes to what is published.
 FOLDER = Path("crosscheck-results")
 STORE = "cells.sqlite"
+STDOUT = Path("-")  # as a file that is written: standard output
 SEARCH = "search"  # the folder in it with what random mechanisms gave
 REFERENCES = "package.module:NAME, or path/to/file.py"
 
@@ -64,6 +65,13 @@ def listed(option: str, words: Iterable[str], known: Iterable[str]) -> tuple[str
         if name not in names:
             raise nearest(option, name, names)
     return out
+
+
+def refuse_file(results: Path) -> None:
+    """Raises BadInput for a folder of results that is a file, or in one."""
+    for path in (results, *results.parents):
+        if path.is_file():
+            raise BadInput(f"--results is {str(results)!r}, and {path} is a file; give a folder")
 
 
 def with_folder(command: str, results: Path) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, SEARCH, STORE, Folder, with_folder
+from reports.cli.options import FOLDER, SEARCH, STORE, Folder, refuse_file, with_folder
 from reports.model.ending import BadInput
 from reports.run.files import write_whole
 
@@ -31,6 +31,7 @@ def report(
     """Write pages, charts, errors.csv and timings.csv from what is stored."""
     if publish:
         refuse_outside_a_checkout()
+    refuse_file(results)
     nothing = BadInput(f"{results} holds nothing for the present sources: {with_folder('crosscheck run', results)}")
     searched = search_files(results, publish)
     if not (results / STORE).exists():

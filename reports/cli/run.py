@@ -24,7 +24,7 @@ from reports.cli.options import (
     Workers,
     with_folder,
 )
-from reports.model.ending import BadInput
+from reports.model.ending import BadInput, Broken
 
 if TYPE_CHECKING:
     from reports.cli.terminal import Terminal
@@ -87,6 +87,7 @@ def run(
         following = with_folder("crosscheck report", results)
         refuse_without_motion(rows)
         console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
+        refuse_nothing_but_failures(rows)
 
 
 def refuse_without_motion(rows: Sequence[Measurement]) -> None:
@@ -119,6 +120,14 @@ def run_interruptible(
         print("compiling the judge's machine code, once for this installation: up to two minutes", file=sys.stderr)
     with interruptible(console, store, items, limit, "cells", fresh) as (waiting, done, watch):
         return run_into(store, waiting, True, limit, by.threads, done, watch, supervised=by.supervise)
+
+
+def refuse_nothing_but_failures(rows: Sequence[Measurement]) -> None:
+    """Raises Broken where no cell gave anything: each failed, was aborted or ran out of time."""
+    from reports.model.outcomes import Outcome
+
+    if rows and all(Outcome(row.outcome).grade == 3 for row in rows):
+        raise Broken(f"none of {len(rows)} cells gave a motion; the first {rows[0].outcome}: {rows[0].sentence}")
 
 
 def print_summary(console: Terminal, rows: list[Measurement]) -> None:

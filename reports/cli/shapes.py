@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.options import refuse_existing
-from reports.model.ending import BadInput, FileTrouble
+from reports.model.ending import BadInput, FileTrouble, visible
 from reports.run.files import write_whole
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def shapes(
     told = _told(curves, found)
     write_whole(files, "give another --folder")
     for line in (*told, *(f"written: {path}" for path in files)):
-        print(line)
+        print(visible(line))
 
 
 def _told(curves: Centrodes, found: Shapes) -> list[str]:

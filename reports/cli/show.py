@@ -19,6 +19,7 @@ from reports.cli.options import (
     Scenes,
     Settings,
     VariantName,
+    refuse_file,
     with_folder,
 )
 from reports.model.ending import BadInput
@@ -89,6 +90,7 @@ def show(
     chosen = choose_scenes(names, known.scenes, known.pages)
     words = shlex.join([scene, *(f"--set={each}" for each in settings or ())])
     command = with_folder(f"crosscheck run {words}", results)
+    refuse_file(results)
     nothing = BadInput(f"{results} holds nothing for {scene!r} and the present sources: {command}")
     if not there:
         raise nothing

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from reports.model.ending import FileTrouble
+from reports.model.ending import FileTrouble, visible
 
 
 @contextmanager
@@ -25,7 +25,7 @@ def written() -> Iterator[None]:
 
 def said(words: str) -> None:
     """A line on standard error, at once."""
-    print(f"crosscheck: {words}", file=sys.stderr, flush=True)
+    print(f"crosscheck: {visible(words)}", file=sys.stderr, flush=True)
 
 
 def open_streams() -> None:

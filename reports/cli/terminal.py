@@ -19,7 +19,7 @@ from rich.text import Text
 
 from reports.cli.interruption import kept
 from reports.cli.streams import said, written
-from reports.model.ending import FINE, BadInput, Broken
+from reports.model.ending import FINE, BadInput, Broken, visible
 
 if TYPE_CHECKING:
     from reports.model.measure import Measurement
@@ -47,7 +47,7 @@ class Terminal(Console):
 
     def say(self, sentence: str) -> None:
         """A sentence as it is, on the way to the results: names of files may have brackets in them."""
-        self.print(sentence, markup=False, highlight=False, soft_wrap=True)
+        self.print(visible(sentence), markup=False, highlight=False, soft_wrap=True)
 
     def tell(self, sentence: str) -> None:
         """A sentence that is a part of the results."""
@@ -57,7 +57,7 @@ class Terminal(Console):
             from reports.write.templates import inert
 
             with written():
-                print(f"{inert(sentence)}\n")
+                print(f"{inert(visible(sentence))}\n")
         else:
             self.say(sentence)
 
@@ -121,7 +121,8 @@ def print_table(
         return
     from reports.write.tables import markdown, words_of
 
-    words = [tuple(map(words_of, row)) for row in rows]
+    title, header = visible(title), [visible(name) for name in header]
+    words = [tuple(visible(words_of(cell)) for cell in row) for row in rows]
     if form == "markdown":
         from reports.write.templates import inert
 
@@ -183,8 +184,11 @@ def interruptible(
     `words`: what the items are called; `fresh`: those that are stored too; `size`: how many cases are in one, which are
     then counted; done and watch: see `progress`. Raises KeyboardInterrupt, having said what is stored.
     """
+    from engines.registry import mislabelled
     from reports.run.running import missing
 
+    if sentence := mislabelled():
+        raise BadInput(sentence)
     with kept() as check:
         waiting = items if fresh else missing(items, store, limit)
         try:
@@ -224,7 +228,7 @@ def progress(
         task = bar.add_task(unit, total=total, running="starting")
 
         def watch(running: list[Any]) -> None:
-            bar.update(task, running=" | ".join(item.label for item in running))
+            bar.update(task, running=visible(" | ".join(item.label for item in running)))
             check()
 
         def done(row: object, many: int = 1) -> None:
@@ -248,7 +252,7 @@ def _lines(
             last = now
             running = f"; running: {' | '.join(cell.label for cell in cells)}" if cells else ""
             line = f"{count} of {total} {unit} run after {now - start:.0f} s{running}"
-            console.print(line, markup=False, highlight=False, soft_wrap=True)
+            console.print(visible(line), markup=False, highlight=False, soft_wrap=True)
         check()
 
     def done(row: object, many: int = 1) -> None:

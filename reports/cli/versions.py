@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from engines import Engine
     from reference.scene import Scene
     from reports.cli.terminal import Terminal
+    from reports.model.measure import Measurement
     from reports.versions.column import VersionColumn, VersionRequest
     from reports.versions.table import Table
 
@@ -48,6 +49,7 @@ def versions(
     """Run scenes in released versions of an engine; each is installed once, in the user's cache folder."""
     from engines.registry import OTHERS, VARIANTS
     from reports.cli.report import published, refuse_outside_a_checkout
+    from reports.cli.run import refuse_nothing_but_failures
     from reports.cli.terminal import telling
     from reports.run.files import write_whole
     from reports.versions.table import as_csv, as_published, catalogued, merged, read
@@ -59,6 +61,7 @@ def versions(
         raise BadInput("--publish renews all of the page's data: give it with --all, and without --scenes")
     chosen = named_scenes(scenes or (() if everything else SCENES))
     wrong: list[str] = []
+    rows: list[Measurement] = []
     with telling(WIDTH, as_json, as_markdown) as console, kept() as check:
         table = catalogued(read(Path(results) / DATA)) if everything else None
         for name, numbers in asked.items():
@@ -76,6 +79,7 @@ def versions(
                     said(wrong[-1])
                     continue
                 found.append(column)
+                rows += column.rows
                 if table is not None:
                     table = merged(table, _table(name, [column]))
                     write_whole({Path(results) / DATA: as_csv(table)}, "what is stored is kept")
@@ -84,6 +88,7 @@ def versions(
             renewed = as_published(table, read(published() / DATA))
             write_whole({published() / DATA: as_csv(renewed)}, "the file that was there stays as it was")
             console.say(f"{published() / DATA} is renewed")
+        refuse_nothing_but_failures(rows)
     if wrong:
         raise BadInput(f"{len(wrong)} of the versions could not be run, the others are stored; the first: {wrong[0]}")
 

@@ -64,6 +64,18 @@ def nearest(kind: str, word: str, known: Iterable[str], absent: Mapping[str, str
     return BadInput(f"unknown {kind} {word!r}: {hint}")
 
 
+def visible(text: str) -> str:
+    """A text with escapes for the characters that a terminal obeys or that turn the direction of a line; names of
+    files may hold them.
+    """
+    if text.isprintable():
+        return text
+    return "".join(
+        letter if letter == "\n" or letter.isprintable() else letter.encode("unicode_escape").decode()
+        for letter in text
+    )
+
+
 def describe(error: BaseException) -> str:
     """'Type: message', whatever the exception does when it is asked for its message."""
     try:

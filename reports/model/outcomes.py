@@ -88,7 +88,7 @@ MEANINGS = {
     Outcome.ABORTED: "native code ended the process",
     Outcome.TIMED_OUT: "did not end within its time limit",
     Outcome.FAILED: "an unexpected exception, or an answer that is no motion at the instants asked for",
-    Outcome.LOST: "its process was killed from outside, twice",
+    Outcome.LOST: "its process was killed from outside, twice, or a module could not be imported there",
 }
 
 LETTERS = {
@@ -154,8 +154,8 @@ def refusal(reason: Exception) -> Loss:
 
 
 def failure(error: BaseException) -> Loss:
-    """Of a cell that raised anything else."""
-    return Loss(Outcome.FAILED, describe(error))
+    """Of a cell that raised anything else. An import that fails says nothing about the engine."""
+    return Loss(Outcome.LOST if isinstance(error, ImportError) else Outcome.FAILED, describe(error))
 
 
 def out_of_time(limit: float, wall: float | None = None) -> Loss:

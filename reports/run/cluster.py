@@ -33,7 +33,7 @@ from reports.run.files import temporary_folder
 from reports.run.queue import expected_seconds
 from reports.run.running import worker_count
 from reports.run.supervisor import TICK, Answer, Crew, Supervise, Watch, WorkersLost, crew, supervise, wall_limit
-from reports.run.worker import interrupts_held
+from reports.run.worker import process_start
 
 ADDRESS = re.compile(r"(?:tcp|tls)://\S+:\d+")
 LOCAL = re.compile(r"local:([1-9]\d{0,2})")
@@ -194,7 +194,7 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
         logging.getLogger(name).setLevel(logging.CRITICAL)
     with ExitStack() as stack:
         # Ctrl-C reaches every process of a terminal; threads and processes that start here leave it to this one.
-        with interrupts_held(), warnings.catch_warnings():
+        with process_start(), warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of its versions; ours are compared by keys
             try:
                 where: Any = scheduler

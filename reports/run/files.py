@@ -61,6 +61,11 @@ def lasting_folder() -> Path:
     return _made(Path("/tmp") if too_long else place)
 
 
+def held_folders() -> tuple[Path, ...]:
+    """The temporary folders that this process has made and not removed yet."""
+    return tuple(_own)
+
+
 def remove_all() -> None:
     """Remove every folder of this process that is there; for a process that ends where it stands."""
     for folder in list(_own):

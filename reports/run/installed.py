@@ -38,9 +38,12 @@ WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
 
 
 def environment(folder: Path, further: Sequence[Path] = ()) -> dict[str, str]:
-    """The environment of a process that imports what is in the folder first, then from the further ones."""
-    paths = [str(path) for path in (folder, *further)]
-    return {**os.environ, **WITHOUT_WINDOWS, "PYTHONPATH": os.pathsep.join(paths), "PYTHONDONTWRITEBYTECODE": "1"}
+    """The environment of a process that imports what is in the folder first, then from the further ones; nothing that
+    lies where it is started.
+    """
+    paths = os.pathsep.join(str(path) for path in (folder, *further))
+    switches = {"PYTHONPATH": paths, "PYTHONSAFEPATH": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+    return {**os.environ, **WITHOUT_WINDOWS, **switches}
 
 
 def installed(names: Sequence[str], version: str) -> Path:
@@ -92,7 +95,7 @@ def sources(name: str, version: str, folder: Path, *options: str) -> Path:
 
     Raises BadInput, in one line.
     """
-    command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
+    command = [sys.executable, "-P", "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
     command += ["--no-binary", name, f"{name}=={version}", "--dest", str(folder), *options]
     ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", check=False)
     found = list(folder.glob(f"{name}-*.tar.gz"))
@@ -125,10 +128,10 @@ def _install(what: Sequence[str], folder: Path, wheels_only: bool = True) -> str
     try:
         with temporary_folder(folder.parent) as aside:
             target = aside / PACKAGES
-            command = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-compile", "--retries", "2"]
+            command = [sys.executable, "-P", "-m", "pip", "install", "--no-deps", "--no-compile", "--retries", "2"]
             command += ["--disable-pip-version-check", "--no-input", "--target", str(target)]
             command += ["--only-binary", ":all:"] if wheels_only else []
-            # From another folder: a package beside the user must not hide pip's own.
+            # From another folder: pip may leave something where it is started.
             run = subprocess.run(
                 [*command, "--", *what], capture_output=True, text=True, errors="replace", cwd=aside, check=False
             )

@@ -29,7 +29,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.model.ending import Broken, describe
-from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside, of_lost_process, out_of_time
+from reports.model.outcomes import Loss, Outcome, describe_exit, failure, from_outside, of_lost_process, out_of_time
 from reports.run.files import temporary_folder
 from reports.run.queue import Waiting, apart
 from reports.run.worker import (
@@ -37,9 +37,10 @@ from reports.run.worker import (
     SPENT,
     Worker,
     cpu_time,
-    interrupts_held,
+    end_processes_of,
     last_words,
     one_thread_each,
+    process_start,
     start_method,
     start_worker,
 )
@@ -107,6 +108,7 @@ def crew(limit: float, workers: int, wall: float | None = None, alone: bool = Fa
             yield own
         finally:
             own.end()
+            end_processes_of([folder])
 
 
 class Crew:
@@ -161,7 +163,7 @@ class Crew:
             try:
                 free = [one for one in self._processors if one not in {other.processor for other in self._workers}]
                 terms = (str(self._folder), self._limit, self._wall, free[0] if free else None)
-                with interrupts_held():
+                with process_start():
                     self._workers.append(start_worker(self._context, *terms))
             except (OSError, EOFError) as error:  # the fork server was killed, or the system has no room for a process
                 self._start_failed(describe(error))
@@ -211,7 +213,7 @@ class Crew:
         try:
             result = pickle.loads(answer)
         except Exception as error:
-            result = Loss(Outcome.FAILED, f"its result can't be read: {describe(error)}")
+            result = Loss(failure(error).outcome, f"its result can't be read: {describe(error)}")
         yield job.item, result, "" if job.earlier_outside else job.earlier
 
     def _bury(self, worker: Worker) -> Iterator[Answer]:

@@ -16,7 +16,7 @@ import tempfile
 import threading
 import time
 import warnings
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
@@ -25,14 +25,18 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-from reports.model.outcomes import failure, out_of_time
-from reports.run.files import lasting_folder
+from planar_crosscheck import clash
+from reports.model.ending import describe
+from reports.model.outcomes import Loss, Outcome, failure, out_of_time
+from reports.run.files import held_folders, lasting_folder
 
 IMPORTED_ONCE = ("reports.model.measure", "engines.registry")  # by the fork server, for all workers
 PATIENCE = 30.0  # s for a process that has ended to be gone: its memory may have to be written first
 READY = b"ready"
 LARGEST = 2**28  # bytes of one result: far above any motion, far below what would fill the memory of the parent
 SPENT = 152  # how a worker ends whose job has used up its CPU time, where nobody else sees that: 128 + SIGXCPU
+SAFE_PATH = "PYTHONSAFEPATH"  # any value keeps the current folder off the path of a Python that starts
+OURS = "crosscheck"  # its value where the user has set none: what a job starts is not meant
 PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
 LOOK = 0.2  # s between two looks at its own CPU time
 # Starting a process looks at all others, and takes away the exit code of one that has ended: with several threads, each
@@ -57,6 +61,21 @@ def stop_all() -> None:
     """End every worker of this process; for a process that ends where it stands."""
     for child in multiprocessing.active_children():
         _kill(child)
+    end_processes_of(held_folders())
+
+
+def end_processes_of(folders: Iterable[Path]) -> None:
+    """End what jobs have started in sessions of their own, which outlives the process group of their worker.
+
+    They are known by the folder of the crew, which is their TMPDIR or where they are. Nothing is done without /proc.
+    """
+    names = [os.fsencode(folder) for folder in folders]
+    for process in Path("/proc").glob("[0-9]*") if names else ():
+        with suppress(OSError):  # it has ended, or is somebody else's
+            where = os.readlink(os.fsencode(process / "cwd"))
+            words = (process / "environ").read_bytes().split(b"\0")
+            if int(process.name) != os.getpid() and any(where == name or b"TMPDIR=" + name in words for name in names):
+                os.kill(int(process.name), signal.SIGKILL)
 
 
 def _kill(process: BaseProcess) -> None:
@@ -125,7 +144,7 @@ def start_early(*modules: str) -> None:
         from multiprocessing import forkserver
 
         one_thread_each()
-        with interrupts_held(), suppress(OSError):
+        with process_start(), suppress(OSError):
             forkserver.ensure_running()
 
 
@@ -152,11 +171,30 @@ def start_worker(context: Any, folder: str, limit: float, wall: float, processor
 
 
 @contextmanager
-def interrupts_held() -> Iterator[None]:
+def process_start() -> Iterator[None]:
     """Ctrl-C waits until a process has started: it would print a traceback there, and leave it without a parent here.
 
     Processes started meanwhile inherit this: a worker ignores Ctrl-C from then on, the fork server as long as it lives.
+    They are started by `python -c`, which would import files of the current folder in place of any module.
     """
+    with _safe_path(), _interrupts_held():
+        yield
+
+
+@contextmanager
+def _safe_path() -> Iterator[None]:
+    """Processes that start meanwhile have no current folder on their path."""
+    is_set = SAFE_PATH in os.environ
+    os.environ.setdefault(SAFE_PATH, OURS)
+    try:
+        yield
+    finally:
+        if not is_set:
+            os.environ.pop(SAFE_PATH, None)
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -202,6 +240,8 @@ def work(connection: Connection, folder: str, limit: float, wall: float, process
     ends it; after twice as many it ends itself, should the parent be gone. `processor`: where it stays; None: anywhere.
     """
     _ignore_interrupts()
+    if os.environ.get(SAFE_PATH) == OURS:
+        del os.environ[SAFE_PATH]
     if hasattr(os, "setpgid"):
         os.setpgid(0, 0)  # with all that jobs start, so that it can be ended as one
     stay_on(processor)
@@ -209,6 +249,9 @@ def work(connection: Connection, folder: str, limit: float, wall: float, process
     try:
         _redirect(Path(folder))
     except FileNotFoundError:  # the command was interrupted meanwhile, and has taken its folder away
+        os._exit(1)
+    if hidden := clash():  # the path came from the parent: a folder before ours may have appeared since
+        print(hidden, file=sys.stderr, flush=True)
         os._exit(1)
     clock = Clock()
     threading.Thread(target=_watch, args=(clock,), daemon=True).start()
@@ -277,12 +320,19 @@ def _answer(job: bytes, clock: Clock, limit: float, wall: float) -> tuple[bool, 
     try:
         # Imports an engine for the first time, which is no part of the job's CPU time, and may change the process.
         function, item = pickle.loads(job)
+    except BaseException as error:  # nothing was run
+        return False, pickle.dumps(Loss(Outcome.LOST, f"a worker can't read it: {describe(error)}"))
+    try:
         before = _traces()
         start = time.process_time()
         with _timers(clock, limit, wall):
             result = function(item)
         if time.process_time() - start > limit:
             result = out_of_time(limit)
+        from engines.registry import mislabelled
+
+        if sentence := mislabelled(elsewhere=False):  # a build that `compare` runs may lie elsewhere
+            result = Loss(Outcome.LOST, sentence)
         answer = pickle.dumps(result)
         if len(answer) > LARGEST:
             raise OverflowError(f"a result of {len(answer)} bytes; {LARGEST} can be handed over")

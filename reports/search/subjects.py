@@ -164,6 +164,8 @@ def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]], eng
             except Fault as reason:
                 errors[name] = (np.inf, 0.0)
                 words.append(str(reason))
+            except ImportError:  # no fault of an engine: the case is asked again where the module is there
+                raise
             except Exception as error:  # whatever an adapter raises that is no refusal is a fault of its own
                 own = engine is not None and _passed_through(error, engine)
                 errors["raised" if own else OURS] = (np.inf, 0.0)

@@ -9,6 +9,8 @@ import warnings
 from contextlib import redirect_stdout
 from html import escape
 
+from reports.model.fingerprint import ROOT
+from reports.run.installed import environment
 from reports.site import markdown
 from reports.site.packages import printed
 
@@ -21,7 +23,7 @@ def html(notebook: str) -> str:
     sources = ["".join(cell["source"]) for cell in cells]
     codes = [source for cell, source in zip(cells, sources, strict=True) if cell["cell_type"] == "code"]
     words = [sys.executable, "-m", "reports.site.lecture"]
-    made = iter(json.loads(printed(words, "a cell fails", PATIENCE, input=json.dumps(codes))))
+    made = iter(json.loads(printed(words, "a cell fails", PATIENCE, input=json.dumps(codes), env=environment(ROOT))))
     parts = []
     for cell, source in zip(cells, sources, strict=True):
         if cell["cell_type"] == "markdown":

@@ -8,7 +8,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from reports.model.fingerprint import ROOT
 from reports.run.files import temporary_folder
+from reports.run.installed import environment
 from reports.site.packages import NotFetched, printed
 
 MODULES = ("reference", "engines")
@@ -23,7 +25,7 @@ def reference_pages() -> dict[str, bytes]:
     with temporary_folder() as folder:
         words = [sys.executable, "-m", "reports.site.reference", *MODULES, "--no-show-source", "--no-search"]
         words += ["--template-directory", str(TEMPLATES), "--output-directory", str(folder)]
-        printed(words, "pdoc failed", PATIENCE)
+        printed(words, "pdoc failed", PATIENCE, env=environment(ROOT))
         found = (path for path in sorted(folder.rglob("*")) if path.is_file())
         pages = {f"reference/{path.relative_to(folder).as_posix()}": path.read_bytes() for path in found}
     return pages | {"reference/pdoc.css": pages.pop("reference/index.html")}

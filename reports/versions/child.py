@@ -19,7 +19,10 @@ from typing import Any, BinaryIO
 
 def main() -> None:
     """Answer one request."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent alone decides what Ctrl-C means
+    # The parent alone decides what a signal to all processes of the command means: this one ends with its stdin.
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
     # Whatever an engine prints, also from native code and while it is imported, goes where errors go.
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
@@ -48,6 +51,7 @@ def _end(out: BinaryIO) -> None:
 
 def answer(request: Any, say: Callable[[Any], None]) -> Any:
     """Run what is asked for and say each row; Finished, or a Trouble."""
+    from engines.imported_release import other_release
     from reports.run.supervisor import WorkersLost
     from reports.versions.column import Finished, Trouble
 
@@ -57,6 +61,8 @@ def answer(request: Any, say: Callable[[Any], None]) -> Any:
     strange = _from_elsewhere(request.modules, request.place)
     if strange:
         return Trouble(strange, lacks=False)
+    if sentence := other_release(engines, elsewhere=False):
+        return Trouble(sentence, mislabelled=True)
     try:
         _run(request, engines, say)
     except WorkersLost as error:

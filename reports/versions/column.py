@@ -13,6 +13,7 @@ from typing import Any
 from engines import Engine
 from reference.scene import Scene
 from reports.model.cells import Cell, estimated_cost
+from reports.model.ending import BadInput
 from reports.model.fingerprint import ROOT
 from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome, describe_exit
@@ -54,10 +55,13 @@ class Running:
 
 @dataclass(frozen=True)
 class Trouble:
-    """The version can't be used at all: one sentence. `lacks`: it is the version, that has not what is called."""
+    """The version can't be used at all: one sentence. `lacks`: it is the version, that has not what is called;
+    `mislabelled`: its code is not of the version that it is called by.
+    """
 
     sentence: str
     lacks: bool = True
+    mislabelled: bool = False
 
 
 @dataclass(frozen=True)
@@ -109,7 +113,8 @@ def column(
     watch: Watch = lambda labels: None,
     done: Callable[[Measurement], None] = lambda row: None,
 ) -> VersionColumn:
-    """Run a version's column. Whatever becomes of its process is told in rows, and nothing is raised for it.
+    """Run a version's column. Whatever becomes of its process is told in rows, and nothing is raised for it; BadInput
+    where its code is of another version than its metadata say.
 
     engines: as they are in this process, for the rows of a version that can't be used. `watch` is called a few times a
     second, and may raise: then the process is ended; the rows so far are in the store. `done`: with each row.
@@ -124,6 +129,8 @@ def column(
                 done(rows[-1])
             case TreesRow():
                 trees.append(message)
+            case Trouble(mislabelled=True):
+                raise BadInput(message.sentence)
             case Trouble():
                 trouble = message
             case Running(labels):
@@ -148,7 +155,7 @@ def cells_of(request: VersionRequest, engines: Sequence[Engine]) -> list[Cell]:
 
 def _told(row: Measurement, version: str) -> Measurement:
     """The row; an outcome of its own for what the version has not got."""
-    if row.outcome == Outcome.FAILED and row.sentence.startswith(LACKING):
+    if row.outcome in (Outcome.FAILED, Outcome.LOST) and row.sentence.startswith(LACKING):
         sentence = f"{row.engine} {version} lacks what our adapter calls: {row.sentence.partition(': ')[2]}"
         return replace(row, outcome=Outcome.UNSUPPORTED, sentence=sentence)
     return row
@@ -161,7 +168,7 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
         words = folder / "said.txt"
         with words.open("wb") as errors:
             process = subprocess.Popen(
-                [sys.executable, "-P", "-m", "reports.versions.child"],
+                [sys.executable, "-m", "reports.versions.child"],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=errors,

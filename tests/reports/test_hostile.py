@@ -6,6 +6,7 @@ import http.client
 import os
 import random
 import re
+import sys
 import threading
 import time
 from dataclasses import dataclass, replace
@@ -144,6 +145,12 @@ def forks(file):
     if os.fork():
         os.close(held)
     elif file.name in "135":
+        if file.name in "35":
+            os.setsid()
+        if file.name == "5":  # of which the parent process knows nothing but its environment
+            os.chdir("/")
+            os.set_inheritable(held, True)
+            os.execv(sys.executable, [sys.executable, "-c", "import time; time.sleep(1e4)"])
         time.sleep(1e4)
     return file
 
@@ -226,6 +233,7 @@ def one_end(words, capfd):
     out, err = capfd.readouterr()
     assert status in (FINE, BROKEN, REFUSED), words
     assert "Traceback" not in out + err, words
+    assert (out + err).replace("\n", "").isprintable(), words
     if status == REFUSED:  # above the line there may be one of progress
         told = [line.startswith("crosscheck: ") for line in err.splitlines()]
         assert sum(told) == 1, (words, err)
@@ -248,6 +256,10 @@ def test_a_wrong_command_line_is_one_line(count, here, capfd):
         ("animate", "free_four_bar", "--every", "1" + 20 * "0"),
         ("check", "one.xml", "--markdown", ""),
         ("shapes", "/dev/zero"),
+        ("shapes", "red\x1b[31m\x07\u202e.csv"),
+        ("check", "one.xml", "--html", "-"),
+        ("check", "one.xml", "--apply", "-"),
+        ("report", "--results", "/dev/null/folder"),
     ],
 )
 def test_what_once_ended_in_a_traceback_is_one_line(words, here, capfd):
@@ -255,4 +267,20 @@ def test_what_once_ended_in_a_traceback_is_one_line(words, here, capfd):
     err = capfd.readouterr().err
     assert err.startswith("crosscheck: ")
     assert err.count("\n") == 1
+    assert err[:-1].isprintable()
     assert list(here.iterdir()) == []
+
+
+def test_a_file_called_minus_is_standard_output(here, capfd):
+    assert call("export", "free_four_bar", "--out", "-") == FINE
+    written = capfd.readouterr().out
+    assert call("export", "free_four_bar") == FINE
+    assert capfd.readouterr().out == written
+    assert list(here.iterdir()) == []
+
+
+def test_results_in_a_file_are_refused_without_advice_to_write_there(here, capfd):
+    (here / "file").write_text("mine")
+    for words in (("report",), ("show", "free_four_bar")):
+        assert call(*words, "--results", "file") == REFUSED
+        assert "'file', and file is a file; give a folder" in capfd.readouterr().err

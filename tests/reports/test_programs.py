@@ -79,7 +79,7 @@ def test_every_program_of_an_engine_alone_is_of_a_method_of_its_scene():
         if (scene := page.advised_scene) is not None
         for engine in page.engines
     }
-    assert {path.name for path in KEPT.iterdir()} <= known
+    assert {path.name for path in KEPT.glob("*.*")} <= known
 
 
 def test_a_program_that_is_wrong_by_a_thousandth_is_noticed():
