@@ -50,6 +50,7 @@ from engines.motions import is_prescribed, over_three
 from engines.single_run import Optional, Recorded, SingleRun, quiet
 from engines.units import counted_in, power_of_two
 from reference.checks import Name, Positive, validated
+from reference.couplings import Coupling
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -271,6 +272,8 @@ class System:
                 return 3
             case Roll():
                 return self._roll(joint)
+            case Coupling():
+                raise Unsupported(f"joint {joint.name!r}: our adapter of exudyn builds no coupling")
 
     def _apply(self, force: ForceElement) -> None:
         """Add the engine's own element for a spring, a damper, a force or a torque."""

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import assert_never
 
-from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.forces import CoupledForce, Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive
 from reference.mechanism import Mechanism
 
@@ -47,5 +47,12 @@ def _counted(force: ForceElement, mass: float, time: float) -> ForceElement:
         case Force():
             x, y = force.force
             return replace(force, force=(x / mass * time**2, y / mass * time**2))
+        case CoupledForce():
+            return replace(
+                force,
+                force=force.force / mass * time**2,
+                stiffness=force.stiffness / mass * time**2,
+                damping=force.damping / mass * time,
+            )
         case _:
             assert_never(force)

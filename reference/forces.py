@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.checks import Name, NonNegative, Positive, Valid
+from reference.couplings import Term, require_terms
 from reference.joints import apart, distance, length_of, point_rows
 from reference.plane import from_body
 from reference.rows import stacked
@@ -187,7 +188,69 @@ class Force(Valid):
         return -(x * (second[..., 0] + arm_x) + y * (second[..., 1] + arm_y))
 
 
-ForceElement = Spring | Damper | TorsionSpring | TorsionDamper | Torque | Force
+@dataclass(frozen=True)
+class CoupledForce(Valid):
+    """What a tendon over several joints does: force - stiffness (sum - rest) - damping rate, along the sum of `terms`.
+
+    `rate` is that of the sum. With a sum in metres: force [N], stiffness [N/m], damping [N s/m], rest [m]; without a
+    unit or in rad: [N m], [N m/rad], [N m s/rad], [rad]. Each body gets the force times the sum's derivative by its
+    coordinates. See `couplings`; the functions take poses and twists of all bodies, the ground after them.
+    """
+
+    name: Name
+    terms: tuple[Term, ...]
+    force: float = 0.0
+    stiffness: NonNegative = 0.0
+    damping: NonNegative = 0.0
+    rest: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_terms(f"force {self.name!r}", self.terms)
+
+    @property
+    def dissipates(self) -> bool:
+        return self.damping > 0
+
+    @property
+    def first(self) -> str | None:
+        """That of the first term, for who names a force by two bodies."""
+        return self.terms[0].first
+
+    @property
+    def second(self) -> str | None:
+        return self.terms[0].second
+
+    def total(self, poses: AnyArray, ends: Ends) -> AnyArray:
+        """The sum (...) of the terms at poses (..., bodies + 1, 3), between the bodies that `ends` names by place."""
+        return sum(
+            (term.value(poses[..., a, :], poses[..., b, :]) for term, (a, b) in zip(self.terms, ends, strict=True)),
+            np.zeros(poses.shape[:-2]),
+        )
+
+    def push(self, poses: AnyArray, twists: AnyArray, ends: Ends, out: AnyArray) -> None:
+        """Add the generalised forces [N, N, N m] to `out` (..., bodies + 1, 3), at poses and twists of that shape."""
+        rows = [
+            term.rows(poses[..., a, :], poses[..., b, :])[..., 0, :]
+            for term, (a, b) in zip(self.terms, ends, strict=True)
+        ]
+        rate = sum(
+            np.sum(row[..., :3] * twists[..., a, :] + row[..., 3:] * twists[..., b, :], axis=-1)
+            for row, (a, b) in zip(rows, ends, strict=True)
+        )
+        along = self.force - self.stiffness * (self.total(poses, ends) - self.rest) - self.damping * rate
+        for row, (a, b) in zip(rows, ends, strict=True):
+            out[..., a, :] += along[..., None] * row[..., :3]
+            out[..., b, :] += along[..., None] * row[..., 3:]
+
+    def potential(self, poses: AnyArray, ends: Ends) -> AnyArray:
+        """stiffness (sum - rest)^2 / 2 - force sum (...) [J]."""
+        total = self.total(poses, ends)
+        return 0.5 * self.stiffness * (total - self.rest) ** 2 - self.force * total
+
+
+ForceElement = Spring | Damper | TorsionSpring | TorsionDamper | Torque | Force | CoupledForce
+Ends = tuple[tuple[int, int], ...]  # places of the first and the second body of each term
 
 
 def _couple(torque: AnyArray) -> AnyArray:
@@ -212,12 +275,18 @@ class AppliedForces:
 
     groups: tuple[ForceGroup, ...]
     bodies: int
+    coupled: tuple[tuple[CoupledForce, Ends], ...] = ()
 
     @classmethod
     def of(cls, forces: Sequence[ForceElement], index: Mapping[str | None, int]) -> AppliedForces:
         """Of elements between bodies whose places `index` gives by name, and the ground's, the last, under None."""
         kinds: dict[type, list[ForceElement]] = {}
-        for element in forces:
+        coupled = tuple(
+            (each, tuple((index[term.first], index[term.second]) for term in each.terms))
+            for each in forces
+            if isinstance(each, CoupledForce)
+        )
+        for element in (each for each in forces if not isinstance(each, CoupledForce)):
             kinds.setdefault(type(element), []).append(element)
         groups = tuple(
             ForceGroup(
@@ -227,12 +296,14 @@ class AppliedForces:
             )
             for members in kinds.values()
         )
-        return cls(groups, index[None])
+        return cls(groups, index[None], coupled)
 
     @property
     def dissipate(self) -> bool:
         """Whether any depends on velocities."""
-        return any(group.element.dissipates for group in self.groups)
+        return any(
+            each.dissipates for each in (*(group.element for group in self.groups), *(own for own, _ in self.coupled))
+        )
 
     def on(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
         """Generalised forces (..., bodies, 3) [N, N, N m] at poses and twists (..., bodies, 3) of one shape."""
@@ -244,6 +315,8 @@ class AppliedForces:
             for place in range(len(group.first)):  # several elements may pull at one body
                 out[..., group.first[place], :] += forces[..., place, :3]
                 out[..., group.second[place], :] += forces[..., place, 3:]
+        for element, ends in self.coupled:
+            element.push(poses, twists, ends, out)
         return out[..., :-1, :]
 
     def potential(self, pose: NDArray[Any]) -> NDArray[Any]:
@@ -252,6 +325,8 @@ class AppliedForces:
         out = np.zeros(poses.shape[:-2], dtype=np.result_type(poses, float))
         for group in self.groups:
             out = out + group.element.potential(poses[..., group.first, :], poses[..., group.second, :]).sum(axis=-1)
+        for element, ends in self.coupled:
+            out = out + element.potential(poses, ends)
         return out
 
     def _with_ground(self, values: NDArray[Any]) -> NDArray[Any]:

@@ -7,7 +7,7 @@ two bodies (..., 3), the ground's zero, `gap(first, second, t)` (..., size) and 
 whose columns are the first body's x, y, angle and then the second's. Rows are analytic functions, so a complex step
 passes through them. The reaction of a row acts along it on the second body, and against it on the first.
 `mechanism.Mechanism` stacks joints of one kind: numeric fields then carry the joints along their first axis. A kind
-with `stackable = False` is evaluated joint by joint.
+with `stackable = False` is evaluated joint by joint. A `Coupling` has the rows of several pairs of bodies, added up.
 
 Points (..., 2) [m] are in the bodies' own frames, from the centre of mass; on the ground (None) world coordinates.
 """
@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import Name, Positive, Valid
+from reference.couplings import Coupling
 from reference.kinds import Rule
 from reference.plane import from_body
 from reference.rolling.roll import Roll
@@ -344,4 +345,4 @@ class Weld(_AtRest):
         return rows
 
 
-Joint = Pin | Slot | Skate | Roll | Drive | Rod | Gear | Weld
+Joint = Pin | Slot | Skate | Roll | Drive | Rod | Gear | Weld | Coupling

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import AnyComplexes, InvalidMechanism, Name, Numbers, Valid, kept, require_room, validated
-from reference.forces import AppliedForces, ForceElement
+from reference.couplings import pairs
+from reference.forces import AppliedForces, CoupledForce, ForceElement
 from reference.joints import Body, Joint, Vector
 from reference.kinds import Floats, of_shape
 from reference.rows import MANY_ROWS, JointRows, banded_reaction, rank, reactions
@@ -51,13 +52,14 @@ class Mechanism(Valid):
                     raise InvalidMechanism(f"mechanism: two {kind} are called {name!r}; names must differ")
         for kind, members in (("joint", self.joints), ("force", self.forces)):
             for member in members:
-                for name in (member.first, member.second):
-                    if name is not None and name not in self._index:
-                        raise self._unknown(f"{kind} {member.name!r}", name)
-                if member.first == member.second:
-                    raise InvalidMechanism(
-                        f"{kind} {member.name!r}: it joins {member.first!r} with itself; name two bodies"
-                    )
+                for first, second in pairs(member):
+                    for name in (first, second):
+                        if name is not None and name not in self._index:
+                            raise self._unknown(f"{kind} {member.name!r}", name)
+                    if first == second:
+                        raise InvalidMechanism(
+                            f"{kind} {member.name!r}: it joins {first!r} with itself; name two bodies"
+                        )
         self._refuse_a_bad_start()
 
     def _refuse_a_bad_start(self) -> None:
@@ -275,6 +277,8 @@ def refuse_a_bad_start(mechanism: Mechanism) -> None:
             )
     _refuse_open_joints(mechanism)
     for element in mechanism.forces:
+        if isinstance(element, CoupledForce):  # a sum of coordinates, which has a direction everywhere
+            continue
         still = np.zeros(3)
         first, second = (
             still if name is None else mechanism.pose[mechanism.body_index(name)]

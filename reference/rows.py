@@ -20,6 +20,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from reference.checks import InvalidMechanism, require_room
+from reference.couplings import Coupling
 from reference.joints import Joint
 
 Array = NDArray[np.float64]
@@ -130,6 +131,8 @@ class JointGroup:
     first: NDArray[np.intp]  # (joints,) index of the body; the ground is the index after the last body
     second: NDArray[np.intp]
     rows: NDArray[np.intp]  # (joints, size) where their rows stand in the mechanism
+    adds: bool = False  # a further term of a coupling, whose row another group has begun
+    offset: float = 0.0  # of the gap of a coupling's first term
 
     def blocks(self, everything: NDArray[Any]) -> NDArray[Any]:
         """Velocity rows (..., joints, size, 6) at poses of bodies and ground (..., bodies + 1, 3)."""
@@ -148,8 +151,15 @@ class JointRows:
     def of(cls, joints: Sequence[Joint], index: Mapping[str | None, int]) -> JointRows:
         """Of joints between bodies whose places `index` gives by name, and the ground's, the last, under None."""
         kinds: dict[Any, list[tuple[Joint, range]]] = {}  # one that can't stack is a kind of its own
-        start = 0
+        start, terms = 0, list[JointGroup]()
         for joint in joints:
+            if isinstance(joint, Coupling):
+                for number, term in enumerate(joint.terms):
+                    first, second = np.array([[index[term.first]], [index[term.second]]])
+                    offset = 0.0 if number else joint.offset
+                    terms.append(JointGroup(term, first, second, np.array([[start]]), number > 0, offset))
+                start += 1
+                continue
             kind = type(joint) if getattr(joint, "stackable", True) else joint.name
             kinds.setdefault(kind, []).append((joint, range(start, start + joint.size)))
             start += joint.size
@@ -162,7 +172,7 @@ class JointRows:
             )
             for members in kinds.values()
         )
-        return cls(groups, index[None], start)
+        return cls((*groups, *terms), index[None], start)
 
     def with_ground(self, pose: NDArray[Any]) -> NDArray[Any]:
         """Poses or twists (..., bodies, 3) with the ground's, zero, after them."""
@@ -180,7 +190,8 @@ class JointRows:
         for group in self.groups:
             if group.joint.holonomic:
                 first, second = everything[..., group.first, :], everything[..., group.second, :]
-                out[..., group.rows] = group.joint.gap(first, second, t[..., None])
+                gap = group.joint.gap(first, second, t[..., None])
+                out[..., group.rows] = out[..., group.rows] + gap if group.adds else gap - group.offset
         return out
 
     def dense(self, pose: NDArray[Any]) -> NDArray[Any]:
@@ -204,7 +215,7 @@ class JointRows:
         out = np.zeros((*leading, self.count), dtype=np.result_type(poses, twists, float))
         for group in self.groups:
             ends = np.concatenate([twists[..., group.first, :], twists[..., group.second, :]], axis=-1)
-            out[..., group.rows] = (group.blocks(poses) @ ends[..., None])[..., 0]
+            out[..., group.rows] += (group.blocks(poses) @ ends[..., None])[..., 0]
         return out
 
 
@@ -249,6 +260,8 @@ def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias:
         for (rows, block), (others, other) in combinations_with_replacement(own, 2):
             product = np.einsum("trc,c,tsc->trs", block, mobility[body], other)
             same = rows is others or rows[0] == others[0]
+            if same and block is not other:  # two terms of a coupling on one body: the square of a sum
+                product = 2 * product
             for i, row in enumerate(rows.tolist()):
                 for j, column in enumerate(others.tolist()):
                     if same and block is other and column < row:

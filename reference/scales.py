@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import assert_never
 
-from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.couplings import Coupling
+from reference.forces import CoupledForce, Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Body, Drive, Joint, Rod, Roll, Slot, Vector
 from reference.plane import components
 
@@ -19,7 +20,7 @@ def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequen
 
     The centre of mass is one of these points. A slot holds at the place of its line where the second body's point is at
     t = 0, and a force along its line acts there: neither depends on the point by which the line is described. Where all
-    points are one, the largest length of a spring or radius of curvature where something rolls; or 1.
+    points are one, the largest length of a spring or radius where something rolls or a pinion turns; or 1.
     """
     points: dict[str, set[Vector]] = {body.name: {(0.0, 0.0)} for body in bodies}
     own = {body.name: body for body in bodies}
@@ -37,10 +38,17 @@ def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequen
         for curve, arc in ((rolling.ground, rolling.ground_arc), (rolling.body, rolling.body_arc))
     ]
     radii = [1 / each for each in bent if each]
+    radii += [pitch for joint in joints if isinstance(joint, Coupling) for pitch in _pitches(joint)]
     largest = max((*map(diameter, points.values()), *rods), default=0.0)
     if largest <= ROUNDED * max(radii, default=0.0):
         return max((*rests, *radii), default=0.0) or 1.0
     return largest
+
+
+def _pitches(coupling: Coupling) -> list[float]:
+    """How far its first slide goes in a radian of each of its angles [m]: the radius of a pinion."""
+    slide = next((abs(term.factor) for term in coupling.terms if term.sliding and term.factor), None)
+    return [abs(term.factor) / slide for term in coupling.terms if not term.sliding and term.factor] if slide else []
 
 
 def time_scale(
@@ -84,6 +92,15 @@ def _rate(force: ForceElement, length: float, bodies: Mapping[str, Body], slots:
             return math.sqrt(abs(force.torque) * turning)
         case Force():
             return math.sqrt(math.hypot(*force.force) * light / length)
+        case CoupledForce():
+            felt = sum(
+                term.factor**2 * (1 / bodies[name].mass if term.sliding else 1 / bodies[name].inertia)
+                for term in force.terms
+                for name in (term.first, term.second)
+                if name is not None
+            )
+            unit = length if force.terms[0].sliding else 1.0
+            return max(math.sqrt(max(force.stiffness, abs(force.force) / unit) * felt), force.damping * felt)
         case _:
             assert_never(force)
 

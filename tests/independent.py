@@ -75,7 +75,7 @@ def motion(model: Any, data: Any, held: list[Rows], t: Array) -> tuple[Array, Ar
         mass = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, mass)
         force = data.qfrc_passive + data.qfrc_actuator - data.qfrc_bias
-        pairs = [rows(model, data) for rows in held]
+        pairs = [(np.zeros((0, model.nv)), np.zeros(0)), *(rows(model, data) for rows in held)]
         matrix, rate = (np.concatenate([pair[i] for pair in pairs]) for i in (0, 1))
         whole = np.block([[mass, -matrix.T], [matrix, np.zeros((len(matrix), len(matrix)))]])
         out = np.linalg.solve(whole, np.concatenate([force, -rate]))

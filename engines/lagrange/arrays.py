@@ -12,6 +12,7 @@ Only rows on one body meet there, so its entries are a list of products, made he
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from engines.rolling_table import RoundOnLine, RoundOnRound, Table, rolled
-from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.couplings import Coupling, Term
+from reference.forces import CoupledForce, Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.kinematics import Rolling
@@ -30,15 +32,15 @@ from reference.rows import rank
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-PIN, SLOT, SKATE, ROLL, DRIVE, ROD, GEAR, WELD = range(8)
+PIN, SLOT, SKATE, ROLL, DRIVE, ROD, GEAR, WELD, COUPLING = range(9)
 KINDS: dict[type, int] = {
     **{Pin: PIN, Slot: SLOT, Skate: SKATE, Roll: ROLL, Drive: DRIVE},
-    **{Rod: ROD, Gear: GEAR, Weld: WELD},
+    **{Rod: ROD, Gear: GEAR, Weld: WELD, Coupling: COUPLING},
 }
-SPRING, DAMPER, TORSION_SPRING, TORSION_DAMPER, TORQUE, FORCE = range(6)
+SPRING, DAMPER, TORSION_SPRING, TORSION_DAMPER, TORQUE, FORCE, COUPLED = range(7)
 FORCE_KINDS: dict[type, int] = {
     **{Spring: SPRING, Damper: DAMPER, TorsionSpring: TORSION_SPRING, TorsionDamper: TORSION_DAMPER},
-    **{Torque: TORQUE, Force: FORCE},
+    **{Torque: TORQUE, Force: FORCE, CoupledForce: COUPLED},
 }
 ON_LINE, ON_ROUND, TABLE, NOT_TABULATED = range(4)  # forms of rolling pairs
 MOST_ROWS = 400  # beyond, their rank takes longer than the run
@@ -47,7 +49,11 @@ MARCH, CONTROL, REACT = range(3)  # what compiled code is asked for
 
 # Records, in whole numbers. A body is the place of its x among the columns, 3 for each, an end that of its 3 numbers.
 JOINT = 5  # kind, first body, second body, first row, which of the rolls
-FORCED = 3  # of a force element: kind, first body, second body
+FORCED = 3  # of a force element: kind, first body, second body; of a coupled one the first of its summands, how many
+SUMMAND = (
+    6  # of a coupling or a coupled force: its row (-1: of a force), two bodies, the ends of each, whether it slides
+)
+EXTRA = 3  # a further end of a row that has more than two: the row, the body, the end
 ROW = 5  # first body, second body, whether it limits a position, first column of its envelope, where that begins
 ROLL_RECORD = 4  # form; of the window of a table its first cell, how many cells, where they begin
 # Records, in real numbers.
@@ -55,26 +61,27 @@ PARAMETERS = 7  # of a joint: its point on the first body, on the second [m], it
 FORCE_PARAMETERS = 6  # of a force: its point on the first body, on the second [m], and two that its kind makes sense of
 CONSTANTS = 7  # complex ones, of a rolling pair
 CELL = 20  # complex numbers, of a table
+SUMMAND_PARAMETERS = 7  # factor; its points on the first and on the second body [m]; a line's angle; off the gap
 TERM = 4  # entry of the envelope; two ends of rows, and the body on which they meet: the entry gets their product
 STAGES = 16  # of the largest tableau, with those for dense output
 
 # How many; whether rows are dependent; whether some are soft, 1 by springs and dampers, 2 by a compliance too; which
-# rows are asked for; how many forces.
-(JOINTS, ROWS, COLUMNS, TERMS, HOLONOMIC_ROWS, DEPENDENT, SOFT, WHICH, FORCES) = range(9)
-(JOINT_AT, ROW_AT, TERM_AT, FORCE_AT, ROLL_AT) = range(9, 14)  # records among the whole numbers
+# rows are asked for; how many forces, summands of couplings (those of forces stand after them), and further ends.
+(JOINTS, ROWS, COLUMNS, TERMS, HOLONOMIC_ROWS, DEPENDENT, SOFT, WHICH, FORCES, SUMMANDS, EXTRAS) = range(11)
+(JOINT_AT, ROW_AT, TERM_AT, FORCE_AT, SUMMAND_AT, EXTRA_AT, ROLL_AT) = range(11, 18)  # records among the whole numbers
 # What a mechanism is made of: 1/kg, 1/kg, 1/(kg m^2) of every column, m/s^2, parameters, the rates of rows, the units
 # of a pose and of a twist, constants of rolls, the softness of rows and what part of their bias they lack, parameters
-# of forces, the start.
-_NUMBERS = range(14, 28)
+# of forces and of summands, the start.
+_NUMBERS = range(18, 33)
 (MOBILITY, GRAVITY, PARAMETER_AT, RATE, POSE_UNIT, TWIST_UNIT, ROLL_NUMBERS) = _NUMBERS[:7]
-(STIFFNESS, DAMPING, COMPLIANCE, LACKING, FORCE_NUMBERS, START_POSE, START_TWIST) = _NUMBERS[7:]
-# Room to work in: cosine and sine of every body; ends of rows, 6 for each; gap, bias, right side, what is left of it,
-# inverse pivot, reaction and inverse inertia felt of every row; the factor; and columns: M^-1 J^T reaction, the state,
-# that of a stage, that after a step, and velocities and accelerations of all stages.
-_ROOM = range(28, 48)
+(STIFFNESS, DAMPING, COMPLIANCE, LACKING, FORCE_NUMBERS, SUMMAND_NUMBERS, START_POSE, START_TWIST) = _NUMBERS[7:]
+# Room to work in: cosine and sine of every body; ends of rows, 6 for each, and further ones; gap, bias, right side, its
+# residual, inverse pivot, reaction and inverse inertia felt of every row; the factor; and columns: M^-1 J^T reaction,
+# the state, that of a stage, that after a step, and velocities and accelerations of all stages.
+_ROOM = range(33, 53)
 (TURNED, ENDS, GAP, BIAS, RIGHT, LEFT, PIVOT, REACTION, FELT, MATRIX, CHANGE, POSE, TWIST) = _ROOM[:13]
 (STAGE_POSE, STAGE_TWIST, NEW_POSE, NEW_TWIST, VELOCITY, ACCELERATION, STATUS) = _ROOM[13:]
-HEADER = 48
+HEADER = 53
 
 # What a call leaves behind, among the real numbers from STATUS on: the smallest pivot; the roll and the angle without a
 # cell; accepted steps; the time at which steps became too small or too many, and when the motion became stiff, NaN if
@@ -104,29 +111,44 @@ def arrays_of(mechanism: Mechanism) -> Arrays:
     index: dict[str | None, int] = {body.name: i for i, body in enumerate(mechanism.bodies)} | {None: bodies}
     ends = np.array([(index[joint.first], index[joint.second]) for joint in joints], dtype=np.int64)
     ends = ends.reshape(-1, 2)
-    forced = np.array([(FORCE_KINDS[type(f)], 3 * index[f.first], 3 * index[f.second]) for f in mechanism.forces])
     size = np.array([joint.size for joint in joints], dtype=np.int64)
     begin = _places(ends, size, bodies)
     place = np.array([row for at, count in zip(begin, size, strict=True) for row in range(at, at + count)], dtype=int)
     owner = np.empty(len(place), dtype=np.int64)
     owner[place] = np.repeat(np.arange(len(joints)), size)
-    start, offset, terms = _products(ends[owner], bodies)
+    ends_of_rows = ends[owner]
+    summands, extras = _summands(mechanism, index, place)
+    forced = _forced(mechanism, index)
+    for row, pair in _two_ends(mechanism, index, place).items():
+        ends_of_rows[row] = pair
+    start, offset, terms = _products(ends_of_rows, extras, bodies)
     holonomic = np.array([joint.holonomic for joint in joints], dtype=np.int64)[owner]
     rolls = [joint.rolling for joint in joints if isinstance(joint, Roll)]
     which = np.cumsum([isinstance(joint, Roll) for joint in joints]) - 1
     kind = np.array([KINDS[type(joint)] for joint in joints], dtype=np.int64)
     records = (
         np.column_stack([kind, 3 * ends, begin, which]),
-        np.column_stack([3 * ends[owner], holonomic, start, offset[:-1]]),
+        np.column_stack([3 * ends_of_rows, holonomic, start, offset[:-1]]),
         terms,
         forced,
+        summands,
+        extras * [1, 3, 1],
         np.array([(form_of(rolling)[0], 0, 0, 0) for rolling in rolls], dtype=np.int64),
     )
     columns, rows = 3 * bodies + 3, len(place)
     dependent, forces = int(_dependent(mechanism)), len(mechanism.forces)
-    counts = (len(joints), rows, columns, len(terms), int(holonomic.sum()), dependent, 0, 0, forces)
+    held = int(np.sum(summands[:, 0] >= 0))
+    counts = (len(joints), rows, columns, len(terms), int(holonomic.sum()), dependent, 0, 0, forces, held, len(extras))
     numbers = _numbers(mechanism, place)
-    room = [2 * bodies + 2, 6 * rows, *[rows] * 7, int(offset[-1]), *[columns] * 7, *[STAGES * columns] * 2, STATUSES]
+    room = [
+        2 * bodies + 2,
+        6 * rows + 3 * len(extras) + 3,
+        *[rows] * 7,
+        int(offset[-1]),
+        *[columns] * 7,
+        *[STAGES * columns] * 2,
+        STATUSES,
+    ]
     header = (
         *counts,
         *itertools.accumulate((record.size for record in records[:-1]), initial=HEADER),
@@ -159,6 +181,7 @@ def _numbers(mechanism: Mechanism, place: Integers) -> tuple[Floats, ...]:
         np.array(rolls, dtype=float).reshape(len(rolls) * 2 * CONSTANTS),
         *(np.zeros_like(rate),) * 4,
         np.array([force_parameters(force) for force in mechanism.forces], dtype=float).reshape(-1),
+        np.array(_summand_parameters(mechanism), dtype=float).reshape(-1),
         np.append(mechanism.pose, ground),
         np.append(mechanism.twist, ground),
     )
@@ -210,6 +233,8 @@ def force_parameters(force: ForceElement) -> tuple[float, ...]:
             return (0.0, 0.0, 0.0, 0.0, force.torque, 0.0)
         case Force():
             return (0.0, 0.0, *force.second_point, *force.force)
+        case CoupledForce():
+            return (force.force, force.stiffness, force.damping, force.rest, 0.0, 0.0)
 
 
 def _places(ends: Integers, size: Integers, bodies: int) -> Integers:
@@ -226,22 +251,100 @@ def _places(ends: Integers, size: Integers, bodies: int) -> Integers:
     return begin
 
 
-def _products(bodies: Integers, count: int) -> tuple[Integers, Integers, Integers]:
-    """Of rows between these bodies (rows, 2), `count` of which move: first columns, where rows begin, and TERMs."""
+def _coupled_rows(mechanism: Mechanism, place: Integers) -> list[tuple[Coupling, int]]:
+    """The couplings, and where their rows stand in the row system."""
+    begin = np.cumsum([0, *(joint.size for joint in mechanism.joints)])
+    numbered = zip(mechanism.joints, begin[:-1], strict=True)
+    return [(joint, int(place[row])) for joint, row in numbered if isinstance(joint, Coupling)]
+
+
+def _moved(terms: tuple[Term, ...], index: Mapping[str | None, int]) -> list[int]:
+    """The bodies that a sum of terms depends on, without the ground."""
+    return list(dict.fromkeys(index[name] for term in terms for name in (term.first, term.second) if name is not None))
+
+
+def _two_ends(mechanism: Mechanism, index: Mapping[str | None, int], place: Integers) -> dict[int, tuple[int, int]]:
+    """The first two bodies of each coupling's row, the ground for a lacking one."""
+    return {
+        row: ((*_moved(joint.terms, index), index[None])[0], (*_moved(joint.terms, index)[1:], index[None])[0])
+        for joint, row in _coupled_rows(mechanism, place)
+    }
+
+
+def _summands(mechanism: Mechanism, index: Mapping[str | None, int], place: Integers) -> tuple[Integers, Integers]:
+    """Records of all terms, those of couplings first, and of further ends (row, body, end)."""
+    coupled = _coupled_rows(mechanism, place)
+    own = [_moved(joint.terms, index) for joint, _ in coupled]
+    count = sum(max(0, len(bodies) - 2) for bodies in own)
+    begin = 6 * len(place)
+    nowhere = begin + 3 * count  # what the ground's end is written to
+    extras, out = list[tuple[int, int, int]](), list[tuple[int, ...]]()
+    for (joint, row), bodies in zip(coupled, own, strict=True):
+        ends = {bodies[k]: 6 * row + 3 * k for k in range(min(2, len(bodies)))}
+        for body in bodies[2:]:
+            ends[body] = begin + 3 * len(extras)
+            extras.append((row, body, ends[body]))
+        for term in joint.terms:
+            pair = index[term.first], index[term.second]
+            out.append((row, *(3 * body for body in pair), *(ends.get(body, nowhere) for body in pair), term.sliding))
+    for force in mechanism.forces:
+        if isinstance(force, CoupledForce):
+            out += [(-1, 3 * index[t.first], 3 * index[t.second], 0, 0, t.sliding) for t in force.terms]
+    return _records(out, SUMMAND), _records(extras, EXTRA)
+
+
+def _records(rows: Sequence[tuple[int, ...]], width: int) -> Integers:
+    return np.array(rows, dtype=np.int64).reshape(-1, width)
+
+
+def _summand_parameters(mechanism: Mechanism) -> list[tuple[float, ...]]:
+    """In the order of `_summands`."""
+    held = [joint for joint in mechanism.joints if isinstance(joint, Coupling)]
+    pulling = [force for force in mechanism.forces if isinstance(force, CoupledForce)]
+    offsets = [offset for joint in held for offset in (joint.offset, *(0.0,) * (len(joint.terms) - 1))]
+    terms = [term for each in (*held, *pulling) for term in each.terms]
+    offsets += [0.0] * (len(terms) - len(offsets))
+    return [
+        (term.factor, *term.first_point, *term.second_point, term.line_angle, offset)
+        for term, offset in zip(terms, offsets, strict=True)
+    ]
+
+
+def _forced(mechanism: Mechanism, index: Mapping[str | None, int]) -> Integers:
+    begin = sum(len(joint.terms) for joint in mechanism.joints if isinstance(joint, Coupling))
+    out: list[tuple[int, ...]] = []
+    for force in mechanism.forces:
+        if isinstance(force, CoupledForce):
+            out.append((COUPLED, begin, len(force.terms)))
+            begin += len(force.terms)
+        else:
+            out.append((FORCE_KINDS[type(force)], 3 * index[force.first], 3 * index[force.second]))
+    return _records(out, FORCED)
+
+
+def _products(bodies: Integers, extras: Integers, count: int) -> tuple[Integers, Integers, Integers]:
+    """Of rows between these bodies (rows, 2), `count` of which move: first columns, where rows begin, and TERMs.
+
+    extras (n, EXTRA): further ends of rows.
+    """
     ends: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     for row, pair in enumerate(bodies.tolist()):
         for side, body in enumerate(pair):
             if body < count:
-                ends[body].append((row, side))
+                ends[body].append((row, 6 * row + 3 * side))
+    for row, body, end in extras.tolist():
+        ends[body].append((row, end))
+    for own in ends:
+        own.sort()
     start = np.arange(len(bodies))
     for own in ends:
         for row, _ in own:
             start[row] = min(start[row], own[0][0])
     offset = np.append(0, np.cumsum(np.arange(len(bodies)) - start + 1))
     terms = [
-        (offset[row] + column - start[row], 6 * row + 3 * side, 6 * column + 3 * other, 3 * body)
+        (offset[row] + column - start[row], end, other, 3 * body)
         for body, own in enumerate(ends)
-        for i, (row, side) in enumerate(own)
+        for i, (row, end) in enumerate(own)
         for column, other in own[: i + 1]
     ]
     return start, offset, np.array(terms, dtype=np.int64).reshape(-1, TERM)

@@ -12,6 +12,8 @@ from engines.lagrange.arrays import (
     BIAS,
     COLUMNS,
     CONSTANTS,
+    COUPLED,
+    COUPLING,
     DAMPER,
     DRIVE,
     ENDS,
@@ -41,6 +43,11 @@ from engines.lagrange.arrays import (
     SLOT,
     SPRING,
     STATUS,
+    SUMMAND,
+    SUMMAND_AT,
+    SUMMAND_NUMBERS,
+    SUMMAND_PARAMETERS,
+    SUMMANDS,
     TORQUE,
     TORSION_SPRING,
     TURNED,
@@ -62,6 +69,8 @@ def rows(whole, real, cells, pose, twist, t):
     for joint in range(whole[JOINTS]):
         record, number = whole[JOINT_AT] + JOINT * joint, whole[PARAMETER_AT] + PARAMETERS * joint
         kind, first, second, row = whole[record], whole[record + 1], whole[record + 2], whole[record + 3]
+        if kind == COUPLING:
+            continue  # see `coupled_rows`
         e, gap, bias = all_ends + 6 * row, gaps + row, biases + row
         omega, spin = real[twist + first + 2], real[twist + second + 2]
         if kind == DRIVE:
@@ -124,6 +133,85 @@ def rows(whole, real, cells, pose, twist, t):
         else:
             real[gap] = 0.0
             real[bias] = inward + omega * along + spin * over_material
+    if whole[SUMMANDS] > 0:
+        coupled_rows(whole, real, pose, twist)
+
+
+@inner
+def coupled_rows(whole, real, pose, twist):
+    """The rows of couplings: sums, whose ends are first emptied."""
+    records, ends = whole[SUMMAND_AT], whole[ENDS]
+    last = records + SUMMAND * whole[SUMMANDS]
+    for record in range(records, last, SUMMAND):
+        real[whole[GAP] + whole[record]] = real[whole[BIAS] + whole[record]] = 0.0
+        for k in range(3):
+            real[ends + whole[record + 3] + k] = real[ends + whole[record + 4] + k] = 0.0
+    number = whole[SUMMAND_NUMBERS]
+    for record in range(records, last, SUMMAND):
+        row, first, second = whole[record], whole[record + 1], whole[record + 2]
+        value, x, y, turn, other = summand(whole, real, record, number, pose)
+        e, f = ends + whole[record + 3], ends + whole[record + 4]
+        real[e] -= x
+        real[e + 1] -= y
+        real[e + 2] += turn
+        real[f] += x
+        real[f + 1] += y
+        real[f + 2] += other
+        real[whole[GAP] + row] += value - real[number + 6]
+        if whole[record + 5] != 0:
+            omega, spin = real[twist + first + 2], real[twist + second + 2]
+            g, h = math.cos(real[pose + second + 2]), math.sin(real[pose + second + 2])
+            bx, by = g * real[number + 3] - h * real[number + 4], h * real[number + 3] + g * real[number + 4]
+            arm_x = real[pose + second] + bx - real[pose + first]
+            arm_y = real[pose + second + 1] + by - real[pose + first + 1]
+            fast_x = real[twist + second] - spin * by - real[twist + first]
+            fast_y = real[twist + second + 1] + spin * bx - real[twist + first + 1]
+            bias = spin * spin * (x * bx + y * by) + omega * omega * (x * arm_x + y * arm_y)
+            real[whole[BIAS] + row] += bias - 2 * omega * (x * fast_y - y * fast_x)
+        number += SUMMAND_PARAMETERS
+
+
+@inner
+def summand(whole, real, record, number, pose):
+    """A term of a sum as in `reference.couplings`: its value; its derivatives by the place of the second body, which
+    are opposite by that of the first; and by the angles of the first and of the second body.
+    """
+    first, second, factor = whole[record + 1], whole[record + 2], real[number]
+    if whole[record + 5] == 0:
+        return factor * (real[pose + second + 2] - real[pose + first + 2]), 0.0, 0.0, -factor, factor
+    turned, angle = real[pose + first + 2], real[pose + second + 2]
+    line = turned + real[number + 5]
+    x, y = factor * math.cos(line), factor * math.sin(line)
+    c, d, g, h = math.cos(turned), math.sin(turned), math.cos(angle), math.sin(angle)
+    ax, ay = c * real[number + 1] - d * real[number + 2], d * real[number + 1] + c * real[number + 2]
+    bx, by = g * real[number + 3] - h * real[number + 4], h * real[number + 3] + g * real[number + 4]
+    arm_x = real[pose + second] + bx - real[pose + first]
+    arm_y = real[pose + second + 1] + by - real[pose + first + 1]
+    value = x * (arm_x - ax) + y * (arm_y - ay)
+    return value, x, y, x * arm_y - y * arm_x, y * bx - x * by
+
+
+@inner
+def coupled_force(whole, real, number, begin, count, pose, twist, out):
+    """Add what a coupled force does: its strength follows from the whole sum and its rate."""
+    strength, at = (
+        real[number] + real[number + 1] * real[number + 3],
+        whole[SUMMAND_NUMBERS] + SUMMAND_PARAMETERS * begin,
+    )
+    record = whole[SUMMAND_AT] + SUMMAND * begin
+    for k in range(count):
+        first, second = whole[record + SUMMAND * k + 1], whole[record + SUMMAND * k + 2]
+        value, x, y, turn, other = summand(whole, real, record + SUMMAND * k, at + SUMMAND_PARAMETERS * k, pose)
+        rate = x * (real[twist + second] - real[twist + first]) + y * (
+            real[twist + second + 1] - real[twist + first + 1]
+        )
+        rate += turn * real[twist + first + 2] + other * real[twist + second + 2]
+        strength -= real[number + 1] * value + real[number + 2] * rate
+    for k in range(count):
+        first, second = whole[record + SUMMAND * k + 1], whole[record + SUMMAND * k + 2]
+        value, x, y, turn, other = summand(whole, real, record + SUMMAND * k, at + SUMMAND_PARAMETERS * k, pose)
+        push(whole, real, out, first, -x * strength, -y * strength, turn * strength)
+        push(whole, real, out, second, x * strength, y * strength, other * strength)
 
 
 @inner
@@ -219,6 +307,9 @@ def applied_accelerations(whole, real, pose, twist, out):
     for force in range(whole[FORCES]):
         record, number = whole[FORCE_AT] + FORCED * force, whole[FORCE_NUMBERS] + FORCE_PARAMETERS * force
         kind, first, second = whole[record], whole[record + 1], whole[record + 2]
+        if kind == COUPLED:
+            coupled_force(whole, real, number, first, second, pose, twist, out)
+            continue
         size, other = real[number + 4], real[number + 5]
         if kind in (SPRING, DAMPER, FORCE):
             angle = real[pose + first + 2]

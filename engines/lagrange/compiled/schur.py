@@ -17,6 +17,9 @@ from engines.lagrange.arrays import (
     COMPLIANCE,
     DEPENDENT,
     ENDS,
+    EXTRA,
+    EXTRA_AT,
+    EXTRAS,
     FELT,
     LEFT,
     MATRIX,
@@ -159,6 +162,12 @@ def apply_reactions(whole, real):
             real[body + 2] += real[end + 2] * value
             end += 3
         record += ROW
+    for extra in range(whole[EXTRA_AT], whole[EXTRA_AT] + EXTRA * whole[EXTRAS], EXTRA):
+        value = real[whole[REACTION] + whole[extra]]
+        body, end = change + whole[extra + 1], whole[ENDS] + whole[extra + 2]
+        real[body] += real[end] * value
+        real[body + 1] += real[end + 1] * value
+        real[body + 2] += real[end + 2] * value
     for k in range(whole[COLUMNS]):
         real[change + k] *= real[whole[MOBILITY] + k]
 
@@ -168,7 +177,7 @@ def row_times(whole, real, vector, row):
     """J of one row times the vector of columns that stands at `vector`."""
     end, record = whole[ENDS] + 6 * row, whole[ROW_AT] + ROW * row
     one, other = vector + whole[record], vector + whole[record + 1]
-    return (
+    value = (
         real[end] * real[one]
         + real[end + 1] * real[one + 1]
         + real[end + 2] * real[one + 2]
@@ -176,6 +185,11 @@ def row_times(whole, real, vector, row):
         + real[end + 4] * real[other + 1]
         + real[end + 5] * real[other + 2]
     )
+    for extra in range(whole[EXTRA_AT], whole[EXTRA_AT] + EXTRA * whole[EXTRAS], EXTRA):
+        if whole[extra] == row:
+            body, end = vector + whole[extra + 1], whole[ENDS] + whole[extra + 2]
+            value += real[end] * real[body] + real[end + 1] * real[body + 1] + real[end + 2] * real[body + 2]
+    return value
 
 
 @inner

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, SLIDE, Frame, Groups, name_of, plain_name
 from engines.reading import Names, Note, refuse
+from reference.couplings import Coupling, Term
 from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Slot, Vector, Weld
 
 Array = NDArray[np.float64]
@@ -228,6 +229,49 @@ def _welded(scene: Scene, index: int, element: str) -> list[Joint]:
     return [Weld(label, scene.name(first), scene.name(second), *points, turned)]
 
 
+def is_turned_with(scene: Scene, joint: int) -> bool:
+    """Whether a slide's line is in its own body, which a hinge before it turns. Raises Unsupported for a hinge between
+    two slides.
+    """
+    own = scene.joints_of(scene.group(int(scene.model.jnt_bodyid[joint])))
+    hinges = [each for each in own if scene.model.jnt_type[each] == HINGE]
+    slides = [each for each in own if scene.model.jnt_type[each] == SLIDE]
+    if hinges and slides[0] < hinges[0] < slides[-1]:
+        raise refuse(
+            name_of(scene.model, JOINT, joint),
+            "its body turns between two slides, of which no sum is read; give the slides a body of their own",
+        )
+    return bool(hinges) and hinges[0] < slides[0]
+
+
+def term_of(scene: Scene, joint: int, factor: float) -> Term:
+    """factor times a joint's coordinate, but for a constant."""
+    model, data = scene.model, scene.data
+    group, parent = scene.group(int(model.jnt_bodyid[joint])), scene.parent(joint)
+    first, second = scene.name(parent), scene.name(group)
+    if model.jnt_type[joint] == HINGE:
+        return Term(first, second, factor * scene.sign(joint))
+    own = list(scene.joints_of(group))
+    slides = [each for each in own if model.jnt_type[each] == SLIDE]
+    at = next((data.xanchor[each] for each in own if model.jnt_type[each] == HINGE), None)
+    at = scene.frame.both.T @ scene.bodies[group].pose[:2] if at is None else at
+    # Of two slides each is told by the direction across the other.
+    axes = np.array([scene.frame.in_plane(data.xaxis[each]) for each in slides])
+    x, y = np.linalg.pinv(axes)[:, slides.index(joint)]
+    along, size = scene.frame.both.T @ [x, y], float(np.hypot(x, y))
+    here, there = scene.own(group, at), scene.own(parent, at)
+    if is_turned_with(scene, joint):
+        return Term(second, first, -factor * size, True, here, scene.direction(group, along), there)
+    return Term(first, second, factor * size, True, there, scene.direction(parent, along), here)
+
+
+def terms_of(scene: Scene, parts: list[tuple[int, float]]) -> tuple[tuple[Term, ...], float]:
+    """A sum of joints' coordinates as terms, and its value at the start."""
+    terms = tuple(term_of(scene, joint, factor) for joint, factor in parts)
+    pose = {body.name: np.array(body.pose) for body in scene.bodies} | {None: np.zeros(3)}
+    return terms, float(sum(term.value(pose[term.first], pose[term.second]) for term in terms))
+
+
 def angle_weights(scene: Scene, parts: list[tuple[int, float]]) -> dict[int, float]:
     """How much the angle of each body adds to a sum of hinge coordinates; bodies that add nothing are left out."""
     weights: dict[int, float] = {}
@@ -278,17 +322,20 @@ def _held_angles(scene: Scene, index: int, element: str, parts: list[tuple[int, 
     model = scene.model
     if np.any(model.eq_data[index][2:5]):
         raise refuse(element, "a coupling that is not linear has no ideal counterpart here")
-    if any(model.jnt_type[joint] != HINGE for joint, _ in parts):
-        raise refuse(element, "it couples a slide, which has no ideal counterpart here; couple hinges")
-    if abs(wrong) > PLANAR:
-        raise refuse(element, f"it is open by {abs(wrong):.2g} rad at the start")
+    slides = any(model.jnt_type[joint] != HINGE for joint, _ in parts)
+    if abs(wrong) > PLANAR * (max(1.0, float(model.stat.extent)) if slides else 1.0):
+        raise refuse(element, f"it is open by {abs(wrong):.2g} {'m' if slides else 'rad'} at the start")
     weights = angle_weights(scene, parts)
     label = scene.names.new(plain_name(model, EQUALITY, index))
     groups = list(weights)
+    if slides or len(groups) > 2:
+        terms, offset = terms_of(scene, parts)
+        return [Coupling(label, terms, offset)]
     if len(groups) == 1:
         return [Drive(label, None, scene.name(groups[0]), 0.0, scene.angle(groups[0]))]
-    if len(groups) != 2:
-        raise refuse(element, f"it couples the angles of {len(groups)} bodies; an ideal gear couples two")
+    if not groups:
+        scene.note(element, "the sum that it holds does not change")
+        return []
     first, second = groups
     ratio = -weights[first] / weights[second]
     turned = scene.angle(second) - ratio * scene.angle(first)
@@ -301,20 +348,26 @@ def _tied(scene: Scene, index: int, element: str) -> list[Joint]:
     """A tendon of constant length: a rod between two sites, or a sum of angles."""
     model, data = scene.model, scene.data
     tendon = int(model.eq_obj1id[index])
-    if model.eq_obj2id[index] >= 0:
-        raise refuse(element, "it couples two tendons, which has no ideal counterpart here")
     wrong = float(data.ten_length[tendon] - model.tendon_length0[tendon] - model.eq_data[index][0])
     parts = wrapped_joints(model, tendon)
+    if (other := int(model.eq_obj2id[index])) >= 0:
+        more, share = wrapped_joints(model, other), -float(model.eq_data[index][1])
+        if parts is None or more is None:
+            raise refuse(
+                element, "it couples two tendons of which one goes through sites; only those over joints are read"
+            )
+        wrong += share * float(data.ten_length[other] - model.tendon_length0[other])
+        return _held_angles(scene, index, element, [*parts, *((joint, share * by) for joint, by in more)], wrong)
     if parts is not None:
         return _held_angles(scene, index, element, parts, wrong)
-    first, second, at, other = straight(scene, tendon)
+    first, second, at, end = straight(scene, tendon)
     if first == second:
         scene.note(element, "its two ends are on one body")
         return []
     if abs(wrong) > PLANAR * max(1.0, model.stat.extent):
         raise refuse(element, f"it is open by {abs(wrong):.2g} m at the start")
     label = scene.names.new(plain_name(model, EQUALITY, index))
-    points = scene.own(first, at), scene.own(second, other)
+    points = scene.own(first, at), scene.own(second, end)
     return [Rod(label, scene.name(first), scene.name(second), *points, float(data.ten_length[tendon]))]
 
 

@@ -10,10 +10,11 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from engines.mujoco.reading.elements import JOINT, Scene, angle_weights, straight, wrapped_joints
+from engines.mujoco.reading.elements import JOINT, Scene, angle_weights, straight, terms_of, wrapped_joints
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, SLIDE, name_of, plain_name
 from engines.reading import left_out, refuse
-from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.couplings import Term
+from reference.forces import CoupledForce, Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
 TENDON, ACTUATOR = mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtObj.mjOBJ_ACTUATOR
 FAR = 30.0  # extents of the model: where the far end of a spring along a slide stands
@@ -81,7 +82,12 @@ def _of_tendons(scene: Scene) -> list[ForceElement]:
             raise refuse(element, "a negative stiffness or damping has no counterpart here")
         parts = wrapped_joints(model, tendon)
         if parts is not None:
-            first, second, factor = _between(scene, element, parts)
+            between = _between(scene, parts)
+            if between is None:
+                terms, constant = _tendon_terms(scene, tendon, parts)
+                out.append(CoupledForce(scene.names.new(name), terms, 0.0, stiffness, damping, low - constant))
+                continue
+            first, second, factor = between
             ends = scene.name(first), scene.name(second)
             turned = scene.angle(second) - scene.angle(first)
             rest = turned + (low - float(scene.data.ten_length[tendon])) / factor
@@ -102,17 +108,26 @@ def _of_tendons(scene: Scene) -> list[ForceElement]:
     return out
 
 
-def _between(scene: Scene, element: str, parts: list[tuple[int, float]]) -> tuple[int, int, float]:
-    """The two groups, the first perhaps the ground, whose relative angle times a factor a fixed tendon's length is."""
+def _tendon_terms(scene: Scene, tendon: int, parts: list[tuple[int, float]]) -> tuple[tuple[Term, ...], float]:
+    """A fixed tendon's length as a sum of terms, and the constant that it has besides [m or rad]."""
+    terms, value = terms_of(scene, parts)
+    return terms, float(scene.data.ten_length[tendon]) - value
+
+
+def _between(scene: Scene, parts: list[tuple[int, float]]) -> tuple[int, int, float] | None:
+    """The two groups, the first perhaps the ground, whose relative angle times a factor a fixed tendon's length is.
+
+    None where it is another sum.
+    """
     if any(scene.model.jnt_type[joint] != HINGE for joint, _ in parts):
-        raise refuse(element, "a tendon over slides has no ideal counterpart here")
+        return None
     weights = angle_weights(scene, parts)
     groups = list(weights)
     if len(groups) == 1:
         return -1, groups[0], weights[groups[0]]
     if len(groups) == 2 and abs(weights[groups[0]] + weights[groups[1]]) <= PLANAR:
         return groups[0], groups[1], weights[groups[1]]
-    raise refuse(element, "its length is no multiple of the angle between two bodies")
+    return None
 
 
 def _of_actuators(scene: Scene) -> list[ForceElement]:
@@ -154,17 +169,37 @@ def _of_actuators(scene: Scene) -> list[ForceElement]:
             push = float(np.clip(push, *model.actuator_forcerange[actuator]))
         if kind in (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT)):
             out += _on_joint(scene, element, name, target, gear, push, affine)
-        elif np.any(affine[1:]):
-            raise refuse(element, "a servo is read only where it acts on a joint")
         elif kind == int(mujoco.mjtTrn.mjTRN_TENDON) and (parts := wrapped_joints(model, target)) is not None:
-            first, second, factor = _between(scene, element, parts)
-            label, ends = scene.names.new(name), (scene.name(first), scene.name(second))
-            out.append(Torque(label, *ends, gear * push * factor))
+            out.append(_on_tendon(scene, element, name, target, parts, gear, push, affine))
+        elif np.any(affine[1:]):
+            raise refuse(element, "a servo is read only where it acts on a joint, or on a tendon over joints")
         elif kind == int(mujoco.mjtTrn.mjTRN_SITE):
             out += _at_site(scene, element, name, actuator, push)
         else:
             raise refuse(element, "it acts neither on a joint, nor on a sum of angles, nor at a site")
     return out
+
+
+def _on_tendon(
+    scene: Scene,
+    element: str,
+    name: str,
+    tendon: int,
+    parts: list[tuple[int, float]],
+    gear: float,
+    push: float,
+    affine: Any,
+) -> ForceElement:
+    """A constant force along a fixed tendon, and the spring and damper of a servo."""
+    stiffness, damping = (-gear * gear * float(value) for value in affine[1:3])
+    if min(stiffness, damping) < 0:
+        raise refuse(element, "a servo that pushes away from its goal has no counterpart here")
+    label, between = scene.names.new(name), _between(scene, parts)
+    if between is not None and not stiffness and not damping:
+        first, second, factor = between
+        return Torque(label, scene.name(first), scene.name(second), gear * push * factor)
+    terms, constant = _tendon_terms(scene, tendon, parts)
+    return CoupledForce(label, terms, gear * push, stiffness, damping, -constant)
 
 
 def _on_joint(
