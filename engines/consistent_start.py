@@ -1,4 +1,7 @@
-"""The velocities with which a motion of ideal joints begins where a user's own do not satisfy them: after an impulse.
+"""The state in which a motion of ideal joints begins where a user's own does not satisfy them.
+
+Positions that were printed with six digits leave joints open by about a millionth. The nearest closed positions, in the
+norm of the masses, are those of the model (Newton's method with M^-1 J^T).
 
 A motor that is at rest at t = 0, as in most scripts of games, asks for a velocity that no body has yet. Rigid bodies
 then take up the rate at once. The impulse of ideal joints makes the least of all possible changes, measured as the
@@ -24,6 +27,9 @@ Array = NDArray[np.float64]
 # The least of the rows in a combination that no velocities satisfy: a row with a smaller weight in it is rounding.
 TAKES_PART = 1e-6
 MOST_NAMED = 4
+# Of the mechanism's length, and rad: gaps of positions that were printed with six digits. Larger ones are no rounding.
+PRINTED = 1e-5
+MOST_ITERATIONS = 20  # of Newton's method from there; it converges in three unless a position is singular
 DIGITS = 1e-6  # rad: a hundredth of the error that is usually asked for
 FASTEST = 1e150  # m/s, rad/s
 
@@ -33,6 +39,48 @@ class _AnyStart(Mechanism):
 
     def _refuse_a_bad_start(self) -> None:
         pass
+
+
+def closed_positions(
+    bodies: Sequence[Body], joints: Sequence[Joint], gravity: Vector, forces: Sequence[ForceElement]
+) -> tuple[Array, Note] | None:
+    """The nearest poses (bodies, 3) that close all joints, and a note; None where they are closed, or open by more than
+    PRINTED, or where Newton's method finds none so near."""
+    if not joints:
+        return None
+    mechanism = _AnyStart(tuple(bodies), tuple(joints), gravity, tuple(forces))
+    unit = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+    row_unit = np.where(mechanism.turning, 1.0, mechanism.length_scale)
+    still, size = np.zeros(mechanism.row_count), np.asarray(mechanism.length_scale)
+
+    def gap_at(pose: Array) -> Array:
+        return np.nan_to_num(mechanism.gap(pose, 0.0))
+
+    def is_open(pose: Array) -> bool:
+        return open_joint(mechanism, gap_at(pose), still, pose, mechanism.twist, size) is not None
+
+    gap = np.abs(gap_at(mechanism.pose)) / row_unit
+    if not is_open(mechanism.pose) or not gap.max() <= PRINTED:
+        return None
+    pose, moved = mechanism.pose, np.zeros_like(mechanism.pose)
+    for _ in range(MOST_ITERATIONS):
+        pose = pose + _least_change(mechanism, gap_at(pose), pose)
+        moved = np.abs(pose - mechanism.pose) / unit
+        if not moved.max() <= 100 * PRINTED:  # a singular position: a small gap needs a large move
+            return None
+        if not np.any(np.abs(gap_at(pose)) > 1e-13 * row_unit):
+            break
+    if is_open(pose):
+        return None
+    row = int(np.argmax(gap))
+    body, coordinate = np.unravel_index(int(np.argmax(moved)), moved.shape)
+    name, moved_by = mechanism.bodies[body].name, np.abs(pose - mechanism.pose)[body, coordinate]
+    return pose, Note(
+        "the start",
+        f"its positions leave {mechanism.row_names[row]} open by {gap[row] * row_unit[row]:.2g} "
+        f"{'rad' if mechanism.turning[row] else 'm'}, as rounded digits do; both motions begin with the nearest "
+        f"positions that close all joints: {name} moves most, by {moved_by:.2g} {'rad' if coordinate == 2 else 'm'}",
+    )
 
 
 def with_consistent_start(
@@ -51,7 +99,7 @@ def with_consistent_start(
         return Mechanism(tuple(bodies), *elements), ()
     if gap := open_joint(own, own.gap(own.pose, 0.0), np.zeros_like(slip), own.pose, own.twist, size):
         raise InvalidMechanism(f"mechanism: {gap}")
-    twist = own.twist + _least_change(own, slip)
+    twist = own.twist + _least_change(own, slip, own.pose)
     missed = own.slip(own.pose, twist)
     speed = np.where(own.turning, 1.0, own.length_scale) * float(
         max(np.abs(own.twist[:, 2]).max(), np.abs(own.twist[:, :2]).max() / size, np.abs(_per_length(own, slip)).max())
@@ -78,9 +126,12 @@ def _refuse_without_digits(bodies: Sequence[Body]) -> None:
                 raise InvalidMechanism(f"{body.name}: its velocity at t = 0 is {value:.3g} {unit}; {words}")
 
 
-def _least_change(own: Mechanism, slip: Array) -> Array:
-    """(bodies, 3): M^-1 J^T times the impulses that take away the slip (rows,), in the least squares of M^(-1/2)."""
-    rows, root = own.rows(own.pose), np.sqrt(own.inertias.reshape(-1))
+def _least_change(own: Mechanism, slip: Array, pose: Array) -> Array:
+    """(bodies, 3): M^-1 J^T times the impulses that take away the slip (rows,), in the least squares of M^(-1/2).
+
+    Of a gap instead of a slip: the change of positions, to first order.
+    """
+    rows, root = own.rows(pose), np.sqrt(own.inertias.reshape(-1))
     matrix = rows / root
     norm = np.linalg.norm(matrix, axis=1)
     scale = 1 / np.where(norm > 0, norm, 1.0)

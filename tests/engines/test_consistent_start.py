@@ -17,10 +17,12 @@ from scipy.integrate import solve_ivp
 
 from engines.lagrange import TRUTH
 from engines.mujoco.reading import read as read_mujoco
+from engines.mujoco.reading.obstacles import positions
 from engines.pymunk.reading import read
 from reference.checks import InvalidMechanism
 from reports.check.checked import Plan, check
 from reports.check.judging import refuse_disagreement
+from tests import ROOT
 
 STEPPED = 1e-6  # see tests/engines/test_reading_pymunk.py
 
@@ -223,3 +225,46 @@ def test_in_mujoco_too_and_a_stiffer_row_comes_nearer_to_the_impulse():
         # What the row gives way by its own law is told from the step, from the velocities that the user has.
         assert found.parts.softness == pytest.approx(found.own_errors.largest, rel=0.05)
     assert errors[1] < 0.5 * errors[0]
+
+
+def six_digits(values):
+    return [float(f"{value:.6g}") for value in values]
+
+
+@pytest.mark.parametrize("size", [1.0, 300.0, 1e-3])
+def test_positions_that_were_printed_with_six_digits_are_closed_by_the_nearest_ones(size):
+    space, bars, _ = linkage(*((size * x, size * y) for x, y in (A, B, C, D)), gravity=-9.81 * size)
+    exact = [(*bar.position, 0.0) for bar in bars]
+    turn = 0.3  # as a whole, so that no digit is zero
+    for bar in bars:
+        bar.position, bar.angle = six_digits(bar.position.rotated(turn)), six_digits([turn])[0]
+    for pivot in space.constraints:
+        if pivot.a is space.static_body:
+            pivot.anchor_a = pivot.anchor_a.rotated(turn)
+    reading = read(space, 1e-3)
+    mechanism = reading.mechanism
+    assert np.abs(mechanism.gap(mechanism.pose, 0.0)).max() < 1e-12 * size
+    turned = [(x * cos(turn) - y * sin(turn), x * sin(turn) + y * cos(turn)) for x, y, _ in exact]
+    assert mechanism.pose[:, :2] == pytest.approx(np.array(turned), abs=5e-6 * size)
+    assert [note for note in reading.notes if "nearest positions" in note.reason]
+    run = reading.model.run(10, 1)
+    assert run.pose[0] == pytest.approx(mechanism.pose, abs=1e-12 * size)
+    bars[1].position += (1e-4 * size, 0)  # no rounding
+    with pytest.raises(InvalidMechanism, match="is open by"):
+        read(space, 1e-3)
+
+
+def test_a_state_of_mujoco_that_was_printed_with_six_digits_is_closed():
+    model = mujoco.MjModel.from_xml_path(str(ROOT / "tests/reports/inputs/b02b_cylinder_spring.xml"))
+    first = read_mujoco(model)
+    truth = TRUTH.build(first.mechanism, 1e-3)(100, 1)
+    data = mujoco.MjData(model)
+    data.qpos[:] = six_digits(positions(first.model.scene, truth.pose[-1:])[0])
+    reading = read_mujoco(model, data)
+    mechanism = reading.mechanism
+    assert np.abs(np.nan_to_num(mechanism.gap(mechanism.pose, 0.0))).max() < 1e-12
+    assert mechanism.pose == pytest.approx(truth.pose[-1], abs=5e-6)
+    assert refuse_disagreement(reading) < 1e-6
+    data.qpos[0] += 1e-3
+    with pytest.raises(InvalidMechanism, match="is open by"):
+        read_mujoco(model, data)

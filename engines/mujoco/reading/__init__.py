@@ -14,11 +14,11 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from engines.consistent_start import with_consistent_start
+from engines.consistent_start import closed_positions, with_consistent_start
 from engines.mujoco.reading.elements import Scene, drives, equalities, steady, tree_joints
 from engines.mujoco.reading.forces import forces, off, turns
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, bodies_of, find_frame, find_groups, flattened, name_of
-from engines.mujoco.reading.obstacles import limited_forces
+from engines.mujoco.reading.obstacles import limited_forces, positions
 from engines.mujoco.reading.own_model import OwnMuJoCo, heard
 from engines.mujoco.reading.rewriting import rewritten
 from engines.mujoco.reading.settings import switch_off
@@ -29,13 +29,14 @@ from reference.forces import Force
 SUFFIXES = (".xml", ".mjcf", ".urdf", ".mjb")
 
 
-def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
+def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: bool = True) -> Reading:
     """The mechanism of a mujoco.MjModel in the state of a mujoco.MjData, or in its first one.
 
     The plane of motion is found. `without`: elements to switch off first, in a copy of the model too. Raises
     Unsupported for what has no counterpart in the plane, in a sentence that names it, and InvalidMechanism for a start
-    that does not satisfy the model's own equalities.
+    that does not satisfy the model's own equalities, unless rounded digits explain it and `closing` is true.
     """
+    original = model
     if data is None:
         data = mujoco.MjData(model)
     model = copy.copy(model)
@@ -70,8 +71,14 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     _note_what_may_act(scene)
     for element in without:
         scene.note(element, "left out at your word, in your model too")
+    elements = bodies, joints, gravity, (*acting, *weights)
+    closed = closed_positions(*elements) if closing else None
+    if closed is not None:
+        started.qpos[:] = positions(scene, closed[0][None])[0]
+        reading = read(original, started, without, closing=False)
+        return replace(reading, notes=(closed[1], *reading.notes))
     try:
-        mechanism, jumped = with_consistent_start(bodies, joints, gravity, (*acting, *weights))
+        mechanism, jumped = with_consistent_start(*elements)
     except InvalidMechanism as reason:
         if "is open by" not in str(reason):
             raise

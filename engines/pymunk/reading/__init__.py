@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pymunk
 
-from engines.consistent_start import with_consistent_start
+from engines.consistent_start import closed_positions, with_consistent_start
 from engines.pymunk.reading.joints import described
-from engines.pymunk.reading.own_model import OwnPymunk, switch_off
+from engines.pymunk.reading.own_model import OwnPymunk, moved_to, switch_off
 from engines.pymunk.reading.script import made, rewritten
 from engines.reading import Note, Reading, Source, refuse_at_start
 from reference.checks import InvalidMechanism
@@ -33,8 +33,14 @@ def read(space: pymunk.Space, step: float | None = None, without: Sequence[str] 
     found = described(space)
     last = float(space.current_time_step)
     x, y = space.gravity
+    elements = found.bodies, found.joints, (float(x), float(y)), found.forces
+    closed = closed_positions(*elements)
+    if closed is not None:
+        found = described(moved_to(found, closed[0]))
+        elements = found.bodies, found.joints, (float(x), float(y)), found.forces
+        found.notes.insert(0, closed[1])
     try:
-        mechanism, jumped = with_consistent_start(found.bodies, found.joints, (float(x), float(y)), found.forces)
+        mechanism, jumped = with_consistent_start(*elements)
     except InvalidMechanism as reason:
         if not last:
             raise

@@ -218,21 +218,34 @@ class OwnPymunk:
         return np.array([name in self.described.prescribed for name in names], dtype=bool)
 
     def _fresh(self) -> tuple[pymunk.Space, list[pymunk.Body]]:
-        """A copy of the space, and its bodies in the mechanism's order."""
-        given = self.described.space
-        order = list(given.bodies)
-        places = [order.index(body) for body in self.described.moving]
-        space = given.copy()
-        # No body falls asleep in what is judged (`sleepers`), and pymunk (7.3.1) aborts after some copies in which
-        # bodies do.
-        space.sleep_time_threshold = inf
-        copies = list(space.bodies)
-        for mine, own in zip(copies, order, strict=True):
-            if own.center_of_gravity.length:
-                # pymunk (7.3.1) places a copy before it knows where the centre of mass is, and so elsewhere.
-                mine.angle, mine.position = own.angle, own.position
-        bodies = [copies[place] for place in places]
-        return space, bodies
+        return copied(self.described)
+
+
+def copied(described: Described) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """A copy of the space, and its bodies in the mechanism's order."""
+    given = described.space
+    order = list(given.bodies)
+    places = [order.index(body) for body in described.moving]
+    space = given.copy()
+    # No body falls asleep in what is judged (`sleepers`), and pymunk (7.3.1) aborts after some copies in which
+    # bodies do.
+    space.sleep_time_threshold = inf
+    copies = list(space.bodies)
+    for mine, own in zip(copies, order, strict=True):
+        if own.center_of_gravity.length:
+            # pymunk (7.3.1) places a copy before it knows where the centre of mass is, and so elsewhere.
+            mine.angle, mine.position = own.angle, own.position
+    bodies = [copies[place] for place in places]
+    return space, bodies
+
+
+def moved_to(described: Described, pose: Array) -> pymunk.Space:
+    """A copy of the space with the centres of mass and angles of the moving bodies at a pose (bodies, 3)."""
+    space, bodies = copied(described)
+    for body, (x, y, angle) in zip(bodies, pose.tolist(), strict=True):
+        body.angle = angle
+        body.position = pymunk.Vec2d(x, y) - body.center_of_gravity.rotated(angle)
+    return space
 
 
 def _poses(bodies: Sequence[pymunk.Body]) -> Array:
