@@ -44,7 +44,7 @@ class Element:
     """Anything that has attributes: those given, and those that are set afterwards."""
 
     def __init__(self, **given: Any) -> None:
-        self.data = np.array([0.0, 1.0, *[0.0] * 9])  # of an equality: its polynomial, or its anchor
+        self.data = np.zeros(3)  # of an equality: its anchor
         vars(self).update(given)
 
     def attributes(self) -> dict[str, str]:
@@ -198,17 +198,10 @@ def _equality(element: Element) -> tuple[str, dict[str, str]]:
     """(its tag, its attributes): MJCF names what is equal by its kind."""
     told = element.attributes()
     first, second = told.pop("name1"), told.pop("name2", None)
-    match element.type:
-        case mujoco.mjtEq.mjEQ_CONNECT:
-            return "connect", told | {"body1": first, "body2": second or "world", "anchor": _text(element.data[:3])}
-        case mujoco.mjtEq.mjEQ_WELD:  # in the pose of the start, as MuJoCo has it where none is given
-            return "weld", told | {"body1": first, "body2": second or "world", "anchor": _text(element.data[:3])}
-        case mujoco.mjtEq.mjEQ_JOINT:
-            kind = "joint"
-        case _:
-            kind = "tendon"
-    others = {f"{kind}2": second} if second else {}
-    return kind, told | {f"{kind}1": first, "polycoef": _text(element.data[:5])} | others
+    if element.type == mujoco.mjtEq.mjEQ_TENDON:  # it stays as long as it is at the start
+        return "tendon", told | {"tendon1": first}
+    kind = "weld" if element.type == mujoco.mjtEq.mjEQ_WELD else "connect"  # a weld: in the pose of the start
+    return kind, told | {"body1": first, "body2": second or "world", "anchor": _text(element.data)}
 
 
 def _type(kind: str, value: Any) -> str:

@@ -35,7 +35,7 @@ class Shapes(Valid):
 def shapes_of(motion: Centrodes, points: Points = 400) -> Shapes:
     """The two shapes of centrodes, with `points` points each (at least 2)."""
     space, body = motion.space_curve, motion.body_curve
-    arcs = np.linspace(0.0, min(space.limits[1], body.limits[1]), points)
+    arcs = np.linspace(0.0, space.limits[1], points)
     theta = space.parameter(arcs)
     fixed, moving = space.point_of(theta), body.point_of(-theta)
     pose = np.column_stack([fixed - rotated(theta, moving), theta])

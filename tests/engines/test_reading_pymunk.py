@@ -313,3 +313,10 @@ def test_what_has_no_ideal_counterpart_is_named(make, sentence):
     with pytest.raises(Unsupported) as reason:
         read(space_of(make), 0.01)
     assert sentence in str(reason.value)
+
+
+def test_the_step_that_is_named_comes_before_the_last_one_and_that_before_the_usual_one():
+    space = space_of()
+    assert [read(space, step).model.dt for step in (None, 0.01)] == [1 / 60, 0.01]
+    space.step(1e-6)
+    assert [read(space, step).model.dt for step in (None, 0.01)] == [1e-6, 0.01]

@@ -94,12 +94,13 @@ def test_bad_trains_are_refused():
         car.drive(1.0, math.nan, (0, 0, 0), (0.0,), [1.0])
 
 
-def test_a_caster_on_a_circling_cart_is_a_tow():
+@pytest.mark.parametrize("turning_rate", [0.5, -0.5])
+def test_a_caster_on_a_circling_cart_is_a_tow(turning_rate):
     casters, t = Casters(((1.0, 0.3), (1.0, -0.3)), 0.1), np.linspace(0, 5, 11)
-    swung, error = casters.swing((1.0, 2.0), 0.7, 0.5, t)
+    swung, error = casters.swing((1.0, 2.0), 0.7, turning_rate, t)
     assert error.max() < 1e-11
     for index, angle in enumerate((1.0, 2.0)):
-        tow, speed = casters.tow(index, angle, 0.7, 0.5)
+        tow, speed = casters.tow(index, angle, 0.7, turning_rate)
         assert np.abs(tow.relative_angle(speed * t) + angle - tow.angle - swung[:, index]).max() < 1e-11
 
 

@@ -81,6 +81,8 @@ def test_what_is_no_linkage_is_refused_in_a_sentence(points, bars, ground, sente
 def test_a_comparison_is_the_engines_run_beside_the_scenes_own_truth(monkeypatch):
     scene = FreeFourBar()
     found = planar_crosscheck.compare(scene.mechanism(), "pymunk tuned", dt=1e-3, duration=0.5)
+    assert len(found.run.t) == 251  # about SAMPLES, and whole numbers of steps apart
+    assert planar_crosscheck.compare(scene.mechanism(), "pymunk", 0.1, 0.1).title == "pymunk default at 100 ms"
     truth = scene.motion(found.run.t)
     assert np.abs(found.truth.pose - truth.pose).max() < 1e-9
     off = np.abs(found.run.pose - truth.pose)[..., 2].max()
