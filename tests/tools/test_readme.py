@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import os
 import re
 import shlex
@@ -224,6 +225,19 @@ def test_its_best_claims_are_what_its_charts_and_cells_show(given):
     assert rough > 10 * good
 
 
+def test_the_exercises_on_rolling_and_skates_have_the_answers_that_are_known_otherwise(given):
+    module, printed = given
+    # a / b + 1 outside and a / b - 1 inside, the other way round than the centre goes; by 2,000 points of a round.
+    assert module.turns == pytest.approx({"disc": 3.0, "hole": -1.0}, abs=1e-3)
+    # omega^2 / (1/b + kA): kA = 1/a on the disc, 0 on flat ground, -1/a in the hole.
+    assert module.starts == pytest.approx({"disc": 1 / 6, "flat": 1 / 4, "hole": 1 / 2}, rel=1e-12)
+    assert "8: (Move(turn=1.57" in printed
+    # Differences of second order over a millisecond: an error of 1e-6 times rates near 1.
+    assert module.factor == pytest.approx(1.0, abs=1e-4)
+    # The solution's sech has died away; a turning rate of 1e-3 rad/s at the start is its first part.
+    assert module.turned == pytest.approx(math.pi * module.gyration / 0.5, rel=1e-3)
+
+
 def test_it_holds_no_results_and_uses_what_everybody_may_use():
     text = "\n".join("".join(cell["source"]) for cell in CELLS if cell["cell_type"] == "code")
     assert all(cell["outputs"] == [] for cell in CELLS if cell["cell_type"] == "code")
@@ -235,6 +249,9 @@ def test_it_holds_no_results_and_uses_what_everybody_may_use():
         "reference.scenes.four_bar.scenes",
         "reference.scenes.person",
         "reference.scenes.skates.sleigh",
+        "reference.rolling.curves",
+        "reference.rolling.kinematics",
+        "reference.chapter.parking",
         "engines.lagrange",
         "engines.pymunk.methods",
         "engines",
