@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import isqrt
+from math import ceil, isqrt
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from engines import CLAIM, Around, Engine, OneShot, Promise, Run, Size, Unpromised
+from engines.constraint_error import closing, reaction_doubts
 from engines.finer import Division, division, tells_itself
 from reference.checks import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 from reference.forces import Damper, Spring
@@ -21,16 +22,24 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-# Of the largest force that acts: reactions whose estimate is above it are told.
-FORCES = 1e-3
 # How many times the next difference that successive ones let expect counts as the error; what of the last difference
 # counts at least; and from which share of the claim on poses are unresolved where an estimate passes it, as errors rise
 # before it does. LEAST and EARLY are fitted on 1300 random mechanisms of all kinds with three steps each (seeds 7001,
 # 31153099 and 601) in pymunk, Exudyn and Bullet.
 CAUTION, LEAST, EARLY = 4, 0.5, 1 / 30
+# Between these multiples of the claim the estimate does not decide: a run with shorter steps than all others does, in
+# the place of the coarsest one, at half of the cost of them all. That extrapolation is better by the ratio of their
+# steps, six, so that the difference is the error but for a fifth: DECIDED allows for more than twice that.
+OPEN, DECIDED = (0.1, 30.0), 1.5
+# How many times the displacement that closes joints counts as an error. It was 0.4 to 1.1 of the whole in 57 motions of
+# random mechanisms with errors above 1e-9, near singular positions too.
+RELEASED = 1.5
 # A series in the step needs steps that are short against what happens. Where the line of a spring, a damper or a rod
 # turns by more than this [rad] in a step of the coarsest run, all runs may miss alike.
 UNRESOLVED = "ours: unresolved from 0 s on"
+# How the warning of a run begins whose solver iterations leave a part of the slowest mode at every step: shorter steps,
+# and more runs, leave it too.
+UNCONVERGED = "ours: not converged"
 TURNED = 0.5
 # Poses of bodies, in each run, that are held against each other at most: all steps of nearly every run.
 WATCHED = 300_000
@@ -72,13 +81,18 @@ class Extrapolated(Around, Valid):
     of the step (L. F. Richardson, 1911): they must be the powers that the inner engine's error really has, one fewer
     than `levels`. A sample is NaN wherever one of the runs is not finite. The cost is the sum of all.
 
-    The `estimate` is what `expected_error` makes of the differences between successive columns of Richardson's table,
-    and the rounding of all steps. It is worked out at every step of dt, whichever of them are sampled, and where it
-    is above `engines.CLAIM`, of a radian or of the mechanism's length, the motion is unresolved, and a warning tells
-    it: `unresolved_at` the time from which it is above EARLY of that. So it is from the start where a damper is so
-    strong that it ends a motion within a step of the coarsest run: what it does then all may miss alike, and of random
-    mechanisms some were wrong by 5e-5 with an estimate of 4e-9. Reactions whose own estimate is above FORCES of the
-    largest force that acts are told as well.
+    The `estimate` is the larger of two: `expected_error` of the differences between successive columns of Richardson's
+    table, with the rounding of all steps; and the displacement that would close the joints' gaps
+    (`engines.constraint_error`), which shows errors that all runs have alike. Where the former is near `engines.CLAIM`,
+    of a radian or of the mechanism's length, one more run decides: its extrapolation with all but the coarsest run is
+    better by the ratio of their steps, so that the difference is the error. It is made too where the last difference is
+    far smaller than those before it let expect, as differences may pass zero.
+
+    The estimate is worked out at every step of dt, whichever of them are sampled, and where it is above the claim the
+    motion is unresolved, with a warning: `unresolved_at` is the time from which it is above EARLY of that. So it is
+    from the start where a damper is so strong that it ends a motion within a step of the coarsest run: all runs may
+    miss alike what it does then, and of random mechanisms some were wrong by 5e-5 with an estimate of 4e-9. Reactions
+    whose own estimate is large are reported as well.
 
     Where the estimate is more than what the finest run seems to miss (the distance to the extrapolation of the two
     finest), the runs are no series in the step: one has gone another way at a singular position, say. From there on the
@@ -183,13 +197,12 @@ class ExtrapolatedRun(OneShot):
         self.size: Size = self._runs[0].size
 
     def _built(self, finer: int) -> tuple[Run, ...]:
+        return tuple(self._built_at(level, finer) for level in self._method.levels)
+
+    def _built_at(self, level: int, finer: int) -> Run:
         inner = self._method.engine
-        return tuple(
-            (inner.settled_for(level) if isinstance(inner, Settling) else inner).build(
-                self._mechanism, self._dt / (level * finer)
-            )
-            for level in self._method.levels
-        )
+        engine = inner.settled_for(level) if isinstance(inner, Settling) else inner
+        return engine.build(self._mechanism, self._dt / (level * finer))
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
@@ -197,46 +210,87 @@ class ExtrapolatedRun(OneShot):
         asked = every
         every = _watched(samples, asked, len(self._mechanism.bodies))
         samples, each = samples * (asked // every), asked // every
-        found = self._combined(samples, every, each, 1)
+        plan = samples, every, each
+        parts = self._parts(self._runs, *plan, 1)
+        found = self._combined(parts, *plan, 1)
         order = self._method.powers[-1] + 1.0
-        spent = found.stepping
-        if self._divided is not None and not tells_itself(found, self._mechanism, self._dt, order):
+        spent, finer = found.stepping, 1
+        converged = not any(words.startswith(UNCONVERGED) for words in found.warnings)
+        if self._divided is not None and converged and not tells_itself(found, self._mechanism, self._dt, order):
             needed = self._divided(samples * every * self._dt)
-            spent += needed.seconds
-            if needed.steps > 1:
-                found = self._combined(samples, every, each, needed.steps)
+            spent, finer = spent + needed.seconds, needed.steps
+            if finer > 1:
+                parts = self._parts(self._built(finer), *plan, finer)
+                found = self._combined(parts, *plan, finer)
                 spent += found.stepping
+        if converged and self._is_open(found, parts):
+            further = _part(self._built_at(self._further, finer), samples, every * self._further * finer, each)
+            spent += further.stepping
+            found = self._combined(parts, *plan, finer, further)
         sampled = {name: getattr(found, name)[::each] for name in ("t", "pose", "twist", "reaction", "estimate")}
         return replace(found, **sampled, stepping=spent)
 
-    def _combined(self, samples: int, every: int, each: int, finer: int) -> Trajectory:
-        """What the runs of all levels say, with `every` steps of the method between samples, each divided.
+    def _parts(self, runs: tuple[Run, ...], samples: int, every: int, each: int, finer: int) -> list[Trajectory]:
+        """The runs of all levels, with `every` steps of the method between samples, each divided into `finer`.
 
         Reactions are those of every `each`-th sample, and NaN in between.
         """
+        counts = [every * finer * level for level in self._method.levels]
+        return [_part(run, samples, count, each) for run, count in zip(runs, counts, strict=True)]
+
+    def _is_open(self, found: Trajectory, parts: list[Trajectory]) -> bool:
+        """Whether another run decides.
+
+        So it does where the estimate is near the claim; where lines turn far in a step of the coarsest run; and where
+        the last of the differences may be small by chance: falling as the two before it do, it would be near the claim.
+        """
+        levels, (low, high) = self._method.levels, OPEN
+        if len(levels) < 3 or found.estimate is None:
+            return False
+        largest = float(self._largest(found.estimate)[-1])
+        if found.unresolved_at is None and largest < low * CLAIM:
+            poses = np.stack([part.pose for part in parts]) / self._scale
+            sizes = [float(apart.max()) for apart in _differences(poses, levels, self._method.powers)]
+            return len(sizes) > 2 and LEAST * sizes[-2] ** 2 > low * CLAIM * sizes[-3]
+        return largest < high * CLAIM
+
+    def _combined(
+        self,
+        parts: list[Trajectory],
+        samples: int,
+        every: int,
+        each: int,
+        finer: int,
+        further: Trajectory | None = None,
+    ) -> Trajectory:
+        """The extrapolation of these parts; `further`: a run by which the estimate is decided."""
         levels, powers = self._method.levels, self._method.powers
-        runs, every = self._runs if finer == 1 else self._built(finer), every * finer
-        parts = [_part(run, samples, every * level, each) for run, level in zip(runs, levels, strict=True)]
         weights = extrapolation_weights(levels, powers)
         poses, twists, reactions = (
             np.stack([getattr(part, name) for part in parts]) for name in ("pose", "twist", "reaction")
         )
-        pose, twist = combine(poses, weights), combine(twists, weights)
+        t, pose, twist = parts[-1].t, combine(poses, weights), combine(twists, weights)
+        steps = samples * every * finer
         stiff = self._mechanism.applied.dissipate and self._dt / (levels[0] * finer) > self._mechanism.time_scale
-        reaction, estimate = combine(reactions, weights), self._estimate(poses, pose, samples * every)
-        t, warnings = parts[-1].t, [warning for part in parts for warning in part.warnings]
-        largest = self._largest(estimate)
-        above = largest > CLAIM
-        lost = above & self._is_no_series(poses, largest)
+        reaction, estimate = combine(reactions, weights), self._estimate(poses, pose, steps)
+        warnings = [warning for part in parts for warning in part.warnings]
+        lost = (self._largest(estimate) > CLAIM) & self._is_no_series(poses, self._largest(estimate))
         if lost.any():
             since = int(np.argmax(lost))
             pose[since:], twist[since:], reaction[since:] = poses[-1, since:], twists[-1, since:], reactions[-1, since:]
             with np.errstate(all="ignore"):
                 estimate[since:] = np.abs(poses[:-1, since:] - poses[-1, since:]).max(axis=0)
-        warnings += self._doubts(reactions[:, ::each])
+        elif further is not None:
+            decided = self._decided(poses, pose, further.pose) + self._rounding(pose, steps)
+            above = self._largest(estimate)[-1] > CLAIM
+            estimate = decided if above else np.fmax(decided, estimate)
+        estimate = np.maximum(estimate, RELEASED * np.abs(closing(self._mechanism, t, pose)))
+        finest = (poses[-1, ::each], twists[-1, ::each], reactions[-1, ::each])
+        warnings += reaction_doubts(self._mechanism, *finest, expected_error(reactions[:, ::each], levels, powers))
+        largest = self._largest(estimate)
         early = largest > EARLY * CLAIM
-        unresolved_at = float(t[np.argmax(early)]) if above.any() else None
-        turned = self._turned(poses[-1]) / (every * levels[0]) > TURNED
+        unresolved_at = float(t[np.argmax(early)]) if (largest > CLAIM).any() else None
+        turned = self._turned(poses[-1]) / (every * finer * levels[0 if further is None else 1]) > TURNED
         if turned.any():
             at = float(t[np.argmax(turned)])
             unresolved_at = at if unresolved_at is None else min(at, unresolved_at)
@@ -258,19 +312,33 @@ class ExtrapolatedRun(OneShot):
             unresolved_at=unresolved_at,
         )
 
+    def _decided(self, poses: Array, pose: Array, further: Array) -> Array:
+        """The error (times, bodies, 3) of extrapolated poses, by the extrapolation with `further` for the coarsest."""
+        weights = extrapolation_weights((*self._method.levels[1:], self._further), self._method.powers)
+        with np.errstate(all="ignore"):
+            return DECIDED * np.abs(combine(np.concatenate([poses[1:], further[None]]), weights) - pose)
+
+    @property
+    def _further(self) -> int:
+        """The level of the run that decides: it has half as many more steps as the finest."""
+        return ceil(1.5 * self._method.levels[-1])
+
     def _estimate(self, poses: Array, pose: Array, steps: int) -> Array:
         """(times, bodies, 3) [m, m, rad] for poses (levels, times, bodies, 3) and what they are extrapolated to."""
         levels, powers = self._method.levels, self._method.powers
-        # Each step rounds a pose anew, by half a unit at most, and the combination carries that with its weights.
-        carried = np.abs(extrapolation_weights(levels, powers)) @ levels * np.finfo(float).eps / 2 * steps
-        elapsed = np.linspace(0.0, 1.0, poses.shape[1])[:, None, None]
         # The coarsest run may miss otherwise in its first step than in all others: a gap is closed a step late, say. If
         # that run alone is out of the series, it puts the extrapolation off by the whole last difference.
         least = np.full(poses.shape[1], LEAST)
         least[: 2 if steps < len(least) else 1] = 1.0
+        return expected_error(poses / self._scale, levels, powers, least) * self._scale + self._rounding(pose, steps)
+
+    def _rounding(self, pose: Array, steps: int) -> Array:
+        """Each step rounds a pose anew, by half a unit at most, and the combination carries that with its weights."""
+        levels, powers = self._method.levels, self._method.powers
+        carried = np.abs(extrapolation_weights(levels, powers)) @ levels * np.finfo(float).eps / 2 * steps
+        elapsed = np.linspace(0.0, 1.0, len(pose))[:, None, None]
         with np.errstate(all="ignore"):
-            rounding = carried * elapsed * np.maximum(np.abs(pose), self._scale)
-        return expected_error(poses / self._scale, levels, powers, least) * self._scale + rounding
+            return carried * elapsed * np.maximum(np.abs(pose), self._scale)
 
     def _largest(self, estimate: Array) -> Array:
         """(times,) the largest so far, of a radian or of the mechanism's length: what was missed once may pass zero."""
@@ -298,22 +366,6 @@ class ExtrapolatedRun(OneShot):
             out[:-1] = np.fmax(out[:-1], np.abs(np.angle(along[1:] * np.conj(along[:-1]))))
         return out
 
-    def _doubts(self, reactions: Array) -> list[str]:
-        """What is to be said of reactions (levels, times, rows).
-
-        A torque counts as the force that it is at the mechanism's length. Where nothing is held by force, what the
-        heaviest body needs at the mechanism's own time is the measure.
-        """
-        levels, powers, own = self._method.levels, self._method.powers, self._mechanism
-        if not own.row_count:
-            return []
-        forces = reactions / np.where(own.turning, own.length_scale, 1.0)
-        with np.errstate(all="ignore"):
-            usual = max(body.mass for body in own.bodies) * own.length_scale / np.square(own.time_scale)
-            acting = np.fmax.reduce(np.abs(forces[-1]), axis=None, initial=usual)
-            share = np.fmax.reduce(expected_error(forces, levels, powers), axis=None, initial=0.0) / acting
-        return [f"ours: reactions are resolved to {share:.0e} of the largest force"] if share > FORCES else []
-
 
 def _watched(samples: int, every: int, bodies: int) -> int:
     """How many steps lie between the instants that are watched: one, unless these are too many to be kept."""
@@ -340,12 +392,8 @@ def expected_error(
     as that may just pass zero, and no more than a single run that is out of the series, by whatever, puts the
     extrapolation off if it is that run alone. Factors are those of the largest differences so far.
     """
-    parts = [
-        combine(values[-count:], extrapolation_weights(levels[-count:], powers[: count - 1]))
-        for count in range(2, len(levels) + 1)
-    ]
+    apart = _differences(values, levels, powers)
     with np.errstate(all="ignore"):
-        apart = [np.abs(more - fewer) for more, fewer in pairwise([values[-1], *parts])]
         sizes = [np.fmax.accumulate(np.fmax.reduce(each.reshape(len(each), -1), axis=1, initial=0.0)) for each in apart]
         ratios = [np.nan_to_num(finer / rough, nan=0.0) for rough, finer in pairwise(sizes[-3:])]
         rising = [np.nan_to_num(last**2 / before, nan=0.0) for before, last in pairwise(ratios)]
@@ -367,3 +415,13 @@ def combine(values: Numbers, weights: Array) -> Array:
         finest = values[-1]
         out = finest + np.tensordot(weights[:-1], values[:-1] - finest, axes=1)
     return np.where(np.all(np.isfinite(values), axis=0), out, np.nan)
+
+
+def _differences(values: Array, levels: tuple[int, ...], powers: tuple[int, ...]) -> list[Array]:
+    """The distances (times, ...) from the extrapolation of k finest runs (k from 1) to that of one more."""
+    parts = [
+        combine(values[-count:], extrapolation_weights(levels[-count:], powers[: count - 1]))
+        for count in range(1, len(levels) + 1)
+    ]
+    with np.errstate(all="ignore"):
+        return [np.abs(more - fewer) for fewer, more in pairwise(parts)]

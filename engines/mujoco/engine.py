@@ -56,8 +56,10 @@ class MuJoCo(Engine, Valid):
     `slots`, `skates`, `rolls`, `rods`: what holds them, see `engines.mujoco.joints`; skates whose rows change once a
     step are stepped by Euler, since four stages of the same stale row cost more and gain nothing. `estimates`: a run of
     steps twice as long, and where that leaves it open one of half steps, tell the error, if it falls with the fourth
-    power of the step; where it is above `engines.CLAIM` the motion is unresolved. A motion that becomes faster than its
-    start lets expect takes more steps (`engines.finer`), unless its estimate shows that it needs none.
+    power of the step. The displacement that would close the joints' gaps (`engines.constraint_error`) is added: the
+    error of soft rows, which the runs share near singular positions. Where the estimate is above `engines.CLAIM` the
+    motion is unresolved. A motion that becomes faster than its start lets expect takes more steps (`engines.finer`),
+    unless its estimate shows that it needs none.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 

@@ -16,12 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import CLAIM, Size
+from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts, some
 from engines.finer import Division, tells_itself
 from engines.mujoco.joints.roll import roll_warnings
 from engines.mujoco.model import Model
 from engines.mujoco.releases import marks
 from engines.mujoco.solver_check import unsolved
 from reference.checks import Count, validated
+from reference.rows import RANK_TOLERANCE
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -37,6 +39,10 @@ ROUNDED = 1e-8
 # Instants at which an estimate is made beside the samples: all where half of the steps are fewer, as in most runs.
 WATCHED = 1000
 AT_REST = 1e-9  # of the largest acceleration so far, or of one that would be usual
+# Displacements below this part of the mechanism's length change no independent row by a thousandth of its smallest.
+UNFELT = FORCES * RANK_TOLERANCE
+# How many times the displacement that closes joints counts as the error by regularisation: free motion feels it too.
+RELEASED = 1.5
 
 
 @dataclass
@@ -146,20 +152,22 @@ class MuJoCoRun:
         return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at)
 
     def _doubled(self, counts: Counts, read: Counts) -> tuple[Trajectory, Array]:
-        """The same, and how far a run of steps twice as long is from its poses.
+        """The same, and the differences of a run of steps twice as long from its poses.
 
-        That run is there after every second step. In between, the larger of the distances before and after counts.
+        That run is there after every second step. In between, the larger of the differences before and after counts.
         """
         before, after = counts - counts % 2, counts + counts % 2
         even = np.union1d(before, after)
         every = np.union1d(even, counts)
         found = self._as_built(every, read)
         apart, spent = self._apart(found.pose[np.searchsorted(every, even)], np.floor_divide(even, 2), 2.0)
-        apart = np.maximum(*(apart[np.searchsorted(even, around)] for around in (before, after)))
+        first, second = (apart[np.searchsorted(even, around)] for around in (before, after))
+        apart = np.where(np.abs(first) > np.abs(second), first, second + 0 * first)  # NaN where either is
         return replace(_at(found, np.searchsorted(every, counts)), stepping=found.stepping + spent), apart
 
     def _apart(self, pose: Array, counts: Counts, ratio: float) -> tuple[Array, float]:
-        """How far poses (times, bodies, 3) are from those after so many steps of another length, and what these took.
+        """The differences of the poses after so many steps of another length from these (times, bodies, 3), and what
+        those took.
 
         Its rows give way ratio^4 times as much, so that their error is told with that of the step. NaN where it is
         lost.
@@ -171,7 +179,7 @@ class MuJoCoRun:
         with _listening(run.data) as complaints, run.model.hooked():
             position, velocity, clock, spent = run._step(counts)
         there, _, _ = run.model.tree.motion(*(run._ordered(x) for x in (position, velocity, velocity)))
-        apart = np.abs(there - pose)
+        apart = there - pose
         reset_at = np.inf if complaints.reset_at is None else complaints.reset_at
         t = counts * run._dt
         apart[(np.abs(clock - t) > run._dt / 2) | (t >= reset_at)] = np.nan
@@ -182,6 +190,7 @@ class MuJoCoRun:
 
         What hard rows lose in rounding falls with nothing, so a small difference counts in full.
         """
+        apart = np.abs(apart)
         return np.maximum(apart / (2**ORDER - 1), np.minimum(apart, ROUNDED * self._sizes))
 
     def _estimated(self, found: Trajectory, apart: Array, counts: Counts, watched: Counts) -> Trajectory:
@@ -195,17 +204,21 @@ class MuJoCoRun:
         of the largest differences so far.
         """
         stepping, warnings = found.stepping, found.warnings
-        estimate = self._by_order(apart)
+        estimate, missed = self._by_order(apart), apart / (2**ORDER - 1)
         coarse = self._largest_so_far(apart[watched])
         # From which step on it is above is known no better than the estimate is: from where double steps leave it open.
         closed = watched[: np.argmin([*self._within(apart[watched]), False])]
         unresolved_at = None
         if not coarse[-1] <= CLAIM:
             apart, spent = self._apart(found.pose, 2 * counts, 0.5)
+            missed = apart
             q = self._largest_so_far(apart[watched]) / np.where(coarse > 0, coarse, np.inf)
             factor = np.where(q <= 1 / 8, 1 + 2 * q, 2.0)  # 2 also where the run of double steps is lost
-            estimate = apart * factor[np.searchsorted(counts[watched], counts, side="right") - 1, None, None]
+            estimate = np.abs(apart) * factor[np.searchsorted(counts[watched], counts, side="right") - 1, None, None]
             stepping += spent
+        moved = RELEASED * closing(self.model.mechanism, found.t, found.pose, found.twist)
+        estimate = estimate + np.maximum.accumulate(np.abs(moved))
+        warnings = (*warnings, *self._reaction_doubts(found, moved, missed))
         if not self._within(estimate).all():
             above = found.t[np.argmin(self._within(estimate))]
             unresolved_at = float(min(above, (counts[closed[-1]] + 1) * self._dt)) if len(closed) else 0.0
@@ -215,13 +228,25 @@ class MuJoCoRun:
             )
         return replace(found, stepping=stepping, warnings=warnings, estimate=estimate, unresolved_at=unresolved_at)
 
+    def _reaction_doubts(self, found: Trajectory, *moved: Array) -> list[str]:
+        """What is to be said of reactions where poses may be displaced by these (times, bodies, 3)."""
+        mechanism = self.model.mechanism
+        sound = np.isfinite(found.reaction).any(axis=1) & np.isfinite(moved).all(axis=(0, 2, 3))
+        felt = np.any(np.abs(moved) > UNFELT * self._sizes, axis=(0, 2, 3))
+        told = some(mechanism, np.logical_and(sound, felt))
+        if not len(told):
+            return []
+        pose, reaction = found.pose[told], found.reaction[told]
+        errors = [displaced_reaction(mechanism, pose, reaction, each[told]) - reaction for each in moved]
+        return reaction_doubts(mechanism, pose, found.twist[told], reaction, np.abs(errors).max(axis=0))
+
     def _within(self, apart: Array) -> NDArray[np.bool_]:
         """(times,) whether that is no more than what is claimed."""
-        return np.max(apart / self._sizes, axis=(1, 2)) <= CLAIM
+        return np.max(np.abs(apart) / self._sizes, axis=(1, 2)) <= CLAIM
 
     def _largest_so_far(self, apart: Array) -> Array:
         """(times,) of a radian or of the mechanism's length; NaN from where one is lost."""
-        return np.maximum.accumulate(np.max(apart / self._sizes, axis=(1, 2)))
+        return np.maximum.accumulate(np.max(np.abs(apart) / self._sizes, axis=(1, 2)))
 
     @property
     def _dt(self) -> float:

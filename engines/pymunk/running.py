@@ -15,6 +15,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
 from engines import OneShot, Size
+from engines.extrapolated import UNCONVERGED
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
 from engines.single_run import reactions
@@ -256,7 +257,7 @@ class PymunkRun(OneShot):
     def _unconverged(self, sweeping: Sweeping) -> str:
         """What is to be said of the sweeps."""
         if sweeping.gain < 1:
-            return f"ours: not converged, {sweeping.iterations} sweeps leave {sweeping.left:.0%} of the slowest mode"
+            return f"{UNCONVERGED}, {sweeping.iterations} sweeps leave {sweeping.left:.0%} of the slowest mode"
         if sweeping.unsettled > UNSETTLED:
             return (
                 "ours: the reactions at the start are not converged, "

@@ -58,7 +58,9 @@ def search(
         typer.Option(help="Of joints and forces: pin,rod,spring,...; of MuJoCo alone: connect,gear,..."),
     ] = None,
     decades: Annotated[int, typer.Option(min=0, max=6, help="By how many more masses and lengths differ.")] = 0,
-    oracles: Annotated[str, typer.Option(help=f"What is asked: {ALL_ORACLES}.")] = ALL_ORACLES,
+    oracles: Annotated[
+        str, typer.Option(help=f"What is asked: {ALL_ORACLES}; or claims, of methods that estimate their own errors.")
+    ] = ALL_ORACLES,
     release: Annotated[
         str | None, typer.Option(help="MuJoCo alone in this release, as 3.6.0: installed once, in the user's cache.")
     ] = None,
@@ -73,8 +75,8 @@ def search(
     from reports.run.cluster import elsewhere, pool
     from reports.search import plan
     from reports.search.chunk import as_words, asked, chunks, stored
-    from reports.search.parts import TOGGLE
-    from reports.search.subjects import ORACLES
+    from reports.search.parts import SINGULAR
+    from reports.search.subjects import CLAIMS, ORACLES
 
     if seconds is not None and not 0 < seconds < float("inf"):
         raise BadInput(f"--seconds is {seconds}; it must be a finite number greater than zero")
@@ -89,9 +91,9 @@ def search(
     if release is not None:
         subjects = [of_release(release, engine, variant)]
     own = tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
-    wanted = listed("--kinds", [kinds], (*own, TOGGLE)) if kinds is not None else own
-    subjects = [one for one in subjects if {*wanted} & {*one.kinds, TOGGLE}]
-    asked_of = listed("--oracles", [oracles], ORACLES)
+    wanted = listed("--kinds", [kinds], (*own, *SINGULAR)) if kinds is not None else own
+    subjects = [one for one in subjects if {*wanted} & {*one.kinds, *SINGULAR}]
+    asked_of = listed("--oracles", [oracles], (*ORACLES, CLAIMS))
     batches: Iterable[list[Chunk]]
     if fresh:
         batches = plan.fresh(subjects, cases or TEN)

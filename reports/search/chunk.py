@@ -20,7 +20,8 @@ from engines import Engine
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Answer, Task, Values
 from reports.run.store import Store
-from reports.search.parts import TOGGLE
+from reports.search.claims import REPORTED
+from reports.search.parts import SINGULAR
 from reports.search.subjects import Adapted, Subject, Told, is_shaped
 
 SIZE = 10  # cases in a piece: a second or some
@@ -135,7 +136,7 @@ def chunks(
     for first in range(begin, cases, SIZE):
         count = min(SIZE, cases - first)
         for subject in subjects:
-            own = tuple(kind for kind in (*subject.kinds, TOGGLE) if kind in kinds) or subject.kinds
+            own = tuple(kind for kind in (*subject.kinds, *SINGULAR) if kind in kinds) or subject.kinds
             out.append(Chunk(subject, seed, first, count, own, decades, oracles))
     return out
 
@@ -213,7 +214,12 @@ def summary(told: Sequence[Asked]) -> list[list[str]]:
     out = [
         [line.subject, line.check, str(len(line.errors)), *map(_short, line.quantiles), str(line.faults)]
         for line in lines(told)
+        if line.check != REPORTED
     ]
+    for line in lines(told):
+        if line.check == REPORTED and any(line.errors):
+            words = f"{sum(line.errors):.0f} reported, though right"
+            out.append([line.subject, words, str(len(line.errors)), "", "", "", ""])
     for subject, count in refused(told).items():
         out.append([subject, "refused", str(count), "", "", "", ""])
     return out

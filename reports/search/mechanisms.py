@@ -30,7 +30,7 @@ from engines import Engine, Unsupported
 from reference.checks import LARGEST_COUNT, InvalidMechanism, validated
 from reference.kinds import from_to
 from reference.mechanism import Mechanism
-from reports.search.parts import EVERY, FORCES, KINDS, TOGGLE, Link, Part, Recipe, Rim
+from reports.search.parts import EVERY, FOLD, FORCES, KINDS, SINGULAR, TOGGLE, Link, Part, Recipe, Rim
 from reports.search.recipe import Held, Standing, build
 
 ALL = KINDS
@@ -66,7 +66,7 @@ def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = ALL, decades: Deca
     of the bodies differ by that many decades more, upwards and downwards, and so do the units of length, mass and time.
     Raises InvalidMechanism for kinds that don't exist, or none.
     """
-    if not kinds or not {*kinds} <= {*EVERY, TOGGLE}:
+    if not kinds or not {*kinds} <= {*EVERY, *SINGULAR}:
         raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(EVERY)}")
     draw = _Draw(np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, decades]))), kinds, decades)
     while True:
@@ -80,7 +80,7 @@ class _Draw:
 
     def __init__(self, random: np.random.Generator, kinds: Kinds, decades: int) -> None:
         self._random, self._decades = random, decades
-        self._kinds = tuple(kind for kind in (*EVERY, TOGGLE) if kind in kinds)  # their order is no choice
+        self._kinds = tuple(kind for kind in (*EVERY, *SINGULAR) if kind in kinds)  # their order is no choice
 
     def whole(self, low: int, high: int) -> int:
         """Both included."""
@@ -141,6 +141,8 @@ class _Draw:
         return tuple(kept), held
 
     def _pinned(self, link: Link) -> tuple[Link, ...]:
+        if link.kind == FOLD:
+            return Link("pin", 0, link.first, link.far), Link("pin", 0, link.second, link.at), link
         return (Link("pin", link.first, link.second, link.at), link) if link.kind == TOGGLE else (link,)
 
     def _unit(self) -> int:
@@ -181,8 +183,12 @@ class _Draw:
             return Link(kind, first, second, at, turn, more)
         if kind == "weld":
             return Link(kind, first, second, at)
-        if kind == TOGGLE:
-            return Link(kind, first, second, at, turn, more, strength=self.whole(3, 5))
+        if kind == FOLD and first:
+            parallel = self.chance(2)
+            strength, far = self.whole(2, 5), self.two(6)
+            return Link(kind, first, second, at, 0, more, strength=strength, rest=0 if parallel else rest, far=far)
+        if kind in SINGULAR:
+            return Link(TOGGLE, first, second, at, turn, more, strength=self.whole(3, 5))
         return Link(kind, first, second, at, turn, more, strength=strength, rest=rest if "spring" in kind else 0)
 
 

@@ -11,7 +11,9 @@ KINDS = ("pin", "slot", "skate", "roll", "drive")  # from the beginning; the sam
 LINKS = ("rod", "gear", "weld")
 FORCES = ("spring", "damper", "torsion-spring", "torsion-damper", "force", "torque")
 EVERY = (*KINDS, *LINKS, *FORCES)
-TOGGLE = "toggle"  # asked for by its name alone: its rows nearly depend on each other
+# Asked for by their names alone: their rows nearly depend on each other.
+TOGGLE, FOLD = "toggle", "fold"
+SINGULAR = (TOGGLE, FOLD)
 SHAPES = ("line", "circle", "ring", "ellipse")
 
 ANGLE = Decimal("0.3")  # rad: no multiple of it but 0 is an angle that a formula is simple at
@@ -74,6 +76,7 @@ class Link:
     rims: tuple[Rim, ...] = ()
     strength: int = 0
     rest: int = 0
+    far: tuple[int, int] = (0, 0)
 
 
 @dataclass(frozen=True)
@@ -88,7 +91,7 @@ class Recipe:
     @property
     def kinds(self) -> tuple[str, ...]:
         """The kinds of its joints and forces, each once, in the order of EVERY."""
-        return tuple(kind for kind in (*EVERY, TOGGLE) if any(link.kind == kind for link in self.links))
+        return tuple(kind for kind in (*EVERY, *SINGULAR) if any(link.kind == kind for link in self.links))
 
 
 def ladder(step: int) -> Decimal:

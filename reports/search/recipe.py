@@ -26,7 +26,7 @@ from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scales import length_scale
-from reports.search.parts import ANGLE, EVERY, FORCES, RATE, SHAPES, TOGGLE, Link, Recipe, Rim, ladder
+from reports.search.parts import ANGLE, EVERY, FORCES, RATE, SHAPES, SINGULAR, Link, Recipe, Rim, ladder
 
 Point = tuple[Decimal, Decimal]
 
@@ -50,7 +50,7 @@ class Joining:
                 f"recipe: joint {number} is between bodies {link.first} and {link.second}; the first must be from 0 "
                 f"to {count}, the second from 1, and they must differ"
             )
-        if link.kind not in (*EVERY, TOGGLE) or (link.kind == "roll" and len(link.rims) != 2):
+        if link.kind not in (*EVERY, *SINGULAR) or (link.kind == "roll" and len(link.rims) != 2):
             raise InvalidMechanism(
                 f"recipe: joint {number} is a {link.kind!r} of {len(link.rims)} rims; it must be one of "
                 f"{', '.join(EVERY)}, a roll with two rims"
@@ -88,6 +88,17 @@ class Joining:
                     second[1] - along / 2 * math.sin(line) + miss * math.cos(line),
                 )
                 return Rod(name, *ends, self._far_point(link), second, math.hypot(1.5 * along, miss))
+            case "fold":
+                pin, other = self._at(link), beside(self.places[link.first], link.far, self.sizes[link.first])
+                across, up = float(other[0] - pin[0]), float(other[1] - pin[1])
+                if not math.hypot(across, up) > 0:
+                    raise InvalidMechanism(f"recipe: joint {number} is a fold whose two pins are at one place")
+                beyond, miss = link.more / 10, 10.0**-link.strength
+                further = beyond * (1 + link.rest / 10)
+                one = self._moved(link.first, other, beyond * across, beyond * up)
+                two = self._moved(link.second, pin, further * across - miss * up, further * up + miss * across)
+                length = math.hypot(across, up) * math.hypot(1 + beyond - further, miss)
+                return Rod(name, *ends, one, two, length)
             case "gear":
                 ratio = float(link.more * RATE)
                 return Gear(name, *ends, ratio, second_angle - ratio * first_angle)
@@ -140,6 +151,12 @@ class Joining:
             float(link.turn * ANGLE) - self._angle(link.first),
         )
         return x + along * math.cos(line), y + along * math.sin(line)
+
+    def _moved(self, body: int, place: Point, x: float, y: float) -> Vector:
+        """The point [m] of a body that lies x and y [m] from a place of the world."""
+        own_x, own_y = self._own(body, place)
+        more_x, more_y = components(-self._angle(body), x, y)
+        return own_x + more_x, own_y + more_y
 
     def _angles(self, link: Link) -> tuple[float, float]:
         return self._angle(link.first), self._angle(link.second)
@@ -255,7 +272,7 @@ class Standing:
         scaled, norm, _ = self._scaled(held)
         if not np.all(norm > 0) or len(norm) > scaled.shape[1]:
             return False
-        least = NEAREST if any(each.joint.name.startswith(TOGGLE) for each in held) else LEAST_RANK
+        least = NEAREST if any(each.joint.name.startswith(SINGULAR) for each in held) else LEAST_RANK
         return dependence(scaled) >= least
 
     def _scaled(self, held: Sequence[Held]) -> tuple[Array, Array, Array]:

@@ -16,7 +16,7 @@ from reports.search import raw
 from reports.search.chunk import Asked
 from reports.search.parts import Recipe
 from reports.search.scripts import script
-from reports.search.subjects import ORACLES, Adapted, Subject, Told
+from reports.search.subjects import CLAIMS, ORACLES, Adapted, Subject, Told
 
 Case = TypeVar("Case")
 
@@ -223,7 +223,7 @@ def _kind_of(told: Told) -> str:
 
 def oracle_of(subject: Subject, case: Any, number: int, check: str, oracles: tuple[str, ...]) -> tuple[str, ...]:
     """The one oracle that tells this fault, so that the others are not asked again and again."""
-    for oracle in (one for one in ORACLES if one in oracles):
+    for oracle in (one for one in (*ORACLES, CLAIMS) if one in oracles):
         if check in subject.ask(case, number, (oracle,)).faults:
             return (oracle,)
     return oracles

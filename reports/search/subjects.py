@@ -15,14 +15,25 @@ from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
 from engines.pymunk import Pymunk
 from reference.mechanism import Mechanism
-from reports.search import instant_box2d, instant_mujoco, instant_pymunk, mechanisms, motions, raw, raw_law, relations
+from reports.search import (
+    claims,
+    instant_box2d,
+    instant_mujoco,
+    instant_pymunk,
+    mechanisms,
+    motions,
+    raw,
+    raw_law,
+    relations,
+)
 from reports.search.law import Fault, NotAsked
 from reports.search.mechanisms import of_a_shape
-from reports.search.parts import EVERY, TOGGLE, Recipe, as_text, from_text
+from reports.search.parts import EVERY, SINGULAR, Recipe, as_text, from_text
 from reports.search.recipe import LEAST_RANK, build, dependence
 from reports.search.release import release
 
 ORACLES = ("instant", "relations", "motions")
+CLAIMS = "claims"  # asked by its name alone: runs are as long as a user's, and cost as much
 OURS = "our own error"  # of an oracle that raises: no fault of the engine
 MOST = 0.1  # of what moves or acts, that rounding may be where rows nearly depend on each other
 LAW = 1e-9  # of MuJoCo alone: rounding makes a thousandth of it
@@ -69,7 +80,7 @@ class Adapted:
     def ask(self, case: Recipe, number: int, oracles: Sequence[str]) -> Told:
         """All that these oracles ask of one case. Raises InvalidMechanism for a case that is none."""
         mechanism = _built(case)
-        room = _room(mechanism) if TOGGLE in case.kinds else 1.0
+        room = _room(mechanism) if {*SINGULAR} & {*case.kinds} else 1.0
         asked: dict[str, Callable[[], dict[str, tuple[float, float]]]] = {
             "instant": lambda: _instant(at_an_instant(self.engine, mechanism), mechanism, room),
             "relations": lambda: {
@@ -77,9 +88,10 @@ class Adapted:
                 for name, error in relations.errors(self.engine, case, number).items()
             },
             "motions": lambda: motions.errors(self.engine, mechanism),
+            CLAIMS: lambda: claims.errors(self.engine, mechanism, number),
         }
-        told = _asked({name: asked[name] for name in ORACLES if name in oracles}, self.engine)
-        if room == 1:
+        told = _asked({name: asked[name] for name in (*ORACLES, CLAIMS) if name in oracles}, self.engine)
+        if room == 1 or CLAIMS in oracles:  # a claim leaves no room
             return told
         allowed = {name: (error, min(room * bound, max(MOST, bound))) for name, (error, bound) in told.errors.items()}
         return replace(told, errors=allowed)
