@@ -37,13 +37,12 @@ def some(mechanism: Mechanism, sound: NDArray[np.bool_]) -> NDArray[np.int_]:
     return places[np.unique(np.linspace(0, len(places) - 1, most).round().astype(int))]
 
 
-def closing(mechanism: Mechanism, t: Array, pose: Array, twist: Array | None = None) -> Array:
+def closing(mechanism: Mechanism, t: Array, pose: Array) -> Array:
     """The displacements (times, bodies, 3) [m, m, rad] that close the gaps of poses (times, bodies, 3) at times t [s].
 
     With B = J M^-1/2 it is -M^-1/2 B^+ gap, whose condition is that of J and not of J M^-1 J^T. Rows that depend on
-    others to RANK_TOLERANCE ask for nothing. Given twists (times, bodies, 3) that are the rates of these poses, the
-    slip of rows that hold velocities is added up over time. Worked out at `some` of the times, and linear in between;
-    zero from where a pose is not finite.
+    others to RANK_TOLERANCE ask for nothing, and rows that hold velocities have no gap. Worked out at `some` of the
+    times, and linear in between; zero from where a pose is not finite.
     """
     looks = some(mechanism, np.logical_and.accumulate(np.isfinite(pose).all(axis=(1, 2))))
     if not len(looks):
@@ -54,10 +53,6 @@ def closing(mechanism: Mechanism, t: Array, pose: Array, twist: Array | None = N
     size[size == 0] = 1.0
     inverse = -np.linalg.pinv(rows / size[..., None], rcond=RANK_TOLERANCE) / root[:, None]
     moved = (inverse @ (np.nan_to_num(mechanism.gap(at, when)) / size)[..., None])[..., 0]
-    if twist is not None and not mechanism.holonomic.all():
-        slip = np.where(mechanism.holonomic, 0.0, mechanism.slip(at, twist[looks])) / size
-        rate = (inverse @ slip[..., None])[..., 0]
-        moved[1:] += np.cumsum((rate[1:] + rate[:-1]) / 2 * np.diff(when)[:, None], axis=0)
     return np.stack([np.interp(t, when, column) for column in moved.T], axis=1).reshape(pose.shape)
 
 
