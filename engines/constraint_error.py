@@ -37,23 +37,26 @@ def some(mechanism: Mechanism, sound: NDArray[np.bool_]) -> NDArray[np.int_]:
     return places[np.unique(np.linspace(0, len(places) - 1, most).round().astype(int))]
 
 
-def closing(mechanism: Mechanism, t: Array, pose: Array) -> Array:
-    """The displacements (times, bodies, 3) [m, m, rad] that close the gaps of poses (times, bodies, 3) at times t [s].
+def closing(mechanism: Mechanism, t: Array, pose: Array, at: Array | None = None) -> Array:
+    """The displacements (instants, bodies, 3) [m, m, rad] that close the gaps of a motion at the instants `at` [s].
 
-    With B = J M^-1/2 it is -M^-1/2 B^+ gap, whose condition is that of J and not of J M^-1 J^T. Rows that depend on
-    others to RANK_TOLERANCE ask for nothing, and rows that hold velocities have no gap. Worked out at `some` of the
-    times, and linear in between; zero from where a pose is not finite.
+    Poses (times, bodies, 3) are those at times t [s], which are the instants unless others are given. With B = J M^-1/2
+    it is -M^-1/2 B^+ gap, whose condition is that of J and not of J M^-1 J^T. Rows that depend on others to
+    RANK_TOLERANCE ask for nothing, and rows that hold velocities have no gap. Worked out at `some` of the times, and
+    linear in between; zero if the first pose is not finite, and constant from where one is not.
     """
+    at = t if at is None else at
     looks = some(mechanism, np.logical_and.accumulate(np.isfinite(pose).all(axis=(1, 2))))
     if not len(looks):
-        return np.zeros_like(pose)
-    at, when, root = pose[looks], t[looks], np.sqrt(mechanism.inertias.reshape(-1))
-    rows = mechanism.rows(at) / root
+        return np.zeros((len(at), *pose.shape[1:]))
+    seen, when, root = pose[looks], t[looks], np.sqrt(mechanism.inertias.reshape(-1))
+    rows = mechanism.rows(seen) / root
     size = np.linalg.norm(rows, axis=-1)
     size[size == 0] = 1.0
     inverse = -np.linalg.pinv(rows / size[..., None], rcond=RANK_TOLERANCE) / root[:, None]
-    moved = (inverse @ (np.nan_to_num(mechanism.gap(at, when)) / size)[..., None])[..., 0]
-    return np.stack([np.interp(t, when, column) for column in moved.T], axis=1).reshape(pose.shape)
+    moved = (inverse @ (np.nan_to_num(mechanism.gap(seen, when)) / size)[..., None])[..., 0]
+    between = [np.interp(at, when, column) for column in moved.T]
+    return np.stack(between, axis=1).reshape(len(at), *pose.shape[1:])
 
 
 def displaced_reaction(mechanism: Mechanism, pose: Array, reaction: Array, moved: Array) -> Array:

@@ -217,7 +217,8 @@ class MuJoCoRun:
             estimate = np.abs(apart) * factor[np.searchsorted(counts[watched], counts, side="right") - 1, None, None]
             stepping += spent
         # Extrapolated poses still have the gaps that all runs leave alike.
-        moved = RELEASED * closing(self.model.mechanism, found.t, found.pose + better)
+        seen = found.pose[watched] + better[watched]
+        moved = RELEASED * closing(self.model.mechanism, found.t[watched], seen, found.t)
         estimate = estimate + np.maximum.accumulate(np.abs(moved))
         warnings = (*warnings, *self._reaction_doubts(found, moved, better))
         if not self._within(estimate).all():
