@@ -88,7 +88,7 @@ def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_
 
 def test_a_script_without_a_named_space_is_run_as_the_program_to_its_first_step(tmp_path):
     (tmp_path / "x.py").write_text(f'{INSIDE}\nif __name__ == "__main__":\n    main()\n')
-    found = checked(tmp_path, "x.py", tolerance=1e-2, apply="y.py")
+    found = checked(tmp_path, "x.py", tolerance=1e-6, apply="y.py")
     assert found.data["step"] == 0.01
     assert "    world.step = in_parts" in (tmp_path / "y.py").read_text()
     assert found.data["applied"]["error"] <= 1e-2
@@ -104,7 +104,8 @@ def test_a_force_that_stands_on_a_body_pushes_in_every_part_of_a_step(tmp_path):
         float(subprocess.check_output([sys.executable, "-c", code], cwd=tmp_path).split()[-1])
         for code in (space, space.replace(" y;", " x as y;"))
     ]
-    assert speeds[0] == pytest.approx(speeds[1], rel=0.1)
+    # With two parts that start half a part ahead a quarter more; with the force in one part alone three quarters.
+    assert speeds[0] == pytest.approx(speeds[1], rel=0.3)
 
 
 @pytest.mark.parametrize(

@@ -146,7 +146,7 @@ def worst_gap(space: pymunk.Space, gaps: Callable, step: float, seconds: float =
 
 
 @pytest.mark.parametrize("linkage", LINKAGES)
-@pytest.mark.parametrize("step", [1 / 60, 1 / 240])  # the page's table has 1 ms
+@pytest.mark.parametrize("step", [1 / 60, pytest.param(1 / 240, marks=pytest.mark.slow)])  # the page's table has 1 ms
 def test_with_the_lines_no_linkage_opens_more_than_as_shipped(linkage, step):
     make = LINKAGES[linkage]
     space = make()

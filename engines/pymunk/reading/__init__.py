@@ -19,11 +19,18 @@ from reference.checks import InvalidMechanism
 USUAL_STEP = 1 / 60  # s: pymunk's own examples'
 
 
-def read(space: pymunk.Space, step: float | None = None, without: Sequence[str] = (), parts: int = 1) -> Reading:
+def read(
+    space: pymunk.Space,
+    step: float | None = None,
+    without: Sequence[str] = (),
+    parts: int = 1,
+    ahead: bool = False,
+) -> Reading:
     """The mechanism of a space as it is now.
 
     `step` [s]: the user's; unless it is given, the last that the space was stepped by, or 1/60 s. `without`: elements
-    to switch off first, in a copy. `parts`: the steps that one call of the space's own `step` makes. Raises Unsupported
+    to switch off first, in a copy. `parts`: the steps that one call of the space's own `step` makes. `ahead`: the
+    user's lines start half a step ahead. Raises Unsupported
     for what has no ideal counterpart, in a sentence that names it.
     """
     if without:
@@ -46,7 +53,7 @@ def read(space: pymunk.Space, step: float | None = None, without: Sequence[str] 
             raise
         words = f"the space has been stepped by {last:g} s already, which opens joints; give it before its first step"
         raise InvalidMechanism(f"{reason}; {words}") from None
-    own = OwnPymunk(found, mechanism, step or last or USUAL_STEP / parts, not (step or last))
+    own = OwnPymunk(found, mechanism, step or last or USUAL_STEP / parts, not (step or last), ahead)
     refuse_at_start(own, mechanism)
     if len({shape.body for shape in space.shapes if not shape.sensor}) > 1:
         found.notes.append(Note("contacts", "they are left out, since none is made in the judged motion"))
@@ -84,7 +91,7 @@ class Reader:
         found = made(path, file, name)
         own = step or (found.dt and found.dt * found.parts)
         try:
-            reading = read(found.space, own and own / found.parts, without, found.parts)
+            reading = read(found.space, own and own / found.parts, without, found.parts, found.ahead)
         finally:
             for body in found.space.bodies:
                 if body.is_sleeping:
@@ -93,6 +100,8 @@ class Reader:
         if found.dt is not None:
             words = f"it steps its space by {own:.4g} s; it was stopped before the first step, which is the start"
             notes.append(Note("the script", words))
+        if found.ahead:
+            notes.append(Note("its first step", "it brings velocities half a step ahead, as your runs here begin too"))
         if found.parts > 1:
             notes.append(Note("space.step", f"each call makes {found.parts} steps, as the script says"))
         source = Source(

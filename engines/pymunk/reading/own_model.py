@@ -17,6 +17,9 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk.constraints import Constraint, GrooveJoint, RotaryLimitJoint, SlideJoint
 
+from engines.pymunk.contraction import gain, sweeps
+from engines.pymunk.expected import worst_contraction
+from engines.pymunk.methods import WORK
 from engines.pymunk.reading.joints import LIMITS, Described, both_sided, is_equality
 from engines.reading import Change, Give, Note, Obstacle, left_out, refuse
 from reference.mechanism import Mechanism
@@ -27,6 +30,7 @@ MOST_SHAPES = 400
 DIVISORS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 FURTHER = (*DIVISORS, 512, 1024, 2048, 4096)
 MORE_ITERATIONS = 50
+EXPECTED = 10  # times the mechanism's time: in which poses so many iterations have to be enough
 SMALL = 1e-4  # of the mechanism's time: a step for the accelerations at t = 0, and half of it
 SWEEPS = 20_000  # at that step: impulses are passed on until nothing is left
 
@@ -54,6 +58,7 @@ class OwnPymunk:
     mechanism: Mechanism
     step: float
     unknown_step: bool  # the space has not been stepped, and no step was named
+    ahead: bool = False  # the user's own lines bring velocities half a step ahead before the first step
 
     @property
     def engine(self) -> str:
@@ -141,32 +146,42 @@ class OwnPymunk:
         return sorted(met, key=lambda each: each.t)
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
-        space = self.described.space
-        own, more = space.iterations, max(MORE_ITERATIONS, 2 * space.iterations)
+        """Whole gaps are closed in a step only where so many iterations are stable in every pose that is expected."""
+        own, more = self.described.space.iterations, max(MORE_ITERATIONS, 2 * self.described.space.iterations)
+        rho = worst_contraction(self.mechanism, EXPECTED * self.mechanism.time_scale)
+        enough = sweeps(rho, max(1, len(self.mechanism.joints)), work=WORK)
+        counts = sorted({own, more, enough, *((10 * more,) if further else ())})
+        closed = [(count, 0.0, ahead) for count in counts if gain(rho, count) == 1 for ahead in (False, True)]
         out = []
-        kinds = [(own, None), (own, 0.0), (more, None), (more, 0.0)]
-        for iterations, bias in [*kinds, (10 * more, 0.0)] if further else kinds:
+        for kind in dict.fromkeys([(own, None, self.ahead), (more, None, self.ahead), *closed]):
             for divisor in FURTHER if further else DIVISORS:
                 dt = self.step / divisor
                 if dt < smallest:
                     break
-                words = f"{iterations} iterations{'' if bias is None else ', error_bias 0'}, step {dt * 1e3:.4g} ms"
-                lines = [f"space.iterations = {iterations}"] if iterations != own else []
-                if bias is not None:
-                    lines += ["for joint in space.constraints:", f"    joint.error_bias = {bias:g}"]
-                # A comment: a space that a pasted line has stepped once is open by a step, and no start to check.
-                lines.append(f"# call space.step({dt!r}) in your loop; to check the space again, give --step {dt!r}")
-                out.append(Change(words, dt, tuple(lines), (("iterations", iterations), ("bias", bias))))
+                out.append(self._change(*kind, dt))
         return out
+
+    def _change(self, iterations: int, bias: float | None, ahead: bool, dt: float) -> Change:
+        words = f"{iterations} iterations{'' if bias is None else ', error_bias 0'}"
+        words += ", started half a step ahead by code that runs once" if ahead else ""
+        lines = [f"space.iterations = {iterations}"] if iterations != self.described.space.iterations else []
+        if bias is not None:
+            lines += ["for joint in space.constraints:", f"    joint.error_bias = {bias:g}"]
+        if ahead and not self.ahead:
+            lines += start_ahead("space", self.described.space, dt)
+        lines.append(f"# call space.step({dt!r}) in your loop; to check the space again, give --step {dt!r}")
+        options = (("iterations", iterations), ("bias", bias), ("ahead", ahead))
+        return Change(f"{words}, step {dt * 1e3:.4g} ms", dt, tuple(lines), options)
 
     def remarks(self, run: Trajectory) -> Sequence[Note]:
         return ()
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
         space, bodies = self._fresh()
-        dt, spacing = self.step, every * self.step
+        dt, spacing, ahead = self.step, every * self.step, self.ahead
         if change is not None:
             options, dt = dict(change.options), change.dt
+            ahead = options["ahead"]
             space.iterations = options["iterations"]
             if options["bias"] is not None:
                 for joint in space.constraints:
@@ -177,6 +192,13 @@ class OwnPymunk:
         pose, twist, acceleration = (np.full(shape, np.nan) for _ in range(3))
         pose[0], twist[0] = self.mechanism.pose, self.mechanism.twist
         stepping = 0.0
+        if ahead:
+            begin = time.process_time()
+            for body in bodies:
+                body.position -= body.velocity * (dt / 2)
+                body.angle -= body.angular_velocity * dt / 2
+            step(dt / 2)
+            stepping += time.process_time() - begin
         for sample in range(1, samples + 1):
             begin = time.process_time()
             for _ in range(steps - 1):
@@ -185,9 +207,10 @@ class OwnPymunk:
             before, begin = _twists(bodies), time.process_time()
             step(dt)
             stepping += time.process_time() - begin
-            pose[sample], twist[sample] = _poses(bodies), _twists(bodies)
+            pose[sample], after = _poses(bodies), _twists(bodies)
+            twist[sample] = (before + after) / 2 if ahead else after
             # The kick of a step is of the pose after its drift: this is the acceleration at the sample.
-            acceleration[sample] = (twist[sample] - before) / dt
+            acceleration[sample] = (after - before) / dt
             if not np.isfinite(pose[sample]).all():
                 pose[sample:], twist[sample:] = np.nan, np.nan
                 break
@@ -246,6 +269,22 @@ def moved_to(described: Described, pose: Array) -> pymunk.Space:
         body.angle = angle
         body.position = pymunk.Vec2d(x, y) - body.center_of_gravity.rotated(angle)
     return space
+
+
+def start_ahead(name: str, space: pymunk.Space, dt: float) -> list[str]:
+    """The lines that bring the velocities of this space, called so, half a step of dt [s] ahead of the positions."""
+    keep, restore = list[str](), list[str]()
+    if any(body.force.length or body.torque for body in space.bodies):  # a step takes them off
+        keep = [f"pushed = [(body, body.force, body.torque) for body in {name}.bodies]"]
+        restore = ["for body, force, torque in pushed:", "    body.force, body.torque = force, torque"]
+    return [
+        *keep,
+        f"for body in {name}.bodies:  # once, before the first step, which moves them back",
+        f"    body.position -= body.velocity * {dt / 2!r}",
+        f"    body.angle -= body.angular_velocity * {dt / 2!r}",
+        f"{name}.step({dt / 2!r})",
+        *restore,
+    ]
 
 
 def _poses(bodies: Sequence[pymunk.Body]) -> Array:

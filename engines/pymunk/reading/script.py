@@ -9,7 +9,7 @@ import os
 import sys
 import traceback
 import types
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import FrameType, TracebackType
@@ -17,6 +17,7 @@ from typing import Any
 
 import pymunk
 
+from engines.pymunk.reading.own_model import start_ahead
 from engines.reading import Change, refuse
 
 MODULE = "crosscheck_check"  # what a script sees as its __name__
@@ -42,7 +43,8 @@ class Made:
 
     `dt` [s]: by which the script steps it, if it does, in its own parts; `name`: what the space, or the function that
     makes it, is called where `line` stands: before that line, or at the end if it is None, its settings can be changed.
-    `parts`: of how many steps one call of the space's own `step` consists, where `rewritten` has made one.
+    `parts`: of how many steps one call of the space's own `step` consists, where `rewritten` has made one. `ahead`: a
+    first step of half the length has brought the velocities ahead; the space is given as it was before that.
     """
 
     space: pymunk.Space
@@ -51,46 +53,69 @@ class Made:
     line: int | None
     function: bool = False
     parts: int = 1
+    ahead: bool = False
 
 
 class _Stepped(BaseException):
-    """The script is about to step its space for the first time."""
+    """The script is about to step its space for the first time, or a second time after half a step."""
 
-    def __init__(self, space: Any, dt: float) -> None:
+    def __init__(self, space: Any, dt: float, ahead: bool = False) -> None:
         super().__init__("the script steps its space")
-        self.space, self.dt = space, dt
+        self.space, self.dt, self.ahead = space, dt, ahead
 
 
 def made(path: Path, file: str, name: str) -> Made:
+    """`_made`, run again where the first step may be the half step that brings velocities ahead: joints that close
+    their whole gap, and a second step that is twice as long."""
+    found = _made(path, file, name)
+    if found.dt is None or not any(joint.error_bias == 0 for joint in found.space.constraints):
+        return found
+    with contextlib.suppress(ValueError):
+        again = _made(path, file, name, found.dt)
+        if again.ahead:
+            return again
+    return found
+
+
+def _made(path: Path, file: str, name: str, half: float | None = None) -> Made:
     """The space that a script calls `name`, or that a function of this name returns; without a name, its only one.
 
-    The script is stopped before it steps that space. What it prints is dropped. Raises ValueError in one line.
+    The script is stopped before it steps that space; with `half`, after a step of that length. What it prints is
+    dropped. Raises ValueError in one line.
     """
     module = types.ModuleType(MODULE)
     module.__file__ = str(path)
-    with _at_home(path, module), _stopping(lambda space: _is_wanted(space, module, name)):
+    with _at_home(path, module), _stopping(lambda space: _is_wanted(space, module, name), half) as first:
         # Without a name, a script that makes its space only where it is the program is taken as the program.
         for called in (MODULE,) if name else (MODULE, "__main__"):
             module.__dict__["__name__"] = called
             try:
                 exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
             except _Stepped as stepped:
-                return _with_parts(Made(stepped.space, stepped.dt, *_where(path, name, stepped)))
+                return _with_parts(Made(stepped.space, stepped.dt, *_where(path, name, stepped), ahead=stepped.ahead))
             except BaseException as reason:  # of a class of its own, too
                 raise _raised(path, file, reason) from None
             if name or _spaces(module) or _guard(path) is None:
                 break
         value, word = _named(module, file, name)
         if not callable(value):
-            return _checked(file, Made(value, None, word, _guard(path)))
-        with _stopping(lambda space: True):
+            return _checked(file, _started(Made(value, None, word, _guard(path)), first, half))
+        with _stopping(lambda space: True, half) as first:
             try:
                 space: Any = value()
-                return _checked(file, Made(space, None, word, _guard(path), function=True))
+                return _checked(file, _started(Made(space, None, word, _guard(path), function=True), first, half))
             except _Stepped as stepped:
-                return _with_parts(Made(stepped.space, stepped.dt, *_where(path, word, stepped)))
+                return _with_parts(Made(stepped.space, stepped.dt, *_where(path, word, stepped), ahead=stepped.ahead))
             except BaseException as reason:
                 raise _raised(path, file, reason) from None
+
+
+def _started(found: Made, first: _HalfStep, half: float | None) -> Made:
+    """A space that was stepped once, if its first step was a half step by lines that start ahead."""
+    if half is None or first.space is not found.space or not first.by_lines:
+        return found
+    first.undo()
+    return replace(found, dt=2 * half, ahead=True)
 
 
 def _checked(file: str, found: Made) -> Made:
@@ -163,21 +188,57 @@ def _at_home(path: Path, module: types.ModuleType) -> Iterator[None]:
         sys.argv, sys.path[:] = arguments, paths
 
 
+@dataclass
+class _HalfStep:
+    """The first step of a space, where it may be the half step that brings velocities ahead."""
+
+    space: Any = None
+    velocities: tuple[tuple[Any, float], ...] = ()
+    by_lines: bool = False  # code that moves bodies back first, or holds them, has called for it
+
+    def begin(self, space: Any, names: Sequence[str]) -> None:
+        self.space, bodies = space, list(space.bodies)
+        self.velocities = tuple((body.velocity, body.angular_velocity) for body in bodies)
+        held = any(body._position_func is not None for body in bodies)
+        self.by_lines = held or {"position", "angle", "velocity", "angular_velocity"} <= {*names}
+
+    def undo(self) -> None:
+        """The velocities before it: the positions are where they were."""
+        for body, (velocity, rate) in zip(self.space.bodies, self.velocities, strict=True):
+            body.velocity, body.angular_velocity = velocity, rate
+
+
 @contextlib.contextmanager
-def _stopping(wanted: Any) -> Iterator[None]:
-    """Within it the first step of a space that is `wanted` raises _Stepped instead."""
-    own = pymunk.Space.step
+def _stopping(wanted: Any, half: float | None = None) -> Iterator[_HalfStep]:
+    """Within it the first step of a space that is `wanted`, and no copy of another, raises _Stepped instead.
+
+    With `half` the first may be made, and the second raises. If it is twice as long, the first is undone.
+    """
+    step_itself, copy_itself = pymunk.Space.step, pymunk.Space.copy
+    copies: list[pymunk.Space] = []  # on which lines of the script try settings
+    first = _HalfStep()
+
+    def copy(self: pymunk.Space) -> pymunk.Space:
+        copies.append(copy_itself(self))
+        return copies[-1]
 
     def step(self: pymunk.Space, dt: float) -> None:
-        if wanted(self):
+        if any(self is each for each in copies) or not wanted(self):
+            step_itself(self, dt)
+        elif half is not None and first.space is None:
+            first.begin(self, sys._getframe(1).f_code.co_names)
+            step_itself(self, dt)
+        elif half is not None and self is first.space and abs(dt - 2 * half) <= 1e-9 * half:
+            first.undo()
+            raise _Stepped(self, float(dt), ahead=True)
+        else:
             raise _Stepped(self, float(dt))
-        own(self, dt)
 
-    pymunk.Space.step = step
+    pymunk.Space.step, pymunk.Space.copy = step, copy
     try:
-        yield
+        yield first
     finally:
-        pymunk.Space.step = own
+        pymunk.Space.step, pymunk.Space.copy = step_itself, copy_itself
 
 
 def _is_wanted(space: pymunk.Space, module: types.ModuleType, name: str) -> bool:
@@ -248,6 +309,10 @@ def rewritten(path: Path, found: Made, own_step: float, change: Change) -> bytes
         begin, end = marks[0] or 0, (marks[1] or 0) + 1
         before = before - (end - begin) if before is not None and before >= end else before
         del lines[begin:end]
+    if found.ahead and not earlier:
+        raise refuse(
+            "the script", "its own lines start half a step ahead of a step of that length: change them by hand"
+        )
     options = dict(change.options)
     iterations, bias = options["iterations"], options["bias"]
     if earlier and bias is None:  # what the user has may come from the lines that go
@@ -256,6 +321,8 @@ def rewritten(path: Path, found: Made, own_step: float, change: Change) -> bytes
     settings = [f"{name}.iterations = {iterations}"]
     if bias is not None:
         settings += [f"for joint in {name}.constraints:", f"    joint.error_bias = {bias!r}"]
+    if options["ahead"]:
+        settings += start_ahead(name, found.space, change.dt)
     parts = round(own_step * found.parts / change.dt)
     if parts > 1:
         settings += PARTS.format(name=name, parts=parts).splitlines()
