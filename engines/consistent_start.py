@@ -59,7 +59,10 @@ def closed_positions(
     def is_open(pose: Array) -> bool:
         return open_joint(mechanism, gap_at(pose), still, pose, mechanism.twist, size) is not None
 
-    gap = np.abs(gap_at(mechanism.pose)) / row_unit
+    # By how much the coordinate that changes a row most has to move, in units of the length or rad.
+    gap = np.abs(gap_at(mechanism.pose)) / np.abs(mechanism.rows(mechanism.pose) * np.tile(unit, len(bodies))).max(
+        axis=1
+    )
     if not is_open(mechanism.pose) or not gap.max() <= PRINTED:
         return None
     pose, moved = mechanism.pose, np.zeros_like(mechanism.pose)
@@ -77,7 +80,7 @@ def closed_positions(
     name, moved_by = mechanism.bodies[body].name, np.abs(pose - mechanism.pose)[body, coordinate]
     return pose, Note(
         "the start",
-        f"its positions leave {mechanism.row_names[row]} open by {gap[row] * row_unit[row]:.2g} "
+        f"its positions leave {mechanism.row_names[row]} open by {abs(gap_at(mechanism.pose)[row]):.2g} "
         f"{'rad' if mechanism.turning[row] else 'm'}, as rounded digits do; both motions begin with the nearest "
         f"positions that close all joints: {name} moves most, by {moved_by:.2g} {'rad' if coordinate == 2 else 'm'}",
     )

@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from engines.consistent_start import PRINTED
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, SLIDE, Frame, Groups, name_of, plain_name
 from engines.reading import Names, Note, refuse
 from reference.couplings import Coupling, Term
@@ -323,22 +324,25 @@ def _held_angles(scene: Scene, index: int, element: str, parts: list[tuple[int, 
     if np.any(model.eq_data[index][2:5]):
         raise refuse(element, "a coupling that is not linear has no ideal counterpart here")
     slides = any(model.jnt_type[joint] != HINGE for joint, _ in parts)
-    if abs(wrong) > PLANAR * (max(1.0, float(model.stat.extent)) if slides else 1.0):
+    # A smaller one is that of rounded digits, which the reading closes.
+    largest = max((abs(factor) for _, factor in parts), default=1.0)
+    if abs(wrong) > PRINTED * largest * (max(1.0, float(model.stat.extent)) if slides else 1.0):
         raise refuse(element, f"it is open by {abs(wrong):.2g} {'m' if slides else 'rad'} at the start")
     weights = angle_weights(scene, parts)
     label = scene.names.new(plain_name(model, EQUALITY, index))
     groups = list(weights)
     if slides or len(groups) > 2:
         terms, offset = terms_of(scene, parts)
-        return [Coupling(label, terms, offset)]
+        return [Coupling(label, terms, offset - wrong)]
     if len(groups) == 1:
-        return [Drive(label, None, scene.name(groups[0]), 0.0, scene.angle(groups[0]))]
+        held = scene.angle(groups[0]) - wrong / weights[groups[0]]
+        return [Drive(label, None, scene.name(groups[0]), 0.0, held)]
     if not groups:
         scene.note(element, "the sum that it holds does not change")
         return []
     first, second = groups
     ratio = -weights[first] / weights[second]
-    turned = scene.angle(second) - ratio * scene.angle(first)
+    turned = scene.angle(second) - ratio * scene.angle(first) - wrong / weights[second]
     if abs(ratio - 1) <= PLANAR:
         return [Drive(label, scene.name(first), scene.name(second), 0.0, turned)]
     return [Gear(label, scene.name(first), scene.name(second), ratio, turned)]
@@ -364,11 +368,11 @@ def _tied(scene: Scene, index: int, element: str) -> list[Joint]:
     if first == second:
         scene.note(element, "its two ends are on one body")
         return []
-    if abs(wrong) > PLANAR * max(1.0, model.stat.extent):
+    if abs(wrong) > PRINTED * max(1.0, model.stat.extent):
         raise refuse(element, f"it is open by {abs(wrong):.2g} m at the start")
     label = scene.names.new(plain_name(model, EQUALITY, index))
     points = scene.own(first, at), scene.own(second, end)
-    return [Rod(label, scene.name(first), scene.name(second), *points, float(data.ten_length[tendon]))]
+    return [Rod(label, scene.name(first), scene.name(second), *points, float(data.ten_length[tendon]) - wrong)]
 
 
 EQUALITIES = {"connect": _connected, "weld": _welded, "joint": _coupled, "tendon": _tied}
