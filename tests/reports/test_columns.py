@@ -19,6 +19,7 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.comparison import compared_lines
+from reports.pages.skate.page import PAGE as SKATE
 from reports.write.columns import (
     empty,
     equal_cost,
@@ -26,6 +27,7 @@ from reports.write.columns import (
     equal_step,
     error_within,
     lines,
+    means,
     reached,
     runs_of,
 )
@@ -239,3 +241,15 @@ def test_every_engine_that_has_rows_of_the_compared_scenes_has_a_line_whichever_
     assert (empty(line, Column.SHIPPED), empty(line, Column.SETTINGS)) == ("", "")
     assert empty(line, Column.NAIVE) == "no such joint"
     assert compared_lines({page: Material({})}) == []
+
+
+def test_a_stand_in_for_documented_settings_is_named_and_a_usual_variant_is_not():
+    """One skate in MuJoCo had three numbers on three pages, two of them of a blade that no cell named."""
+    (line,) = (
+        line
+        for line in lines([(SKATE, falling("mujoco default", POWER, "position", scene="sleigh"))])
+        if line.engine == "mujoco"
+    )
+    assert means(line, Column.SETTINGS) == ", contact, *friction blade*"
+    assert means(line, Column.SHIPPED) == ", contact"
+    assert means(line, Column.CODE) == ""

@@ -56,14 +56,14 @@ MUJOCO = (
     Case("slider", "slider_crank", SLIDER, mujoco.DEFAULT, mujoco.TUNED),
     Case("chain of ten", "pendulum", CHAIN, mujoco.DEFAULT, mujoco.TUNED),
     Case("disc that rolls", "rolling", DISC, mujoco.DEFAULT, mujoco.TUNED),
-    Case("skate", "skate", SKATE, mujoco.DEFAULT, mujoco.TUNED, "position"),
+    Case("skate, by our code in every step", "skate", SKATE, mujoco.DEFAULT, mujoco.TUNED, "position"),
 )
 PYMUNK = (
     Case("closed linkage", "four_bar", LOOP, pymunk.DEFAULT, pymunk.LEAPFROG),
     Case("slider", "slider_crank", SLIDER, pymunk.DEFAULT, pymunk.LEAPFROG),
     Case("chain of ten", "pendulum", CHAIN, pymunk.DEFAULT, pymunk.LEAPFROG),
     Case("disc that rolls", "rolling", DISC, pymunk.DEFAULT, pymunk.TUNED),
-    Case("skate", "skate", SKATE, None, pymunk.TUNED, "position"),
+    Case("skate, by our code in every step", "skate", SKATE, None, pymunk.TUNED, "position"),
 )
 
 
