@@ -69,20 +69,27 @@ def displaced_reaction(mechanism: Mechanism, pose: Array, reaction: Array, moved
     return mechanism.reactions_of(pose + moved, pulled / mechanism.inertias, mechanism.inertias)
 
 
-def reaction_doubts(mechanism: Mechanism, pose: Array, twist: Array, reaction: Array, error: Array) -> list[str]:
-    """The sentence for reactions (times, rows) whose `error` is above FORCES of the largest of them, if it is.
+def largest_force(mechanism: Mechanism, pose: Array, twist: Array, reaction: Array) -> float:
+    """The largest of reactions (times, rows) in a motion, poses and twists (times, bodies, 3) [N].
 
-    A torque counts as the force that it is at the mechanism's length. pose and twist (times, bodies, 3) are those of
-    the motion: the largest force is at least LEAST_FORCE of the loads in it, and of m v^2 / length.
+    A torque counts as the force that it is at the mechanism's length. At least LEAST_FORCE of the loads in the motion,
+    and of m v^2 / length.
     """
-    if not mechanism.row_count:
-        return []
     length = mechanism.length_scale
     arm, sizes = np.where(mechanism.turning, length, 1.0), np.array([1.0, 1.0, 1 / length])
     with np.errstate(all="ignore"):
         loads = np.abs(mechanism.inertias * mechanism.unconstrained(pose, twist) * sizes)
         turned = np.sum(mechanism.inertias * np.square(twist), axis=(1, 2)) / length
-        scale = LEAST_FORCE * np.fmax.reduce([*loads.ravel(), *turned], initial=np.finfo(float).tiny)
-        largest = np.fmax.reduce(np.abs(reaction / arm), axis=None, initial=scale)
-        share = np.fmax.reduce(np.abs(error / arm), axis=None, initial=0.0) / largest
+        least = LEAST_FORCE * np.fmax.reduce([*loads.ravel(), *turned], initial=np.finfo(float).tiny)
+        return float(np.fmax.reduce(np.abs(reaction / arm), axis=None, initial=least))
+
+
+def reaction_doubts(mechanism: Mechanism, pose: Array, twist: Array, reaction: Array, error: Array) -> list[str]:
+    """The sentence for reactions (times, rows) whose `error` is above FORCES of the `largest_force`, if it is."""
+    if not mechanism.row_count:
+        return []
+    arm = np.where(mechanism.turning, mechanism.length_scale, 1.0)
+    with np.errstate(all="ignore"):
+        missed = np.fmax.reduce(np.abs(error / arm), axis=None, initial=0.0)
+    share = missed / largest_force(mechanism, pose, twist, reaction)
     return [f"ours: reactions are resolved to {share:.0e} of the largest force"] if share > FORCES else []

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from engines import CLAIM, Engine
-from engines.constraint_error import FORCES
+from engines.constraint_error import FORCES, largest_force
 from engines.lagrange import HELD, TRUTH
 from engines.remembered import by_identity
 from reference.mechanism import Mechanism
@@ -53,9 +53,9 @@ def compared(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[s
     if missed.max() <= CLAIM:
         out[REPORTED] = (float(told), 1.0)
     if mechanism.row_count and not told and not of_reactions:
-        force, right = run.reaction[1:] / arm, truth.reaction[at][1:] / arm
-        largest = float(np.nanmax(np.abs(right), initial=np.finfo(float).tiny))
-        out[REACTIONS] = (float(np.nanmax(np.abs(force - right), initial=0.0)) / largest, FORCES)
+        off = np.nan_to_num(run.reaction[1:] - truth.reaction[at][1:]) / arm
+        largest = largest_force(mechanism, truth.pose[at], truth.twist[at], truth.reaction[at])
+        out[REACTIONS] = (float(np.abs(off).max()) / largest, FORCES)
     return out
 
 
