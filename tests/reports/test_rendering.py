@@ -7,15 +7,17 @@ import re
 from dataclasses import replace
 from typing import ClassVar
 
+import numpy as np
 import pytest
 
 from reports.model.cells import Cell
 from reports.model.convergence import Verdict
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation, Page
+from reports.model.tasks import Answer, Task
 from reports.pages.index import render_readme
 from reports.pages.rendering import render_all, render_page
-from reports.pages.your_loop.page import ASKED
+from reports.pages.your_loop.page import ASKED, FRESH
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.write.provenance import machine
 from reports.write.rows import lookups
@@ -88,15 +90,20 @@ def test_a_page_judges_by_the_quantity_that_it_compares():
         assert words in next(line for line in text.splitlines() if line.startswith("| mujoco default"))
 
 
-def test_the_readme_is_the_same_after_a_run_that_took_another_time():
+def test_the_readme_has_medians_of_fresh_mechanisms_and_is_the_same_after_a_run_that_took_another_time():
     rows = {each: row_of("mujoco tuned", angle=3.4e-7, cpu=1.0) for each in ASKED}
-    slower, worse = (
-        {each: replace(row, **new) for each, row in rows.items()} for new in ({"cpu": 7.0}, {"angle": 0.1})
-    )
-    told = render_readme(README, {YOUR_LOOP: Material(rows)})
-    assert "3.4e-7 rad with these lines" in told
-    assert render_readme(README, {YOUR_LOOP: Material(slower)}) == told
-    assert render_readme(README, {YOUR_LOOP: Material(worse)}) != told
+    slower = {each: replace(row, cpu=7.0) for each, row in rows.items()}
+
+    def answers_of(median: float) -> dict[Task, Answer]:
+        error = np.array([1e-9, median, 0.3])
+        return {task: Answer(Outcome.FINISHED, values={"error": error}) for task in FRESH}
+
+    answers, worse = answers_of(2.5e-6), answers_of(2.5e-3)
+    told = " ".join(render_readme(README, {YOUR_LOOP: Material(rows, answers)}).split())
+    assert told.count("2.5e-6 rad (1e-9 to 0.3) with these lines") == 2
+    assert "3.4e-7" not in told
+    assert render_readme(README, {YOUR_LOOP: Material(slower, answers)}).split() == told.split()
+    assert render_readme(README, {YOUR_LOOP: Material(rows, worse)}).split() != told.split()
 
 
 def test_all_files_end_with_one_end_of_line_and_have_every_row_once():
