@@ -57,6 +57,10 @@ def line(value: float, outcomes: str, engine: str = "toy", gives: float = math.n
     return Line("toys", engine, "default", value, 0.1, counts, outcomes, errors, gives, left)
 
 
+def test_the_first_step_of_a_line_is_its_longest_and_the_others_follow_by_their_counts():
+    assert line(1.0, "···").steps == pytest.approx((0.1, 0.05, 0.025))
+
+
 @pytest.mark.parametrize("subject", SUBJECTS, ids=lambda subject: subject.name)
 def test_every_map_has_scenes_steps_and_a_frequency_over_its_whole_range(subject):
     values, steps = subject.at(40), subject.steps(40)

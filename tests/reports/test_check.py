@@ -277,7 +277,10 @@ def test_nobody_is_judged_where_the_judge_does_not_know_a_tenth_of_the_tolerance
 
 def test_the_report_can_be_read_by_people_and_programs(shipped):
     found = shipped
-    drawn = pictures(from_text(shown_of(found).as_text()))
+    shown = from_text(shown_of(found).as_text())
+    drawn = pictures(shown)
+    without_error = replace(shown, found=replace(shown.found, bars=shown.ideal.bars))
+    assert pictures(without_error)["worst"] != drawn["worst"]
     told = sections(found, drawn)
     text = rendering.plain(told)
     for words in ("near-singular", "the judge's own", "joints as soft as", "What to change"):
@@ -292,6 +295,8 @@ def test_the_report_can_be_read_by_people_and_programs(shipped):
     assert "<script" not in page
     files = {title: f"{key}.svg" for key, (title, _) in drawn.items()}
     assert "](errors.svg)" in rendering.markdown("four bar", told, files)
+    foreign = rendering.Section("", ("<i>",), (("why", "<i>"),), header=("<i>",), rows=(("<i>",),))
+    assert "<i>" not in rendering.markdown("four bar", [foreign], {})
     numbers = json.loads(json.dumps(data(found), allow_nan=False))
     assert mismatch(numbers) == ""
     assert mismatch({**numbers, "cpu": "fast"}) != ""

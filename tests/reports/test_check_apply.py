@@ -181,21 +181,22 @@ def test_only_a_tolerance_that_was_asked_for_sets_the_status(here, capfd):
 
 def test_a_folder_of_models_is_one_table_and_a_test_each(here, capfd):
     for name, text in (("a.xml", FOUR_BAR), ("b.py", PENDULUM), ("c.xml", "<mujoco/>"), ("other.xml", "<svg/>")):
-        (here / "models").mkdir(exist_ok=True)
-        (here / "models" / name).write_text(text)
-    words = ("check", "models", "--duration", 0.2, "--quick", "--tolerance", 1e-4, "--json")
+        for folder in (here / ".models", here / ".models" / ".old"):  # within a folder hidden ones are left out
+            folder.mkdir(exist_ok=True)
+            (folder / name).write_text(text)
+    words = ("check", ".models", "--duration", 0.2, "--quick", "--tolerance", 1e-4, "--json")
     assert call(*words, "--junit", "r.xml", "--markdown", "t.md") == 1
     out, err = capfd.readouterr()
-    assert "1 of 3 models miss 0.0001: models/a.xml" in err.splitlines()[-1]
+    assert "1 of 3 models miss 0.0001: .models/a.xml" in err.splitlines()[-1]
     told = {each["model"]: each for each in json.loads(out)}
-    assert list(told) == ["models/a.xml", "models/b.py", "models/c.xml"]
-    assert told["models/a.xml"]["found"]["met"] is False
-    assert "give the name of the space, or of a function" in told["models/b.py"]["refused"]
+    assert list(told) == [".models/a.xml", ".models/b.py", ".models/c.xml"]
+    assert told[".models/a.xml"]["found"]["met"] is False
+    assert "give the name of the space, or of a function" in told[".models/b.py"]["refused"]
     suite = xml.parse(here / "r.xml").getroot()[0]
     assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("3", "1", "2")
     assert [child.tag for case in suite for child in case] == ["failure", "skipped", "skipped"]
-    assert "| models/a.xml | " in (here / "t.md").read_text()
-    assert call("check", "models", "--apply", "x.xml") == 2
+    assert "| .models/a.xml | " in (here / "t.md").read_text()
+    assert call("check", ".models", "--apply", "x.xml") == 2
     assert "--apply is for one model" in capfd.readouterr().err
 
 

@@ -20,14 +20,14 @@ from reports.model.page import Material
 from reports.model.tasks import Answer, Task
 from reports.pages import findings as module
 from reports.pages.faults.page import OFFSETS
-from reports.pages.findings import CPU, FINDINGS, LOOKS, STEP, TENTH, Known, Line, draw, findings, of_rows
+from reports.pages.findings import CPU, FINDINGS, LOOKS, STEP, TENTH, Known, Line, draw, findings, of_releases, of_rows
 from reports.pages.guides.page import EVERY, FOUR_BAR
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import SYMPTOMS
 from reports.pages.rendering import render_page
 from reports.pages.versions.page import table
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
-from reports.versions.table import ACCELERATION
+from reports.versions.table import ACCELERATION, Entry
 from reports.write.page_tables import COMPARED
 from reports.write.rows import Rows, lookups
 from reports.write.tables import number
@@ -238,6 +238,11 @@ def entries(**changes):
 
 
 AT = ("3.7.0", "tuned")
+
+
+def test_a_release_whose_run_can_not_be_compared_is_no_point_of_its_line():
+    known = Entry("toy", "1", "disc", "default", 1e-3, "angle", 0.5, Outcome.FINISHED, 1.0, "")
+    assert of_releases("disc", [replace(known, version="0", outcome=Outcome.TORN), known]).points == (("1", 0.5),)
 
 
 def test_what_the_releases_contradict_is_not_told(monkeypatch):

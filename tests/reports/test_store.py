@@ -399,3 +399,19 @@ def test_a_full_disk_keeps_the_rows_and_the_pages_that_are_there(tmp_path):
     assert second.endswith("make room")
     assert [(tmp_path / name).read_text() for name in ("a.md", "b.md")] == ["old", "old"]
     assert names(tmp_path) <= {"a.md", "b.md", "cells.sqlite", "cells.sqlite-wal", "cells.sqlite-shm"}
+
+
+def test_a_kill_while_a_damaged_file_is_put_aside_loses_no_rows_beside_it(tmp_path, monkeypatch):
+    """SQLite deletes the rows that lie beside a main file that is gone: so that goes last."""
+    path, rename = tmp_path / "results.sqlite", Path.rename
+    path.write_bytes(b"no database " * 100)
+    path.with_name(f"{path.name}-wal").write_bytes(b"rows")
+
+    def killed_after(place: Path, target: str) -> None:
+        rename(place, target)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "rename", killed_after)
+    with pytest.raises(KeyboardInterrupt):
+        store_module._put_aside(path)
+    assert path.exists()
