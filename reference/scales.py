@@ -18,9 +18,9 @@ ON_LINE = 1e-9  # of the distance between the ends of a spring: how far off a sl
 def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequence[ForceElement] = ()) -> float:
     """The largest of rods and of distances between two points of one body at which something is joined or pulls [m].
 
-    The centre of mass is one of these points. A slot holds at the place of its line where the second body's point is at
-    t = 0, and a force along its line acts there: neither depends on the point by which the line is described. Where all
-    points are one, the largest length of a spring or radius where something rolls or a pinion turns; or 1.
+    The centre of mass is one of these points, and so is the point by which a slot's line is described. A force along
+    that line acts at the slot's points, wherever on the line its own end stands. Where all points are one, the largest
+    length of a spring or radius of curvature where something rolls; or 1.
     """
     points: dict[str, set[Vector]] = {body.name: {(0.0, 0.0)} for body in bodies}
     own = {body.name: body for body in bodies}
@@ -109,18 +109,9 @@ def _ends(
     member: Joint | ForceElement, slots: Sequence[Slot], bodies: Mapping[str, Body]
 ) -> tuple[tuple[str | None, Vector], tuple[str | None, Vector]]:
     """The two bodies and the points where a joint holds or a force acts; the centre of mass for one without a point."""
-    if isinstance(member, Slot):
-        return (member.first, _held_place(member, bodies)), (member.second, member.second_point)
-    slot = _slot_along(member, slots, bodies)
-    if slot is not None:
-        return _ends(slot, slots, bodies)
+    member = _slot_along(member, slots, bodies) or member
     first, second = getattr(member, "first_point", (0.0, 0.0)), getattr(member, "second_point", (0.0, 0.0))
     return (member.first, first), (member.second, second)
-
-
-def _held_place(slot: Slot, bodies: Mapping[str, Body]) -> Vector:
-    """The place [m] in the slot's first body where the second body's point is at t = 0."""
-    return _from_world(slot.first, _to_world(slot.second, slot.second_point, bodies), bodies)
 
 
 def _slot_along(member: Joint | ForceElement, slots: Sequence[Slot], bodies: Mapping[str, Body]) -> Slot | None:
@@ -157,14 +148,6 @@ def _to_world(name: str | None, point: Vector, bodies: Mapping[str, Body]) -> Ve
     x, y, angle = bodies[name].pose
     across, up = components(angle, *point)
     return float(x + across), float(y + up)
-
-
-def _from_world(name: str | None, place: Vector, bodies: Mapping[str, Body]) -> Vector:
-    if name is None:
-        return place
-    x, y, angle = bodies[name].pose
-    across, up = components(-angle, place[0] - x, place[1] - y)
-    return float(across), float(up)
 
 
 def diameter(points: Iterable[Vector]) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from pymunk import Body as MunkBody
 from pymunk import Space
-from pymunk.constraints import GearJoint, PinJoint, PivotJoint, RotaryLimitJoint, SimpleMotor, SlideJoint
+from pymunk.constraints import GearJoint, GrooveJoint, PinJoint, PivotJoint, RotaryLimitJoint, SimpleMotor, SlideJoint
 from scipy.integrate import solve_ivp
 
 from engines import Unsupported
@@ -312,19 +312,18 @@ def test_no_far_point_of_a_line_enters_the_length_or_the_time(scale, far):
         Body("bar", 1.0, 0.1 * scale**2, (0, 0, 0.3)),
         Body("block", 0.5, 1e-3 * scale**2, (*(0.4 * scale * along(0.3, 1)), 0.3)),
     )
-    end = (-far * scale, 0.0)
-    slot = Slot("groove", "bar", "block", end, 0.0, (0.0, 0.0))
-    ends = ("bar", "block", end, (0.0, 0.0))
-    spring = Spring("spring", *ends, 20.0, (far + 0.5) * scale)
+    slot = Slot("groove", "bar", "block", (0.1 * scale, 0.0), 0.0, (0.0, 0.0))
+    ends = ("bar", "block", (-far * scale, 0.0), (0.0, 0.0))
+    spring = Spring("spring", *ends, 200.0, (far + 0.5) * scale)
     own = Mechanism(
         (bar, block),
         (slot, Drive("straight", "bar", "block", 0.0, 0.0)),
         (0.0, -G * scale),
         (spring, Damper("damper", *ends, 2.0)),
     )
-    assert own.length_scale == pytest.approx(0.4 * scale)
-    # At the block the bar feels a force as 1 / m + r^2 / I, and the block as 1 / m.
-    assert own.time_scale == pytest.approx(1 / np.sqrt(20 * (1 + 0.4**2 / 0.1 + 2)))
+    assert own.length_scale == pytest.approx(0.1 * scale)
+    # At the slot's point the bar feels a force as 1 / m + r^2 / I, and the block as 1 / m.
+    assert own.time_scale == pytest.approx(1 / np.sqrt(200 * (1 + 0.1**2 / 0.1 + 2)))
     # Alone on the ground the extension is all that has a length.
     groove = Slot("groove", None, "block", (-far * scale, 0.0), 0.0, (0.0, 0.0))
     held = Spring("spring", None, "block", (-far * scale, 0.0), (0.0, 0.0), 20.0, (far + 0.5) * scale)
@@ -473,3 +472,15 @@ def test_the_exact_diagonal_of_a_weld_and_of_a_coupling_is_read_too(loop):
     run = reading.model.run(5, 200)
     soft = soft_motion(reading.mechanism, reading.model.give, run.t)
     assert apart(reading.mechanism, soft, run.pose).max() < 1e-7
+
+
+@pytest.mark.parametrize("reach", [1.0, 1e4])
+def test_no_end_of_a_groove_enters_the_length_of_a_space(reach):
+    space = Space()
+    bar, block = MunkBody(1, 0.2), MunkBody(0.5, 0.1)
+    bar.position, block.position = (0.5, 0), (0.9, 0.1)
+    space.add(bar, block, PivotJoint(space.static_body, bar, (0, 0), (-0.5, 0)))
+    space.add(GrooveJoint(bar, block, (-reach, 0.1), (reach, 0.1), (0, 0)))
+    mechanism = read_space(space, 0.01).mechanism
+    assert mechanism.length_scale == pytest.approx(np.hypot(0.9, 0.1))
+    assert np.abs(mechanism.gap(mechanism.pose, 0.0)).max() < 1e-12 * reach

@@ -171,7 +171,11 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
             if not line.length:
                 raise refuse(label, "its groove has no length")
             point = out.own(b, constraint.anchor_b)
-            out.joints.append(Slot(label, first, second, ends[0], float(line.angle), point))
+            # Where the anchor stands now: an end of the groove may be far from all that moves.
+            held = pymunk.Vec2d(*out.own(a, a.world_to_local(b.local_to_world(constraint.anchor_b))))
+            along = line.normalized() * (held - ends[0]).dot(line.normalized())
+            at = (float(ends[0][0] + along.x), float(ends[0][1] + along.y))
+            out.joints.append(Slot(label, first, second, at, float(line.angle), point))
             if _turns(a) or not groove_is_exact(point, _turns(b)):
                 out.suspects[label] = (
                     "pymunk's GrooveJoint does not push straight across its groove, at any step, unless its anchor is "
