@@ -185,6 +185,11 @@ class Reader(Protocol):
         """What it reads, for a message."""
         ...
 
+    @property
+    def elements(self) -> Mapping[str, str]:
+        """What it reads, by the engine's own name, and as what: one table, from which the page is made."""
+        ...
+
     def reads(self, word: str) -> bool:
         """Whether a word on the command line is a model for this reader."""
         ...

@@ -20,6 +20,7 @@ from engines.pymunk.joints.pin import gear, pin, rod, weld
 from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, extent_of, touching
 from engines.pymunk.joints.skate import SkateConstruction, blade
 from engines.pymunk.joints.slot import SlotConstruction, slide
+from reference.couplings import Coupling
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
@@ -217,6 +218,8 @@ class _Builder:
                 return constraints
             case Roll():
                 return self._roll(joint, first, second)
+            case Coupling():
+                raise Unsupported(f"joint {joint.name!r}: our adapter of pymunk builds no coupling")
 
     def _roll(self, joint: Roll, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
         if self.settings.roll != "contact":

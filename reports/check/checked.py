@@ -54,12 +54,12 @@ class Plan:
     everything: bool = False
 
 
-MEMBERS = ("words", "reads", "read")
+MEMBERS = ("words", "elements", "reads", "read")
 
 
 def readers() -> dict[str, Reader]:
     """Who reads a user's models, by the keys of the entry point group `crosscheck.readers`."""
-    lacking = "it lacks words, reads or read"
+    lacking = f"it lacks one of {', '.join(MEMBERS)}"
     kind = Kind("reader", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
     return registered_by_key("crosscheck.readers", kind)
 

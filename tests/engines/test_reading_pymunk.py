@@ -303,7 +303,7 @@ def lonely(space, first, second):
         (limited, "PivotJoint 2: its force is limited to 10"),
         (guided, "body 2: it moves by a function of its own"),
         (dragged, "space.damping: it is 0.9"),
-        (ratchet, "RatchetJoint 1: a ratchet"),
+        (ratchet, "RatchetJoint 1: a RatchetJoint has no ideal counterpart here; read are PivotJoint, GrooveJoint"),
         (travelling, "body 3: a kinematic body that travels"),
         (own_spring, "DampedSpring 1: its force is a function"),
         (no_distance, "PinJoint 1: its distance is zero"),

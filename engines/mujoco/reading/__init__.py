@@ -6,17 +6,17 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import mujoco
 import numpy as np
 
 from engines.consistent_start import closed_positions, with_consistent_start
-from engines.mujoco.reading.elements import Scene, drives, equalities, steady, tree_joints
-from engines.mujoco.reading.forces import forces, off, turns
+from engines.mujoco.reading.elements import EQUALITIES, JOINTS, Scene, drives, equalities, steady, tree_joints
+from engines.mujoco.reading.forces import FORCES, forces, off, turns
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, bodies_of, find_frame, find_groups, flattened, name_of
 from engines.mujoco.reading.obstacles import limited_forces, positions
 from engines.mujoco.reading.own_model import OwnMuJoCo, heard
@@ -169,6 +169,11 @@ class Reader:
     """For `crosscheck check`: MJCF, URDF, and MuJoCo's own binary models."""
 
     words = "a MuJoCo model (model.xml, model.urdf)"
+    elements: ClassVar[Mapping[str, str]] = {
+        **JOINTS,
+        **{f"equality {kind}": words for kind, (_, words) in EQUALITIES.items()},
+        **FORCES,
+    }
 
     def reads(self, word: str) -> bool:
         return Path(word).suffix.lower() in SUFFIXES

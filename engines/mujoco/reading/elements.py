@@ -169,7 +169,8 @@ def equalities(scene: Scene) -> list[Joint]:
         kind = mujoco.mjtEq(int(model.eq_type[index])).name.split("_")[1].lower()
         if kind not in EQUALITIES:
             raise refuse(element, f"an equality of the kind {kind} has no ideal counterpart here")
-        joints = EQUALITIES[kind](scene, index, element)
+        reads, _ = EQUALITIES[kind]
+        joints = reads(scene, index, element)
         if joints and not len(equality_rows(data, index)):
             scene.note(element, "it holds what the joints hold already, so MuJoCo makes no row of it, nor do we")
             joints = []
@@ -375,4 +376,21 @@ def _tied(scene: Scene, index: int, element: str) -> list[Joint]:
     return [Rod(label, scene.name(first), scene.name(second), *points, float(data.ten_length[tendon]) - wrong)]
 
 
-EQUALITIES = {"connect": _connected, "weld": _welded, "joint": _coupled, "tendon": _tied}
+# By the kind of an equality: what reads it, and as what.
+EQUALITIES = {
+    "connect": (_connected, "a pin"),
+    "weld": (_welded, "a weld; a pin where its torquescale is zero"),
+    "joint": (
+        _coupled,
+        "a gear, a fixed angle, or a linear coupling of hinges and slides: mimic joints, rack and pinion",
+    ),
+    "tendon": (_tied, "a rod between two sites; over joints, of one tendon or of two, a linear coupling"),
+}
+# What hangs a body on its parent.
+JOINTS = {
+    "no joint": "one body with its parent",
+    "hinge, slide, both": "a pin, a line and a fixed angle, a line",
+    "two slides, alone or with a hinge": "a fixed angle, nothing",
+    "free": "nothing, where the body moves in the plane",
+    "armature": "inertia where the body alone has it; a drive at the rate of the start where nothing accelerates it",
+}

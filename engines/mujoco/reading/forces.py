@@ -17,6 +17,15 @@ from reference.couplings import Term
 from reference.forces import CoupledForce, Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
 TENDON, ACTUATOR = mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtObj.mjOBJ_ACTUATOR
+# What acts, and what it is read as.
+FORCES = {
+    "stiffness, springref and damping of a joint": "a spring and a damper",
+    "tendon between two sites": "a spring and a damper",
+    "tendon over joints": "a spring and a damper along the sum",
+    "motor or servo at constant control, on a joint or on a tendon over joints": "a force, a spring and a damper",
+    "motor at a site": "a force and a torque in the directions of a site of the ground",
+    "qfrc_applied, xfrc_applied, gravcomp": "constant forces",
+}
 FAR = 30.0  # extents of the model: where the far end of a spring along a slide stands
 
 

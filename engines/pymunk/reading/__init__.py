@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import ClassVar
 
 import pymunk
 
 from engines.consistent_start import closed_positions, with_consistent_start
-from engines.pymunk.reading.joints import described
+from engines.pymunk.reading.joints import BODIES, CONSTRAINTS, described
 from engines.pymunk.reading.own_model import OwnPymunk, moved_to, switch_off
 from engines.pymunk.reading.script import made, rewritten
 from engines.reading import Note, Reading, Source, refuse_at_start
@@ -70,6 +71,10 @@ class Reader:
     """For `crosscheck check`: a variable of a script, or a function without arguments, that gives a space."""
 
     words = "a script with a pymunk space (path/to/script.py, or script.py:NAME)"
+    elements: ClassVar[Mapping[str, str]] = {
+        **BODIES,
+        **{kind.__name__: words for kind, words in CONSTRAINTS.items()},
+    }
 
     def reads(self, word: str) -> bool:
         file, _, _ = word.rpartition(":")

@@ -15,7 +15,6 @@ from pymunk.constraints import (
     GrooveJoint,
     PinJoint,
     PivotJoint,
-    RatchetJoint,
     RotaryLimitJoint,
     SimpleMotor,
     SlideJoint,
@@ -30,6 +29,24 @@ LIMITS = (SlideJoint, RotaryLimitJoint)
 EQUALITY = "its min and max are equal, so it is taken as a {}; pymunk's {} holds from both sides at once"
 SAME = 1e-12  # rad, or of a length: ends of a limit that differ by rounding
 STILL = 0.0
+# What each kind of constraint is read as; no other is read.
+CONSTRAINTS: dict[type, str] = {
+    PivotJoint: "a pin",
+    GrooveJoint: "a slot",
+    PinJoint: "a rod",
+    GearJoint: "a gear, or a fixed angle",
+    SimpleMotor: "a drive, also from rest",
+    DampedSpring: "a spring and a damper",
+    DampedRotarySpring: "a torsion spring and damper",
+    SlideJoint: "nothing where it is not reached; a rod where min = max",
+    RotaryLimitJoint: "nothing where it is not reached; a fixed angle where min = max",
+}
+READ_NAMES = [kind.__name__ for kind in CONSTRAINTS]
+BODIES = {
+    "dynamic body": "a body; with an infinite moment, one that turns steadily",
+    "kinematic body": "a body that a drive turns about its place",
+    "force or torque that stands on a body": "a constant one",
+}
 
 
 @dataclass(eq=False)
@@ -161,6 +178,9 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
         raise refuse(label, f"its force is limited to {constraint.max_force:g}, which no ideal joint is")
     if getattr(constraint, "_pre_solve_func", None) or getattr(constraint, "_post_solve_func", None):
         raise refuse(label, "a function of its own runs before or after it is solved")
+    if not isinstance(constraint, tuple(CONSTRAINTS)):
+        kind = type(constraint).__name__
+        raise refuse(label, f"a {kind} has no ideal counterpart here; read are {', '.join(READ_NAMES)}")
     match constraint:
         case PivotJoint():
             points = out.own(a, constraint.anchor_a), out.own(b, constraint.anchor_b)
@@ -219,10 +239,6 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
             if constraint.damping:
                 word = out.names.new(f"{label} damper")
                 out.forces.append(TorsionDamper(word, second, first, float(constraint.damping)))
-        case RatchetJoint():
-            raise refuse(label, "a ratchet has no ideal counterpart")
-        case _:
-            raise refuse(label, f"a {type(constraint).__name__} has no ideal counterpart here")
 
 
 def is_equality(constraint: Constraint) -> bool:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from reference.scenes.four_bar.scenes import FreeFourBar
+from reports.check.checked import readers
 from reports.check.picture_data import from_text
 from reports.check.pictures import pictures
 from reports.model.page import Material, Page
@@ -42,6 +43,14 @@ def other_models() -> dict[str, object]:
         "switched": sum(bool(row["without"]) for row in read),
         "table": markdown(list(OTHERS_HEADER), body),
     }
+
+
+def read_elements() -> str:
+    """What the readers of models read, from their own tables."""
+    body = [
+        [key, element, taken] for key, reader in sorted(readers().items()) for element, taken in reader.elements.items()
+    ]
+    return markdown(["in", "element", "is read as"], body, left=3)
 
 
 def _sentence(row: dict[str, str]) -> str:
@@ -91,7 +100,12 @@ def words(material: Material) -> Mapping[str, Any]:
         found = found_of(material, walk)
         stem = walk.file.split(".")[0]
         told[stem] = None if found is None else {**found, "table": table(found)}
-    return {"others": other_models(), "found": told, "walks": {walk.file.split(".")[0]: walk for walk in WALKS}}
+    return {
+        "read": read_elements(),
+        "others": other_models(),
+        "found": told,
+        "walks": {walk.file.split(".")[0]: walk for walk in WALKS},
+    }
 
 
 PAGE = Page(
