@@ -52,6 +52,8 @@ def _ended(arguments: list[str]) -> int:
         status, sentence = error.status, str(error)
     except OSError as error:
         status, sentence = REFUSED, ": ".join(filter(None, (error.filename, error.strerror or str(error))))
+        if isinstance(error, FileNotFoundError) and error.filename is None:  # of os.getcwd
+            sentence = "the current folder was removed; go to one that is there"
     except Exception as error:
         # Usage errors of the command line's own library: it would print several lines.
         told = getattr(error, "format_message", None)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import os
 import shutil
 import sqlite3
 import zlib
@@ -81,6 +82,7 @@ class Store:
                 aside = _put_aside(path)
                 self._connection = _connected(path)
                 self.notice = f"{path} is damaged ({why}): it is now {aside.name}, and all that it held runs again"
+            self._file = path.stat()
 
     @classmethod
     @contextmanager
@@ -125,6 +127,14 @@ class Store:
     def _put(self, key: str, text: str) -> None:
         with _sentences(self.path), self._connection:
             self._connection.execute("insert or replace into results values (?, ?)", (key, text))
+        self._require_file()
+
+    def _require_file(self) -> None:
+        """Raises FileTrouble where the file was removed or replaced: SQLite writes on, into a file without a name."""
+        with suppress(OSError):
+            if os.path.samestat(self._file, self.path.stat()):
+                return
+        raise FileTrouble(f"{self.path} was removed or replaced while it was written; run again, or {ELSEWHERE}")
 
     def remember(self, words: Iterable[str]) -> None:
         """Keep words that find a scene or an engine again which is not registered, so that a report shows it too."""

@@ -306,3 +306,11 @@ def test_a_run_of_nothing_is_refused_with_the_methods_that_there_are(here, capfd
     told = one_line(capfd.readouterr().err)
     assert "nothing to run" in told
     assert "mujoco friction blade" in told
+
+
+def test_a_current_folder_that_was_removed_is_one_line(here, capfd):
+    (here / "gone").mkdir()
+    os.chdir(here / "gone")
+    (here / "gone").rmdir()
+    assert call("run", *ONE_CELL) == REFUSED
+    assert "the current folder was removed" in one_line(capfd.readouterr().err)

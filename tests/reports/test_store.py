@@ -415,3 +415,15 @@ def test_a_kill_while_a_damaged_file_is_put_aside_loses_no_rows_beside_it(tmp_pa
     with pytest.raises(KeyboardInterrupt):
         store_module._put_aside(path)
     assert path.exists()
+
+
+@pytest.mark.parametrize("replaced", [False, True])
+def test_a_store_that_was_removed_while_it_was_written_says_so_at_the_next_row(tmp_path, replaced):
+    path = tmp_path / "results" / "cells.sqlite"
+    with Store(path) as store:
+        store.put(row(CELLS[0]))
+        shutil.rmtree(path.parent)
+        if replaced:
+            Store(path).__exit__(None, None, None)
+        with pytest.raises(FileTrouble, match="was removed or replaced while it was written"):
+            store.put(row(CELLS[1]))
