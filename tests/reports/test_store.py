@@ -73,6 +73,8 @@ def test_what_is_put_is_got_in_the_order_asked_for_and_the_last_one_counts(tmp_p
         assert list(found) == CELLS[::-1]
         assert found[CELLS[0]].angle == 0.25
         assert all(found[cell].flips == cell.every for cell in CELLS)
+        experiment = replace(CELLS[0], purpose="failure")  # it takes the row of the sweep
+        assert [each.purpose for each in store.get([experiment]).values()] == ["failure"]
 
 
 def test_every_field_of_a_row_comes_back(tmp_path):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from reports.model.catalogue import PAGES
-from reports.model.cells import COST_LIMIT, FULL, Cell, estimated_cost, sweep_cells
+from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells, too_much
 from reports.model.convergence import Verdict, by_method, fit, judged, sweeps
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome
@@ -270,3 +270,8 @@ def test_the_usual_variants_are_the_three_words_in_their_order_or_the_first_of_o
     engines = (Toy("default"), Toy("soft"), Toy("one", name="b"), Toy("two", name="b"))
     chosen = {(cell.engine.name, cell.engine.variant) for cell in usual_cells((Disc(),), engines)}
     assert chosen == {("toy", "default"), ("b", "one"), ("b", "two")}
+
+
+def test_a_lower_limit_cuts_the_steps_beyond_the_quick_ones_alone():
+    assert too_much(Cell(Disc(), Toy(), QUICK[-1]), cost_limit=0.0) == ""
+    assert "a run may take 0 s" in too_much(Cell(Disc(), Toy(), 3 * QUICK[-1]), cost_limit=0.0)
