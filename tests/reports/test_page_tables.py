@@ -16,7 +16,7 @@ from reports.model.page import Failure, Material
 from reports.model.tasks import Answer, Task, answered
 from reports.write.experiments import compared_only, told_experiment
 from reports.write.holders import holders
-from reports.write.page_tables import advice, advice_table, reliable, scene_table
+from reports.write.page_tables import advice, advice_table, compared_step, reliable, scene_table
 from reports.write.tables import markdown
 from tests.present import present
 from tests.rows import falling, row_of, table
@@ -158,3 +158,7 @@ def test_what_is_declared_is_in_proportion_to_the_judges_own_softness():
     assert math.isnan(declared_error({}, scene, engine, "angle", 1e-3))
     assert math.isnan(declared_error({task: Answer(Outcome.ABORTED)}, scene, engine, "angle", 1e-3))
     assert declared_error({}, scene, Toy(), "angle", 1e-3) == 0
+
+
+def test_methods_are_compared_at_the_step_that_is_nearest_by_its_ratio():
+    assert compared_step([row_of("a x", step=step) for step in (3e-4, 2.9e-3)]) == 2.9e-3
