@@ -27,8 +27,9 @@ Array = NDArray[np.float64]
 # The least of the rows in a combination that no velocities satisfy: a row with a smaller weight in it is rounding.
 TAKES_PART = 1e-6
 MOST_NAMED = 4
-# Of the mechanism's length, and rad: gaps of positions that were printed with six digits. Larger ones are no rounding.
+# Of the largest coordinate or the mechanism's length, and rad: gaps of positions that were printed with six digits.
 PRINTED = 1e-5
+FAR = 100.0  # lengths from the origin: beyond, six digits do not tell how a mechanism stands
 MOST_ITERATIONS = 20  # of Newton's method from there; it converges in three unless a position is singular
 DIGITS = 1e-6  # rad: a hundredth of the error that is usually asked for
 FASTEST = 1e150  # m/s, rad/s
@@ -49,7 +50,6 @@ def closed_positions(
     if not joints:
         return None
     mechanism = _AnyStart(tuple(bodies), tuple(joints), gravity, tuple(forces))
-    unit = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
     row_unit = np.where(mechanism.turning, 1.0, mechanism.length_scale)
     still, size = np.zeros(mechanism.row_count), np.asarray(mechanism.length_scale)
 
@@ -60,15 +60,16 @@ def closed_positions(
         return open_joint(mechanism, gap_at(pose), still, pose, mechanism.twist, size) is not None
 
     # By how much the coordinate that changes a row most has to move, in units of the length or rad.
-    gap = np.abs(gap_at(mechanism.pose)) / np.abs(mechanism.rows(mechanism.pose) * np.tile(unit, len(bodies))).max(
-        axis=1
-    )
+    # Digits are counted from the largest coordinate.
+    far = float(np.clip(np.abs(mechanism.pose[:, :2]).max(), size, FAR * size))
+    rows = mechanism.rows(mechanism.pose) * np.tile([far, far, 1.0], len(bodies))
+    gap = np.abs(gap_at(mechanism.pose)) / np.abs(rows).max(axis=1)
     if not is_open(mechanism.pose) or not gap.max() <= PRINTED:
         return None
     pose, moved = mechanism.pose, np.zeros_like(mechanism.pose)
     for _ in range(MOST_ITERATIONS):
         pose = pose + _least_change(mechanism, gap_at(pose), pose)
-        moved = np.abs(pose - mechanism.pose) / unit
+        moved = np.abs(pose - mechanism.pose) / [far, far, 1.0]
         if not moved.max() <= 100 * PRINTED:  # a singular position: a small gap needs a large move
             return None
         if not np.any(np.abs(gap_at(pose)) > 1e-13 * row_unit):

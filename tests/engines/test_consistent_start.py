@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 import pymunk
 import pytest
-from pymunk.constraints import GearJoint, PivotJoint, SimpleMotor
+from pymunk.constraints import GearJoint, PinJoint, PivotJoint, SimpleMotor
 from scipy.integrate import solve_ivp
 
 from engines import Unsupported
@@ -242,6 +242,9 @@ def test_positions_that_were_printed_with_six_digits_are_closed_by_the_nearest_o
     for pivot in space.constraints:
         if pivot.a is space.static_body:
             pivot.anchor_a = pivot.anchor_a.rotated(turn)
+    rod = PinJoint(bars[0], bars[2], (0, 0), (0, 0))
+    rod.distance = dist(exact[0][:2], exact[2][:2])
+    space.add(rod)
     reading = read(space, 1e-3)
     mechanism = reading.mechanism
     assert np.abs(mechanism.gap(mechanism.pose, 0.0)).max() < 1e-12 * size

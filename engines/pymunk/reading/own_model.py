@@ -258,6 +258,9 @@ def copied(described: Described) -> tuple[pymunk.Space, list[pymunk.Body]]:
         if own.center_of_gravity.length:
             # pymunk (7.3.1) places a copy before it knows where the centre of mass is, and so elsewhere.
             mine.angle, mine.position = own.angle, own.position
+    for mine, own in zip(space.constraints, given.constraints, strict=True):
+        if isinstance(own, pymunk.PinJoint):
+            mine.distance = own.distance  # a copy of pymunk (7.3.1) takes the distance at which its bodies are
     bodies = [copies[place] for place in places]
     return space, bodies
 
