@@ -330,7 +330,7 @@ class ExtrapolatedRun(OneShot):
         # that run alone is out of the series, it puts the extrapolation off by the whole last difference.
         least = np.full(poses.shape[1], LEAST)
         least[: 2 if steps < len(least) else 1] = 1.0
-        return expected_error(poses / self._scale, levels, powers, least) * self._scale + self._rounding(pose, steps)
+        return _expected_error(poses / self._scale, levels, powers, least) * self._scale + self._rounding(pose, steps)
 
     def _rounding(self, pose: Array, steps: int) -> Array:
         """Each step rounds a pose anew, by half a unit at most, and the combination carries that with its weights."""
@@ -380,18 +380,21 @@ def _part(run: Run, samples: int, every: int, each: int) -> Trajectory:
 
 
 @validated
-def expected_error(
-    values: Numbers, levels: tuple[Count, ...], powers: tuple[Count, ...], least: float | Array = LEAST
-) -> Array:
+def expected_error(values: Numbers, levels: tuple[Count, ...], powers: tuple[Count, ...]) -> Array:
     """An estimate (times, ...) of the error of values (levels, times, ...) that are extrapolated, all in one unit.
 
     The differences between the extrapolations of k + 1 and of the k finest runs fall from one k to the next while the
     runs are a series in the step. The last of them is the error of the extrapolation without the coarsest run; what is
     left is smaller by the factor that it fell by, or by the one that the last two factors lead to, as in asymptotic
-    series factors rise. That is taken CAUTION times. It is no less than `least`, at each time, of the last difference,
-    as that may just pass zero, and no more than a single run that is out of the series, by whatever, puts the
-    extrapolation off if it is that run alone. Factors are those of the largest differences so far.
+    series factors rise. That is taken CAUTION times. It is no less than LEAST of the last difference, as that may just
+    pass zero, and no more than a single run that is out of the series puts the extrapolation off. Factors are those of
+    the largest differences so far.
     """
+    return _expected_error(values, levels, powers, LEAST)
+
+
+def _expected_error(values: Array, levels: tuple[int, ...], powers: tuple[int, ...], least: float | Array) -> Array:
+    """`expected_error` with the least part (times,) of the last difference that counts."""
     apart = _differences(values, levels, powers)
     with np.errstate(all="ignore"):
         sizes = [np.fmax.accumulate(np.fmax.reduce(each.reshape(len(each), -1), axis=1, initial=0.0)) for each in apart]

@@ -17,7 +17,8 @@ from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.single_run import Recorded, SingleRun
 from reference.chapter import centrodes, shapes
 from reference.chapter.parking import Move
-from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.couplings import Coupling, Term
+from reference.forces import CoupledForce, Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Body
 from reference.rolling.closed_curves import Cam, Ellipse
@@ -64,7 +65,9 @@ def _nothing_recorded(samples: int, every: int) -> Recorded:
 # A run of engines that need not be installed.
 RUN = SingleRun(four_bar(), 1e-3, Size(3, 9, 8, 8), _nothing_recorded)
 # One valid instance of each class that checks its fields.
+_terms = (Term(None, "b", 2.0), Term(None, "b", 0.5, True, (0.1, 0.2), 0.3, (0.4, 0.5)))
 INSTANCES: tuple[Any, ...] = (
+    *(*_terms, Coupling("c", _terms, 0.1), CoupledForce("f", _terms, 1.0, 2.0, 3.0, 0.4)),
     *(*SCENES, *SCENES_OF_LIMITS, *registry.ENGINES, *registry.OTHERS),
     *(Body("b", 1.0, 2.0, (0.0, 0.0, 0.0)), four_bar(), OpenChain(_chain.bodies, _chain.joints, _chain.gravity)),
     *(Pin("p", None, "b", (0.0, 0.5), (1.0, 0.0)), Drive("d", None, "b", 1.0, 0.5)),

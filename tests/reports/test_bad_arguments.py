@@ -45,6 +45,7 @@ NOT_MADE_BY_USERS = {
         "reference.numerics.windows": "Windows InDouble",
         "reference.scenes.pendulum.joint_forces": "JointForces",
         "reports.gate.change": "Altered",
+        "engines.capability": "Capability",
         "engines.contract": "Size Softness Promise Unpromised",
         "engines.pymunk.contraction": "Sweeping",
         "engines.loading": "Kind",
