@@ -117,6 +117,8 @@ class Isometry:
                 return replace(joint, turning_rate=sense * joint.turning_rate, offset=offset)
             case Roll():
                 return replace(joint, rolling=self._rolling(joint.rolling, ground))
+            case _:
+                raise TypeError(f"no isometry of a {type(joint).__name__} is defined here")
 
     def _force(self, force: ForceElement) -> ForceElement:
         """The force element in the new world."""
@@ -132,6 +134,8 @@ class Isometry:
             case Force():
                 pull = self._place(*force.force, shifted=False)
                 return replace(force, second_point=self._inside(force.second_point), force=pull)
+            case _:
+                raise TypeError(f"no isometry of a {type(force).__name__} is defined here")
 
     def _between(self, pair: Weld | TorsionSpring, angle: float) -> float:
         """An angle of the second body against the first, where the ground's stays zero."""

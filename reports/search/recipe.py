@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.couplings import Coupling
 from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
 from reference.plane import components, rotated
@@ -249,6 +250,7 @@ class Standing:
         """The joint of a link, `number` being the joint's own. Raises InvalidMechanism for one that can't be."""
         joint = self.joining.joint(link, number)
         poses = [np.array(self.bodies[body - 1].pose) if body else np.zeros(3) for body in (link.first, link.second)]
+        assert not isinstance(joint, Coupling), "a link joins two bodies"
         block = joint.rows(*poses)
         rows = np.zeros((len(block), 3 * len(self.bodies)))
         for body, part in ((link.first, block[:, :3]), (link.second, block[:, 3:])):

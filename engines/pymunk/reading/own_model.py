@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
-from pymunk.constraints import Constraint, GrooveJoint, RotaryLimitJoint, SlideJoint
+from pymunk.constraints import Constraint, GrooveJoint, PinJoint, RotaryLimitJoint, SlideJoint
 
 from engines.pymunk.contraction import gain, sweeps
 from engines.pymunk.expected import worst_contraction
@@ -259,7 +259,7 @@ def copied(described: Described) -> tuple[pymunk.Space, list[pymunk.Body]]:
             # pymunk (7.3.1) places a copy before it knows where the centre of mass is, and so elsewhere.
             mine.angle, mine.position = own.angle, own.position
     for mine, own in zip(space.constraints, given.constraints, strict=True):
-        if isinstance(own, pymunk.PinJoint):
+        if isinstance(own, PinJoint):
             mine.distance = own.distance  # a copy of pymunk (7.3.1) takes the distance at which its bodies are
     bodies = [copies[place] for place in places]
     return space, bodies

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from engines import Unsupported
 from engines.mujoco.stiffness import Shipped
+from reference.couplings import Coupling
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -117,7 +118,7 @@ def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
         own = truth.reaction[:, row : row + joint.size]
         row += joint.size
         known = np.isfinite(own)
-        if isinstance(joint, Drive) or not (known.any() or isinstance(joint, Roll)):
+        if isinstance(joint, Drive | Coupling) or not (known.any() or isinstance(joint, Roll)):
             continue
         first, second = between(mechanism, joint, truth.pose)
         across = joint.rows(first, second)[..., 3:5]
