@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.checks import InvalidMechanism
-from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.couplings import Coupling
+from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
 from reference.plane import components, rotated
