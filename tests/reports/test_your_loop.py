@@ -23,9 +23,22 @@ from reports.model.tasks import Answer, Task, answered
 from reports.pages.guides.experiments import CUTS
 from reports.pages.guides.page import PAGES
 from reports.pages.rendering import render_page
-from reports.pages.your_loop.experiments import EVERY, BeforeAndAfter, Fresh, draw, run_lines
+from reports.pages.your_loop.experiments import EVERY, Fresh, draw, run_lines
 from reports.pages.your_loop.linkages import LINKAGES, jansen
-from reports.pages.your_loop.page import CHAIN, DISC, LINES, LOOP, MUJOCO, PASTED, PYMUNK, SLIDER, aimed, cell, words
+from reports.pages.your_loop.page import (
+    BUILT,
+    CHAIN,
+    DISC,
+    LINES,
+    LOOP,
+    MUJOCO,
+    PASTED,
+    PYMUNK,
+    SLIDER,
+    aimed,
+    cell,
+    words,
+)
 from reports.pages.your_model.experiments import MODELS
 from reports.write.tables import number
 from tests.committed_rows import committed_rows
@@ -218,7 +231,7 @@ def pymunk_default():
 
 
 def test_before_and_after_compares_gaps_and_angles_of_a_linkage_without_contact():
-    values = BeforeAndAfter("four-bar", PASTED).run()
+    values = next(task for task in BUILT if task.linkage == "four-bar").run()
     gap, angle = np.asarray(values["gap"]), np.asarray(values["angle"])
     assert gap[1] < gap[0] / 10
     assert angle[1] < angle[0] / 10

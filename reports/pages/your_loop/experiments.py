@@ -102,6 +102,7 @@ class Fresh(Task):
 
 
 SECONDS, COMPARED = 10.0, 3.0  # s: the gaps are measured for longer than `choose` has seen, angles for less
+LINKAGE_STEP = 1 / 240  # s, a usual one of games; shorter steps take several minutes of CPU time for all linkages
 
 
 def run_lines(space: pymunk.Space, lines: str) -> dict[str, Any]:
@@ -138,8 +139,8 @@ class BeforeAndAfter(Task):
         angles = [[], []]
         worst = [0.0, 0.0]
         for place, space in enumerate((shipped, closed)):
-            for step in range(round(SECONDS / STEP)):
-                space.step(STEP)
+            for step in range(round(SECONDS / LINKAGE_STEP)):
+                space.step(LINKAGE_STEP)
                 worst[place] = max(worst[place], *gaps(space))
                 if (step + 1) % EVERY == 0:
                     angles[place].append([body.angle for body in space.bodies])
@@ -154,8 +155,9 @@ class BeforeAndAfter(Task):
         """Of angles (2, times, bodies) [rad], until neighbouring starts part exponentially or an obstacle is met."""
         space = LINKAGES[self.linkage]()
         try:
-            reading = read(space, STEP)
-            ideal = judged(reading.mechanism, round(COMPARED / (EVERY * STEP)), EVERY * STEP)
+            reading = read(space, LINKAGE_STEP)
+            spacing = EVERY * LINKAGE_STEP
+            ideal = judged(reading.mechanism, round(COMPARED / spacing), spacing)
         except (InvalidMechanism, Unsupported):
             return [nan, nan]
         model: Any = reading.model

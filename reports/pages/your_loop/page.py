@@ -77,7 +77,7 @@ ASKED = tuple(cell(case, engine) for case in (*MUJOCO, *PYMUNK) for engine in ca
 OWN = tuple(each for each in ASKED if each.purpose == "beside")
 FRESH = tuple(dict.fromkeys(task for case in (*MUJOCO, *PYMUNK) for task in case.fresh))
 PASTED = "\n\n".join((LINES / f"{name}.txt").read_text(encoding="utf-8") for name in ("close", "choose"))
-BUILT = tuple(BeforeAndAfter(name, PASTED) for name in LINKAGES)
+BUILT = tuple(BeforeAndAfter(name, PASTED.replace("(space, 1e-3)", "(space, 1 / 240)")) for name in LINKAGES)
 
 
 def table(material: Material, cases: tuple[Case, ...]) -> str:
