@@ -19,18 +19,21 @@ import warnings
 from collections.abc import Hashable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from importlib import import_module
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-from planar_crosscheck import clash
 from reports.model.ending import describe
 from reports.model.outcomes import Loss, Outcome, failure, out_of_time
 from reports.run.files import held_folders, lasting_folder
 
-IMPORTED_ONCE = ("reports.model.measure", "engines.registry")  # by the fork server, for all workers
+# Rows depend on the files that this module imports, and on no engine but their own. So these, which look at all engines
+# and packages, are imported by their names.
+GUARD, REGISTRY = "planar_crosscheck", "engines.registry"
+IMPORTED_ONCE = ("reports.model.measure", REGISTRY)  # by the fork server, for all workers
 PATIENCE = 30.0  # s for a process that has ended to be gone: its memory may have to be written first
 READY = b"ready"
 LARGEST = 2**28  # bytes of one result: far above any motion, far below what would fill the memory of the parent
@@ -250,7 +253,9 @@ def work(connection: Connection, folder: str, limit: float, wall: float, process
         _redirect(Path(folder))
     except FileNotFoundError:  # the command was interrupted meanwhile, and has taken its folder away
         os._exit(1)
-    if hidden := clash():  # the path came from the parent: a folder before ours may have appeared since
+    if hidden := import_module(
+        GUARD
+    ).clash():  # the path came from the parent: a folder before ours may have appeared since
         print(hidden, file=sys.stderr, flush=True)
         os._exit(1)
     clock = Clock()
@@ -329,9 +334,9 @@ def _answer(job: bytes, clock: Clock, limit: float, wall: float) -> tuple[bool, 
             result = function(item)
         if time.process_time() - start > limit:
             result = out_of_time(limit)
-        from engines.registry import mislabelled
-
-        if sentence := mislabelled(elsewhere=False):  # a build that `compare` runs may lie elsewhere
+        if sentence := import_module(REGISTRY).mislabelled(
+            elsewhere=False
+        ):  # a build that `compare` runs may lie elsewhere
             result = Loss(Outcome.LOST, sentence)
         answer = pickle.dumps(result)
         if len(answer) > LARGEST:
