@@ -192,7 +192,7 @@ def thrown(mass: float | None = None) -> Mechanism:
     """A sleigh that goes too far at once, or two links of masses too far apart for numbers."""
     if mass is None:
         sled = ChaplyginSleigh().mechanism()
-        return replace(sled, bodies=(replace(sled.bodies[0], twist=(1e200, 0.0, 0.0)),))
+        return replace(sled, bodies=(replace(sled.bodies[0], twist=(1e150, 0.0, 0.0)),))
     links = LinkPendulum().mechanism()
     return replace(links, bodies=(links.bodies[0], replace(links.bodies[1], mass=mass, inertia=mass)))
 

@@ -418,10 +418,10 @@ def test_what_rounding_leaves_where_rows_nearly_depend_on_each_other_is_no_fault
 
 
 def test_descriptions_that_differ_by_what_rounding_makes_are_no_fault_and_by_much_more_are() -> None:
-    case, own = mechanisms.recipe(4242, 105, EVERY), mechanisms.mechanism(4242, 105, EVERY)
+    case, own = mechanisms.recipe(4242, 126, EVERY), mechanisms.mechanism(4242, 126, EVERY)
     speed = 1e-4 * float(np.abs(own.twist).max())
-    assert Adapted(PYMUNK_EXTENDED).ask(case, 105, ("relations",)).faults == ()
-    assert Adapted(Beside(PYMUNK_EXTENDED, speed=speed)).ask(case, 105, ("relations",)).faults == ("turned",)
+    assert Adapted(PYMUNK_EXTENDED).ask(case, 126, ("relations",)).faults == ()
+    assert Adapted(Beside(PYMUNK_EXTENDED, speed=speed)).ask(case, 126, ("relations",)).faults == ("turned",)
 
 
 @pytest.mark.parametrize(("seed", "number"), [(77777, 14), (4242, 146)])
