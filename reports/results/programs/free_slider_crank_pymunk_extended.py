@@ -4,7 +4,7 @@ import numpy as np
 import pymunk
 
 duration = 2.0  # s
-steps = 2000
+steps = 600  # 600: below 1e-6; 2000: below 1e-9
 dt = duration / steps  # s
 
 # Mass [kg], moment of inertia [kg m^2], centre of mass [m], angle [rad], velocity [m/s], rate [rad/s].
