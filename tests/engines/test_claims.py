@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from engines import CLAIM, Engine
-from engines.constraint_error import FORCES, closing, displaced_reaction
+from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts
 from engines.lagrange import TRUTH
 from engines.mujoco import EXTENDED as MUJOCO
 from engines.pymunk import EXTENDED as PYMUNK
+from reference.forces import Spring
 from reference.joints import Pin, Rod
 from reference.mechanism import Mechanism
 from reports.search.claims import CLAIMED, REPORTED, compared
@@ -103,3 +104,15 @@ def test_claims_are_asked_of_methods_with_an_estimate_alone():
     assert CLAIMED in asked[0].ask(case, 1, (CLAIMS,)).errors
     assert "no estimate" in Adapted(replace(MUJOCO, estimates=False)).ask(case, 1, (CLAIMS,)).not_asked[0]
     assert present(MUJOCO.build(pendulum(), DT)(STEPS, 1).estimate).max() < CLAIM
+
+
+def test_an_error_of_a_force_is_counted_in_the_largest_force_and_not_in_that_of_a_stiff_spring_which_does_not_pull():
+    own = pendulum()
+    x, y, _ = own.pose[0]
+    stiff = replace(own, forces=(Spring("s", None, "bar", (float(x), float(y) + 1.0), (0.0, 0.0), 1e8, 1.0),))
+    heaviest = own.bodies[0].mass * stiff.length_scale / stiff.time_scale**2
+    pose, twist = stiff.pose[None], stiff.twist[None]
+    force = np.full((1, stiff.row_count), 10.0)
+    assert heaviest > 1e4 * force.max()
+    assert reaction_doubts(stiff, pose, twist, force, 0.01 * force)
+    assert not reaction_doubts(stiff, pose, twist, force, FORCES / 2 * force)

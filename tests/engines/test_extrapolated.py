@@ -265,3 +265,20 @@ def test_name_variant_size_and_refusals_are_the_inner_engines():
 def test_levels_and_powers_that_do_not_fit_are_refused(levels, powers):
     with pytest.raises(ValueError, match=r"(?i)extrapolated: (levels|powers|.* levels remove)"):
         Extrapolated(Toy(), "extended", levels, powers)
+
+
+def test_differences_that_are_small_by_chance_are_decided_by_a_further_run():
+    """The terms of orders 5 and 6 cancel in the last difference and not in the error that is left."""
+    levels, powers, dt = (1, 2, 3, 4), (2, 3, 4), 0.1
+    steps = dt / np.array(levels)
+    left = {power: float(extrapolation_weights(levels, powers) @ steps**power) for power in (5, 6)}
+    without = {power: float(extrapolation_weights(levels[1:], powers[:-1]) @ steps[1:] ** power) for power in (5, 6)}
+    last = {power: left[power] - without[power] for power in (5, 6)}
+    size = 3 * CLAIM / abs(left[5] - left[6] * last[5] / last[6])  # the error is 3 claims after a second, and grows
+    toy = Toy({2: 1e-3, 3: -2e-3, 4: 1e-3, 5: size, 6: -size * last[5] / last[6]})
+    trajectory = run(Extrapolated(toy, "extended", levels, powers), dt)
+    error = np.abs(trajectory.pose - np.cos(trajectory.t)[:, None, None]).max(axis=(1, 2))
+    assert error.max() > 3 * CLAIM
+    claimed = trajectory.t < (math.inf if trajectory.unresolved_at is None else trajectory.unresolved_at)
+    assert error[claimed].max() <= CLAIM
+    assert np.all(error <= present(trajectory.estimate).max(axis=(1, 2)) + 1e-12)
