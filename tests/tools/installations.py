@@ -94,9 +94,10 @@ def environment_with(folder: Path, *wheels: Path) -> Path:
     return programs
 
 
-def run(program: Path, *words: object, folder: Path) -> subprocess.CompletedProcess[str]:
-    """A program of such an environment, started in `folder`, with nothing of ours on the path."""
+def run(program: Path, *words: object, folder: Path, path: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """A program of such an environment, started in `folder`, with nothing of ours on the path; `path` stands first."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    kept |= {} if path is None else {"PYTHONPATH": str(path)}
     return subprocess.run([program, *map(str, words)], cwd=folder, env=kept, capture_output=True, text=True)
 
 
