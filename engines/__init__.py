@@ -13,6 +13,7 @@ from engines.contract import (
     Softness,
     Unpromised,
     Unsupported,
+    method_name,
     refuse_forces,
 )
 
@@ -29,5 +30,6 @@ __all__ = [
     "Softness",
     "Unpromised",
     "Unsupported",
+    "method_name",
     "refuse_forces",
 ]

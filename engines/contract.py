@@ -219,6 +219,11 @@ class Engine(ABC):
     def build(self, mechanism: Mechanism, dt: float) -> Run: ...
 
 
+def method_name(engine: Engine) -> str:
+    """The name of an engine's variant in every row, table and message."""
+    return f"{engine.name} {engine.variant}"
+
+
 class Around(Engine):
     """An engine around another one, which says what this one does not."""
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from engines import Engine
+from engines import Engine, method_name
 from engines.entry_points import registered
 from engines.imported_release import other_release
 from engines.loading import Kind
@@ -36,11 +36,6 @@ def trouble(value: Any) -> str:
 ENGINE = Kind("engine", trouble)
 
 
-def method(engine: Engine) -> str:
-    """How an engine is called in every table."""
-    return f"{engine.name} {engine.variant}"
-
-
 def load(reference: str, folder: Path | None = None) -> tuple[Engine, ...]:
     """The engines of `package.module:NAME`, `path/to/file.py` or `path/to/file.py:NAME`, installed or not.
 
@@ -50,8 +45,8 @@ def load(reference: str, folder: Path | None = None) -> tuple[Engine, ...]:
     return load_values(reference, ENGINE, folder)
 
 
-_variants = registered("crosscheck.engines", ENGINE, method)
-_methods = registered("crosscheck.methods", ENGINE, method, {method(engine): engine for engine in _variants.values})
+_variants = registered("crosscheck.engines", ENGINE, method_name)
+_methods = registered("crosscheck.methods", ENGINE, method_name, {method_name(e): e for e in _variants.values})
 
 # Every engine as shipped, tuned by documented settings, and extended around; ideal constraints under ordinary
 # integrators of order 1 and 4; and what other distributions register. Every scene is run in these.
@@ -66,7 +61,7 @@ ENGINES: tuple[Engine, ...] = tuple(
 )
 
 _optional = registered(
-    "crosscheck.engines", ENGINE, method, {method(engine): engine for engine in ENGINES}, extras=True
+    "crosscheck.engines", ENGINE, method_name, {method_name(engine): engine for engine in ENGINES}, extras=True
 )
 
 

@@ -10,11 +10,11 @@ from typing import Any
 
 from reports.cli.selection import shown_cells
 from reports.model.cells import Cell
+from reports.model.digest import SHORT, digest
 from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.model.tasks import Answer, Task, answered
-from reports.write.csv_files import digest
 from tests import RESULTS
 
 KINDS: Mapping[str, Any] = {"int": int, "float": float, "str": str}  # annotations are strings in that module
@@ -69,7 +69,7 @@ def _lines_of(cell: Cell) -> list[dict[str, str]]:
 
 
 def _line(cell: Cell) -> dict[str, str] | None:
-    own = (digest(repr(cell.scene)), digest(repr(cell.engine)))
+    own = (digest(repr(cell.scene), SHORT), digest(repr(cell.engine), SHORT))
     return next((line for line in _lines_of(cell) if (line["parameters"], line["settings"]) == own), None)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from engines import Engine
+from engines import Engine, method_name
 from engines.conformance import members, moving, refusing, same, sampled
 from engines.conformance.check import Case, Check, Result, Status, Subject
 from engines.imported_release import other_release
@@ -56,7 +56,7 @@ def conform(engine: Engine, expected_failures: Mapping[str, str] | None = None) 
         elif name not in came:
             wrong.append(f"{name}: it was expected to fail ({why}), and it does not: take it out of what is expected")
     if wrong:
-        raise AssertionError(f"{engine.name} {engine.variant} does not conform:\n" + "\n".join(wrong))
+        raise AssertionError(f"{method_name(engine)} does not conform:\n" + "\n".join(wrong))
     return results
 
 

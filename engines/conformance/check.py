@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from engines import Engine, Run, Unsupported
+from engines import Engine, Run, Unsupported, method_name
 from engines.conformance.worlds import World
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -41,7 +41,7 @@ class Subject:
         self._kept: dict[tuple[Any, ...], Trajectory] = {}
 
     def __str__(self) -> str:
-        return f"{self.engine.name} {self.engine.variant}"
+        return method_name(self.engine)
 
     def build(self, mechanism: Mechanism, dt: float = STEP) -> Run:
         """Raises Unsupported if the engine does, Fails for any other exception."""

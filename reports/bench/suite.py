@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from engines import Engine, Unsupported
+from engines import Engine, Unsupported, method_name
 from engines.entry_points import registered_by_key
 from engines.loading import Kind
 from reference.mechanism import Mechanism
@@ -148,7 +148,7 @@ class Account:
         for part, seconds in {**spent.parts, STARTING if first else BETWEEN: spent.before}.items():
             self.parts[part] = self.parts.get(part, 0.0) + seconds
         seconds, engine = sum(spent.parts.values()), item.engine
-        method = "tasks of no engine" if engine is None else f"{engine.name} {engine.variant}"
+        method = "tasks of no engine" if engine is None else method_name(engine)
         scene = item.scene.name if isinstance(item, Cell) else "tasks"
         self.methods[method] = self.methods.get(method, 0.0) + seconds
         self.scenes[scene] = self.scenes.get(scene, 0.0) + seconds

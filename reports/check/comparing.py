@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from engines import Engine, registry
+from engines import Engine, method_name, registry
 from engines.imported_release import other_release
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory, ground_points
@@ -58,7 +58,7 @@ class Comparison:
 
     @property
     def title(self) -> str:
-        return f"{registry.method(self.engine)} at {self.dt * 1e3:g} ms"
+        return f"{method_name(self.engine)} at {self.dt * 1e3:g} ms"
 
     def frame(self) -> Any:
         """The errors over time as a pandas.DataFrame, an instant a row. Raises ImportError without pandas."""
@@ -105,7 +105,7 @@ def compared(mechanism: Mechanism, engine: Engine | str, dt: float, duration: fl
 
 def _named(name: str) -> Engine:
     """By "engine" or "engine variant". Raises ValueError."""
-    known = {registry.method(engine): engine for engine in registry.ENGINES}
+    known = {method_name(engine): engine for engine in registry.ENGINES}
     found = known.get(name) or known.get(f"{name} default")
     if found is None:
         raise ValueError(f"no engine is called {name!r}; there are {', '.join(known)}")

@@ -64,11 +64,11 @@ def animate(
 
 def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engine]:
     """The engines of these names. Raises BadInput for one that is not known, and for too many."""
-    from engines.registry import method
+    from engines.registry import method_name
 
     if words is None:
         return [engine for engine in engines if engine.variant == "default"][:MOST]
-    known = {method(engine): engine for engine in engines}
+    known = {method_name(engine): engine for engine in engines}
     names = listed("--engines", words, known)
     if len(names) > MOST:
         raise BadInput(f"--engines names {len(names)} methods; more than {MOST} can't be told apart in one picture")
@@ -77,13 +77,13 @@ def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engin
 
 def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Shown:
     """The motions, those that are not stored run by the pool first."""
-    from engines.registry import method
+    from engines.registry import method_name
     from reports.cli.run import run_interruptible
     from reports.cli.terminal import Terminal, opened
     from reports.site.animated import shown
     from reports.site.lessons import take_like
 
-    take = take_like(scene, tuple((method(engine), engine, every) for engine in engines))
+    take = take_like(scene, tuple((method_name(engine), engine, every) for engine in engines))
     motions = tuple(take.motions().values())
     with opened(results / STORE) as store:
         run_interruptible(Terminal(140), store, motions, fresh=False, limit=60.0)

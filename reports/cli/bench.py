@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from engines import method_name
 from reports.cli.options import Scenes, Workers
 from reports.cli.site import SITE
 
@@ -56,10 +57,7 @@ def bench(
     known, names, _ = with_words(registered(), scene or (), None)
     for one in choose_scenes(names, known.scenes, known.pages):
         costs = loop_costs(ENGINES, one.mechanism(), one.spacing / 10, one.samples, 10)
-        body = [
-            (f"{c.engine.name} {c.engine.variant}", number(1e6 * c.bare), number(1e6 * c.run), f"{c.ratio:.3f}")
-            for c in costs
-        ]
+        body = [(method_name(c.engine), number(1e6 * c.bare), number(1e6 * c.run), f"{c.ratio:.3f}") for c in costs]
         if body:
             header = ["method", "bare loop [us/step]", "run [us/step]", "ratio [1]"]
             print_table(console, f"{one.name}: run over the bare loop", header, body, 1)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from engines import method_name
 from reports.cli.options import REFERENCES, AsJson, AsMarkdown
 from reports.model.ending import BadInput, Broken
 
@@ -33,7 +34,7 @@ def conform(
     with telling(WIDTH, as_json, as_markdown) as screen:
         broken = []
         for each, results in asked(Named.here(engine, variant)):
-            name = f"{each.name} {each.variant}"
+            name = method_name(each)
             screen.say(name)
             lines = []
             for status, line in verdicts(results):

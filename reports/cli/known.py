@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from engines import Engine, registry
+from engines import Engine, method_name, registry
 from engines.loading import is_reference, load
 from reference.scene import Scene, told_apart, with_settings
 from reports.cli.selection import choose_scenes, known_engines
@@ -65,7 +65,7 @@ class Known:
         """(this and what is given, the scenes or engines that it stands for). Raises ValueError, a sentence."""
         found = values_of(given)
         if given.kind == "engine":
-            new = _new(found, self.engines, registry.method, given)
+            new = _new(found, self.engines, method_name, given)
             pages = catalogue.with_engines(self.pages, new)
             out = replace(self, engines=(*self.engines, *new), pages=pages)
         else:

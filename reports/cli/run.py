@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from engines import method_name
 from reports.cli.options import (
     FOLDER,
     STORE,
@@ -70,7 +71,7 @@ def run(
     items = cells if every or step or alone else (*cells, *choose_tasks(scenes, engines, known.pages, full))
     if not items:
         compared = (each for scene in scenes for each in grid_engines(scene, known.engines, known.pages))
-        methods = ", ".join(dict.fromkeys(f"{each.name} {each.variant}" for each in compared))
+        methods = ", ".join(dict.fromkeys(method_name(each) for each in compared))
         longer = "" if full else "; --full has what takes longer"
         raise BadInput(f"nothing to run: pages compare these methods in what is named: {methods}{longer}")
     with telling(140, as_json, as_markdown) as console:
@@ -81,7 +82,7 @@ def run(
             print_summary(console, rows)
         if engine is not None and not (every or step):
             for cell, why in left_out(scenes, engines, known.pages, full, cells):
-                method = f"{cell.engine.name} {cell.engine.variant}"
+                method = method_name(cell.engine)
                 told = f"{cell.scene.name}, {method}: no step of {cell.step:.4g} s, since {why}"
                 console.tell(f"{told}; --every {cell.every} runs it")
         following = with_folder("crosscheck report", results)

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 def list_command(scene: Scenes = None, engine: EngineName = None, variant: VariantName = None) -> None:
     """Scenes, engines and variants, and what is unsupported, with the reason."""
-    from engines.registry import ENGINES, INSTALLED, method
+    from engines.registry import ENGINES, INSTALLED, method_name
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_engines, choose_scenes
     from reports.cli.terminal import Terminal, print_table
@@ -54,7 +54,7 @@ def list_command(scene: Scenes = None, engine: EngineName = None, variant: Varia
     console.print()
     reasons = support([Cell(one, each, 1) for one in scenes for each in engines])
     # Sorted: workers answer in any order.
-    rows = sorted((cell.scene.name, method(cell.engine), why) for cell, why in reasons.items() if why)
+    rows = sorted((cell.scene.name, method_name(cell.engine), why) for cell, why in reasons.items() if why)
     if rows:
         print_table(console, "Unsupported", ["scene", "method", "why"], rows, 3)
     else:

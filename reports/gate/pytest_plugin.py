@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from engines import Engine, registry
+from engines import Engine, method_name, registry
 from engines.loading import is_reference
 from reports.gate.change import BadBaseline, Baseline, mixed, read_baseline
 from reports.gate.theory import Case, idle
@@ -169,7 +169,7 @@ def _engines(words: Sequence[str]) -> tuple[tuple[Engine, ...], tuple[str, ...]]
     """(the engines that references name, the names and methods that are wanted). Raises UsageError."""
     given: dict[Engine, None] = {}
     wanted: list[str] = []
-    known = {registry.method(engine): engine for engine in registry.ENGINES}
+    known = {method_name(engine): engine for engine in registry.ENGINES}
     for word in words:
         if not is_reference(word):
             wanted.append(word)
@@ -179,7 +179,7 @@ def _engines(words: Sequence[str]) -> tuple[tuple[Engine, ...], tuple[str, ...]]
         except ValueError as reason:
             raise pytest.UsageError(f"--engine {reason}") from None
         for engine in found:
-            method = registry.method(engine)
+            method = method_name(engine)
             if known.setdefault(method, engine) != engine:
                 raise pytest.UsageError(f"--engine {word}: another engine is called {method!r}; give it another name")
             given[engine] = None

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from engines import EXACT, Engine, Promise, Softness, Unpromised
+from engines import EXACT, Engine, Promise, Softness, Unpromised, method_name
 from engines.motions import is_prescribed
 from reference.scene import Scene
 from reports.gate.judge import errors_as_soft
@@ -236,7 +236,7 @@ class Case:
 
     @property
     def method(self) -> str:
-        return f"{self.engine.name} {self.engine.variant}"
+        return method_name(self.engine)
 
     @property
     def label(self) -> str:
@@ -276,7 +276,7 @@ def cases(pages: Iterable[Page]) -> tuple[Case, ...]:
 
 
 def _case(page: Page, scene: Scene, engine: Engine) -> Case:
-    method = f"{engine.name} {engine.variant}"
+    method = method_name(engine)
     known = {check: value for (name, own, check), value in page.known.items() if (name, own) == (scene.name, method)}
     promise = page.orders.get((scene.name, method)) or engine.order(mechanism_of(scene))
     return Case(scene, engine, promise, tuple(known.items()))

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import MISSING, fields, is_dataclass, replace
 from typing import Any
 
-from engines import Engine, registry
+from engines import Engine, method_name, registry
 from engines.entry_points import registered
 from engines.loading import Kind
 from reference.checks import InvalidMechanism, take
@@ -102,7 +102,7 @@ def with_scenes(pages: Sequence[Page], scenes: Iterable[Scene], engines: Sequenc
 
 def with_engines(pages: Iterable[Page], engines: Sequence[Engine]) -> tuple[Page, ...]:
     """The pages, each of which that compares engines at all compares these too, and shows them in its charts."""
-    added = {registry.method(engine) for engine in engines}
+    added = {method_name(engine) for engine in engines}
 
     def extended(page: Page) -> Page:
         shown = page.featured

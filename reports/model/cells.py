@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Literal
 
-from engines import Engine, Promise
+from engines import Engine, Promise, method_name
 from reference.checks import Count, Valid
 from reference.mechanism import Mechanism
 from reference.scene import Scene
+from reports.model.digest import LONG, digest
 from reports.model.ending import BadInput, describe
 from reports.model.fingerprint import digest_of, modules_behind, modules_of
 
@@ -61,7 +61,7 @@ class Cell(Valid):
 
     @property
     def label(self) -> str:
-        return f"{self.scene.name} / {self.engine.name} {self.engine.variant} / {self.step:.1e} s"
+        return f"{self.scene.name} / {method_name(self.engine)} / {self.step:.1e} s"
 
     @cached_property
     def key(self) -> str:
@@ -77,14 +77,14 @@ class Cell(Valid):
             self.sample_count,
             digest_of(_modules(self.scene, self.engine)),
         )
-        return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()[:32]
+        return digest("\0".join(map(str, parts)), LONG)
 
     @cached_property
     def truth(self) -> str:
         """A digest of all that the scene's exact motion depends on, but for the instants (`reports.model.truths`)."""
         sources = digest_of(_modules_of_truth(self.scene))
         parts = (self.scene.name, type(self.scene).__qualname__, repr(self.scene), sources)
-        return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+        return digest("\0".join(parts), LONG)
 
 
 @lru_cache(maxsize=4096)  # a scene in an engine has a cell for every step
@@ -113,9 +113,9 @@ def _step_cost(scene: Scene, engine: Engine) -> float:
     try:
         cost = float(engine.step_cost(mechanism_of(scene)))
     except Exception as error:  # whatever somebody else's engine does
-        raise BadInput(f"{engine.name} {engine.variant}: step_cost of {scene.name}: {describe(error)}") from error
+        raise BadInput(f"{method_name(engine)}: step_cost of {scene.name}: {describe(error)}") from error
     if not cost >= 0:
-        raise BadInput(f"{engine.name} {engine.variant}: step_cost of {scene.name} is {cost}; it must be a time [s]")
+        raise BadInput(f"{method_name(engine)}: step_cost of {scene.name} is {cost}; it must be a time [s]")
     return cost
 
 
@@ -189,5 +189,5 @@ def _promised_order(scene: Scene, engine: Engine) -> float:
     try:
         promise = engine.order(mechanism_of(scene))
     except Exception as error:  # whatever somebody else's engine does
-        raise BadInput(f"{engine.name} {engine.variant}: order of {scene.name}: {describe(error)}") from error
+        raise BadInput(f"{method_name(engine)}: order of {scene.name}: {describe(error)}") from error
     return promise.order if isinstance(promise, Promise) else 0.0

@@ -10,7 +10,7 @@ import math
 import signal
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from reports.model.ending import describe
 
@@ -25,89 +25,80 @@ SATURATED = 0.5  # rad: the angle error's growth is no longer proportional to wh
 
 
 class Outcome(StrEnum):
-    """One cell ends in exactly one of these; `converged` and `plateau` are given by a sweep to a cell that finished."""
+    """One cell ends in exactly one of these; `converged` and `plateau` are given by a sweep to a cell that finished.
 
-    FINISHED = "finished"
-    CONVERGED = "converged"
-    PLATEAU = "plateau"
-    UNRESOLVED = "unresolved"
-    SATURATED = "saturated"
-    BRANCH_FLIP = "branch flip"
-    TORN = "torn"
-    DIVERGED = "diverged"
-    RESET = "reset"
-    REFUSED = "refused"
-    UNSUPPORTED = "unsupported"
-    ABORTED = "aborted"
-    TIMED_OUT = "timed out"
-    FAILED = "failed"
-    LOST = "lost"  # never stored: it says nothing about the engine
+    This table is the only one: a page prints `meaning` (a clause), a map draws `letter` on the theme's `colour` with
+    `hatch`, and `grade` says how grave an outcome is: 0 the errors can be compared, 1 the method itself declares that
+    it has no result, 2 the motion is wrong, 3 there is no motion at all.
+    """
 
-    @property
-    def meaning(self) -> str:
-        """One clause for the legend of a page."""
-        return MEANINGS[self]
+    meaning: str
+    letter: str
+    grade: int
+    colour: str
+    hatch: str
 
-    @property
-    def letter(self) -> str:
-        """One letter for a map, so that it can be read without colours."""
-        return LETTERS[self]
+    def __new__(cls, word: str, letter: str, grade: int, colour: str, hatch: str, meaning: str) -> Self:
+        """`colour`: a field of `reports.plots.theme.Theme`."""
+        outcome = str.__new__(cls, word)
+        outcome._value_ = word
+        outcome.letter, outcome.grade, outcome.colour = letter, grade, colour
+        outcome.hatch, outcome.meaning = hatch, meaning
+        return outcome
+
+    FINISHED = (
+        *("finished", "·", 0, "middling", ""),
+        "ran to its end on the right branch with closed joints; the error may still be large",
+    )
+    CONVERGED = (
+        *("converged", "·", 0, "middling", ""),
+        "the error falls with the step, to rounding or as far as it was followed",
+    )
+    PLATEAU = (
+        *("plateau", "p", 0, "middling", ""),
+        "the error stops falling while the step still does: the constraint is not the ideal one",
+    )
+    UNRESOLVED = (
+        *("unresolved", "u", 1, "middling", "oo"),
+        "the method's own estimate of its error is above what it claims, and it says so",
+    )
+    SATURATED = (
+        *("saturated", "S", 2, "bad", ".."),
+        f"an angle is wrong by more than {SATURATED:g} rad: nothing is left to compare",
+    )
+    BRANCH_FLIP = ("branch flip", "B", 2, "bad", "\\\\\\", "went over to the other assembly mode")
+    TORN = ("torn", "T", 2, "bad", "///", f"a joint opened by more than {TORN:g} of the mechanism's length")
+    DIVERGED = (
+        *("diverged", "D", 2, "bad", "xx"),
+        f"a number stopped being finite, or a joint opened by {BLOWN:g} lengths",
+    )
+    RESET = ("reset", "R", 2, "bad", "--", "the engine started anew by itself")
+    REFUSED = ("refused", "r", 1, "grid", "", "these numbers can't be, and a sentence says why")
+    UNSUPPORTED = (
+        *("unsupported", "-", 1, "grid", ""),
+        "the engine has no such constraint, or our adapter builds none; a sentence says which",
+    )
+    ABORTED = ("aborted", "A", 3, "worse", "++", "native code ended the process")
+    TIMED_OUT = ("timed out", "L", 3, "worse", "||", "did not end within its time limit")
+    FAILED = (
+        *("failed", "F", 3, "worse", ""),
+        "an unexpected exception, or an answer that is no motion at the instants asked for",
+    )
+    # Never stored, since it says nothing about the engine.
+    LOST = (
+        *("lost", "x", 3, "worse", ""),
+        "its process was killed from outside, twice, or a module could not be imported there",
+    )
 
     @property
     def comparable(self) -> bool:
         """Whether the errors of such a cell say how exact the method is (else they only say that it failed)."""
-        return self in (Outcome.FINISHED, Outcome.CONVERGED, Outcome.PLATEAU)
+        return self.grade == 0
 
     @property
     def wrong(self) -> bool:
         """Whether the cell ran and what it did is not the scene's motion."""
-        return self in (Outcome.SATURATED, Outcome.BRANCH_FLIP, Outcome.TORN, Outcome.DIVERGED, Outcome.RESET)
-
-    @property
-    def grade(self) -> int:
-        """How grave it is: 0 can be compared, 1 says itself that it has none, 2 is wrong, 3 gave nothing at all."""
-        if self.comparable:
-            return 0
-        if self in (Outcome.UNRESOLVED, Outcome.REFUSED, Outcome.UNSUPPORTED):
-            return 1
-        return 2 if self.wrong else 3
-
-
-MEANINGS = {
-    Outcome.FINISHED: "ran to its end on the right branch with closed joints; the error may still be large",
-    Outcome.CONVERGED: "the error falls with the step, to rounding or as far as it was followed",
-    Outcome.PLATEAU: "the error stops falling while the step still does: the constraint is not the ideal one",
-    Outcome.UNRESOLVED: "the method's own estimate of its error is above what it claims, and it says so",
-    Outcome.SATURATED: f"an angle is wrong by more than {SATURATED:g} rad: nothing is left to compare",
-    Outcome.BRANCH_FLIP: "went over to the other assembly mode",
-    Outcome.TORN: f"a joint opened by more than {TORN:g} of the mechanism's length",
-    Outcome.DIVERGED: f"a number stopped being finite, or a joint opened by {BLOWN:g} lengths",
-    Outcome.RESET: "the engine started anew by itself",
-    Outcome.REFUSED: "these numbers can't be, and a sentence says why",
-    Outcome.UNSUPPORTED: "the engine has no such constraint, or our adapter builds none; a sentence says which",
-    Outcome.ABORTED: "native code ended the process",
-    Outcome.TIMED_OUT: "did not end within its time limit",
-    Outcome.FAILED: "an unexpected exception, or an answer that is no motion at the instants asked for",
-    Outcome.LOST: "its process was killed from outside, twice, or a module could not be imported there",
-}
-
-LETTERS = {
-    Outcome.FINISHED: "·",
-    Outcome.CONVERGED: "·",
-    Outcome.PLATEAU: "p",
-    Outcome.UNRESOLVED: "u",
-    Outcome.SATURATED: "S",
-    Outcome.BRANCH_FLIP: "B",
-    Outcome.TORN: "T",
-    Outcome.DIVERGED: "D",
-    Outcome.RESET: "R",
-    Outcome.REFUSED: "r",
-    Outcome.UNSUPPORTED: "-",
-    Outcome.ABORTED: "A",
-    Outcome.TIMED_OUT: "L",
-    Outcome.FAILED: "F",
-    Outcome.LOST: "x",
-}
+        return self.grade == 2
 
 
 @dataclass(frozen=True)

@@ -98,9 +98,9 @@ class Material:
 
 def usual_series(row: Measurement) -> bool:
     """The methods that charts show as series: what is run in every scene, and any engine's three usual variants."""
-    from engines.registry import VARIANTS, method
+    from engines.registry import VARIANTS, method_name
 
-    return row.variant in FEATURED or row.method in map(method, VARIANTS)
+    return row.variant in FEATURED or row.method in map(method_name, VARIANTS)
 
 
 def everything(scene: Scene, engine: Engine) -> bool:

@@ -5,7 +5,6 @@ Nothing is stepped or integrated while a page is written: it reads the answers t
 
 from __future__ import annotations
 
-import hashlib
 from abc import ABC, abstractmethod
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
@@ -18,6 +17,7 @@ from engines import Engine, Unsupported
 from engines.contract import flaw
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell, estimated_cost
+from reports.model.digest import LONG, digest
 from reports.model.fingerprint import fingerprint
 from reports.model.outcomes import Outcome, refusal
 from reports.model.spending import spending
@@ -88,7 +88,7 @@ class Task(ABC):
     def key(self) -> str:
         """A digest of all that the answer depends on; equal keys mean that a stored answer still holds."""
         parts = ("task", type(self).__qualname__, repr(self), fingerprint(self))
-        return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+        return digest("\0".join(parts), LONG)
 
 
 @dataclass(frozen=True)

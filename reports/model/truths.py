@@ -5,7 +5,6 @@ A file is named by all that its motion depends on, and so is never stale. The fo
 
 from __future__ import annotations
 
-import hashlib
 import io
 import os
 import struct
@@ -20,6 +19,7 @@ import numpy as np
 from reference.kinds import Floats
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reports.model.digest import LONG, digest
 
 FOLDER = "truths"
 SHORT = 5e-3  # s: a motion that takes less is worked out again sooner than it is read
@@ -38,7 +38,7 @@ def kept_motion(scene: Scene, t: Floats, name: str, folder: Path | None) -> Traj
     """
     if folder is None or not folder.is_dir():
         return scene.motion(t)
-    file = folder / f"{hashlib.sha256(name.encode() + t.tobytes()).hexdigest()[:32]}.npz"
+    file = folder / f"{digest(name.encode() + t.tobytes(), LONG)}.npz"
     with suppress(*DAMAGES), np.load(io.BytesIO(file.read_bytes())) as kept:
         return Trajectory(*(kept[part] for part in PARTS))
     begin = time.process_time()

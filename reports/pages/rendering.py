@@ -8,7 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from engines import Engine
+from engines import Engine, method_name
 from reference.scene import Scene
 from reports.gate.prediction import declared_error
 from reports.model import catalogue
@@ -34,7 +34,7 @@ from reports.write.templates import inert_page, template_of
 
 def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Material) -> dict[str, Any]:
     """The scene's words and tables from the judged rows of its sweep; tables are empty without rows."""
-    engines = {f"{engine.name} {engine.variant}": engine for engine in page.engines_of(scene)}
+    engines = {method_name(engine): engine for engine in page.engines_of(scene)}
 
     def declared(method: str, step: float) -> float:
         if method not in engines:

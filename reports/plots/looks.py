@@ -89,26 +89,6 @@ def shade(error: float) -> str:
     return next((role for bound, role in SHADES if error < bound), "middling")
 
 
-HATCHES = {
-    Outcome.UNRESOLVED: "oo",
-    Outcome.SATURATED: "..",
-    Outcome.BRANCH_FLIP: "\\\\\\",
-    Outcome.TORN: "///",
-    Outcome.DIVERGED: "xx",
-    Outcome.RESET: "--",
-    Outcome.ABORTED: "++",
-    Outcome.TIMED_OUT: "||",
-}
-
-
 def outcome_colour(outcome: Outcome, theme: Theme) -> str:
     """The colour of a cell of a map that ended so, where its error is not told (`shade`)."""
-    match outcome:
-        case Outcome.FINISHED | Outcome.CONVERGED | Outcome.PLATEAU | Outcome.UNRESOLVED:
-            return theme.middling
-        case Outcome.SATURATED | Outcome.BRANCH_FLIP | Outcome.TORN | Outcome.DIVERGED | Outcome.RESET:
-            return theme.bad
-        case Outcome.UNSUPPORTED | Outcome.REFUSED:
-            return theme.grid
-        case _:
-            return theme.worse
+    return getattr(theme, outcome.colour)

@@ -8,7 +8,6 @@ pip installs it without what it requires, once, below the user's cache folder: n
 
 from __future__ import annotations
 
-import hashlib
 import os
 import re
 import shutil
@@ -22,6 +21,7 @@ from importlib import metadata
 from pathlib import Path
 
 from engines.user_cache import CACHE, cache_folder
+from reports.model.digest import digest
 from reports.model.ending import BadInput
 from reports.run.files import folder_for, temporary_folder
 
@@ -76,10 +76,10 @@ def built(path: Path) -> Path:
     if path.is_dir():
         if not any((path / name).is_file() for name in ("pyproject.toml", "setup.py")):
             return path
-        name = f"build-{hashlib.sha256(str(path).encode()).hexdigest()[:16]}"
+        name = f"build-{digest(str(path))}"
         shutil.rmtree(_place(name), ignore_errors=True)
     elif path.suffix == ".whl" and path.is_file():
-        name = f"wheel-{hashlib.sha256(path.read_bytes()).hexdigest()[:16]}"
+        name = f"wheel-{digest(path.read_bytes())}"
     else:
         raise BadInput(f"{path}: there is no such folder or wheel; give NAME==VERSION, a .whl file or a folder")
     folder = _place(name)

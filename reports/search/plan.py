@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import secrets
 import subprocess
 from collections.abc import Iterator, Sequence
@@ -12,6 +11,7 @@ from itertools import count
 
 from engines import Engine, Unsupported, pymunk
 from engines.registry import INSTALLED, VARIANTS
+from reports.model.digest import SHORT, digest
 from reports.model.fingerprint import OURS, ROOT
 from reports.search import mechanisms
 from reports.search.chunk import Chunk, chunks
@@ -41,14 +41,13 @@ def origin() -> tuple[str, str]:
         if told.returncode == 0:
             return COMMIT, told.stdout.strip()
     files = sorted(path for folder in OURS for path in (ROOT / folder).rglob("*.py"))
-    digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in files))
-    return SOURCES, digest.hexdigest()
+    return SOURCES, digest(b"\0".join(path.read_bytes() for path in files), 64)
 
 
 def seeds(many: int = len(DECADES)) -> tuple[int, ...]:
     """The first eight hexadecimal digits, halved, of the SHA-256 of the origin, a blank and a number from 1."""
     words = (f"{origin()[1]} {number}" for number in range(1, many + 1))
-    return tuple(int(hashlib.sha256(word.encode()).hexdigest()[:8], 16) // 2 for word in words)
+    return tuple(int(digest(word, SHORT), 16) // 2 for word in words)
 
 
 @cache

@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from engines import Around, Engine, Unsupported
+from engines import Around, Engine, Unsupported, method_name
 from engines.box2d import Box2D
 from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
@@ -66,7 +66,7 @@ class Adapted:
 
     @property
     def name(self) -> str:
-        return f"{self.engine.name} {self.engine.variant}"
+        return method_name(self.engine)
 
     @property
     def kinds(self) -> tuple[str, ...]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import shutil
 from importlib.metadata import version
 from pathlib import Path
 
+from reports.model.digest import digest
 from reports.model.ending import BadInput
 from reports.run.files import temporary_folder
 from reports.run.installed import sources
@@ -30,7 +30,7 @@ def compiled(cache: Path) -> bytes:
     release = version("pymunk")
     told = printed([compiler, "--version"], "emscripten does not tell its version", PATIENCE).splitlines()
     parts = (release, SHIM.read_text(encoding="utf-8"), " ".join(FLAGS), *told[:1])
-    kept = cache / f"munk2d-{hashlib.sha256(repr(parts).encode()).hexdigest()[:16]}.js"
+    kept = cache / f"munk2d-{digest(repr(parts))}.js"
     if not kept.is_file():
         kept.parent.mkdir(parents=True, exist_ok=True)
         with temporary_folder(kept.parent) as folder:

@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine
+from engines import Engine, method_name
 from reference.checks import Count, InvalidMechanism
 from reference.mechanism import Mechanism
 from reports.model.tasks import Task, Values
@@ -64,7 +64,7 @@ class Trees(Task):
 
     @property
     def label(self) -> str:
-        return f"{self.count} trees of {self.bodies} bodies / {self.method.name} {self.method.variant}"
+        return f"{self.count} trees of {self.bodies} bodies / {method_name(self.method)}"
 
     @property
     def engine(self) -> Engine:

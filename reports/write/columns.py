@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from engines import Engine
-from engines.registry import method
+from engines.registry import method_name
 from reference.joints import Skate
 from reference.rolling.roll import Roll
 from reference.scene import Scene
@@ -78,7 +78,9 @@ def lines(entries: Iterable[Entry]) -> list[Line]:
                     others = [each for each in methods if column_of(scene, each) is Column.SETTINGS]
                     columns |= {Column.SETTINGS: others} if others else {}
                 with_rows = {
-                    place: tuple((each, tuple(row for row in own if row.method == method(each))) for each in engines)
+                    place: tuple(
+                        (each, tuple(row for row in own if row.method == method_name(each))) for each in engines
+                    )
                     for place, engines in columns.items()
                     if place is not Column.NAIVE
                 }

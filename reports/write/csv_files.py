@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import csv
-import hashlib
 import io
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
 
+from reports.model.digest import SHORT, digest
 from reports.model.measure import TIMINGS, Measurement
 from reports.model.quantities import DIGITS
 
@@ -35,7 +35,7 @@ def as_csv(
     ordered = sorted(rows, key=lambda row: tuple(getattr(row, name) for name in IDENTITY))
     for row in ordered:
         cells = [told(row, name) for name in names]
-        writer.writerow([*cells, *([] if made_with is None else [digest(made_with[row.key])])])
+        writer.writerow([*cells, *([] if made_with is None else [digest(made_with[row.key], SHORT)])])
     return out.getvalue()
 
 
@@ -43,7 +43,7 @@ def told(row: Measurement, name: str) -> str:
     """A column of a row as its text."""
     value = getattr(row, name)
     if name in DESCRIPTIONS:
-        return digest(value)
+        return digest(value, SHORT)
     return f"{value:.{DIGITS}g}" if isinstance(value, float) else no_formula(str(value))
 
 
@@ -63,11 +63,6 @@ def read_lines(text: str) -> tuple[list[str], list[dict[str, str]]]:
 DESCRIPTIONS = ("parameters", "settings")
 
 
-def digest(description: str) -> str:
-    """The short name of a scene's parameters, an engine's settings or a row's versions in the CSV files."""
-    return hashlib.sha256(description.encode()).hexdigest()[:8]
-
-
 def descriptions_csv(rows: Iterable[Measurement], made_with: Mapping[str, str] | None = None) -> str:
     """What the digests stand for, each once."""
     out = io.StringIO()
@@ -75,7 +70,7 @@ def descriptions_csv(rows: Iterable[Measurement], made_with: Mapping[str, str] |
     writer.writerow(["digest", "of", "description"])
     found = {(name, getattr(row, name)) for row in rows for name in DESCRIPTIONS}
     found |= {("versions", told) for told in (made_with or {}).values()}
-    writer.writerows([digest(text), name, no_formula(text)] for name, text in sorted(found))
+    writer.writerows([digest(text, SHORT), name, no_formula(text)] for name, text in sorted(found))
     return out.getvalue()
 
 
@@ -89,7 +84,7 @@ def digests_csv(files: Mapping[str, str]) -> str:
     Pictures are left out, as no number is read from one, and times, as those of an earlier run may stay.
     """
     held = (name for name in files if name.endswith((".csv", ".md")) and name not in (DIGESTS, "timings.csv"))
-    told = {name: digest(files[name]) for name in held}
+    told = {name: digest(files[name], SHORT) for name in held}
     return "".join(f"{name},{value}\n" for name, value in [("file", "digest"), *sorted(told.items())])
 
 
@@ -105,6 +100,6 @@ def not_as_written(folder: Path) -> tuple[str, ...] | None:
 
 def _digest_of(path: Path) -> str:
     try:
-        return digest(path.read_text(encoding="utf-8"))
+        return digest(path.read_text(encoding="utf-8"), SHORT)
     except (OSError, UnicodeDecodeError):
         return ""

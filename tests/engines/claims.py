@@ -14,7 +14,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import CLAIM, Engine, Unsupported
+from engines import CLAIM, Engine, Unsupported, method_name
 from engines.lagrange import TRUTH
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -104,7 +104,7 @@ def row(engine: Engine, case: Case, step: float, every: int) -> Row:
     of_poses = ["unresolved" in words for words, other in zip(run.warnings, of_reactions, strict=True) if not other]
     return Row(
         case.number,
-        f"{engine.name} {engine.variant}",
+        method_name(engine),
         step,
         every,
         "lost" if lost else "finished" if run.unresolved_at is None else "unresolved",

@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from engines import Engine, lagrange, mujoco, pymunk, registry
+from engines import Engine, lagrange, method_name, mujoco, pymunk, registry
 from engines.conformance import CHECKS, Case, Subject, cases
 from engines.conformance.same import Isometry, bodies_reordered, joints_reordered, joints_swapped, relabelled
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS
@@ -89,7 +89,7 @@ DESCRIPTIONS = (
 
 
 def label(engine):
-    return f"{engine.name} {engine.variant}"
+    return method_name(engine)
 
 
 def failures(engine) -> list[str]:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import Engine, mujoco, pymunk
+from engines import Engine, method_name, mujoco, pymunk
 from engines.extrapolated import Extrapolated
 from engines.lagrange import TRUTH
 from engines.mujoco import Hardened
@@ -178,7 +178,7 @@ class Row:
         subject = self.subject
         numbers = "" if isinstance(subject, Mechanism) or subject == type(subject)() else " of other numbers"
         name = " ".join(body.name for body in subject.bodies) if isinstance(subject, Mechanism) else subject.name
-        return f"{self.engine.name} {self.engine.variant}, {name}{numbers}, {self.every}"
+        return f"{method_name(self.engine)}, {name}{numbers}, {self.every}"
 
 
 def on(engine: Engine, subjects: Iterable[Scene | Mechanism], every: int = 10, **numbers: Any) -> list[Row]:

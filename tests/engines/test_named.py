@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from engines import entry_points, registry
+from engines import entry_points, method_name, registry
 from engines.loading import load
 from reference.scene import Scene, told_apart, with_settings
 from reference.scenes.catalogue import SCENES, scene
@@ -66,7 +66,7 @@ def written(folder: Path, name: str, text: str) -> Path:
 
 
 def methods(engines):
-    return [registry.method(engine) for engine in engines]
+    return [method_name(engine) for engine in engines]
 
 
 def test_an_engine_is_found_by_its_module_and_by_its_file_alone_and_in_a_list(here):
@@ -281,7 +281,7 @@ def test_an_entry_point_that_can_not_be_used_is_one_line_and_the_others_stay(her
     monkeypatch.syspath_prepend(here)
     points = [Registered("theirs", "good", "theirs_4:ENGINES"), Registered("theirs", "other", value)]
     monkeypatch.setattr(entry_points.metadata, "entry_points", lambda group: points)
-    found = entry_points.registered("crosscheck.engines", registry.ENGINE, registry.method)
+    found = entry_points.registered("crosscheck.engines", registry.ENGINE, method_name)
     assert methods(found.values) == [*methods(registry.VARIANTS), "mine euler projection", "mine rk4 projection"]
     (line,) = found.troubles
     assert line.startswith("crosscheck.engines: 'other' of the distribution theirs")

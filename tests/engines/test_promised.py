@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from engines import EXACT, Engine, Promise, Unsupported, mujoco, pymunk, registry
+from engines import EXACT, Engine, Promise, Unsupported, method_name, mujoco, pymunk, registry
 from engines.lagrange import TRUTH
 from engines.mujoco import Shipped
 from reference.forces import Force, Torque, TorsionSpring
@@ -26,7 +26,7 @@ from tests.reference.test_units import in_other_units
 
 QUICKLY = tuple(engine for engine in registry.OTHERS if engine.building < SLOW_TO_BUILD)
 ENGINES = (*registry.ENGINES, *QUICKLY)
-each_extra = pytest.mark.parametrize("engine", QUICKLY, ids=registry.method)
+each_extra = pytest.mark.parametrize("engine", QUICKLY, ids=method_name)
 
 
 def installed(engine: Engine) -> Engine:
@@ -153,7 +153,7 @@ CELLS = [
 
 
 def label(value: Engine | str) -> str:
-    return value if isinstance(value, str) else registry.method(value)
+    return value if isinstance(value, str) else method_name(value)
 
 
 @pytest.mark.parametrize(("engine", "name"), CELLS, ids=label)

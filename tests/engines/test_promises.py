@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 
 import pytest
 
-from engines import EXACT, Holder, Promise, Unpromised, mujoco, pymunk
+from engines import EXACT, Holder, Promise, Unpromised, method_name, mujoco, pymunk
 from engines.extrapolated import Extrapolated
 from engines.lagrange import TRUTH, Lagrange
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
@@ -174,7 +174,7 @@ def test_exact_multipliers_promise_their_integrators_order_less_what_a_spring_co
         (mujoco.EXTENDED, SHARED, f"engine; skate: {SHARED}", SHARED, f"engine; roll: {SHARED}", "engine"),
         (Lagrange("rk4"), "engine", "engine", "engine", "engine", "engine"),
     ],
-    ids=lambda value: value if isinstance(value, str) else f"{value.name} {value.variant}",
+    ids=lambda value: value if isinstance(value, str) else method_name(value),
 )
 def test_every_variant_says_who_holds_skates_contacts_and_slots(engine, skate, car, roll, gears, slider):
     found = [held_by(engine, mechanism) for mechanism in (SKATE, CAR, ROLL, GEARS, SLIDER)]

@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from engines import CLAIM, Engine, Unpromised, Unsupported, bullet, exudyn, pymunk
+from engines import CLAIM, Engine, Unpromised, Unsupported, bullet, exudyn, method_name, pymunk
 from engines.finer import Division
 from engines.lagrange import TRUTH
 from engines.mujoco import DEFAULT, EXTENDED, TUNED
@@ -319,7 +319,7 @@ def drawn(engine: Engine, count: int) -> list[Mechanism]:
     return found[:count]
 
 
-@pytest.mark.parametrize("engine", QUICKLY, ids=lambda engine: f"{engine.name} {engine.variant}")
+@pytest.mark.parametrize("engine", QUICKLY, ids=method_name)
 def test_random_mechanisms_move_in_extras_as_the_judge_moves_them(engine):
     found = drawn(installed(engine), 3)
     assert len(found) == 3

@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+from engines import method_name
 from engines.registry import ENGINES
 from reference.checks import LARGEST, InvalidMechanism, require_room
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
@@ -101,7 +102,7 @@ def test_what_can_not_fit_is_refused_with_the_bytes_it_would_take():
             scene.motion(np.zeros(10_000))
 
 
-@pytest.mark.parametrize("engine", ENGINES, ids=lambda engine: f"{engine.name} {engine.variant}")
+@pytest.mark.parametrize("engine", ENGINES, ids=method_name)
 def test_no_engine_begins_a_run_whose_trajectory_can_not_fit(engine):
     run = engine.build(LinkPendulum(links=2).mechanism(), 1e-3)
     with pytest.raises(ValueError, match=r"a trajectory of the shape \(100000001, 2, 3\) would take 4\.8e\+09 bytes"):

@@ -12,7 +12,7 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.patches import PathPatch
 
-from engines import Softness
+from engines import Softness, method_name
 from engines.registry import VARIANTS
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.model.cells import Cell
@@ -38,7 +38,7 @@ from reports.pages.atlas.table import (
     read_costs,
 )
 from reports.pages.rendering import render_page
-from reports.plots.looks import HATCHES, SHADE_NAMES, SHADES, outcome_colour, shade
+from reports.plots.looks import SHADE_NAMES, SHADES, outcome_colour, shade
 from reports.plots.theme import LIGHT
 from reports.run.store import Store
 from tests import RESULTS
@@ -257,7 +257,7 @@ def test_what_is_published_is_whole_and_small():
         pytest.skip("no atlas is published")
     assert published.stat().st_size < 1_000_000
     found = {(each.subject, each.method) for each in read(published)}
-    assert found == {(s.name, f"{e.name} {e.variant}") for s in SUBJECTS for e in SHOWN}
+    assert found == {(s.name, method_name(e)) for s in SUBJECTS for e in SHOWN}
 
 
 def test_the_command_maps_writes_and_goes_on(monkeypatch, tmp_path, capsys, at_home):
@@ -266,7 +266,7 @@ def test_the_command_maps_writes_and_goes_on(monkeypatch, tmp_path, capsys, at_h
     assert call(*words) == FINE
     folder = tmp_path / "crosscheck-results" / "atlas"
     found = read(folder / CELLS)
-    assert {each.method for each in found} == {f"{engine.name} {engine.variant}" for engine in SHOWN}
+    assert {each.method for each in found} == {method_name(engine) for engine in SHOWN}
     assert all(len(each.outcomes) == 3 for each in found)
     assert "3 of 3 columns run" in capsys.readouterr().out
     assert call(*words) == FINE
@@ -286,7 +286,8 @@ def test_unknown_maps_are_refused_in_a_line(words, monkeypatch, tmp_path, capsys
 def test_no_two_failures_look_and_read_alike():
     failed = [outcome for outcome in Outcome if not outcome.comparable]
     assert len({outcome.letter for outcome in failed}) == len(failed)
-    assert len(set(HATCHES.values())) == len(HATCHES)
+    hatches = [outcome.hatch for outcome in Outcome if outcome.hatch]
+    assert len(set(hatches)) == len(hatches)
 
 
 def test_an_error_has_the_shade_of_its_bound_and_no_failure_is_friendlier_than_a_large_error():
@@ -300,7 +301,7 @@ def test_an_error_has_the_shade_of_its_bound_and_no_failure_is_friendlier_than_a
     # On light paper and in grey: the worse, the darker.
     shades = [brightness(getattr(LIGHT, role)) for role in SHADE_NAMES]
     assert shades == sorted(shades, reverse=True)
-    lost = (outcome for outcome in Outcome if outcome in HATCHES and outcome is not Outcome.UNRESOLVED)
+    lost = (outcome for outcome in Outcome if outcome.hatch and outcome is not Outcome.UNRESOLVED)
     assert all(brightness(outcome_colour(outcome, LIGHT)) < shades[-1] for outcome in lost)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from engines import Promise, registry
+from engines import Promise, method_name, registry
 from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
 from reports.gate.change import Baseline, Old
@@ -44,9 +44,7 @@ def test_every_method_promises_an_order_or_says_why_it_can_not():
 
 def test_every_promise_of_a_page_names_a_real_case_and_is_not_what_the_engine_promises_anyway():
     for page in PAGES:
-        real = {
-            (scene.name, f"{e.name} {e.variant}"): (scene, e) for scene in page.scenes for e in page.engines_of(scene)
-        }
+        real = {(scene.name, method_name(e)): (scene, e) for scene in page.scenes for e in page.engines_of(scene)}
         for key, promise in page.orders.items():
             scene, engine = real[key]
             assert engine.order(scene.mechanism()) != promise, key
@@ -54,7 +52,7 @@ def test_every_promise_of_a_page_names_a_real_case_and_is_not_what_the_engine_pr
 
 def test_every_known_deviation_names_a_real_case_and_a_check():
     for page in PAGES:
-        real = {(scene.name, f"{e.name} {e.variant}") for scene in page.scenes for e in page.engines_of(scene)}
+        real = {(scene.name, method_name(e)) for scene in page.scenes for e in page.engines_of(scene)}
         for (scene, method, check), deviation in page.known.items():
             assert (scene, method) in real, (scene, method)
             assert check in CHECKS, check

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import Promise, Unpromised, Unsupported
+from engines import Promise, Unpromised, Unsupported, method_name
 from engines.lagrange import Lagrange
 from engines.registry import VARIANTS
 from reference.chapter.centrodes import Centrodes
@@ -273,7 +273,7 @@ def test_a_cells_step_is_the_duration_over_its_samples_and_steps_and_its_cost_th
     assert estimated_cost(Cell(Disc(), Costly(), 7, samples=5)) == pytest.approx(5 * 7 * 3e-3)
 
 
-@pytest.mark.parametrize("engine", VARIANTS, ids=lambda engine: f"{engine.name} {engine.variant}")
+@pytest.mark.parametrize("engine", VARIANTS, ids=method_name)
 def test_a_step_costs_more_with_more_bodies(engine):
     costs = [engine.step_cost(scene.mechanism()) for scene in (BarPendulum(), TenLinks(), HundredLinks())]
     assert 0 < 3 * costs[0] < costs[1]

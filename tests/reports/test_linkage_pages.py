@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from engines import mujoco, pymunk, registry
+from engines import method_name, mujoco, pymunk, registry
 from engines.lagrange import Lagrange
 from reference.checks import InvalidMechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar, OverdrivenFourBar, Parallelogram
@@ -151,7 +151,7 @@ def test_where_few_sweeps_close_the_whole_gap_a_smaller_step_makes_the_change_po
     assert Outcome(run(Parallelogram(), few, 100).outcome) in BROKEN
 
 
-@pytest.mark.parametrize("engine", failures.EVERY, ids=lambda engine: f"{engine.name} {engine.variant}")
+@pytest.mark.parametrize("engine", failures.EVERY, ids=method_name)
 def test_no_engine_can_drive_a_crank_beyond_its_limit(engine):
     assert Outcome(run(OverdrivenFourBar(), engine, 1).outcome) in BROKEN
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,8 @@ import reports
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.measure import compare, measure
-from reports.model.outcomes import BLOWN, LETTERS, MEANINGS, SATURATED, TORN, Outcome, of_motion
+from reports.model.outcomes import BLOWN, SATURATED, TORN, Outcome, of_motion
+from reports.plots.theme import Theme
 from tests.reports.test_measure import DISC, INSTANTS, LENGTH, SCENE, Given, Pair, disc, shifted
 from tests.rows import row
 from tests.toys import Disc, ImpossibleDisc, Toy
@@ -151,19 +152,16 @@ def test_what_comes_after_the_first_sample_that_is_not_finite_is_not_compared():
     assert (found.outcome, found.angle) == ("diverged", 0.0)
 
 
-def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_three_can_be_compared():
-    assert set(MEANINGS) == set(LETTERS) == set(Outcome)
-    assert all(outcome.meaning == MEANINGS[outcome] and outcome.letter == LETTERS[outcome] for outcome in Outcome)
-    assert len(set(MEANINGS.values())) == len(MEANINGS)
-    good = [outcome for outcome in Outcome if outcome.comparable]
-    assert good == [Outcome.FINISHED, Outcome.CONVERGED, Outcome.PLATEAU]
+def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_a_colour_of_the_theme():
+    assert len({outcome.meaning for outcome in Outcome}) == len(Outcome)
+    assert [outcome for outcome in Outcome if outcome.comparable] == ["finished", "converged", "plateau"]
     # The two that a map shows alike show a number there instead of a letter.
     letters = [outcome.letter for outcome in Outcome if outcome is not Outcome.CONVERGED]
     assert len(set(letters)) == len(letters)
-    assert {str(outcome) for outcome in Outcome} == {
-        "finished", "converged", "plateau", "unresolved", "saturated", "branch flip", "torn", "diverged", "reset",
-        "refused", "unsupported", "aborted", "timed out", "failed", "lost",
-    }  # fmt: skip
+    assert {outcome.colour for outcome in Outcome} <= {field.name for field in fields(Theme)}
+    wrong = [outcome.hatch for outcome in Outcome if outcome.wrong]
+    assert len(set(wrong)) == len(wrong)
+    assert all(wrong)
 
 
 def test_a_threshold_stands_in_no_text_by_hand():

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from engines import method_name
 from reports.model.convergence import judged
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
@@ -24,7 +25,7 @@ def advised(page: Page) -> tuple[list[Program], list]:
     scene = page.advised_scene
     assert scene is not None
     rows = [row for row in judged(Material(page_rows(page)).sweep([scene]), page.quantity) if row.scene == scene.name]
-    methods = tuple(f"{engine.name} {engine.variant}" for engine in page.engines_of(scene))
+    methods = tuple(method_name(engine) for engine in page.engines_of(scene))
     found = advice(rows, page.quantity, methods)
     made = advised_programs(scene, found, methods)
     assert {each.method for each in made} == {each.row.method for each in found if each.row is not None}
@@ -34,7 +35,7 @@ def advised(page: Page) -> tuple[list[Program], list]:
 @named
 def test_a_program_moves_as_the_method_whose_name_it_has_and_errs_by_no_more_than_its_row(page):
     scene = page.advised_scene
-    engines = {f"{engine.name} {engine.variant}": engine for engine in page.engines_of(scene)}
+    engines = {method_name(engine): engine for engine in page.engines_of(scene)}
     made, rows = advised(page)
     for each in made:
         if not each.text:
@@ -74,7 +75,7 @@ def test_a_pages_block_gives_the_error_of_the_row_of_each_method_without_a_progr
 
 def test_every_program_of_an_engine_alone_is_of_a_method_of_its_scene():
     known = {
-        Path(file_of(scene.name, f"{engine.name} {engine.variant}")).name
+        Path(file_of(scene.name, method_name(engine))).name
         for page in MECHANISMS
         if (scene := page.advised_scene) is not None
         for engine in page.engines

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from engines import mujoco, pymunk
+from engines import method_name, mujoco, pymunk
 from engines.lagrange import Lagrange
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
@@ -102,7 +102,7 @@ def known(row: Measurement) -> Old:
 def test_an_older_processor_gives_the_same_rows_and_a_wrong_model_is_seen_there_too(elsewhere, number):
     cell, there = CELLS[number], elsewhere[number]
     here = measure(cell, repeat=False)
-    carried = amplified()[cell.scene.name, f"{cell.engine.name} {cell.engine.variant}"]
+    carried = amplified()[cell.scene.name, method_name(cell.engine)]
     for one, other in ((here, there), (there, here)):
         assert [str(check) for check in change(one, known(other), amplified=carried) if not check.passed] == []
     length = next(mistake for mistake in mistakes(cell.scene.mechanism()) if mistake.kind == "length")

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from engines import method_name
 from engines.registry import INSTALLED, VARIANTS
 from reports.cli.options import SEARCH, STORE
 from reports.model.ending import FINE, REFUSED
@@ -144,5 +145,5 @@ def test_what_is_published_is_drawn_from_seeds_that_nobody_chose() -> None:
     assert {piece.seed for piece in pieces} == {*plan.seeds()}
     assert {piece.decades for piece in pieces} == {*plan.DECADES}
     names = {piece.subject.name for piece in pieces}
-    assert {f"{engine.name} {engine.variant}" for engine in (*VARIANTS, *INSTALLED)} < names
+    assert {method_name(engine) for engine in (*VARIANTS, *INSTALLED)} < names
     assert any("toggle" in piece.kinds for piece in pieces)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from engines import Engine
+from engines import Engine, method_name
 from reference.scene import Scene
 from reports.gate.change import Old, moved
 from reports.gate.prediction import Prediction, kinds, prediction
@@ -31,7 +31,7 @@ class Trial:
 
     @property
     def method(self) -> str:
-        return f"{self.engine.name} {self.engine.variant}"
+        return method_name(self.engine)
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.atlas.subjects import SUBJECTS, Subject
 from reports.pages.atlas.table import CELLS, COSTS, Costs, Line, read, read_costs
-from reports.plots.looks import HATCHES, SHADE_NAMES, outcome_colour, shade
+from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.run.cluster import CHUNK
 from reports.write.holders import told_variant
@@ -56,13 +56,13 @@ def costs(path: Path = FOLDER / COSTS) -> Costs | None:
 
 def of(subject: Subject) -> list[Line]:
     """Methods in the order of the engines' registration, as far as they are registered, by the names of pages."""
-    from engines.registry import VARIANTS, method
+    from engines.registry import VARIANTS, method_name
 
-    order = {method(engine): place for place, engine in enumerate(VARIANTS)}
+    order = {method_name(engine): place for place, engine in enumerate(VARIANTS)}
     own = [line for line in lines() if line.subject == subject.name]
     own.sort(key=lambda line: (order.get(line.method, len(order)), line.method, line.value))
     scene = subject.make(subject.values[1])
-    told = {method(engine): told_variant(scene, engine) for engine in VARIANTS}
+    told = {method_name(engine): told_variant(scene, engine) for engine in VARIANTS}
     return [replace(line, variant=told.get(line.method, line.variant)) for line in own]
 
 
@@ -241,7 +241,7 @@ def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> 
         handles: list[Any] = [
             (
                 Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme), edgecolor=theme.quiet),
-                Rectangle((0, 0), 1, 1, fill=False, edgecolor=theme.quiet, hatch=HATCHES.get(outcome)),
+                Rectangle((0, 0), 1, 1, fill=False, edgecolor=theme.quiet, hatch=outcome.hatch or None),
             )
             for outcome in failures
         ]
@@ -297,8 +297,8 @@ def _regions(panel: Axes, lines: Sequence[Line], whole: bool, theme: Theme) -> s
         face = outcome_colour(end, theme) if isinstance(end, Outcome) else getattr(theme, end)
         # The thin line of the same colour closes the seams between columns.
         panel.add_patch(PathPatch(path, facecolor=face, edgecolor=face, linewidth=0.4))
-        if isinstance(end, Outcome) and (hatch := HATCHES.get(end)):
-            panel.add_patch(PathPatch(path, facecolor="none", edgecolor=theme.quiet, linewidth=0, hatch=hatch))
+        if isinstance(end, Outcome) and end.hatch:
+            panel.add_patch(PathPatch(path, facecolor="none", edgecolor=theme.quiet, linewidth=0, hatch=end.hatch))
     panel.set_xlim(across[0], across[-1])
     upwards = edges(lines[0].steps[::-1], False)
     panel.set_ylim(upwards[0], upwards[-1])

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from engines import method_name
 from engines.registry import VARIANTS
 from reference.chapter.centrodes import Centrodes, centrode_error, centrodes, from_poses
 from reference.checks import InvalidMechanism, fixed
@@ -193,8 +194,7 @@ def words(material: Material) -> Mapping[str, Any]:
     position, table = round_trip(curves), round_trip(from_poses(truth.t, truth.pose[:, COUPLER]))
     rows = measured(material)
     body = [
-        [f"{cell.engine.name} {cell.engine.variant}", *map(number, (cell.step, centre, angle, rate))]
-        for cell, centre, angle, rate in rows
+        [method_name(cell.engine), *map(number, (cell.step, centre, angle, rate))] for cell, centre, angle, rate in rows
     ]
     header = ["method", "step [s]", "centre off by [m]", "angle [rad]", "rate [rad/s]"]
     return {
@@ -216,7 +216,7 @@ def _lesson(rows: list[tuple[Cell, float, float, float]]) -> str:
         return ""
     _, cell, centre, angle = max(known, key=lambda each: each[0])
     return (
-        f"An angle can be right while the velocities are not. {cell.engine.name} {cell.engine.variant} at a step of "
+        f"An angle can be right while the velocities are not. {method_name(cell.engine)} at a step of "
         f"{number(cell.step)} s has the angle to {number(angle)} rad and the centre to {number(centre)} m."
     )
 

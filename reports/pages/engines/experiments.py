@@ -17,7 +17,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Unsupported, registry
+from engines import Engine, Unsupported, method_name, registry
 from engines.box2d import Box2D
 from engines.bullet import Bullet
 from engines.conformance.moving import FORCES
@@ -55,7 +55,7 @@ class Asked(Task):
 
     @property
     def label(self) -> str:
-        return f"{self.of.name} {self.of.variant}: {self.what}"
+        return f"{method_name(self.of)}: {self.what}"
 
     @property
     def engine(self) -> Engine:
@@ -196,7 +196,7 @@ class VelocityTerm(Asked):
         described = scene.mechanism()
         softness = self.of.softness(described, ROWS_STEP)
         if softness is None:
-            raise ValueError(f"{self.of.name} {self.of.variant} declares no soft rows: its loops are exact")
+            raise ValueError(f"{method_name(self.of)} declares no soft rows: its loops are exact")
         t = np.linspace(0.2, 1.0, INSTANTS) * scene.duration
         truth = scene.motion(t)
         found: dict[str, list[float]] = {"with": [], "without": []}

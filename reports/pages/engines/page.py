@@ -11,7 +11,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from engines import registry
+from engines import method_name, registry
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
@@ -259,7 +259,7 @@ def figures(material: Material) -> dict[str, str]:
 def _terms(material: Material) -> str:
     body = [
         [
-            f"{task.of.name} {task.of.variant}",
+            method_name(task.of),
             *(number(float(answer.array(name).max())) for name in ("with", "without")),
         ]
         for task in TERMS

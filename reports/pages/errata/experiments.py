@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engines import Engine, mujoco, pymunk
+from engines import Engine, method_name, mujoco, pymunk
 from engines.lagrange import Lagrange
 from reference.chapter.errata import linkages as pendulum
 from reference.chapter.errata.erratum import Array, Values
@@ -166,7 +166,7 @@ class Refereed(Task):
 
     @property
     def label(self) -> str:
-        return f"{self.engine.name} {self.engine.variant}: {self.question}"
+        return f"{method_name(self.engine)}: {self.question}"
 
     def run(self) -> Kept:
         motion = self.engine.build(QUESTIONS[self.question].mechanism(), SPACING)(SAMPLES, 1)
@@ -196,7 +196,7 @@ def rulings(answers: Iterable[tuple[Task, Answer]], lost: list[str] | None = Non
     for task, answer in answers:
         if not isinstance(task, Refereed) or answer.outcome == Outcome.UNSUPPORTED:
             continue
-        method = f"{task.engine.name} {task.engine.variant}"
+        method = method_name(task.engine)
         if not answer.finished:
             lost.append(f"{method} where {task.question}: {answer.told}")
             continue

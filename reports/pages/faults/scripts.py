@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import contextlib
 import csv
-import hashlib
 import io
 import platform
 import re
@@ -25,6 +24,7 @@ import numpy as np
 
 from engines import Engine, Unsupported
 from engines.mjx import DEFAULT
+from reports.model.digest import digest
 from reports.model.ending import BadInput
 from reports.model.tasks import Task, Values
 from reports.run.files import temporary_folder
@@ -114,7 +114,7 @@ class Script(Task):
 
 def script(name: str) -> Script:
     """The task of a script as it stands now."""
-    return Script(name, hashlib.sha256(source(name).encode()).hexdigest()[:16])
+    return Script(name, digest(source(name)))
 
 
 RECORDED = Path(__file__).parent / "recorded.csv"

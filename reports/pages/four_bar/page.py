@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engines import Engine, mujoco, pymunk
+from engines import Engine, method_name, mujoco, pymunk
 from engines.registry import ENGINES, VARIANTS
 from reference.scene import Scene
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
@@ -44,9 +44,9 @@ MOVING = {
 MOVED = tuple(Motion(Cell(FreeFourBar(), engine, MOVING_EVERY, "failure")) for engine in MOVING.values())
 
 POSED = {
-    f"{engine.name} {engine.variant}": Cell(DrivenFourBar(), engine, 1, samples=PARTS * SAMPLES_A_PART)
+    method_name(engine): Cell(DrivenFourBar(), engine, 1, samples=PARTS * SAMPLES_A_PART)
     for engine in ENGINES
-    if f"{engine.name} {engine.variant}" in OVERLAID
+    if method_name(engine) in OVERLAID
 }
 
 

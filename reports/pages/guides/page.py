@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from engines import Engine, lagrange, mujoco, pymunk
+from engines import Engine, lagrange, method_name, mujoco, pymunk
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model.cells import FULL, sweep_cells
 from reports.model.page import Material, Page
@@ -31,7 +31,7 @@ def table(material: Material) -> str:
         row, sweep = known["at"](*asked, EVERY), known["sweep"](*asked)
         if row:
             numbers = (row.angle, sweep.order, sweep.plateau, row.reaction, 1e3 * row.cpu)
-            body.append([f"{engine.name} {engine.variant}", *map(number, numbers)])
+            body.append([method_name(engine), *map(number, numbers)])
     header = ["method", "angle [rad]", "order", "plateau [rad]", "reaction", "CPU [ms/s]"]
     return markdown(header, body) if body else ""
 

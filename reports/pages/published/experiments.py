@@ -18,7 +18,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine
+from engines import Engine, method_name
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar
@@ -108,7 +108,7 @@ class Acrobot(Task):
 
     @property
     def label(self) -> str:
-        return f"Acrobot's energy: {'RK4' if self.method is None else f'{self.method.name} {self.method.variant}'}"
+        return f"Acrobot's energy: {'RK4' if self.method is None else method_name(self.method)}"
 
     @property
     def engine(self) -> Engine | None:
@@ -178,7 +178,7 @@ class Newton(Task):
 
     @property
     def label(self) -> str:
-        return f"Newton's bounds: {self.method.name} {self.method.variant}"
+        return f"Newton's bounds: {method_name(self.method)}"
 
     @property
     def engine(self) -> Engine:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine
-from engines.registry import VARIANTS, method
+from engines.registry import VARIANTS, method_name
 from reference.scene import Scene
 from reference.scenes.andrews import Andrews
 from reference.scenes.n_four_bar import NFourBar
@@ -146,7 +146,7 @@ def bounds(material: Material) -> list[dict[str, Any]]:
         answer = material.finished(task)
         if answer is not None:
             found.append(
-                {"method": method(task.method), "steps": {name: largest_step(answer, name) for name in BOUNDS}}
+                {"method": method_name(task.method), "steps": {name: largest_step(answer, name) for name in BOUNDS}}
             )
     return found
 
@@ -161,7 +161,7 @@ def drifts(material: Material) -> list[dict[str, Any]]:
     for task in ACROBOTS:
         answer = material.finished(task)
         if answer is not None and task.method is not None:
-            found.append({"method": method(task.method), "drift": answer.array("drift")})
+            found.append({"method": method_name(task.method), "drift": answer.array("drift")})
     return found
 
 
@@ -180,7 +180,7 @@ def words(material: Material) -> Mapping[str, Any]:
     rows = [*material.sweep(SCENES), *material.of(BORROWED)]
     problems = [scored(rows, scene, VARIANTS) for scene in (PointPendulum(), NFourBar(), SCENES[0])]
     by_method = [
-        {"method": method(engine), "problems": cells} for engine, *cells in zip(VARIANTS, *problems, strict=True)
+        {"method": method_name(engine), "problems": cells} for engine, *cells in zip(VARIANTS, *problems, strict=True)
     ]
     return {
         **lookups(material, SCENES),

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-from engines import Engine, mujoco, pymunk
+from engines import Engine, method_name, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.pymunk.contraction import LEFT, MOST
 from reference.scenes.many_links import LongPendulum
@@ -215,7 +215,7 @@ def cost_table(found: tuple[Series, ...]) -> str:
 def error_table(found: tuple[Series, ...]) -> str:
     """The largest angle error [rad] by method and links."""
     whole = LongPendulum().duration
-    run = {(f"{c.engine.name} {c.engine.variant}", c.scene.links) for c in CELLS if c.scene.duration == whole}  # type: ignore[attr-defined]
+    run = {(method_name(c.engine), c.scene.links) for c in CELLS if c.scene.duration == whole}  # type: ignore[attr-defined]
     sizes = sorted({size for _, size in run})
     body = []
     for series in found:
@@ -233,7 +233,7 @@ def words(material: Material) -> Mapping[str, Any]:
     by_method = {series.method: series for series in found}
 
     def at(engine: Engine, links: int) -> Any:
-        series = by_method.get(f"{engine.name} {engine.variant}")
+        series = by_method.get(method_name(engine))
         return (series.at(links) if series else None) or UNMEASURED
 
     return {

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engines import Engine
+from engines import Engine, method_name
 from engines.mujoco import methods as mujoco_methods
 from engines.mujoco.methods import limited_tendon
 from engines.pymunk import methods as pymunk_methods
@@ -28,7 +28,7 @@ from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
 CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_methods.SKATES, *mujoco_methods.SKATES)
-_KNOWN = {f"{engine.name} {engine.variant}": engine for engine in (*VARIANTS, *CONSTRUCTIONS)}
+_KNOWN = {method_name(engine): engine for engine in (*VARIANTS, *CONSTRUCTIONS)}
 
 
 def method(name: str) -> Engine:

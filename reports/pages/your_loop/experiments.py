@@ -11,7 +11,7 @@ from typing import Any, cast
 import numpy as np
 import pymunk
 
-from engines import Engine, Unsupported
+from engines import Engine, Unsupported, method_name
 from engines.pymunk.reading import read
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
@@ -80,7 +80,7 @@ class Fresh(Task):
 
     @property
     def label(self) -> str:
-        return f"{COUNT} fresh mechanisms as {self.scene.name}: {self.method.name} {self.method.variant}"
+        return f"{COUNT} fresh mechanisms as {self.scene.name}: {method_name(self.method)}"
 
     @property
     def engine(self) -> Engine:
