@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from engines import method_name
 from reports.cli.options import Scenes, Workers
 from reports.cli.site import SITE
 
@@ -45,7 +44,7 @@ def bench(
 
         bench_suite(scene[1:], full, workers)
         return
-    from engines.registry import ENGINES
+    from engines.registry import ENGINES, method_name
     from reports.bench.suite import loop_costs
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_scenes

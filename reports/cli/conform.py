@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from engines import method_name
 from reports.cli.options import REFERENCES, AsJson, AsMarkdown
 from reports.model.ending import BadInput, Broken
 
@@ -25,7 +24,7 @@ def conform(
     as_markdown: AsMarkdown = False,
 ) -> None:
     """Check that an engine keeps the contract: signs, instants, orders, refusals, and any description alike."""
-    from engines.registry import mislabelled
+    from engines.registry import method_name, mislabelled
     from reports.cli.supervised_checks import Named, asked
     from reports.cli.terminal import print_table, telling
 

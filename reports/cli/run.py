@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from engines import method_name
 from reports.cli.options import (
     FOLDER,
     STORE,
@@ -53,6 +52,7 @@ def run(
     results: Folder = FOLDER,
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
+    from engines import method_name
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks, grid_engines, left_out
     from reports.cli.terminal import opened, telling

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from math import inf, nan, pi
 from typing import Any, cast
@@ -40,7 +40,9 @@ def draw(scene: Scene, number: int) -> Mechanism:
     random = np.random.default_rng(int(digest, 16))
     while True:
         changed: dict[str, Any] = {}
-        for name, value in vars(scene).items():
+        # Fields alone: a scene that was used keeps what it has worked out among its attributes.
+        for name in (each.name for each in fields(cast(Any, scene))):
+            value = getattr(scene, name)
             if name == "branch":
                 changed[name] = int(random.choice((-1, 1)))
             elif name in FIXED:
