@@ -38,9 +38,10 @@ check: .venv/installed-develop   ## style, types, layers
 bench: .venv/installed-bench     ## what stepping costs beside the bare loops, and the site
 	$(BIN)/crosscheck site
 	$(BIN)/crosscheck bench
+	$(BIN)/crosscheck bench site
 
-mutants: .venv/installed         ## about 450 deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
-	$(BIN)/python -m tests.tools.mutants run $(ONLY)
+mutants: .venv/installed         ## deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
+	$(BIN)/python -m tests.tools.mutants $(ONLY)
 
 SECONDS ?= 600
 search: .venv/installed          ## mechanisms that were never asked about, in all engines, for SECONDS; each finding with its seed

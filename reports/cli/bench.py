@@ -1,107 +1,124 @@
-"""`crosscheck bench`: stepping beside bare loops, and the site."""
+"""`crosscheck bench`: tables of what `reports.bench` measures."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from reports.cli.options import Scenes, Workers
+from reports.cli.options import Scenes
 from reports.cli.site import SITE
 
-if TYPE_CHECKING:
-    from reports.cli.terminal import Terminal
-
-ANSWERS = "answers"  # instead of scenes
 COMPARED = ("mujoco==3.17.0", "mujoco==4.0.1")
-SUITE = "suite"  # instead of scenes, or before them
-JUDGE = "judge"  # instead of scenes
+MODEL = Path(__file__).parents[1] / "pages" / "your_model" / "models" / "four_bar.xml"
+MOST_LINES = 12
 
 
 def bench(
     scene: Scenes = None,
     full: Annotated[bool, typer.Option("--full/--quick", help="`suite`: the full grid.")] = False,
-    workers: Workers = None,
-    site: Annotated[Path, typer.Option(help="A folder that `crosscheck site` wrote: its sizes and times.")] = SITE,
+    site: Annotated[Path, typer.Option(help="`site`: a folder that `crosscheck site` wrote.")] = SITE,
 ) -> None:
-    """Time `run` against bare loops, and the site; asserts nothing.
+    """Time `run` against bare loops; asserts nothing.
 
-    `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into. `bench judge`
-    times exact multipliers: an evaluation, steps, chains, and the truths. `bench answers` times whole commands, cold:
-    how long one waits for the first useful answer.
+    `bench suite [SCENES]`: CPU time of a grid by part, method and scene. `bench judge`: exact multipliers and truths.
+    `bench answers`: whole commands, cold. `bench site`: sizes and times of the site.
     """
-    if scene == [ANSWERS]:
-        _answers()
-        return
-    if scene == [JUDGE]:
-        from reports.cli.bench_judge import bench_judge
+    word, *scenes = scene or [""]
+    if word == "suite":
+        _print_grid(scenes, full)
+    elif word == "judge":
+        _print_judge()
+    elif word == "answers":
+        _print_commands()
+    elif word == "site":
+        from reports.bench import measure_site
 
-        bench_judge()
-        return
-    if scene and scene[0] == SUITE:
-        from reports.cli.bench_suite import bench_suite
-
-        bench_suite(scene[1:], full, workers)
-        return
-    from engines.registry import ENGINES, method_name
-    from reports.bench.suite import loop_costs
-    from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_scenes
-    from reports.cli.terminal import Terminal, print_table
+        _print_rows("the site", measure_site(site))
+    else:
+        _print_loops(scene or [])
     from reports.write.provenance import machine, versions
+
+    print(f"{versions()}; {machine()}")
+
+
+def _print(title: str, header: Sequence[str], body: Sequence[Sequence[str]]) -> None:
+    from reports.cli.terminal import Terminal, print_table
+
+    terminal = Terminal(140)
+    print_table(terminal, title, list(header), list(map(tuple, body)), 1)
+    terminal.print()
+
+
+def _print_rows(title: str, rows: Iterable[tuple[str, float, str]]) -> None:
     from reports.write.tables import number
 
-    console = Terminal(140)
-    known, names, _ = with_words(registered(), scene or (), None)
-    for one in choose_scenes(names, known.scenes, known.pages):
-        costs = loop_costs(ENGINES, one.mechanism(), one.spacing / 10, one.samples, 10)
-        body = [(method_name(c.engine), number(1e6 * c.bare), number(1e6 * c.run), f"{c.ratio:.3f}") for c in costs]
+    _print(title, ("quantity", "measured", "unit"), [(name, number(value), unit) for name, value, unit in rows])
+
+
+def _print_loops(scenes: Sequence[str]) -> None:
+    from engines import method_name
+    from engines.registry import ENGINES
+    from reports.bench import measure_loops
+    from reports.cli.known import registered, with_words
+    from reports.cli.selection import choose_scenes
+    from reports.write.tables import number
+
+    known, names, _ = with_words(registered(), scenes, None)
+    for chosen in choose_scenes(names, known.scenes, known.pages):
+        body = [
+            (method_name(c.engine), number(1e6 * c.bare), number(1e6 * c.run), f"{c.ratio:.3f}")
+            for c in measure_loops(ENGINES, chosen)
+        ]
         if body:
-            header = ["method", "bare loop [us/step]", "run [us/step]", "ratio [1]"]
-            print_table(console, f"{one.name}: run over the bare loop", header, body, 1)
-            console.print()
-    _site(console, site)
-    console.print(f"{versions()}; {machine()}")
+            header = ("method", "bare loop [us/step]", "run [us/step]", "ratio [1]")
+            _print(f"{chosen.name}: run over the bare loop", header, body)
 
 
-def _answers() -> None:
-    from reports.bench.answers import TURNS, questions, waited
-    from reports.cli.terminal import Terminal, print_table
+def _print_grid(scenes: Sequence[str], full: bool) -> None:
+    from reports.bench import measure_grid
+    from reports.cli.known import registered, with_words
+    from reports.cli.selection import choose_cells, choose_engines, choose_scenes
+
+    known, names, _ = with_words(registered(), scenes, None)
+    chosen = choose_scenes(names, known.scenes, known.pages)
+    cells = choose_cells(chosen, choose_engines(None, None, known.engines), known.pages, full)
+    for name, spent in measure_grid(cells).items():
+        ordered, total = sorted(spent.items(), key=lambda pair: -pair[1]), sum(spent.values())
+        rest = ("all others", sum(seconds for _, seconds in ordered[MOST_LINES:]))
+        body = [(key, f"{s:.2f}", f"{100 * s / total:.1f}") for key, s in (*ordered[:MOST_LINES], rest)]
+        _print(f"{len(cells)} cells, by {name}", (name, "CPU [s]", "share [%]"), body)
+
+
+def _print_judge() -> None:
+    from reports.bench import measure_judge, measure_truths
+    from reports.cli.known import registered
+    from reports.cli.selection import choose_cells
+
+    known = registered()
+    scenes = dict.fromkeys(cell.scene for cell in choose_cells(known.scenes, known.engines, known.pages, True))
+    truths = measure_truths(scenes)  # first, since some motions are cached
+    total = ("all truths of the full grid", sum(seconds for _, seconds, _ in truths), "s")
+    _print_rows("the judge: CPU time", [*measure_judge(), *truths[:MOST_LINES], total])
+
+
+def _print_commands() -> None:
+    from reports.bench import COMMAND_TURNS, measure_command
     from reports.cli.versions import installed_once
-    from reports.write.provenance import machine
+    from reports.write.tables import number
 
-    console = Terminal(140)
     installed_once(COMPARED)
-    found = [waited(question) for question in questions(COMPARED)]
-    rows = [
-        (" ".join(("crosscheck", *map(_short, each.question.words))), each.wall, each.cpu, each.question.wanted)
-        for each in found
-    ]
-    title = f"Seconds to the first useful answer, the quickest of {TURNS}, each into an empty folder"
-    print_table(console, title, ["command", "clock [s]", "CPU [s]", "asked for [s]"], rows, 1)
-    console.print(machine())
-
-
-def _short(word: str) -> str:
-    return Path(word).name if "/" in word else word
-
-
-def _site(console: Terminal, folder: Path) -> None:
-    from reports.bench.site import FIRST, SECOND, SIZE, STEP, size_of, times_of
-
-    try:
-        size = size_of(folder)
-        console.print(f"site: {size.files} files, {size.megabytes:.2f} MB when compressed, of at most {SIZE:g}")
-        times = times_of(folder)
-    except ValueError as reason:
-        console.print(f"site: {reason}".replace("[", "\\["))
-        return
-    both = sum(times.stepped.values())
-    each = ", ".join(f"{name} {spent:.1f}" for name, spent in times.stepped.items())
-    console.print(
-        f"  first picture after {times.painted:.2f} s, of at most {FIRST:g}; engines after {times.ready:.1f} s"
+    commands = (
+        ("--help",),
+        ("check", str(MODEL)),
+        ("run", "free_four_bar", "--quick"),
+        ("compare", *COMPARED, "--scenes", "free_four_bar"),
     )
-    console.print(
-        f"  a second of the four-bar in steps of {1e3 * STEP:g} ms: {each}, both {both:.1f} ms, of at most {SECOND:g}"
-    )
+    body = []
+    for cost in map(measure_command, commands):
+        words = " ".join(Path(word).name if "/" in word else word for word in cost.words)
+        body.append((f"crosscheck {words}", number(cost.wall), number(cost.cpu), str(cost.status)))
+    title = f"Seconds to the first useful answer, the quickest of {COMMAND_TURNS}, each in an empty folder"
+    _print(title, ("command", "clock [s]", "CPU [s]", "status"), body)

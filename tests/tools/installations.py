@@ -7,8 +7,6 @@ import shutil
 import subprocess
 import sys
 import sysconfig
-from collections.abc import Callable
-from contextlib import suppress
 from importlib import metadata
 from pathlib import Path
 
@@ -33,29 +31,10 @@ def require_a_builder() -> None:
         pytest.skip(f"setuptools {version} is older than {OLDEST_BUILDER}, which pyproject.toml asks for")
 
 
-def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], Path]) -> Path:
-    """What `make` returns of an empty folder: made by the first worker of pytest that asks, while the others wait."""
-    base = factory.getbasetemp()
-    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
-    answer = shared / f"{name}.made"
-    with (shared / f"{name}.lock").open("w", encoding="utf-8") as lock:
-        with suppress(ImportError):  # not everywhere: there two workers may meet, and one fails with FileExistsError
-            import fcntl
-
-            fcntl.flock(lock, fcntl.LOCK_EX)
-        if not answer.exists():
-            folder = shared / name
-            folder.mkdir()
-            answer.write_text(str(make(folder)), encoding="utf-8")
-    return Path(answer.read_text(encoding="utf-8"))
-
-
-def our_wheel(factory: pytest.TempPathFactory) -> Path:
-    """The wheel of this checkout, built once for all tests; they are skipped where none can be built."""
+def our_wheel(folder: Path) -> Path:
+    """The wheel of this checkout; the test is skipped where none can be built."""
     require_a_builder()
-    return made_once(
-        factory, "our-wheel", lambda folder: wheel_of(checkout_copy(folder / "checkout"), folder / "built")
-    )
+    return wheel_of(checkout_copy(folder / "checkout"), folder / "built")
 
 
 def checkout_copy(folder: Path) -> Path:

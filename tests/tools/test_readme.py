@@ -5,10 +5,8 @@ from __future__ import annotations
 import io
 import json
 import math
-import os
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 import tomllib
@@ -69,62 +67,6 @@ def test_the_example_of_an_action_gives_compare_words_that_it_knows(file):
     assert (given["cost"], given["as_markdown"], list(given["scenes"])) == (1.5, True, [])
 
 
-def git(folder, *words):
-    return subprocess.run(
-        ["git", "-c", "commit.gpgsign=false", "-C", folder, *words], check=True, capture_output=True, text=True
-    ).stdout
-
-
-@pytest.fixture
-def clone(tmp_path):
-    """A fresh clone of the checkout, with what is changed in it and not committed yet."""
-    if not (ROOT / ".git").exists():
-        pytest.skip("this is no git checkout")
-    folder = tmp_path / "clone"
-    subprocess.run(["git", "clone", "--quiet", "--local", ROOT, folder], check=True)
-    for name in git(ROOT, "ls-files", "-z", "--modified", "--others", "--exclude-standard").split("\0"):
-        if name and (ROOT / name).is_file():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            (folder / name).write_bytes((ROOT / name).read_bytes())
-    git(folder, "add", "--all")
-    git(folder, "-c", "user.name=nobody", "-c", "user.email=nobody", "commit", "--quiet", "--allow-empty", "-m", "now")
-    return folder
-
-
-def commands():
-    """The commands of the readme, without those that take minutes: make and pytest."""
-    blocks = re.findall(r"```(\w*)\n(.*?)```", README, re.DOTALL)
-    plain = [block for language, block in blocks if not language]
-    lines = [shlex.split(line, comments=True) for block in plain for line in block.splitlines()]
-    return [words[1:] for words in lines if words and words[0] == "crosscheck"]
-
-
-@pytest.mark.slow
-def test_what_the_readme_says_runs_in_a_fresh_clone_and_changes_nothing_published(clone):
-    assert [words[0] for words in commands()] == ["list", "run", "run", "show", "report"]
-    for words in commands():
-        ended = subprocess.run(
-            [sys.executable, "-m", "reports", *words],
-            cwd=clone,
-            env={**os.environ, "PYTHONPATH": str(clone), "PYTHONDONTWRITEBYTECODE": "1"},
-            capture_output=True,
-            text=True,
-        )
-        assert (ended.returncode, ended.stderr) == (0, ""), words
-    results = clone / "crosscheck-results"
-    assert "free_four_bar" in (results / "errors.csv").read_text()
-    assert git(clone, "status", "--porcelain") == ""
-    # What is written is ignored, not merely unchanged.
-    assert git(clone, "check-ignore", "crosscheck-results").strip() == "crosscheck-results"
-    missing = [
-        (page.name, link)
-        for page in results.glob("*.md")
-        for link in re.findall(r"\]\(([^)#]+)\)", page.read_text())
-        if not link.startswith(("https://", "http://")) and not (results / link).is_file()
-    ]
-    assert missing == []
-
-
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 
@@ -146,28 +88,6 @@ def test_their_commands_are_the_programs():
     helping = [sys.executable, "-m", "reports", "--help"]
     said = subprocess.run(helping, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     assert words <= set(re.findall(r"^  ([a-z]+)  ", said, re.MULTILINE))
-
-
-# Stands for Python: it notes what it is asked, and the half that its environment names is red.
-PYTHON = """#!/bin/sh
-case "$*" in *"not crosscheck"*) half=tests;; *) half=grid;; esac
-echo $half >> "$NOTES"
-[ "$RED" != $half ]
-"""
-
-
-@pytest.mark.parametrize("red", ["none", "tests", "grid"])
-def test_make_test_runs_the_tests_and_the_grid_and_is_red_if_either_is(red, tmp_path):
-    if shutil.which("make") is None:
-        pytest.skip("make is not installed")
-    (tmp_path / "python").write_text(PYTHON)
-    (tmp_path / "python").chmod(0o755)
-    words = ["make", "--silent", "--old-file=.venv/installed", "test", f"BIN={tmp_path}"]
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
-    environment = {**kept, "NOTES": str(tmp_path / "notes"), "RED": red}
-    ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
-    assert (tmp_path / "notes").read_text().split() == ["tests", "grid"]
-    assert (ended.returncode == 0) == (red == "none")
 
 
 NOTEBOOK = ROOT / "lecture.ipynb"

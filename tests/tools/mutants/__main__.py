@@ -1,114 +1,121 @@
-"""The commands.
+"""Make each deliberate mistake in a copy of the tree, and run the test that its entry names.
 
-The status of `run` is 0 if every mistake by hand was caught, or survives with a reason, and nineteen of twenty drawn
-ones were; else 1. It is 2 for bad words, and 130 after an interruption.
+`--renew` looks for a failing test where the entry names none, or one that does not fail: it runs the test files that
+use the function's and the module's names, most uses first, and writes the name into physics.toml.
+The status is 0 if each mistake was noticed, or survives with a reason; else 1.
 """
 
 from __future__ import annotations
 
 import argparse
-import itertools
-import json
+import compileall
+import os
+import py_compile
+import re
 import shutil
+import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
 
-from tests.tools.mutants import by_hand, generated, matrix, trial
-from tests.tools.mutants.sources import ROOT, SOURCES, Mistake
-from tests.tools.mutants.tracing import SEEN, Traced, digest
-from tests.tools.mutants.trial import Answer, Question, asked
+from tests import ROOT
+from tests.tools.mutants.mistakes import LIST, BadList, Mistake, read_mistakes
 
-KEPT = Path("crosscheck-results") / "mutants"
-ALLOWED = 0.05  # of the drawn mistakes may get through: some change nothing that can be seen
-FIRST, MORE = 15.0, 150.0  # s of tests that are asked at first, and again by those who notice nothing
-APART = ("test_crosscheck.py", "test_mutants.py", "test_site_in_browser.py")  # the grid, this, and what needs a browser
-
-
-def chosen(words: Sequence[str], drawn: int, seed: str) -> list[tuple[Mistake, str]]:
-    """The mistakes by hand, each with its reason to survive, then so many drawn ones; those that the words choose."""
-    files = [file for file in SOURCES if not words or any(file.startswith(word) for word in words)]
-    hand = [(by_hand.found(entry), entry.survives) for entry in by_hand.read()]
-    named = [pair for pair in hand if not words or pair[0].file in files or any(w in pair[0].name for w in words)]
-    exact = [m for m in generated.drawn(seed) if m.name in words] if any(":" in word for word in words) else []
-    return named + [(mistake, "") for mistake in (*exact, *itertools.islice(generated.drawn(seed, files), drawn))]
+NOT_COPIED = (".git", ".venv*", "__pycache__", "*.egg-info", ".*_cache", "*.sqlite*", "crosscheck-results")
+OPTIONS = ("-q", "-x", "--no-header", "--tb=no", "-rfE", "-p", "no:cacheprovider", "-m", "not slow and not crosscheck")
+NO_TEST = (4, 5)  # pytest's status where the name stands for no test
+LIMIT = 300.0  # s, for the tests of one file
+MOST_FILES = 8  # that --renew runs for a mistake
 
 
-def traced(trees: Sequence[Path], anew: bool = False) -> Traced:
-    """The trace that is kept; else, or anew, all fast tests are run for one."""
-    folder = KEPT / "trace"
-    if anew:
-        shutil.rmtree(folder, ignore_errors=True)
-    if not (folder / "whole").exists():
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / SEEN).write_text(json.dumps({file: digest(file) for file in SOURCES}))
-        paths = [path for path in sorted((ROOT / "tests").rglob("test_*.py")) if path.name not in APART]
-        files = [path.relative_to(ROOT).as_posix() for path in paths]
-        questions = [Question((file,), first=False, limit=900, traced=folder.resolve()) for file in files]
-
-        def tell(question: Question, answer: Answer) -> None:
-            print(f"traced {question.tests[0]}: {answer.ran} tests, {answer.seconds:.0f} s {answer.end}", flush=True)
-
-        asked(questions, trees, tell)
-        (folder / "whole").touch()
-    return Traced(folder)
+def copy_tree(folder: Path) -> Path:
+    """A copy of the tree whose bytecode is checked by contents, since a mistake may keep the date and the size."""
+    shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*NOT_COPIED))
+    compileall.compile_dir(folder, quiet=2, invalidation_mode=py_compile.PycInvalidationMode.CHECKED_HASH)
+    return folder
 
 
-def tried(mistakes: Sequence[tuple[Mistake, str]], trace: Traced, trees: Sequence[Path]) -> int:
-    """Ask about every mistake, twice where nothing is noticed; write the report, and give the status."""
-    fates = KEPT / "fates.jsonl"
-    fates.unlink(missing_ok=True)
-    reasons = {mistake.name: reason for mistake, reason in mistakes if reason}
-    matrix.filled([mistake for mistake, _ in mistakes], trace, fates, trees, FIRST, first=True)
-    through = {row.mistake for row in matrix.read(fates) if not row.caught and row.tests} - set(reasons)
-    matrix.filled([m for m, _ in mistakes if m.name in through], trace, fates, trees, MORE, first=True, each=1000)
-    rows = matrix.read(fates)
-    by_rule = {row.mistake: not row.caught for row in rows if ":" in row.mistake}
-    wrong = [row for row in rows if not row.caught and row.mistake not in {*by_rule, *reasons}]
-    text = "\n".join(["# Deliberate mistakes", "", *matrix.shares(rows)])
-    (KEPT / "fates.md").write_text(text, encoding="utf-8")
-    told = f"{len(wrong)} by hand and {sum(by_rule.values())} of {len(by_rule)} drawn got through"
-    print(f"\n{told}; see {KEPT / 'fates.md'}")
-    return 1 if wrong or sum(by_rule.values()) > ALLOWED * len(by_rule) else 0
+def run_tests(tree: Path, tests: str) -> tuple[bool, str]:
+    """Whether a test failed, and the first failed test, or the reason for which none ran."""
+    environment = {**os.environ, "PYTHONPATH": str(tree), "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+    environment["NUMBA_CACHE_DIR"] = str(tree.parent / "numba")
+    command = [sys.executable, "-m", "pytest", *OPTIONS, tests]
+    try:
+        run = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, timeout=LIMIT)
+    except subprocess.TimeoutExpired:
+        return True, f"{tests} (no end within {LIMIT:g} s)"
+    if run.returncode in NO_TEST:
+        return False, f"{tests}: no such test"
+    failed = re.search(r"^(?:FAILED|ERROR) (\S+?)(?:\[.*|$| - .*)", run.stdout, re.MULTILINE)
+    return run.returncode != 0, failed[1] if failed else tests
 
 
-def main(words: Sequence[str] | None = None) -> int:
+def run_mistake(tree: Path, mistake: Mistake, test: str) -> tuple[bool, str]:
+    """Make the mistake in the tree, run the test or the file of tests, and restore the source."""
+    if not test:
+        return False, "no test is named"
+    file, wrong = mistake.locate()
+    right = (tree / file).read_bytes()
+    (tree / file).write_bytes(wrong)
+    try:
+        return run_tests(tree, test)
+    finally:
+        (tree / file).write_bytes(right)
+
+
+def rank_test_files(mistake: Mistake) -> list[str]:
+    """The test files that use the names of the function and of its module, most uses first."""
+    file, _ = mistake.locate()
+    path = Path(file)
+    names = {path.stem, path.parent.name, *mistake.function.rpartition(":")[2].split(".")} - {"", "__init__"}
+    counts = {}
+    for test in sorted((ROOT / "tests").rglob("test_*.py")):
+        text = test.read_text(encoding="utf-8") + test.stem.replace("test_", " ").replace("_", " ")
+        hits = sum(min(len(re.findall(rf"\b{re.escape(name.strip('_'))}\b", text)), 9) for name in names)
+        counts[test.relative_to(ROOT).as_posix()] = hits + 3 * (path.parts[0] == test.parent.name)
+    return sorted(counts, key=lambda name: -counts[name])[:MOST_FILES]
+
+
+def write_name(mistake: Mistake, test: str) -> None:
+    """Write the test's name below the entry's sentence in the list."""
+    sentence = f'mistake = "{mistake.mistake}"\n'
+    text = LIST.read_text(encoding="utf-8")
+    before, _, after = text.partition(sentence)
+    after = re.sub(r'\Anoticed_by = ".*"\n', "", after)
+    LIST.write_text(f'{before}{sentence}noticed_by = "{test}"\n{after}', encoding="utf-8")
+
+
+def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.tools.mutants", description=__doc__)
-    parser.add_argument("command", choices=("run", "matrix", "read", "list", "trace"))
-    parser.add_argument("only", nargs="*", help="names of mistakes, or how their files begin; all without one")
-    parser.add_argument("--drawn", type=int, default=300, help="how many generated mistakes")
-    parser.add_argument("--seed", default="0", help="what draws them")
-    parser.add_argument("--workers", type=int, default=2)
-    given = parser.parse_args(words)
-    rows = KEPT / "matrix.jsonl"
-    if given.command == "read":
-        trace = Traced(KEPT / "trace") if (KEPT / "trace" / "whole").exists() else None
-        print(matrix.reading(matrix.read(rows), trace))
-        return 0
-    mistakes = chosen(given.only, given.drawn, given.seed)
-    if not mistakes:
-        print(f"no mistake is called, and no file begins with, {' or '.join(given.only)}", file=sys.stderr)
-        return 2
-    if given.command == "list":
-        print(*(mistake for mistake, _ in mistakes), sep="\n")
-        return 0
-    trial.load_others()
-    with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as folder:
-        trees = [trial.copy_tree(ROOT, Path(folder) / str(number)) for number in range(max(1, given.workers))]
-        trace = traced(trees, anew=given.command == "trace")
-        if given.command == "trace":
-            return 0
-        if given.command == "run":
-            return tried(mistakes, trace, trees)
-        known = {row.mistake for row in matrix.read(rows)}
-        left = [mistake for mistake, _ in mistakes if mistake.name not in known]
-        matrix.filled(left, trace, rows, trees, FIRST, first=False)
-        return 0
+    parser.add_argument("only", nargs="*", help="beginnings of files, functions or sentences; all without one")
+    parser.add_argument("--renew", action="store_true", help="look for tests where the named one does not fail")
+    options = parser.parse_args()
+    alive = 0
+    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
+        tree = copy_tree(Path(folder) / "tree")
+        for mistake in read_mistakes():
+            try:
+                names = (mistake.locate()[0], mistake.function, mistake.mistake)
+            except BadList as reason:
+                names = (str(reason),) if not options.only else ()
+                alive += bool(names)
+                print(*names, sep="\n", flush=True)
+                continue
+            if mistake.survives or (options.only and not any(n.startswith(w) for n in names for w in options.only)):
+                continue
+            noticed, test = run_mistake(tree, mistake, mistake.noticed_by)
+            if not noticed and options.renew:
+                for file in rank_test_files(mistake):
+                    noticed, test = run_mistake(tree, mistake, file)
+                    if noticed and not run_tests(tree, test)[0]:  # the test passes without the mistake
+                        write_name(mistake, test)
+                        break
+                    noticed = False
+            alive += not noticed
+            print(f"{'noticed' if noticed else 'ALIVE  '} {mistake.mistake} ({names[0]}): {test}", flush=True)
+    print(f"{alive} not noticed")
+    return 1 if alive else 0
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except KeyboardInterrupt:
-        sys.exit(130)
+    sys.exit(main())

@@ -1,0 +1,238 @@
+"""Costs that maintainers follow: runs beside bare loops, a whole grid by part, the judge, commands, and the site.
+
+Every time is the least of several runs; nothing is asserted. `crosscheck bench` prints the tables.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from engines import Engine, Unsupported, method_name
+from engines.entry_points import registered_by_key
+from engines.lagrange import Lagrange
+from engines.lagrange.machine import Machine
+from engines.loading import Kind
+from reference.scene import Scene
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.many_links import LongPendulum
+from reports.model.cells import Cell
+from reports.model.ending import BadInput
+from reports.model.measure import measure
+from reports.model.spending import taken
+from reports.site.folder import MARKER, compressed_size, server
+
+BARE_LOOP = Kind("bare loop", lambda value: "" if callable(value) else "it can't be called")
+TURNS = 7  # of each, alternating, so that a slow spell of the machine meets both
+COMMAND_TURNS = 3
+ROOT = Path(__file__).resolve().parents[1]
+LESSON, SCENE, STEP = "lessons/four_bar.html", 1, 4e-3  # the linkage that is released, which moves for a second [s]
+# The first drawing of a page that has content, as the browser reports it [ms].
+PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
+STEPPED = """async ([scene, step, turns]) => {
+  const { ask, form } = window.crosscheck;
+  form.move(scene, {});
+  const setting = { ...form.setting(null), steps: Math.round(1 / step) };
+  const spent = { munk: [], mujoco: [] };
+  for (let turn = 0; turn < turns; turn++) {
+    for (const { name, milliseconds } of (await ask({ setting })).motions) spent[name].push(milliseconds);
+  }
+  return spent;
+}"""
+
+Row = tuple[str, float, str]  # name, value, unit
+
+
+@dataclass(frozen=True)
+class LoopCost:
+    """CPU seconds per step of `run` and of the bare loop, the least of TURNS each."""
+
+    engine: Engine
+    steps: int
+    run: float
+    bare: float
+
+    @property
+    def ratio(self) -> float:
+        return self.run / self.bare
+
+
+def measure_loops(engines: Iterable[Engine], scene: Scene, every: int = 10) -> Iterator[LoopCost]:
+    """Each engine that can build the scene and has a bare loop under `crosscheck.bare_loops`."""
+    mechanism, dt, steps = scene.mechanism(), scene.spacing / every, scene.samples * every
+    loops = registered_by_key("crosscheck.bare_loops", BARE_LOOP)
+    for engine in engines:
+        if engine.name not in loops:
+            continue
+        runs, bare = [], []
+        try:
+            for _ in range(TURNS):
+                runs.append(engine.build(mechanism, dt)(scene.samples, every).stepping)
+                bare.append(loops[engine.name](engine, mechanism, dt, steps))
+        except Unsupported:
+            continue
+        yield LoopCost(engine, steps, min(runs) / steps, min(bare) / steps)
+
+
+def measure_grid(cells: Iterable[Cell]) -> dict[str, dict[str, float]]:
+    """CPU seconds of the cells, run one after the other in this process: by part, by method and by scene."""
+    out: dict[str, dict[str, float]] = {name: defaultdict(float) for name in ("part", "method", "scene")}
+    taken()
+    for cell in cells:
+        begin = time.process_time()
+        measure(cell)
+        spent = time.process_time() - begin
+        parts = dict(taken())
+        parts["other"] = spent - sum(parts.values())
+        for part, seconds in parts.items():
+            out["part"][part] += seconds
+        out["method"][method_name(cell.engine)] += spent
+        out["scene"][cell.scene.name] += spent
+    return out
+
+
+def measure_judge(links: Sequence[int] = (100, 300, 1000), turns: int = TURNS) -> list[Row]:
+    """An evaluation, a second of the free four-bar, and steps of chains by exact multipliers.
+
+    Raises BadInput without numba.
+    """
+    scene = FreeFourBar(duration=1.0)
+    mechanism = scene.mechanism()
+    machine = Machine.of(mechanism) if Lagrange().in_machine_code else None
+    if machine is None:
+        raise BadInput("the judge is timed as compiled code: install numba, the extra 'fast'")
+    rows = [("four-bar: one evaluation", 1e6 * _least(lambda: _measure_evaluation(machine), turns), "us")]
+    # Steps of 1e-2 s are too long for an error of 1e-12 rad at order 8; half of that step holds it.
+    for engine, every in ((Lagrange("rk4"), 10), (Lagrange(), 1), (Lagrange(), 2), (Lagrange(tolerance=1e-12), 1)):
+        step = f"step {1e-2 / every:g} s" if engine.tolerance is None else "samples 0.01 s apart"
+        name = f"four-bar: a second by {engine.variant}, {step}"
+        run = engine.build(mechanism, 1e-2 / every)(100, every)
+        error = float(np.abs(run.pose - scene.motion(run.t).pose)[..., 2].max())
+
+        def step_it(engine: Engine = engine, every: int = every) -> float:
+            return engine.build(mechanism, 1e-2 / every)(100, every).stepping
+
+        rows += [(name, 1e3 * _least(step_it, turns), "ms"), (f"{name}: its error", error, "rad")]
+    for count in links:
+        chain = LongPendulum(links=count, duration=0.2).mechanism()
+        seconds = _least(lambda chain=chain: Lagrange("rk4").build(chain, 1e-4)(1, 50).stepping, turns) / 50
+        rows.append((f"chain of {count} links: a step by rk4 projection", 1e3 * seconds, "ms"))
+    return rows
+
+
+def measure_truths(scenes: Iterable[Scene]) -> list[Row]:
+    """CPU seconds of the motions of scenes at all their samples, the largest first; a scene without one is left out.
+
+    Call it first in a process, since some motions are cached.
+    """
+    rows = []
+    for scene in scenes:
+        begin = time.process_time()
+        try:
+            scene.motion(np.linspace(0, scene.duration, scene.samples + 1))
+        except ValueError:
+            continue
+        rows.append((f"truth of {scene!r}"[:100], time.process_time() - begin, "s"))
+    return sorted(rows, key=lambda row: -row[1])
+
+
+def _measure_evaluation(machine: Machine, count: int = 2000) -> float:
+    """CPU seconds of rows, bias, J M^-1 J^T, its factor, reactions and accelerations at the start."""
+    poses, twists = machine.empty(count)
+    poses[:], twists[:] = poses[0], twists[0]
+    begin = time.process_time()
+    machine.reactions(1e-3, poses, twists)
+    return (time.process_time() - begin) / (count + 1)
+
+
+def _least(seconds: Callable[[], float], turns: int) -> float:
+    seconds()
+    return min(seconds() for _ in range(turns))
+
+
+@dataclass(frozen=True)
+class CommandCost:
+    """Seconds of the quickest of COMMAND_TURNS runs of a command in an empty folder; `wall` by the clock."""
+
+    words: tuple[str, ...]
+    wall: float
+    cpu: float
+    status: int
+
+
+def measure_command(words: Sequence[str]) -> CommandCost:
+    """Run `crosscheck WORDS` as a process; its output is discarded. CPU seconds include those of its children."""
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    runs = []
+    for _ in range(COMMAND_TURNS):
+        with TemporaryDirectory() as folder:
+            begin = time.monotonic()
+            process = subprocess.Popen(
+                [sys.executable, "-m", "reports", *words],
+                cwd=folder,
+                env=os.environ | {"PYTHONPATH": path},
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            runs.append((time.monotonic() - begin, usage.ru_utime + usage.ru_stime, process.returncode))
+    return CommandCost(tuple(words), *min(runs))
+
+
+def measure_site(folder: Path) -> list[Row]:
+    """Sizes of a site, and times of its first page and of a lesson in Chromium; BadInput where a part is missing."""
+    if not (folder / MARKER).is_file():
+        raise BadInput(f"{folder} has no site: `crosscheck site` writes one")
+    contents = {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    rows = [("site: files", float(len(contents)), "1"), ("site: compressed", compressed_size(contents) / 1e6, "MB")]
+    browser = shutil.which("chromium") or shutil.which("chromium-browser")
+    try:
+        from playwright.sync_api import sync_playwright  # pyright: ignore[reportMissingImports]
+    except ImportError:
+        raise BadInput("playwright is not installed: pip install -e '.[browser]'") from None
+    if browser is None:
+        raise BadInput("no Chromium is installed: tests/tools/browser.sh installs it on Debian")
+    running = server(folder, 0)
+    threading.Thread(target=running.serve_forever, daemon=True).start()
+    address = f"http://127.0.0.1:{running.server_address[1]}/"
+    try:
+        with sync_playwright() as started:
+            return rows + _measure_pages(
+                started.chromium.launch(executable_path=browser, args=["--no-sandbox"]), address
+            )
+    finally:
+        running.shutdown()
+        running.server_close()
+
+
+def _measure_pages(browser: Any, address: str) -> list[Row]:
+    try:
+        page = browser.new_page()
+        page.goto(address + "index.html")
+        page.wait_for_function(f"({PAINTED}) !== null")
+        lesson = browser.new_page()
+        lesson.goto(address + LESSON)
+        lesson.wait_for_selector("#lesson.ready")
+        ready = lesson.evaluate("performance.now()") / 1000
+        stepped = lesson.evaluate(STEPPED, [SCENE, STEP, 25])
+    finally:
+        browser.close()
+    name = f"site: a second of the four-bar in steps of {1e3 * STEP:g} ms by"
+    return [
+        ("site: first picture of the first page", page.evaluate(PAINTED) / 1000, "s"),
+        ("site: engines of a lesson ready", ready, "s"),
+        *((f"{name} {engine}", min(times), "ms") for engine, times in stepped.items()),
+    ]
