@@ -192,10 +192,6 @@ class Engine(ABC):
     @abstractmethod
     def step_cost(self, mechanism: Mechanism) -> float: ...
 
-    def step_cost_within(self, mechanism: Mechanism, duration: float) -> float:
-        """`step_cost` in a motion of `duration` [s], which may meet poses that cost more than the start."""
-        return self.step_cost(mechanism)
-
     @abstractmethod
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder: ...
 
@@ -225,9 +221,16 @@ def method_name(engine: Engine) -> str:
 
 
 class Around(Engine):
-    """An engine around another one, which says what this one does not."""
+    """An engine around another one, to which it forwards every member that it does not define itself.
+
+    `engine`: the inner engine; `chosen` may take another one for a mechanism.
+    """
 
     engine: Engine
+
+    def chosen(self, mechanism: Mechanism) -> Engine:
+        """The inner engine that runs this mechanism."""
+        return self.engine
 
     @property
     def name(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -261,22 +264,22 @@ class Around(Engine):
         self.engine.prepare()
 
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        return self.engine.order(mechanism)
+        return self.chosen(mechanism).order(mechanism)
 
     def step_cost(self, mechanism: Mechanism) -> float:
-        return self.engine.step_cost(mechanism)
+        return self.chosen(mechanism).step_cost(mechanism)
 
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
-        return self.engine.holder(joint, mechanism)
+        return self.chosen(mechanism).holder(joint, mechanism)
 
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
-        return self.engine.softness(mechanism, dt)
+        return self.chosen(mechanism).softness(mechanism, dt)
 
     def within(self, mechanism: Mechanism) -> Engine:
-        return self.engine.within(mechanism)
+        return self.chosen(mechanism).within(mechanism)
 
     def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
-        return self.engine.steps_of_runs(mechanism)
+        return self.chosen(mechanism).steps_of_runs(mechanism)
 
 
 # Of a step: far below the half step by which a state can belong to another instant, far above what products round.

@@ -15,7 +15,6 @@ import mujoco
 import numpy as np
 
 from engines import EXACT, Engine, Holder, Promise, Size, Softness, Unpromised, Unsupported
-from engines.finer import Division, division
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco.joints.drive import DriveBy
 from engines.mujoco.joints.links import RodBy
@@ -58,8 +57,7 @@ class MuJoCo(Engine, Valid):
     steps twice as long, and where that leaves it open one of half steps, tell the error, if it falls with the fourth
     power of the step. The displacement that would close the joints' gaps (`engines.constraint_error`) is added: the
     error of soft rows, which the runs share near singular positions. Where the estimate is above `engines.CLAIM` the
-    motion is unresolved. A motion that becomes faster than its start lets expect takes more steps (`engines.finer`),
-    unless its estimate shows that it needs none.
+    motion is unresolved.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
@@ -198,16 +196,7 @@ class MuJoCo(Engine, Valid):
         if not fourth:
             return MuJoCoRun(model, data, size)
 
-        def plain(other: float) -> MuJoCoRun:
-            return replace(self.build(mechanism, other), divided=None)
-
-        if all(isinstance(joint, Roll) for joint in mechanism.joints):
-            return MuJoCoRun(model, data, size, plain)  # how far a contact turns in a step is known, and told
-
-        def divided(duration: float) -> Division:
-            return division(self, lambda own: plain(own).roughly, mechanism, duration, ORDER, finest=64)
-
-        return MuJoCoRun(model, data, size, plain, divided)
+        return MuJoCoRun(model, data, size, lambda other: self.build(mechanism, other))
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False, unit: Positive | None = None) -> Model:

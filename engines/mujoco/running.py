@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from engines import CLAIM, Size
 from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts, some
-from engines.finer import Division, tells_itself
 from engines.mujoco.joints.roll import roll_warnings
 from engines.mujoco.model import Model
 from engines.mujoco.releases import marks
@@ -82,19 +81,16 @@ class MuJoCoRun:
     size: Size
     # Builds the same with another step [s], for an estimate of the error of RK4: None for none.
     other: Callable[[float], MuJoCoRun] | None = None
-    # Into how many steps each is to be divided in a motion of so many seconds: None for never.
-    divided: Callable[[float], Division] | None = None
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Step samples * every times. Raises ValueError for bad counts, RuntimeError if it has run already.
 
-        How often somebody samples is no part of the method: an estimate is made at WATCHED instants beside the samples,
-        and these decide whether steps are divided and whether the estimate needs a third run. `stepping` counts all of
-        them: what the answer needed, the rough runs, and the run whose steps had to be divided.
+        The sampling is no part of the method: an estimate is made at WATCHED instants beside the samples, and these
+        decide whether the estimate needs a third run. `stepping` counts all runs.
         """
         self._begin(samples)
-        mechanism, sampled = self.model.mechanism, np.arange(samples + 1) * every
+        sampled = np.arange(samples + 1) * every
         if self.other is None:
             return self._as_built(sampled, sampled)
         # After every second step, or WATCHED of these.
@@ -102,25 +98,8 @@ class MuJoCoRun:
         watched = 2 * np.unique(np.linspace(0, half, min(half, WATCHED) + 1).round().astype(int))
         counts = np.union1d(sampled, watched)
         at_samples, at_watched = np.searchsorted(counts, sampled), np.searchsorted(counts, watched)
-        run, spent, (found, apart) = self, 0.0, self._doubled(counts, sampled)
-        by_order = replace(found, estimate=self._by_order(apart))
-        if self.divided is not None and not tells_itself(_at(by_order, at_watched), mechanism, self._dt, ORDER):
-            needed = self.divided(float(found.t[-1]))
-            spent += needed.seconds
-            if needed.steps > 1:
-                spent += found.stepping
-                run, counts = self.other(self._dt / needed.steps), counts * needed.steps
-                found, apart = run._doubled(counts, sampled * needed.steps)
-        found = run._estimated(found, apart, counts, at_watched)
-        return replace(_at(found, at_samples), stepping=found.stepping + spent)
-
-    @validated
-    def roughly(self, samples: Count, every: Count) -> Trajectory:
-        """Poses with an estimate by the order alone, and no reactions: what `engines.finer` asks of a rough run."""
-        self._begin(samples)
-        counts = np.arange(samples + 1) * every
-        found, apart = self._doubled(counts, counts[:0])
-        return replace(found, estimate=self._by_order(apart))
+        found, apart = self._doubled(counts, sampled)
+        return _at(self._estimated(found, apart, counts, at_watched), at_samples)
 
     def _begin(self, samples: int) -> None:
         self.model.mechanism.require_room(samples)

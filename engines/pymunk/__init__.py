@@ -33,8 +33,7 @@ from typing import Any
 
 from engines import Engine
 from engines.extrapolated import Extrapolated
-from engines.pymunk.engine import SHIPPED_ERROR_BIAS, SHIPPED_ITERATIONS, Pymunk
-from engines.pymunk.extended import Extended
+from engines.pymunk.engine import SHIPPED_ERROR_BIAS, SHIPPED_ITERATIONS, Extended, Pymunk
 from engines.pymunk.joints.roll import Contact
 from engines.pymunk.methods import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, VARIANTS
 from reference.checks import Count, Positive, validated

@@ -8,7 +8,8 @@ from typing import Literal
 import pymunk
 from pymunk.constraints import PivotJoint
 
-from engines import Engine, Holder, Promise, Softness, Unpromised
+from engines import Around, Engine, Holder, Promise, Run, Softness, Unpromised
+from engines.extrapolated import Extrapolated
 from engines.motions import over_three
 from engines.pymunk import theory
 from engines.pymunk.contraction import CONTACT_CONVERGED, FEWEST, Sweeping, Whole, sweeping, swept_by
@@ -19,7 +20,7 @@ from engines.pymunk.joints.slot import SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
 from engines.pymunk.running import PymunkRun
 from reference.checks import Count, Fraction, Name, NonNegative, Positive, Valid, validated
-from reference.joints import Joint
+from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
@@ -88,15 +89,8 @@ class Pymunk(Engine, Valid):
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
         """About how long a step takes [s]: the bodies, and every joint in every sweep."""
-        return self._cost(mechanism, self.sweeping(mechanism))
-
-    @validated
-    def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float:
-        """The same in a motion of `duration` [s], swept for its worst pose."""
-        return self._cost(mechanism, self.sweeping(mechanism, duration))
-
-    def _cost(self, mechanism: Mechanism, swept: Sweeping) -> float:
-        return STEP_COST * over_three(mechanism) + SWEEP_COST * len(mechanism.joints) * swept.iterations
+        sweeps = SWEEP_COST * len(mechanism.joints) * self.sweeping(mechanism).iterations
+        return STEP_COST * over_three(mechanism) + sweeps
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
@@ -189,3 +183,32 @@ class LimitedGroove(Pymunk):
 def limited_groove(limit: Positive) -> LimitedGroove:
     """The groove with a limit [N] on its force."""
     return LimitedGroove("groove with max_force", 5, 0.0, skate="groove", limit=limit)
+
+
+@dataclass(frozen=True)
+class Extended(Around, Valid):
+    """The extrapolation whose powers fit the mechanism: pymunk has two orders.
+
+    `skates`: for skates, or dampers, which act at the end of a step instead of around it, so of first order. `pins`:
+    for all others.
+    """
+
+    variant: Name
+    skates: Extrapolated
+    pins: Extrapolated
+
+    @property
+    def engine(self) -> Extrapolated:  # pyright: ignore[reportIncompatibleVariableOverride]
+        return self.pins
+
+    @validated
+    def chosen(self, mechanism: Mechanism) -> Extrapolated:
+        """The extrapolation that runs this mechanism."""
+        if any(isinstance(joint, Skate) for joint in mechanism.joints) or mechanism.applied.dissipate:
+            return self.skates
+        return self.pins
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> Run:
+        """Raises whatever the chosen engine raises."""
+        return self.chosen(mechanism).build(mechanism, dt)

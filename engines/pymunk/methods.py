@@ -10,8 +10,7 @@ from dataclasses import replace
 
 from engines import Engine
 from engines.extrapolated import Extrapolated
-from engines.pymunk.engine import Pymunk
-from engines.pymunk.extended import Extended
+from engines.pymunk.engine import Extended, Pymunk
 from engines.pymunk.joints.roll import Contact
 
 DEFAULT = Pymunk("default")
@@ -39,8 +38,8 @@ AIMED = Pymunk(
 FIVE = (2, 3, 4, 6, 8)
 EXTENDED = Extended(
     "extended",
-    skates=Extrapolated(AIMED, "extended", levels=FIVE, powers=(1, 2, 3, 4), divides=True),
-    pins=Extrapolated(SETTLED, "extended", levels=FIVE, powers=(2, 3, 4, 5), divides=True),
+    skates=Extrapolated(AIMED, "extended", levels=FIVE, powers=(1, 2, 3, 4)),
+    pins=Extrapolated(SETTLED, "extended", levels=FIVE, powers=(2, 3, 4, 5)),
 )
 VARIANTS: tuple[Engine, ...] = (DEFAULT, TUNED, EXTENDED)
 METHODS: tuple[Engine, ...] = (DEFAULT, TUNED, LEAPFROG, EXTENDED)

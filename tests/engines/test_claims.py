@@ -37,8 +37,11 @@ def toggle(miss: float) -> Mechanism:
     return Mechanism(bars, joints, (0.0, -9.81))
 
 
-@pytest.mark.parametrize("miss", [3e-7, 1e-6, 2e-6, 5e-6, 1e-4, 1e-2])
-@pytest.mark.parametrize("engine", [MUJOCO, PYMUNK], ids=lambda engine: engine.name)
+@pytest.mark.parametrize(
+    ("engine", "miss"),
+    [*((MUJOCO, miss) for miss in (3e-7, 1e-6, 2e-6, 5e-6, 1e-4, 1e-2)), *((PYMUNK, miss) for miss in (1e-6, 1e-2))],
+    ids=lambda value: getattr(value, "name", str(value)),
+)
 def test_a_held_bar_that_moves_by_more_than_is_claimed_is_reported_before(engine: Engine, miss: float):
     own = toggle(miss)
     run = engine.build(own, DT)(STEPS, 1)

@@ -49,7 +49,6 @@ NOT_MADE_BY_USERS = {
         "engines.contract": "Size Softness Promise Unpromised",
         "engines.pymunk.contraction": "Sweeping",
         "engines.loading": "Kind",
-        "engines.finer": "Division",
         "engines.entry_points": "Registered",
         "engines.lagrange.machine": "Machine",
         "engines.lagrange.arrays": "Arrays",
