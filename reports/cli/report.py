@@ -49,6 +49,7 @@ def report(
     from reports.cli.drawing import MANY, drawn, known_to, material_of
     from reports.cli.selection import page_cells, page_tasks
     from reports.model.catalogue import PAGES
+    from reports.pages.claims import contradicted
     from reports.pages.index import render_readme
     from reports.pages.rendering import render_all
     from reports.run.running import missing
@@ -86,6 +87,8 @@ def report(
         if publish:
             rows = {page: kept_numbers.as_published(given.rows, before) for page, given in material.items()}
             material = {page: replace(given, rows=rows[page]) for page, given in material.items()}
+            if wrong := contradicted(material):
+                raise BadInput(f"nothing is published, since rows contradict these remarks: {'; '.join(wrong)}")
         command = "make publish" if publish else "crosscheck report"
         many = sum(len(given.rows) for given in material.values()) > MANY
         words = () if publish else store.remembered()

@@ -44,7 +44,7 @@ class Failure:
     """
 
     title: str
-    expected: str
+    expected: str = ""
     cells: tuple[Cell, ...] = ()
     observations: Callable[[Material], Sequence[Observation]] | None = None
     remark: str = ""  # what the outcomes teach

@@ -1,14 +1,20 @@
-"""What experiments on several pages share: the methods that they ask, and the cells of a method at some steps."""
+"""Shared by experiments of several pages: their methods, their cells, and the texts of `experiments.md`."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from engines import Engine, mujoco, pymunk
 from engines.registry import VARIANTS
 from reference.scene import Scene
 from reports.model.cells import Cell
+from reports.model.checks import Deviation
+from reports.model.outcomes import Outcome
+from reports.model.page import Failure, Material
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
@@ -39,3 +45,47 @@ def cells_to_rounding(
 ) -> tuple[Cell, ...]:
     """The same, of each engine at `steps_for` it."""
     return tuple(cell for engine in engines for cell in cells(scene, (engine,), steps_for(engine, every), samples))
+
+
+def described(source: str, *failures: Failure, **values: Any) -> tuple[Failure, ...]:
+    """The experiments with their texts from `experiments.md` beside the file `source`.
+
+    A section has the experiment's title, a paragraph with what is expected, and, if there is one, a paragraph with what
+    the outcomes teach. Both are templates of `values` and of the experiment's own words. Raises ValueError unless each
+    experiment has a section and each section an experiment.
+    """
+    text = Path(source).with_name("experiments.md").read_text(encoding="utf-8")
+    sections: dict[str, list[str]] = {}
+    for section in text.removeprefix("## ").split("\n## "):
+        title, *paragraphs = section.strip().split("\n\n")
+        sections[title] = [" ".join(paragraph.split()) for paragraph in paragraphs]
+    if list(sections) != (titles := [failure.title for failure in failures]):
+        raise ValueError(f"{source}: experiments.md has the sections {list(sections)}; the experiments are {titles}")
+    return tuple(_with_text(failure, values, *sections[failure.title]) for failure in failures)
+
+
+def _with_text(failure: Failure, values: Mapping[str, Any], expected: str, remark: str = "") -> Failure:
+    def words(material: Material) -> Mapping[str, Any]:
+        return {**values, **failure.words(material)}
+
+    return replace(failure, expected=expected, remark=remark, words=words if values else failure.words)
+
+
+Found = Mapping[str, Mapping[tuple[str, str], Mapping[str, float] | Outcome]]
+
+
+def deviations(found: Found, rounded: Found = MappingProxyType({})) -> dict[tuple[str, str, str], Deviation]:
+    """Known deviations: reason -> (scene, method) -> the factor of each check, or the outcome.
+
+    Those of `rounded` are made of roundings that the motion amplifies.
+    """
+    known: dict[tuple[str, str, str], Deviation] = {}
+    for reasons, rounding in ((found, False), (rounded, True)):
+        for reason, methods in reasons.items():
+            for (scene, method), factors in methods.items():
+                if isinstance(factors, Outcome):
+                    known[scene, method, "outcome"] = Deviation(reason, outcome=factors)
+                    continue
+                for check, factor in factors.items():
+                    known[scene, method, check] = Deviation(reason, factor, rounding=rounding)
+    return known

@@ -32,12 +32,12 @@ from reports.pages.faults.experiments import Equalities, Grooves, Offsets
 from reports.pages.faults.page import Script
 from reports.pages.findings import findings
 from reports.pages.index import render_index, render_readme
-from reports.pages.pendulum.experiments import Neighbours
+from reports.pages.pendulum.page import Neighbours
 from reports.pages.published import experiments as published
 from reports.pages.rendering import render_page
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.skate import experiments as turning_round
-from reports.pages.wheels.experiments import Folding
+from reports.pages.wheels.page import Folding
 from reports.pages.your_loop.experiments import BeforeAndAfter, Fresh
 from reports.pages.your_model.experiments import Walk
 from reports.plots import theme

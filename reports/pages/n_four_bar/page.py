@@ -4,20 +4,56 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
+from engines import mujoco
+from engines.lagrange import Lagrange
 from engines.registry import VARIANTS
 from reference.scenes.n_four_bar import FortyFourBars, NFourBar, TenFourBars
-from reports.model.checks import Deviation
 from reports.model.outcomes import Outcome
-from reports.model.page import Material, Page
-from reports.pages.n_four_bar.experiments import FAILURES, SOFT
+from reports.model.page import Failure, Material, Observation, Page
+from reports.pages.common import ALL, cells, described, deviations
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.rows import lookups
+from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
-NAME = "n_four_bar"
+SHIPPED_RK4 = replace(mujoco.DEFAULT, variant="RK4 alone", integrator="RK4")
+
+
+SOFT = cells(NFourBar(), (mujoco.DEFAULT, SHIPPED_RK4), (1, 3, 10, 30))
+ONCE = NFourBar(duration=1.2, horizon=1.2)  # one singular position, not yet the second
+
+
+def forces_without_a_limit(material: Material) -> list[Observation]:
+    """How the largest reaction grows towards a singular position, with how little the loops are still open."""
+    scene = NFourBar()
+    first = scene.singular_times(5.0)[0]
+    found = []
+    for before in (1e-1, 1e-2, 1e-3, 1e-4):
+        reaction = abs(scene.motion([first - before]).reaction).max()
+        found.append(
+            Observation("the reference", f"{number(before, 1)} s before", f"largest reaction {reaction:.3g} N")
+        )
+    return found
+
+
+FAILURES = described(
+    __file__,
+    Failure("Through the singular position, as shipped", cells=SOFT),
+    Failure("Forces that have no limit", cells=cells(ONCE, ALL, (1, 10, 100)), observations=forces_without_a_limit),
+    Failure(
+        "Exact multipliers at a singular position",
+        cells=cells(
+            ONCE, (Lagrange("rk4", "none"), Lagrange("rk4", "baumgarte"), Lagrange("rk4", "projection")), (1, 3, 10)
+        ),
+    ),
+    first=f"{NFourBar().singular_times(5.0)[0]:.4f}",
+)
+
+
 SCENES = (NFourBar(), TenFourBars(), FortyFourBars())
 
 
@@ -85,56 +121,77 @@ RANK = (
     "rounding over the square of their smallest singular value"
 )
 
-KNOWN: dict[tuple[str, str, str], Deviation] = {
-    ("n_four_bar_2", "pymunk default", "outcome"): Deviation(SHIPPED, outcome=Outcome.SATURATED),
-    ("n_four_bar_2", "pymunk extended", "outcome"): Deviation(SWEPT, outcome=Outcome.UNRESOLVED),
-    ("n_four_bar_2", "mujoco default", "outcome"): Deviation(SPRING, outcome=Outcome.BRANCH_FLIP),
-    ("n_four_bar_2", "mujoco tuned", "reaction"): Deviation(SPRUNG, 14),
-    ("n_four_bar_2", "mujoco extended", "error"): Deviation(STEP, 14),
-    ("n_four_bar_2", "mujoco extended", "rate"): Deviation(STEP, 26),
-    ("n_four_bar_2", "mujoco extended", "gap"): Deviation(STEP, 3.4),
-    ("n_four_bar_2", "mujoco extended", "energy"): Deviation(STEP, 2.8),
-    ("n_four_bar_2", "mujoco extended", "reaction"): Deviation(STEP, 220),
-    ("n_four_bar_2", "lagrange euler projection", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
-    ("n_four_bar_10", "pymunk default", "outcome"): Deviation(SHIPPED, outcome=Outcome.SATURATED),
-    ("n_four_bar_10", "pymunk tuned", "outcome"): Deviation(SWEPT, outcome=Outcome.SATURATED),
-    ("n_four_bar_10", "pymunk extended", "outcome"): Deviation(SWEPT, outcome=Outcome.TORN),
-    ("n_four_bar_10", "mujoco default", "outcome"): Deviation(SPRING, outcome=Outcome.BRANCH_FLIP),
-    ("n_four_bar_10", "mujoco tuned", "reaction"): Deviation(SPRUNG, 37),
-    ("n_four_bar_10", "lagrange euler projection", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
-    ("n_four_bar_40", "pymunk default", "outcome"): Deviation(SHIPPED, outcome=Outcome.TORN),
-    ("n_four_bar_40", "pymunk tuned", "outcome"): Deviation(SWEPT, outcome=Outcome.TORN),
-    ("n_four_bar_40", "pymunk extended", "outcome"): Deviation(EXTRAPOLATED, outcome=Outcome.TORN),
-    ("n_four_bar_40", "mujoco default", "outcome"): Deviation(SPRING, outcome=Outcome.BRANCH_FLIP),
-    ("n_four_bar_40", "mujoco tuned", "outcome"): Deviation(LARGE, outcome=Outcome.RESET),
-    ("n_four_bar_40", "mujoco extended", "outcome"): Deviation(COARSER, outcome=Outcome.UNRESOLVED),
-    ("n_four_bar_40", "lagrange euler projection", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
-    ("n_four_bar_2", "pymunk tuned", "gap"): Deviation(SWEPT, 4100000.0),
-    ("n_four_bar_2", "pymunk tuned", "reaction"): Deviation(SWEPT, 2.7),
-    ("n_four_bar_2", "lagrange rk4 projection", "error"): Deviation(RANK, 390, rounding=True),
-    ("n_four_bar_2", "lagrange rk4 projection", "rate"): Deviation(RANK, 310, rounding=True),
-    ("n_four_bar_2", "lagrange rk4 projection", "energy"): Deviation(RANK, 2.6, rounding=True),
-    ("n_four_bar_2", "lagrange rk4 projection", "reaction"): Deviation(RANK, 97, rounding=True),
-    ("n_four_bar_2", "lagrange rk4 projection", "order"): Deviation(RANK, 10, rounding=True),
-    ("n_four_bar_2", "lagrange dop853 projection", "error"): Deviation(RANK, 19000.0, rounding=True),
-    ("n_four_bar_2", "lagrange dop853 projection", "rate"): Deviation(RANK, 13000.0, rounding=True),
-    ("n_four_bar_2", "lagrange dop853 projection", "energy"): Deviation(RANK, 96, rounding=True),
-    ("n_four_bar_2", "lagrange dop853 projection", "reaction"): Deviation(RANK, 25000.0, rounding=True),
-    ("n_four_bar_2", "lagrange dop853 projection", "order"): Deviation(RANK, 11, rounding=True),
-    ("n_four_bar_10", "lagrange dop853 projection", "error"): Deviation(RANK, 83000.0, rounding=True),
-    ("n_four_bar_10", "lagrange dop853 projection", "rate"): Deviation(RANK, 39000.0, rounding=True),
-    ("n_four_bar_10", "lagrange dop853 projection", "energy"): Deviation(RANK, 9300, rounding=True),
-    ("n_four_bar_10", "lagrange dop853 projection", "reaction"): Deviation(RANK, 3800, rounding=True),
-    ("n_four_bar_10", "lagrange dop853 projection", "order"): Deviation(RANK, 20, rounding=True),
-    ("n_four_bar_40", "lagrange dop853 projection", "error"): Deviation(RANK, 6200, rounding=True),
-    ("n_four_bar_40", "lagrange dop853 projection", "rate"): Deviation(RANK, 4100, rounding=True),
-    ("n_four_bar_40", "lagrange dop853 projection", "energy"): Deviation(RANK, 66, rounding=True),
-    ("n_four_bar_40", "lagrange dop853 projection", "reaction"): Deviation(RANK, 590, rounding=True),
-    ("n_four_bar_40", "lagrange dop853 projection", "order"): Deviation(RANK, 7.8, rounding=True),
-}
+KNOWN = deviations(
+    {
+        SHIPPED: {
+            ("n_four_bar_2", "pymunk default"): Outcome.SATURATED,
+            ("n_four_bar_10", "pymunk default"): Outcome.SATURATED,
+            ("n_four_bar_40", "pymunk default"): Outcome.TORN,
+        },
+        SWEPT: {
+            ("n_four_bar_2", "pymunk extended"): Outcome.UNRESOLVED,
+            ("n_four_bar_10", "pymunk tuned"): Outcome.SATURATED,
+            ("n_four_bar_10", "pymunk extended"): Outcome.TORN,
+            ("n_four_bar_40", "pymunk tuned"): Outcome.TORN,
+            ("n_four_bar_2", "pymunk tuned"): {"gap": 4.1e6, "reaction": 2.7},
+        },
+        SPRING: {
+            ("n_four_bar_2", "mujoco default"): Outcome.BRANCH_FLIP,
+            ("n_four_bar_10", "mujoco default"): Outcome.BRANCH_FLIP,
+            ("n_four_bar_40", "mujoco default"): Outcome.BRANCH_FLIP,
+        },
+        SPRUNG: {
+            ("n_four_bar_2", "mujoco tuned"): {"reaction": 14},
+            ("n_four_bar_10", "mujoco tuned"): {"reaction": 37},
+        },
+        STEP: {
+            ("n_four_bar_2", "mujoco extended"): {"error": 14, "rate": 26, "gap": 3.4, "energy": 2.8, "reaction": 220}
+        },
+        EULER: {
+            ("n_four_bar_2", "lagrange euler projection"): Outcome.SATURATED,
+            ("n_four_bar_10", "lagrange euler projection"): Outcome.SATURATED,
+            ("n_four_bar_40", "lagrange euler projection"): Outcome.SATURATED,
+        },
+        EXTRAPOLATED: {("n_four_bar_40", "pymunk extended"): Outcome.TORN},
+        LARGE: {("n_four_bar_40", "mujoco tuned"): Outcome.RESET},
+        COARSER: {("n_four_bar_40", "mujoco extended"): Outcome.UNRESOLVED},
+    },
+    {
+        RANK: {
+            ("n_four_bar_2", "lagrange rk4 projection"): {
+                "error": 390,
+                "rate": 310,
+                "energy": 2.6,
+                "reaction": 97,
+                "order": 10,
+            },
+            ("n_four_bar_2", "lagrange dop853 projection"): {
+                "error": 1.9e4,
+                "rate": 1.3e4,
+                "energy": 96,
+                "reaction": 2.5e4,
+                "order": 11,
+            },
+            ("n_four_bar_10", "lagrange dop853 projection"): {
+                "error": 8.3e4,
+                "rate": 3.9e4,
+                "energy": 9300,
+                "reaction": 3800,
+                "order": 20,
+            },
+            ("n_four_bar_40", "lagrange dop853 projection"): {
+                "error": 6200,
+                "rate": 4100,
+                "energy": 66,
+                "reaction": 590,
+                "order": 7.8,
+            },
+        }
+    },
+)
 
 PAGE = Page(
-    name=NAME,
+    name="n_four_bar",
     title="N four-bars side by side",
     lesson="Twice a turn all bars lie in one line and one freedom becomes $N + 1$: there an engine may go on wrongly.",
     scenes=SCENES,

@@ -3,27 +3,182 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from engines import mujoco
+from engines import Engine, mujoco, pymunk
+from engines.lagrange import Lagrange
+from engines.mujoco import Hardened
 from engines.registry import VARIANTS
 from reference.chapter.errata import linkages
 from reference.numerics.calculus import derivative
+from reference.scenes.many_links import SpinningRing
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
-from reports.model.checks import Deviation
 from reports.model.outcomes import Outcome
-from reports.model.page import FEATURED, Material, Page
-from reports.pages.pendulum.experiments import FAILURES, SOLVED
+from reports.model.page import FEATURED, Failure, Material, Observation, Page
+from reports.model.tasks import Task, Values
+from reports.pages.common import ALL, PUBLIC, cells, described, deviations, sweeps
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.rows import lookups
 from reports.write.tables import markdown, number
+from reports.write.unmeasured import UNMEASURED
 
-NAME = "pendulum"
+
+@dataclass(frozen=True)
+class Neighbours(Task):
+    """A chain that starts at one angle and rate for all links, looked at at times [s]."""
+
+    scene: LinkPendulum
+    times: tuple[float, ...]
+
+    @property
+    def cost(self) -> float:
+        return 0.3 * max(self.times)  # measured on two links: three neighbours and the motion itself, for 12 s
+
+    @property
+    def label(self) -> str:
+        return f"neighbouring starts of {self.scene.name}"
+
+    def run(self) -> Values:
+        """`growth` (times,): how many times larger a small difference of the start has become."""
+        scene = self.scene
+        start, rate = np.full(scene.links, scene.angle), np.full(scene.links, scene.rate)
+        return {"growth": scene.chain.divergence(start, rate, np.array(self.times))}
+
+
+BEYOND = LinkPendulum(duration=12.0, horizon=12.0)
+
+
+PARTING = Neighbours(BEYOND, (1.0, LinkPendulum().horizon, 6.0, 9.0, BEYOND.duration))
+
+
+def divergence(material: Material) -> list[Observation]:
+    """How much a difference of the start has grown, measured on neighbours of the double pendulum."""
+    if (answer := material.answers.get(PARTING)) is None:
+        return []
+    method = "the reference, by neighbouring starts"
+    if not answer.finished:
+        return [Observation(method, "", answer.told)]
+    return [
+        Observation(method, f"{t:.3g} s", f"{number(growth)} times the difference at 0 s")
+        for t, growth in zip(PARTING.times, answer.array("growth"), strict=True)
+    ]
+
+
+FREE_EXTENDED = replace(mujoco.EXTENDED, coordinates="free")
+# Its sweeps lose the motion at any step: runs at other steps would tell nothing of its error.
+SWEPT = replace(FREE_EXTENDED, variant="extended, free, PGS, no estimate", solvers=("PGS",), estimates=False)
+# Nothing but documented settings; at the largest step, where it starts anew as others do, it takes half a minute.
+PATIENT = replace(
+    mujoco.TUNED,
+    variant="tuned, free, PGS, 10000 sweeps",
+    coordinates="free",
+    solvers=("PGS",),
+    iterations=10000,
+    tolerance=1e-20,
+)
+SOLVED = replace(
+    FREE_EXTENDED,
+    variant="extended, free, sparse Newton",
+    solvers=("Newton",),
+    iterations=5,
+    tolerance=1e-20,
+    jacobian="sparse",
+)
+
+
+def hardened(variant: str, softening: float, factorisation: str) -> Engine:
+    """MuJoCo's own Newton solver on a loop whose compliance is divided by 1/softening."""
+    return replace(
+        mujoco.EXTENDED,
+        variant=variant,
+        stiffness=Hardened(softening=softening),
+        solvers=("Newton",),
+        iterations=6,
+        jacobian=factorisation,
+    )
+
+
+RING = (
+    mujoco.DEFAULT,
+    mujoco.TUNED,
+    hardened("Newton, softening 1e-6", 1e-6, "dense"),
+    hardened("Newton, softening 1e-8", 1e-8, "dense"),
+    hardened("Newton, softening 1e-8, sparse", 1e-8, "sparse"),
+    mujoco.EXTENDED,
+    pymunk.TUNED,
+)
+HEAVY = (*ALL, sweeps(10), sweeps(1000), SWEPT, SOLVED)
+
+
+def tip(ratio: float) -> LinkPendulum:
+    """Three links of which the last is `ratio` times as heavy, for one second."""
+    return LinkPendulum(links=3, tip=ratio, duration=1.0, horizon=1.0)
+
+
+# Extrapolated, a smaller step takes up to six seconds, and is lost as the larger one is.
+PHASE = cells(PointPendulum(), PUBLIC, (10, 50, 150)) + cells(
+    PointPendulum(), (pymunk.EXTENDED, mujoco.EXTENDED), (10,)
+)
+
+LATE = cells(BEYOND, (*ALL, Lagrange("rk4", "projection")), (1, 10))
+HIGHER_ORDER = (mujoco.TUNED, pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
+LARGE_STEPS = tuple(
+    cell
+    for samples in (20, 40, 100)
+    for cell in cells(HundredLinks(), (*PUBLIC, Lagrange("euler", "projection")), (1,), samples)
+)
+
+
+def beyond_the_horizon(material: Material) -> dict[str, Any]:
+    """`worst` [rad]: the largest angle error of the methods of higher order at the smaller step."""
+    rows = material.of(cell for cell in LATE if cell.engine in HIGHER_ORDER and cell.every > 1)
+    return {"worst": np.max([row.angle for row in rows]) if rows else UNMEASURED}
+
+
+def fastest(scene: LinkPendulum) -> float:
+    """The highest frequency of small oscillations about hanging [rad/s]."""
+    return float(scene.chain.modes()[0][-1])
+
+
+def opened_joints(material: Material) -> dict[str, Any]:
+    """`opened`: how far joints of pymunk opened at most, over a link's length; `fastest` [rad/s], the chain's mode."""
+    rows = material.of(cell for cell in LARGE_STEPS if cell.engine in (pymunk.DEFAULT, pymunk.TUNED))
+    opened = np.max([row.gap for row in rows]) / HundredLinks().length if rows else UNMEASURED
+    return {"opened": opened, "fastest": fastest(HundredLinks())}
+
+
+PERIOD = PointPendulum().pendulum.period  # s
+
+FAILURES = described(
+    __file__,
+    Failure("Two thousand seconds of a point pendulum", cells=PHASE, columns=("angle", "rate", "gap", "energy")),
+    Failure(
+        "A light chain with a heavy tip",
+        # A run of pymunk extended at the smaller steps takes half a minute and four minutes.
+        cells=cells(tip(1e4), [engine for engine in HEAVY if engine != pymunk.EXTENDED], (1, 10, 100))
+        + cells(tip(1e4), (pymunk.EXTENDED,), (1,))
+        + cells(tip(1e4), (PATIENT,), (10,)),
+    ),
+    Failure("A ring of a hundred links, closed by one joint", cells=cells(SpinningRing(), RING, (1, 10))),
+    Failure(
+        "Beyond the horizon of the double pendulum",
+        cells=LATE,
+        tasks=(PARTING,),
+        words=beyond_the_horizon,
+        observations=divergence,
+    ),
+    Failure("A hundred links at large steps", cells=LARGE_STEPS, words=opened_joints),
+    period=f"{PERIOD:.7f}",
+    swings=f"{PointPendulum().duration / PERIOD:.1f}",
+    oscillates=number(fastest(tip(1e4))),
+)
+
+
 SCENES = (BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks(), PointPendulum())
 
 # Every joint an equality on bodies that are free in the plane: what the coordinates alone are worth.
@@ -80,28 +235,36 @@ HUNDRED = "by design: 300 sweeps do not converge on a hundred links, which leave
 SPRING = "by design: with every joint a spring, its own motion adds to the link's"
 
 
-KNOWN: dict[tuple[str, str, str], Deviation] = {
-    ("pendulum_1", "mujoco extended, free, sparse Newton", "error"): Deviation(SPRING, 4.1),
-    ("pendulum_2", "mujoco default, free coordinates", "order"): Deviation(SOFT, 2.5),
-    ("pendulum_100", "pymunk tuned", "energy"): Deviation(HUNDRED, 2.6),
-    ("pendulum_100", "mujoco default, free coordinates", "error"): Deviation(SOFT, 2.3),
-    ("point_pendulum", "pymunk default", "outcome"): Deviation(LONG, outcome=Outcome.SATURATED),
-    ("point_pendulum", "pymunk tuned", "outcome"): Deviation(LONG, outcome=Outcome.SATURATED),
-    ("point_pendulum", "pymunk extended", "outcome"): Deviation(LONG, outcome=Outcome.SATURATED),
-    ("point_pendulum", "mujoco tuned", "outcome"): Deviation(LONG, outcome=Outcome.SATURATED),
-    ("point_pendulum", "mujoco extended", "outcome"): Deviation(LONG, outcome=Outcome.SATURATED),
-    ("point_pendulum", "lagrange euler projection", "outcome"): Deviation(LONG, outcome=Outcome.SATURATED),
-    ("point_pendulum", "lagrange rk4 projection", "outcome"): Deviation(LONG, outcome=Outcome.SATURATED),
-    ("pendulum_1", "lagrange euler projection", "error"): Deviation(EULER, 1.3),
-    ("pendulum_1", "lagrange euler projection", "rate"): Deviation(EULER, 1.3),
-    ("pendulum_1", "lagrange euler projection", "reaction"): Deviation(EULER, 1.4),
-    ("pendulum_100", "pymunk extended", "outcome"): Deviation(HUNDRED, outcome=Outcome.UNRESOLVED),
-    ("pendulum_100", "mujoco default", "energy"): Deviation(EULER, 1.2),
-    ("pendulum_100", "lagrange euler projection", "energy"): Deviation(EULER, 1.7),
-}
+KNOWN = deviations(
+    {
+        SPRING: {("pendulum_1", "mujoco extended, free, sparse Newton"): {"error": 4.1}},
+        SOFT: {
+            ("pendulum_2", "mujoco default, free coordinates"): {"order": 2.5},
+            ("pendulum_100", "mujoco default, free coordinates"): {"error": 2.3},
+        },
+        HUNDRED: {
+            ("pendulum_100", "pymunk tuned"): {"energy": 2.6},
+            ("pendulum_100", "pymunk extended"): Outcome.UNRESOLVED,
+        },
+        LONG: {
+            ("point_pendulum", "pymunk default"): Outcome.SATURATED,
+            ("point_pendulum", "pymunk tuned"): Outcome.SATURATED,
+            ("point_pendulum", "pymunk extended"): Outcome.SATURATED,
+            ("point_pendulum", "mujoco tuned"): Outcome.SATURATED,
+            ("point_pendulum", "mujoco extended"): Outcome.SATURATED,
+            ("point_pendulum", "lagrange euler projection"): Outcome.SATURATED,
+            ("point_pendulum", "lagrange rk4 projection"): Outcome.SATURATED,
+        },
+        EULER: {
+            ("pendulum_1", "lagrange euler projection"): {"error": 1.3, "rate": 1.3, "reaction": 1.4},
+            ("pendulum_100", "mujoco default"): {"energy": 1.2},
+            ("pendulum_100", "lagrange euler projection"): {"energy": 1.7},
+        },
+    }
+)
 
 PAGE = Page(
-    name=NAME,
+    name="pendulum",
     title="Pendulums of 1, 2, 10 and 100 links",
     lesson="Open chains: in a tree of coordinates the joints are exact, and pymunk finds their impulses by iteration.",
     scenes=SCENES,

@@ -2,20 +2,60 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
-from engines import Promise
+from engines import Promise, pymunk
 from engines.registry import VARIANTS
+from reference.checks import InvalidMechanism
 from reference.scenes.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
-from reports.model.checks import Deviation
-from reports.model.page import Material, Page
-from reports.pages.person.experiments import FAILURES
+from reports.model.page import Failure, Material, Observation, Page
+from reports.pages.common import ALL, cells, described, deviations, sweeps
 from reports.plots.mechanisms import Points, Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.rows import lookups
 
-NAME = "person"
+LONGER = SwayingOnOneFoot(duration=0.6, horizon=0.6)
+
+
+def growth(material: Material) -> list[Observation]:
+    """The modes of standing upright on one foot."""
+    squares, _ = modes_upright(SwayingOnOneFoot())
+    found = []
+    for square in squares:
+        rate = math.sqrt(abs(square))
+        said = f"swings at {rate:.3g} rad/s" if square < 0 else f"grows by e in {1 / rate:.3g} s"
+        found.append(Observation("the reference, linearised", "upright on one foot", said))
+    return found
+
+
+def refusals(material: Material) -> list[Observation]:
+    """What the reference says to stances that can't be."""
+    found = []
+    for wrong in ({"stance": 2.0}, {"hip_y": 0.95}, {"knees": 0}, {"height": 0.0}):
+        try:
+            replace(TwoFeet(), **wrong)
+        except InvalidMechanism as sentence:
+            setting = ", ".join(f"{name} = {value!r}" for name, value in wrong.items())
+            found.append(Observation("the reference", setting, f"refuses: {sentence}"))
+    return found
+
+
+FAILURES = described(
+    __file__,
+    Failure("Standing still", cells=cells(LONGER, ALL, (1, 10, 100)), observations=growth),
+    Failure(
+        "A heavy trunk on light shanks, with too few sweeps",
+        cells=cells(OneFoot(), (pymunk.DEFAULT,), (1, 10))
+        + cells(OneFoot(), map(sweeps, (5, 10, 20, 100)), (1, 3, 10, 30, 100)),
+    ),
+    Failure("Stances that can't be", observations=refusals),
+    swayed=SwayingOnOneFoot().duration,
+)
+
+
 SCENES = (SwayingOnOneFoot(), OneFoot(), TwoFeet())
 
 
@@ -54,14 +94,10 @@ ESTIMATED = (
     "ours: the judge takes the inverse inertia of the row itself, MuJoCo an estimate that is larger in this loop"
 )
 
-KNOWN: dict[tuple[str, str, str], Deviation] = {
-    ("person_two_feet", "mujoco tuned", "error"): Deviation(ESTIMATED, 1.2),
-    ("person_two_feet", "mujoco tuned", "rate"): Deviation(ESTIMATED, 5.8),
-    ("person_two_feet", "mujoco tuned", "gap"): Deviation(ESTIMATED, 6.1),
-}
+KNOWN = deviations({ESTIMATED: {("person_two_feet", "mujoco tuned"): {"error": 1.2, "rate": 5.8, "gap": 6.1}}})
 
 PAGE = Page(
-    name=NAME,
+    name="person",
     title="A person on one foot and on two",
     lesson="Five segments without muscles: an open chain on one foot, a loop on two. The knee buckles.",
     scenes=SCENES,

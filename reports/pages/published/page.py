@@ -26,7 +26,7 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.tasks import Answer
-from reports.pages.pendulum.experiments import PHASE
+from reports.pages.pendulum.page import PHASE
 from reports.pages.published.experiments import ACROBOT_STEPS, BOUNDS, NEWTON_STEPS, PUBLISHED, START, Acrobot, Newton
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg

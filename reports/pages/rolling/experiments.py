@@ -26,7 +26,7 @@ from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
-from reports.pages.common import PUBLIC, cells
+from reports.pages.common import PUBLIC, cells, described
 from reports.write.experiments import observe
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
@@ -171,11 +171,11 @@ def _refusal(scene: RollingScene) -> str:
     raise AssertionError(f"the reference went along with {scene}")
 
 
-FAILURES: tuple[Failure, ...] = (
+FAILURES = described(
+    __file__,
     *(
         Failure(
-            title=f"A contact as shipped, under {body}",
-            expected="Each step a tenth of the last: the error should fall tenfold every time, or faster.",
+            f"A contact as shipped, under {body}",
             cells=cells(scene, (mujoco.DEFAULT,), (1, 10, 100, 1000)),
             remark=remark,
         )
@@ -195,52 +195,18 @@ FAILURES: tuple[Failure, ...] = (
             ),
         )
     ),
-    Failure(
-        title="Softer and stiffer contacts",
-        expected="A contact as stiff as the step allows should be as exact as the step.",
-        cells=tuple(cell for _, cell in softness_cells()),
-        remark=(
-            "With a time constant of 20 ms the error is nearly the same at both steps: it comes from the constant. At "
-            "6 ms the two steps already differ. Where the constant is only a few steps, the step's own error is as "
-            "large, so the shortest constant is not the best one at the smaller step. MuJoCo raises a constant shorter "
-            "than two steps to two "
-            "([`refsafe`](https://mujoco.readthedocs.io/en/stable/XMLreference.html#option-flag), on by default). The "
-            "contact of 20 ms here has the time constant of the default one, and another error. It has RK4, the "
-            "elliptic cone, a friction of 10 and the stiffest impedance; the default has Euler, the pyramidal cone, a "
-            "friction of 1 and an impedance of 0.9 to 0.95."
-        ),
-    ),
-    Failure(
-        title="Polygons",
-        expected="An ellipse has no corners. With more of them the error should fall, and with the step too.",
-        cells=tuple(cell for _, cell in polygon_cells()),
-        words=finest_polygon,
-        remark=(
-            "Pymunk has circles, segments and convex polygons "
-            "([pymunk.shapes](https://www.pymunk.org/en/latest/pymunk.html)), and no ellipse. A polygon falls from "
-            "corner to corner and loses energy at each impact: the engine computes another body. With 32 and 128 "
-            "corners the two smaller steps give the same error, so the corners make it. With 512 the last step still "
-            "lowers it{% filter if_measured %} from {{ coarse | number }} to {{ fine | number }} rad{% endfilter %}."
-        ),
-    ),
+    Failure("Softer and stiffer contacts", cells=tuple(cell for _, cell in softness_cells())),
+    Failure("Polygons", cells=tuple(cell for _, cell in polygon_cells()), words=finest_polygon),
     *(
         Failure(
-            title=f"Nearly conformal curves: a hole larger by {clearance:g} of its radius",
-            expected=(
-                f"The disc turns at 1 rad/s for ever, while its contact runs round the hole at about {1 / clearance:g} "
-                f"rad/s: by {1 / clearance:g} rad/s times the step in a step. The truth is in closed form."
-            ),
+            f"Nearly conformal curves: a hole larger by {clearance:g} of its radius",
             cells=cells(DiscInHole(clearance=clearance), CONSTRAINTS, (1, 10, 100)),
             observations=observations,
             remark=remark,
         )
         for clearance, observations, remark in (
             (0.1, None, "Every method follows, each with its own order."),
-            (
-                0.01,
-                None,
-                "Each method loses the rotation at the largest step only, or not at all.",
-            ),
+            (0.01, None, "Each method loses the rotation at the largest step only, or not at all."),
             (
                 1e-3,
                 refused(DiscInHole(clearance=1e-10), "clearance 1e-10"),
@@ -251,61 +217,18 @@ FAILURES: tuple[Failure, ...] = (
         )
     ),
     Failure(
-        title="A corner",
-        expected=(
-            f"A square rolls level over the arch of a catenary for {SquareOnCatenaries().corner:.4f} s and then stands "
-            "on its corner: the curvature is infinite, the contact has nowhere to run. The reference refuses."
-        ),
+        "A corner",
         cells=cells(SquareOnCatenaries(), (*CONSTRAINTS, Lagrange("rk4", "projection")), (1, 10)),
         observations=refused(SquareOnCatenaries(), "beyond the corner"),
-        remark=(
-            "Methods by constraint ask our code where the contact will be, and beyond the corner there is no answer. "
-            "In pymunk our code stops the run. In MuJoCo numbers become infinite or huge: MuJoCo warns and starts the "
-            "motion anew, or our code refuses first. Nothing was built with contacts, because neither engine has this "
-            "ground as a shape."
-        ),
     ),
     Failure(
-        title="Beyond the hop, and beyond the friction",
-        expected=(
-            "On the hill the ideal contact asks for more friction than 1 from {{ '%.4f' | format(slips) }} s on. At "
-            "{{ '%.4f' | format(hops) }} s it would have to pull. Ideal rolling goes on; a real contact slips "
-            "and flies. From there on the comparison is invalid, and it stops."
-        ),
+        "Beyond the hop, and beyond the friction",
         cells=cells(RollingOnCircle(), (*PUBLIC, mujoco.EXTENDED), (10, 100)),
         tasks=tuple(map(Motion, PARTINGS)),
         observations=partings,
         words=after_parting,
-        remark=(
-            "Up to that time the tuned contacts are off by an error that falls with the step. After it they are off by "
-            "{% filter if_measured %}{{ least | number }} times as much or {% endfilter %}more, at either step. The "
-            "method by constraint follows the ideal motion to the end, with a force that no ground could give. Neither "
-            "is wrong: they answer different questions."
-        ),
     ),
-    Failure(
-        title="Chatter on curved ground",
-        expected="The body presses on the hill until it hops, so that its contact carries a force in every sample.",
-        tasks=tuple(map(Motion, CHATTERING)),
-        observations=chatter,
-        remark=(
-            "In each of these runs the contact carries nothing in a part of the samples, at the smaller step too. The "
-            "motion before the hop is right all the same, so the impulse is right on average. But the force of a "
-            "single sample can't be trusted."
-        ),
-    ),
-    Failure(
-        title="Steps far too large",
-        expected="The disc stays on the ground. Steps this large are wrong, and a warning would help.",
-        cells=TOO_LARGE,
-        remark=(
-            "In one step $h$ a free body falls by $g h^2$ (0.1 m at 0.1 s) before the engine looks for contact again. "
-            "At each of these steps the contact opens, or the shapes overlap{% filter if_measured %}, by {{ "
-            "least | number }} m or more{% endfilter %}, and by more at larger steps. No engine warns. MuJoCo 4.0 "
-            "has speculative contacts against tunnelling (the flag `speculative` in its "
-            "[changelog](https://mujoco.readthedocs.io/en/stable/changelog.html)). They are off by default and not "
-            "used here."
-        ),
-        words=least_opening,
-    ),
+    Failure("Chatter on curved ground", tasks=tuple(map(Motion, CHATTERING)), observations=chatter),
+    Failure("Steps far too large", cells=TOO_LARGE, words=least_opening),
+    corner=f"{SquareOnCatenaries().corner:.4f}",
 )

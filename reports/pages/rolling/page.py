@@ -28,9 +28,9 @@ from reference.scenes.rolling.scenes import (
     RollingOnCircle,
     RollingScene,
 )
-from reports.model.checks import Deviation
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
+from reports.pages.common import deviations
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling.experiments import FAILURES, polygon_cells
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
@@ -128,7 +128,6 @@ def _axes(panel: Axes, theme: Theme, title: str, across: str, up: str) -> None:
     panel.set_ylabel(up)
 
 
-NAME = "rolling"
 SCENES = (
     RollingEllipse(),
     RollingDisc(),
@@ -189,45 +188,49 @@ CHATTER = "upstream: a contact without the velocity term is let go and caught ag
 BARELY = "by design: pins already hold the gears apart, so that only softness lets them press and rub"
 
 
-KNOWN: dict[tuple[str, str, str], Deviation] = {
-    ("rolling_ellipse", "pymunk default", "outcome"): Deviation(POLYGON, outcome=Outcome.SATURATED),
-    ("rolling_ellipse", "pymunk tuned", "error"): Deviation(POLYGON, 1.2),
-    ("rolling_ellipse", "pymunk tuned", "reaction"): Deviation(POLYGON, 17),
-    ("rolling_ellipse", "mujoco default", "order"): Deviation(SOFT, 2.5),
-    ("rolling_ellipse", "mujoco tuned", "reaction"): Deviation(CHATTER, 3.8),
-    ("rolling_ellipse", "mujoco contact, stiff Euler", "reaction"): Deviation(CHATTER, 4.9),
-    ("rolling_disc", "mujoco default", "order"): Deviation(SOFT, 2.5),
-    ("rolling_disc", "mujoco tuned", "reaction"): Deviation(CHATTER, 44),
-    ("rolling_cam", "pymunk default", "outcome"): Deviation(POLYGON, outcome=Outcome.SATURATED),
-    ("rolling_cam", "pymunk tuned", "error"): Deviation(POLYGON, 11),
-    ("rolling_cam", "pymunk tuned", "rate"): Deviation(POLYGON, 4.8),
-    ("rolling_cam", "pymunk tuned", "energy"): Deviation(POLYGON, 1.3),
-    ("rolling_cam", "pymunk tuned", "reaction"): Deviation(POLYGON, 75),
-    ("rolling_incline", "pymunk default", "error"): Deviation(POLYGON, 15),
-    ("rolling_incline", "pymunk default", "rate"): Deviation(POLYGON, 6.3),
-    ("rolling_incline", "pymunk default", "gap"): Deviation(POLYGON, 4.5),
-    ("rolling_incline", "pymunk default", "energy"): Deviation(POLYGON, 5.1),
-    ("rolling_incline", "pymunk default", "reaction"): Deviation(POLYGON, 480),
-    ("rolling_incline", "pymunk tuned", "error"): Deviation(POLYGON, 2.3),
-    ("rolling_incline", "pymunk tuned", "rate"): Deviation(POLYGON, 1.1),
-    ("rolling_incline", "pymunk tuned", "energy"): Deviation(POLYGON, 1.2),
-    ("rolling_incline", "pymunk tuned", "reaction"): Deviation(POLYGON, 120),
-    ("rolling_incline", "mujoco default", "reaction"): Deviation(CHATTER, 1.6),
-    ("rolling_incline", "mujoco default", "order"): Deviation(CHATTER, 2.5),
-    ("rolling_incline", "mujoco tuned", "reaction"): Deviation(CHATTER, 31),
-    ("rolling_on_circle", "pymunk default", "reaction"): Deviation(CHATTER, 16),
-    ("rolling_on_circle", "pymunk tuned", "reaction"): Deviation(CHATTER, 16),
-    ("rolling_on_circle", "mujoco default", "reaction"): Deviation(CHATTER, 2.8),
-    ("rolling_on_circle", "mujoco default", "order"): Deviation(SOFT, 2.5),
-    ("rolling_on_circle", "mujoco tuned", "reaction"): Deviation(CHATTER, 61),
-    ("elliptic_gears", "pymunk default", "reaction"): Deviation(POLYGON, 9.2),
-    ("elliptic_gears", "mujoco default", "order"): Deviation(BARELY, 2.5),
-    ("elliptic_gears", "mujoco tuned", "reaction"): Deviation(BARELY, 4),
-    ("elliptic_gears", "pymunk tuned", "reaction"): Deviation(POLYGON, 2.3),
-}
+KNOWN = deviations(
+    {
+        POLYGON: {
+            ("rolling_ellipse", "pymunk default"): Outcome.SATURATED,
+            ("rolling_ellipse", "pymunk tuned"): {"error": 1.2, "reaction": 17},
+            ("rolling_cam", "pymunk default"): Outcome.SATURATED,
+            ("rolling_cam", "pymunk tuned"): {"error": 11, "rate": 4.8, "energy": 1.3, "reaction": 75},
+            ("rolling_incline", "pymunk default"): {
+                "error": 15,
+                "rate": 6.3,
+                "gap": 4.5,
+                "energy": 5.1,
+                "reaction": 480,
+            },
+            ("rolling_incline", "pymunk tuned"): {"error": 2.3, "rate": 1.1, "energy": 1.2, "reaction": 120},
+            ("elliptic_gears", "pymunk default"): {"reaction": 9.2},
+            ("elliptic_gears", "pymunk tuned"): {"reaction": 2.3},
+        },
+        SOFT: {
+            ("rolling_ellipse", "mujoco default"): {"order": 2.5},
+            ("rolling_disc", "mujoco default"): {"order": 2.5},
+            ("rolling_on_circle", "mujoco default"): {"order": 2.5},
+        },
+        CHATTER: {
+            ("rolling_ellipse", "mujoco tuned"): {"reaction": 3.8},
+            ("rolling_ellipse", "mujoco contact, stiff Euler"): {"reaction": 4.9},
+            ("rolling_disc", "mujoco tuned"): {"reaction": 44},
+            ("rolling_incline", "mujoco default"): {"reaction": 1.6, "order": 2.5},
+            ("rolling_incline", "mujoco tuned"): {"reaction": 31},
+            ("rolling_on_circle", "pymunk default"): {"reaction": 16},
+            ("rolling_on_circle", "pymunk tuned"): {"reaction": 16},
+            ("rolling_on_circle", "mujoco default"): {"reaction": 2.8},
+            ("rolling_on_circle", "mujoco tuned"): {"reaction": 61},
+        },
+        BARELY: {
+            ("elliptic_gears", "mujoco default"): {"order": 2.5},
+            ("elliptic_gears", "mujoco tuned"): {"reaction": 4},
+        },
+    }
+)
 
 PAGE = Page(
-    name=NAME,
+    name="rolling",
     title="Rolling of bodies that are not round",
     lesson="The contact runs along both curves. That motion adds to accelerations, and MuJoCo's contacts leave it out.",
     scenes=SCENES,

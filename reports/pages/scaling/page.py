@@ -87,8 +87,6 @@ def fitted(series: Series) -> tuple[float, int, int]:
     return cost_exponent(series, *ALIKE.get(series.method, (0, math.inf)))
 
 
-NAME = "scaling"
-
 STEP = 5e-3  # s, the same for all: about the longest at which a reduced-coordinate Euler step still follows 200 links
 SMALL = (1, 3, 10, 20)
 LARGE = (50, 100)
@@ -132,10 +130,7 @@ CAPPED = ceil(sqrt(MOST / SWEEPS_OVER_SQUARE))
 
 # No fit goes across sizes at which a method is another one: by its sweeps, which have a limit, and at COSTLY
 # sizes, where the first steps, which are swept longer, are a large part of a few steps.
-ALIKE: Mapping[str, tuple[float, float]] = {
-    "pymunk tuned": (CAPPED, max(LARGE)),
-    "pymunk extended": (0, max(LARGE)),
-}
+ALIKE: Mapping[str, tuple[float, float]] = {"pymunk tuned": (CAPPED, max(LARGE)), "pymunk extended": (0, max(LARGE))}
 
 LAWS = {
     "pymunk default": "10 sweeps over $N$ joints in every step: $O(N)$; too few above some number of links",
@@ -269,7 +264,7 @@ def crossing(one: Series | None, other: Series | None) -> tuple[int, int] | None
 
 
 PAGE = Page(
-    name=NAME,
+    name="scaling",
     title="Cost and error as a chain grows",
     lesson="From one link to a thousand: what coordinates, sweeps and exact multipliers cost as the chain grows.",
     scenes=(),

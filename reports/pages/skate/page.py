@@ -22,12 +22,12 @@ from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.scenes.skates.slopes import SkateOnSlope
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
-from reports.model.checks import Deviation
 from reports.model.convergence import by_method, groups, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, usual_series
 from reports.model.tasks import Motion
+from reports.pages.common import deviations
 from reports.pages.skate.experiments import CONSTRUCTIONS, FAILURES, known
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import svg
@@ -97,7 +97,6 @@ def slope() -> Figure:
     return paths(panels, columns=2)
 
 
-NAME = "skate"
 SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinnedBody())
 SLEIGH = ChaplyginSleigh()
 
@@ -270,26 +269,33 @@ STRAIGHT = "by design: it never turns round, a naive zeroing makes a stable vehi
 SOFT = "by design: a contact as shipped is a spring of 0.02 s and gives way, whatever the step"
 LATE = "by design: a row at the old heading has no slip to stop in the first step, so its first force is none"
 
-KNOWN: dict[tuple[str, str, str], Deviation] = {
-    ("sleigh", "pymunk default", "outcome"): Deviation(ANOTHER_BODY, outcome=Outcome.SATURATED),
-    ("sleigh", "mujoco default", "order"): Deviation(SOFT, 2.5),
-    ("sleigh", "pymunk skate: centre's velocity zeroed", "outcome"): Deviation(ANOTHER_BODY, outcome=Outcome.SATURATED),
-    ("sleigh", "pymunk skate: point's velocity zeroed", "outcome"): Deviation(ANOTHER_BODY, outcome=Outcome.SATURATED),
-    ("sleigh", "mujoco friction blade", "reaction"): Deviation(LATE, 5.9),
-    ("sleigh_backwards", "pymunk default", "error"): Deviation(STRAIGHT, 140),
-    ("sleigh_backwards", "pymunk default", "rate"): Deviation(STRAIGHT, 98),
-    ("sleigh_backwards", "pymunk default", "gap"): Deviation(STRAIGHT, 1.3),
-    ("sleigh_backwards", "pymunk default", "energy"): Deviation(STRAIGHT, 18),
-    ("sleigh_backwards", "pymunk default", "reaction"): Deviation(STRAIGHT, 43),
-    ("sleigh_backwards", "pymunk default", "order"): Deviation(STRAIGHT, 2.5),
-    ("sleigh_backwards", "mujoco default", "error"): Deviation(SOFT, 1.6),
-    ("sleigh_backwards", "mujoco default", "rate"): Deviation(SOFT, 1.7),
-    ("sleigh_backwards", "mujoco default", "energy"): Deviation(SOFT, 3300),
-    ("sleigh_backwards", "mujoco default", "order"): Deviation(SOFT, 2.5),
-}
+KNOWN = deviations(
+    {
+        ANOTHER_BODY: {
+            ("sleigh", "pymunk default"): Outcome.SATURATED,
+            ("sleigh", "pymunk skate: centre's velocity zeroed"): Outcome.SATURATED,
+            ("sleigh", "pymunk skate: point's velocity zeroed"): Outcome.SATURATED,
+        },
+        SOFT: {
+            ("sleigh", "mujoco default"): {"order": 2.5},
+            ("sleigh_backwards", "mujoco default"): {"error": 1.6, "rate": 1.7, "energy": 3300, "order": 2.5},
+        },
+        LATE: {("sleigh", "mujoco friction blade"): {"reaction": 5.9}},
+        STRAIGHT: {
+            ("sleigh_backwards", "pymunk default"): {
+                "error": 140,
+                "rate": 98,
+                "gap": 1.3,
+                "energy": 18,
+                "reaction": 43,
+                "order": 2.5,
+            }
+        },
+    }
+)
 
 PAGE = Page(
-    name=NAME,
+    name="skate",
     title="The skate",
     lesson="A skate forbids velocities but no position. Engines have no such joint; here is what can stand for it.",
     scenes=SCENES,

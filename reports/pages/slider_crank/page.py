@@ -4,19 +4,113 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
+from engines import pymunk
+from engines.lagrange import Lagrange
+from engines.mujoco.methods import SLOTS
 from engines.registry import VARIANTS
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
-from reports.model.checks import Deviation
+from reference.checks import InvalidMechanism
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank, RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reports.model.outcomes import Outcome
-from reports.model.page import Material, Page
-from reports.pages.slider_crank.experiments import FAILURES
+from reports.model.page import Failure, Material, Observation, Page
+from reports.model.tasks import Task, Values
+from reports.pages.common import ALL, cells, described, deviations
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.rows import lookups
+from reports.write.tables import number
+from reports.write.unmeasured import UNMEASURED
 
-NAME = "slider_crank"
+FAR = 1.0  # rad
+INSTANTS = 3001  # so that the time is known to a millisecond
+
+
+@dataclass(frozen=True)
+class Leaving(Task):
+    """A slider that starts a crank, `angle` [rad] beside its dead centre."""
+
+    angle: float
+
+    @property
+    def cost(self) -> float:
+        return 0.4  # measured
+
+    @property
+    def label(self) -> str:
+        return f"leaving a dead centre from {self.angle:g} rad"
+
+    def run(self) -> Values:
+        """`when`: the first of INSTANTS over the scene's duration at which the crank is further than FAR [s]."""
+        scene = SliderAtDeadCentre(angle=self.angle)
+        t = [scene.duration * i / (INSTANTS - 1) for i in range(INSTANTS)]
+        far = scene.motion(t).pose[:, 0, 2] > FAR
+        return {"when": np.asarray(t[int(np.argmax(far))] if far.any() else np.nan)}
+
+
+GROOVE = (
+    replace(pymunk.DEFAULT, variant="default, GrooveJoint at the rod's end", slot="groove"),
+    replace(pymunk.TUNED, variant="tuned, GrooveJoint at the rod's end", slot="groove"),
+)
+GROOVES = cells(RodEndInSlot(), GROOVE, (1, 10, 100))
+LEVER = (
+    replace(pymunk.DEFAULT, variant="default, GrooveJoint in the lever", slot="groove"),
+    replace(pymunk.TUNED, variant="tuned, GrooveJoint in the lever", slot="groove"),
+)
+LEVERS = cells(SlottedLever(), LEVER, (1, 10, 100))
+
+LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
+
+
+def delay(material: Material) -> dict[str, Any]:
+    """`later` [s]: how much later the nearest start leaves than one a hundred times as far aside; `nearer`: log 100."""
+    far, near = (material.finished(task) for task in LEAVING[-2:])
+    later = near.number("when") - far.number("when") if far and near else UNMEASURED
+    return {"later": later, "nearer": math.log(LEAVING[-2].angle / LEAVING[-1].angle)}
+
+
+def leaving(material: Material) -> list[Observation]:
+    """When the truth has left the dead centre by a radian, for starts nearer and nearer to it."""
+    found = []
+    for task in LEAVING:
+        if (answer := material.answers.get(task)) is not None:
+            told = f"a radian away after {answer.number('when'):.3f} s" if answer.finished else answer.told
+            found.append(Observation("the reference", f"{number(task.angle)} rad aside", told))
+    return found
+
+
+def refusals(material: Material) -> list[Observation]:
+    """What the reference says to slots that can't be reached."""
+    found = []
+    shape = DrivenSliderCrank()
+    for offset in (shape.rod - shape.crank, 1.0):
+        try:
+            replace(shape, offset=offset)
+        except InvalidMechanism as sentence:
+            found.append(Observation("the reference", f"offset {offset:.3g} m", f"refuses: {sentence}"))
+    return found
+
+
+FAILURES = described(
+    __file__,
+    Failure("The rod's end in a groove", cells=GROOVES + cells(RodEndInSlot(), ALL, (1, 10, 100))),
+    Failure("A groove in a moving lever", cells=LEVERS + cells(SlottedLever(), (*ALL, *SLOTS), (1, 10, 100))),
+    Failure(
+        "A slider that has to start the crank, next to its dead centre",
+        cells=cells(SliderAtDeadCentre(), (*ALL, Lagrange("rk4", "projection")), (1, 10)),
+        tasks=LEAVING,
+        words=delay,
+        observations=leaving,
+    ),
+    Failure("A slider in its dead centre", cells=cells(SliderAtDeadCentre(angle=0.0), ALL, (1, 10))),
+    Failure("A slot out of reach", observations=refusals),
+)
+
+
 SCENES = (DrivenSliderCrank(), FreeSliderCrank())
 
 
@@ -45,14 +139,18 @@ def words(material: Material) -> Mapping[str, Any]:
 EULER = "by design: a first-order method loses two turns of a free crank at the steps that are run here"
 SOFT = "by design: as shipped a loop is a spring of 0.02 s, whatever the step; its softness is the error that stays"
 
-KNOWN: dict[tuple[str, str, str], Deviation] = {
-    ("driven_slider_crank", "mujoco default", "order"): Deviation(SOFT, 2.5),
-    ("free_slider_crank", "pymunk default", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
-    ("free_slider_crank", "lagrange euler projection", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
-}
+KNOWN = deviations(
+    {
+        SOFT: {("driven_slider_crank", "mujoco default"): {"order": 2.5}},
+        EULER: {
+            ("free_slider_crank", "pymunk default"): Outcome.SATURATED,
+            ("free_slider_crank", "lagrange euler projection"): Outcome.SATURATED,
+        },
+    }
+)
 
 PAGE = Page(
-    name=NAME,
+    name="slider_crank",
     title="The slider-crank",
     lesson="A slot and three pins: a loop that slides, and a groove that is always right only at a centre of mass.",
     scenes=SCENES,

@@ -4,27 +4,149 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from engines import pymunk
 from engines.registry import VARIANTS
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart, Casters
 from reference.scenes.wheels.tractrix import Tow
 from reference.scenes.wheels.trailers import CarWithTrailers
 from reports.model.cells import Cell
-from reports.model.checks import Deviation
 from reports.model.outcomes import Outcome
-from reports.model.page import Material, Page
-from reports.model.tasks import Motion
+from reports.model.page import Failure, Material, Observation, Page
+from reports.model.tasks import Motion, Task, Values
+from reports.pages.common import ENGINES_ALONE, cells_to_rounding, described, deviations, steps_for
 from reports.pages.skate.experiments import known
 from reports.pages.skate.page import counted
-from reports.pages.wheels.experiments import FAILURES
 from reports.plots.plane_panels import Blades, Panel, Path, paths
 from reports.plots.theme import svg
+from reports.write.experiments import observe
 from reports.write.holders import told_variant
+from reports.write.tables import number
+from reports.write.unmeasured import UNMEASURED
+
+
+@dataclass(frozen=True)
+class Folding(Task):
+    """A car with a trailer that starts backwards; driven it is looked at for `driven` [s]."""
+
+    scene: CarAndTrailer
+    driven: float
+
+    @property
+    def cost(self) -> float:
+        return 0.1  # measured
+
+    @property
+    def label(self) -> str:
+        return "the reference on a reversing trailer"
+
+    def run(self) -> Values:
+        """`jackknifed` [s]: when the trailer is square to the driven car; `t`, `pose`: of the truth, coasting."""
+        scene = self.scene
+        car = CarWithTrailers(scene.wheelbase, (scene.length,), (scene.hitch,))
+        convoy = car.drive(scene.speed, scene.steering, scene.pose, (scene.bend,), [self.driven])
+        when = np.nan if convoy.jackknifed_at is None else convoy.jackknifed_at
+        t = np.linspace(0, scene.duration, scene.samples + 1)
+        return {"jackknifed": np.asarray(when), "t": t, "pose": scene.motion(t).pose}
+
+
+MOTION = ("position", "angle", "gap", "slip", "energy")
+
+BACKING = CarAndTrailer(speed=-1.0, steering=0.0, bend=0.05, hitch=0.0)
+PUSHED = Cart(speed=-1.0, turning_rate=0.0, angles=(0.05, -1e-3))
+FOLDED = math.pi / 2  # rad
+
+
+def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
+    """When |values| first passes a limit, linear between samples; None if it never does."""
+    over = np.flatnonzero(np.abs(values) > limit)
+    if not over.size or over[0] == 0:
+        return None
+    late = int(over[0])
+    before, after = abs(values[late - 1]), abs(values[late])
+    return float(t[late - 1] + (t[late] - t[late - 1]) * (limit - before) / (after - before))
+
+
+# Straight back the bend b obeys b' = (v/L) sin b: tan(b/2) grows as exp(v t/L).
+FOLDS = BACKING.length * math.log(1 / math.tan(BACKING.bend / 2)) / abs(BACKING.speed)  # s
+REFERENCE = Folding(BACKING, FOLDS + 1)
+RUNS = tuple(Cell(BACKING, engine, every) for engine in ENGINES_ALONE for every in steps_for(engine, (1, 10)))
+
+
+def folding(material: Material) -> list[Observation]:
+    """When the reversing trailer is bent beyond a right angle: closed form, kinematics, and methods that coast."""
+    bent = float(Tow(BACKING.length, BACKING.bend).relative_angle(-FOLDS * abs(BACKING.speed)))
+    found = [Observation("closed form, at an even speed", "", f"{FOLDS:.4f} s")]
+    pushed = Observation("the drawbar pushed along by that way", "", f"bent by {bent:.4f} rad")
+    driven, coasting = "the reference, driven at an even speed", "the reference, coasting"
+    answer = material.answers.get(REFERENCE)
+    if answer is None:
+        found.append(pushed)
+    elif answer.finished:
+        found.append(Observation(driven, "", f"{answer.number('jackknifed'):.4f} s"))
+        found.append(pushed)
+        found.append(Observation(coasting, "", _folded(answer.array("t"), answer.array("pose"))))
+    else:
+        found += [pushed, Observation(coasting, "", answer.told)]
+    for cell in RUNS:
+        found += observe(material, cell, f"step {number(cell.step)} s", lambda run: _folded(run.t, run.pose))
+    return found
+
+
+def lateness(material: Material) -> dict[str, Any]:
+    """`late` [s]: how much later than in the truth the trailer folds with the naive zeroing, larger step first."""
+    truth = material.finished(REFERENCE)
+    exact = crossing(truth.array("t"), bend_of(truth.array("pose")), FOLDED) if truth else None
+    motions = material.motions(cell for cell in RUNS if cell.engine == pymunk.DEFAULT)
+    folds = [crossing(run.t, bend_of(run.pose), FOLDED) for run in motions.values()]
+    late = [when - exact for when in folds if when is not None and exact is not None]
+    return {"late": late if len(late) == 2 else UNMEASURED}
+
+
+def bend_of(pose: np.ndarray) -> np.ndarray:
+    """The trailer's angle against the car (times,) [rad]."""
+    return pose[:, 1, 2] - pose[:, 0, 2]
+
+
+def _folded(t: np.ndarray, pose: np.ndarray) -> str:
+    bend = bend_of(pose)
+    when = crossing(t, bend, FOLDED)
+    return f"{when:.4f} s" if when is not None else f"never folds: bent by at most {np.abs(bend).max():.3f} rad"
+
+
+FAILURES = described(
+    __file__,
+    Failure(
+        "A reversing trailer jack-knifes",
+        cells=cells_to_rounding(BACKING, ENGINES_ALONE, (1, 10)),
+        columns=MOTION,
+        tasks=(REFERENCE, *map(Motion, RUNS)),
+        observations=folding,
+        words=lateness,
+    ),
+    Failure(
+        "Casters swing round when the cart is pushed back",
+        cells=cells_to_rounding(PUSHED, ENGINES_ALONE, (1, 10)),
+        columns=MOTION,
+    ),
+    Failure(
+        "Both wheels of every axle: the car and its trailer",
+        cells=cells_to_rounding(CarAndTrailer(redundant=True), ENGINES_ALONE, (1, 10)),
+        columns=("position", "slip", "energy", "reaction"),
+    ),
+    Failure(
+        "Both wheels of the fixed axle: the cart",
+        cells=cells_to_rounding(Cart(redundant=True), ENGINES_ALONE, (1, 10)),
+        columns=("position", "slip", "energy", "reaction"),
+    ),
+)
+
 
 # The straight tow starts square; the circular ones too, with the hitch on a circle of these radii [drawbar lengths].
 LENGTH = 1.0
@@ -78,10 +200,7 @@ def casters() -> Figure:
             place = np.column_stack([x + speed * t, np.full_like(t, y)])
             wheel = place - own.trail * np.column_stack([np.cos(angles[:, index]), np.sin(angles[:, index])])
             name = ("left caster's wheel", "right caster's wheel")[index]
-            lines += [
-                Path(place, "kingpins", "quiet", ":", 1.0),
-                Path(wheel, name, colour, dashes, 1.8, dot=True),
-            ]
+            lines += [Path(place, "kingpins", "quiet", ":", 1.0), Path(wheel, name, colour, dashes, 1.8, dot=True)]
             curves.append(Path(np.column_stack([t, angles[:, index]]), name, colour, dashes))
         curves += [Path(np.column_stack([t, 0 * t + level]), "", "quiet", ":", 1.0) for level in (-math.pi, 0, math.pi)]
         panels.append(Panel(title, lines))
@@ -133,7 +252,6 @@ def coasting(pose: np.ndarray, found: dict[str, tuple[np.ndarray, str, str]], ti
     return Panel(title, lines)
 
 
-NAME = "wheels"
 SCENES = (CarAndTrailer(), Cart())
 
 OVERLAID: dict[str, tuple[str, Any]] = {
@@ -185,15 +303,19 @@ ANOTHER_VEHICLE = "by design: the velocity across is set without the turning tha
 SOFT = "by design: contacts as shipped are springs of 0.02 s and give way, whatever the step"
 CARRIED = "ours: what a step rounds of an aimed groove is carried 66 times by the extrapolation"
 
-KNOWN: dict[tuple[str, str, str], Deviation] = {
-    ("car_and_trailer", "pymunk default", "outcome"): Deviation(ANOTHER_VEHICLE, outcome=Outcome.SATURATED),
-    ("car_and_trailer", "pymunk extended", "error"): Deviation(CARRIED, 2.8, rounding=True),
-    ("car_and_trailer", "mujoco default", "order"): Deviation(SOFT, 2.5),
-    ("cart", "pymunk default", "outcome"): Deviation(ANOTHER_VEHICLE, outcome=Outcome.SATURATED),
-}
+KNOWN = deviations(
+    {
+        ANOTHER_VEHICLE: {
+            ("car_and_trailer", "pymunk default"): Outcome.SATURATED,
+            ("cart", "pymunk default"): Outcome.SATURATED,
+        },
+        SOFT: {("car_and_trailer", "mujoco default"): {"order": 2.5}},
+    },
+    {CARRIED: {("car_and_trailer", "pymunk extended"): {"error": 2.8}}},
+)
 
 PAGE = Page(
-    name=NAME,
+    name="wheels",
     title="Ideal wheels",
     lesson="Cars, trailers and carts consist of pins and skates. Here they coast in the ways that their wheels allow.",
     scenes=SCENES,

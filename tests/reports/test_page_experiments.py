@@ -1,0 +1,406 @@
+"""Experiments of pages: the truth of scenes made for failure, numbers of remarks, claims, and readings of motions."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from engines import mujoco, pymunk, registry
+from engines.lagrange import Lagrange
+from engines.mujoco import methods as mujoco_methods
+from engines.pymunk import methods as pymunk_methods
+from reference.checks import InvalidMechanism
+from reference.scenes.many_links import SpinningRing
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import DiscInHole, RollingEllipse, RollingOnCircle, SquareOnCatenaries
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
+from reference.scenes.slider_crank.scenes import RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.slider_crank.slotted_lever import SlottedLever
+from reference.trajectory import energy, joint_gap, slip
+from reports.gate.prediction import all_tasks
+from reports.model.cells import Cell
+from reports.model.measure import Measurement, blank, measure, stopped_where_it_ends
+from reports.model.outcomes import Outcome
+from reports.model.page import Failure, Material
+from reports.model.tasks import Answer, Motion, Task, trajectory_of
+from reports.pages import claims, common
+from reports.pages.centrodes import page as centrodes
+from reports.pages.engines.experiments import ASKED, Capabilities
+from reports.pages.engines.page import MATRIX, verdict
+from reports.pages.four_bar import page as four_bar
+from reports.pages.n_four_bar import page as n_four_bar
+from reports.pages.pendulum import page as pendulum
+from reports.pages.person import page as person
+from reports.pages.rolling import experiments as rolling
+from reports.pages.skate import experiments as skate
+from reports.pages.slider_crank import page as slider_crank
+from reports.pages.wheels import page as wheels
+from reports.write.experiments import told_remark
+from reports.write.unmeasured import MARK
+from tests.committed_rows import answer_to
+from tests.rows import falling
+
+
+def row(scene, engine, every: int, samples: int | None = None) -> Measurement:
+    return measure(Cell(scene, engine, every, "failure", samples), repeat=False)
+
+
+# --- the truth of scenes made for failure ---
+
+LIMITS = (
+    SpinningRing(links=7),
+    RodEndInSlot(),
+    RodEndInSlot(offset=0.3, branch=-1),
+    SliderAtDeadCentre(angle=1e-2),
+    SlottedLever(),
+    SlottedLever(slant=-2.0, crank=0.79),
+)
+
+
+@pytest.mark.parametrize("scene", LIMITS, ids=lambda scene: scene.name)
+def test_a_scene_made_for_failure_satisfies_its_joints_and_newton(scene):
+    mechanism = scene.mechanism()
+    t = np.linspace(0, scene.duration, 12)
+    truth = scene.motion(t)
+    assert np.nanmax(np.abs(joint_gap(mechanism, truth))) < 1e-13
+    assert np.abs(slip(mechanism, truth)).max() < 1e-12
+    # Exact multipliers know no scene. At tight tolerance they agree but for their own tolerance and how both grow.
+    run = Lagrange("dop853", "projection", tolerance=1e-13).build(mechanism, t[1])(11, 1)
+    assert np.abs(run.pose - truth.pose).max() < 1e-9
+    assert np.abs(run.reaction - truth.reaction).max() < 1e-8 * np.abs(truth.reaction).max()
+
+
+def test_a_ring_with_one_heavier_link_does_not_turn_like_a_wheel():
+    scene = SpinningRing(links=7)
+    right = scene.mechanism()
+    wrong = replace(right, bodies=(replace(right.bodies[0], mass=1.5 * scene.mass), *right.bodies[1:]))
+    t = np.linspace(0, scene.duration, 12)
+    run = Lagrange("dop853", "projection", tolerance=1e-12).build(wrong, t[1])(11, 1)
+    assert np.abs(run.pose - scene.motion(t).pose).max() > 1e-3
+
+
+def test_a_pushed_slider_keeps_its_energy_and_leaves_to_the_side_where_it_stood():
+    t = np.linspace(0, 1.5, 100)
+    for side in (1, -1):
+        scene = SliderAtDeadCentre(angle=side * 1e-3)
+        truth = scene.motion(t)
+        total = energy(scene.mechanism(), truth)
+        assert np.ptp(total) < 1e-11 * np.abs(total).max()
+        assert np.all(np.sign(truth.pose[:, 0, 2]) == side)
+        assert abs(truth.pose[-1, 0, 2]) > 1
+    still = SliderAtDeadCentre(angle=0.0).motion(t)
+    assert np.all(still.pose == still.pose[0])
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        SkateOnSlope(turning_rate=2.0),
+        SkateOnSlope(turning_rate=-0.3, heading=1.0, speed=0.4),
+        SkateOnSlope(turning_rate=1e-9, heading=0.7),
+        HeldBySkates(),
+    ],
+)
+def test_skates_on_a_slope_agree_with_multipliers(scene):
+    found = row(scene, Lagrange("dop853", "projection", tolerance=1e-13), 1, samples=50)
+    # Rounding of an integration to 1e-13 over some metres.
+    assert max(found.position, found.angle) < 1e-11
+    assert found.reaction < 1e-10
+
+
+@pytest.mark.parametrize(
+    ("build", "why"),
+    [
+        (lambda: SpinningRing(links=2), "links is 2"),
+        (lambda: SkateOnSlope().motion([-1.0]), "skate_on_slope"),
+        (lambda: HeldBySkates(points=((0.5, 0.0), (-0.5, 0.0))), "2 points and 3 angles"),
+        # Two skates never hold a body, and three do not whose axles all go through one point: it turns about it.
+        (lambda: HeldBySkates(points=((0.5, 0.0), (-0.5, 0.0)), angles=(0.5, -0.5)), "leave 1 freedom"),
+        (
+            lambda: HeldBySkates(points=((0.5, 0.0), (-0.5, 0.0), (0.0, 0.4)), angles=(math.pi / 2, math.pi / 2, 0.0)),
+            "leave 1 freedom",
+        ),
+    ],
+)
+def test_a_scene_that_can_not_be_is_refused(build, why):
+    with pytest.raises(InvalidMechanism, match=why):
+        build()
+
+
+def test_a_disc_in_a_hole_is_the_motion_that_exact_multipliers_give():
+    scene = DiscInHole(clearance=0.2)
+    found = row(scene, Lagrange("rk4", "projection"), 3)
+    # Fourth order: the contact turns 5 rad/s * 3.3 ms = 0.017 rad in a step; that to the fourth power is 8e-8.
+    assert max(found.angle, found.position) < 1e-6
+    truth = scene.motion(np.linspace(0, 1, 11))
+    # The centre runs round a circle of the clearance at w r / clearance: centripetal force m v^2 / clearance.
+    speed = scene.start_rate * scene.radius
+    np.testing.assert_allclose(truth.reaction[:, 1], scene.mass * speed**2 / (scene.clearance * scene.hole), rtol=1e-12)
+    np.testing.assert_allclose(truth.reaction[:, 0], 0.0, atol=1e-12)
+
+
+def test_a_square_stands_on_its_corner_when_energy_says_and_every_method_stops_there():
+    scene = SquareOnCatenaries()
+    # A stage of the last step lies beyond the corner: that step is taken shorter.
+    corner = scene.motion([scene.corner * (1 - 1e-9)])
+    assert corner.pose[0, 0, 2] == pytest.approx(math.pi / 4, abs=1e-8)
+    np.testing.assert_allclose(corner.pose[0, 0, 1], 0.0, atol=1e-12)
+    assert abs(corner.reaction[0, 0]) < corner.reaction[0, 1]  # what `comparable_until` of the scene relies on
+    with pytest.raises(ValueError, match="can't turn to"):
+        scene.motion([scene.corner * 1.01])
+    for engine in (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED, Lagrange("rk4", "projection")):
+        found = row(scene, engine, 1)
+        assert not Outcome(found.outcome).comparable
+        assert found.sentence
+        assert math.isnan(found.angle) or found.angle < 1e-3
+
+
+def test_forces_that_motion_does_not_determine_are_left_out_of_the_gears_errors():
+    assert row(EllipticGears(), mujoco.EXTENDED, 10).reaction < 1e-2
+    assert np.isnan(EllipticGears().motion([0.0]).reaction).any()
+
+
+def test_the_centrodes_round_trip_and_rate_are_exact_and_wrong_curves_are_not():
+    _, curves = centrodes.exact()
+    # Splines of degree 7 at 400 points over 2 rad: 1e-10 in the curves, less in what they give back (asked: 1e-8).
+    assert max(centrodes.round_trip(curves), centrodes.agreement(curves)) < 1e-8
+    wrong = replace(curves, body=curves.body * 1.001)
+    assert min(centrodes.round_trip(wrong), centrodes.agreement(wrong)) > 1e-5
+
+
+# --- what engines do there ---
+
+
+def test_a_groove_joint_is_wrong_at_a_rods_end_and_in_a_lever_and_right_with_the_centre_of_mass_on_its_line():
+    coarse, fine = (row(RodEndInSlot(), slider_crank.GROOVE[0], every) for every in (10, 100))
+    # A tenth of the step leaves the error where it is: it is no error of discretisation.
+    assert fine.angle == pytest.approx(coarse.angle, rel=0.05)
+    assert fine.angle > 0.1 > 10 * row(RodEndInSlot(), pymunk.DEFAULT, 100).angle
+    coarse, fine = (row(SlottedLever(), slider_crank.LEVER[0], every) for every in (10, 100))
+    assert coarse.outcome == fine.outcome == "torn"
+    assert fine.gap == pytest.approx(coarse.gap, rel=0.05)
+    for engine, order in ((slider_crank.LEVER[1], 1), (pymunk.TUNED, 2)):
+        errors = [row(SlottedLever(), engine, every).angle for every in (10, 100)]
+        assert math.log10(errors[0] / errors[1]) == pytest.approx(order, abs=0.1)
+    # Then the arm from the lever's centre of mass lies along the groove, and both constructions are one.
+    straight = [row(SlottedLever(slant=0.0), each, 100).angle for each in (slider_crank.LEVER[0], pymunk.DEFAULT)]
+    assert straight[0] == pytest.approx(straight[1], rel=1e-3)
+
+
+SKATE = (Path(skate.__file__).parent / "page.md").read_text(encoding="utf-8")
+
+
+# The order of each program at its step of 1e-3 s: second and fourth, as a power of the step.
+@pytest.mark.parametrize(
+    ("program", "bound"), list(zip(re.findall(r"```python\n(.*?)```", SKATE, re.DOTALL), (1e-6, 1e-10), strict=True))
+)
+def test_the_skates_programs_are_as_exact_as_the_page_says(program, bound):
+    names: dict = {}
+    exec(compile(program, "skate.md", "exec"), names)
+    pose = names["data"].qpos + np.array([0.5, 0.0, 0.0])  # coordinates count from where the body starts
+    error = np.abs(pose - ChaplyginSleigh().motion([3.0]).pose[0, 0]).max()
+    assert error < 3 * bound  # of the 3 s and 2.6 J / 2 kg of the motion
+    assert error > bound / 100 or bound == 1e-10  # the exact one ends in rounding
+
+
+def test_a_comparison_stops_where_ideal_rolling_is_no_longer_possible_and_a_reset_after_that_does_not_count():
+    scene, flat = RollingOnCircle(), RollingEllipse()
+    found = row(scene, mujoco.TUNED, 100)
+    assert Outcome(found.outcome).comparable
+    assert f"compared until {scene.comparable_until:.4g} s only" in found.sentence
+    whole, other = (trajectory_of(answer_to(Motion(Cell(each, mujoco.EXTENDED, 1)))) for each in (scene, flat))
+    shortened, note = stopped_where_it_ends(scene, whole)
+    assert shortened.t[-1] <= scene.comparable_until < whole.t[len(shortened.t)]
+    assert note
+    for reset, expected in ((1.1, None), (0.5, 0.5)):
+        assert stopped_where_it_ends(scene, replace(whole, reset_at=reset))[0].reset_at == expected
+    assert stopped_where_it_ends(flat, other) == (other, "")
+
+
+def test_nearly_conformal_rolling_is_reported_by_mujoco_and_contact_on_a_hill_is_let_go_and_caught_again():
+    assert "turns by" in row(DiscInHole(clearance=1e-2), mujoco.EXTENDED, 1).sentence
+    stiff = next(method for method in mujoco_methods.ROLLS if "stiff" in method.variant)
+    for engine, every, absent in ((stiff, 100, True), (mujoco.EXTENDED, 10, False)):
+        cell = Cell(RollingOnCircle(), engine, every)
+        share = rolling.absent_contact(cell, trajectory_of(answer_to(Motion(cell))))
+        assert (share > 0.02) == absent
+        assert absent or share == 0.0
+
+
+# --- what observations and remarks read ---
+
+
+@pytest.mark.parametrize(
+    "page", [four_bar, pendulum, slider_crank, n_four_bar, person], ids=lambda page: page.PAGE.name
+)
+def test_a_pages_observations_are_computed_and_say_something(page):
+    material = Material({}, {task: answer_to(task) for task in all_tasks(page.PAGE)})
+    lines = [seen for failure in page.FAILURES if failure.observations for seen in failure.observations(material)]
+    assert lines
+    assert all(seen.outcome and "nan" not in seen.outcome for seen in lines)
+
+
+def test_what_is_read_from_motions_of_skates_and_wheels_agrees_with_the_reference():
+    scene = SleighBackwards()
+    t = np.linspace(0, scene.duration, scene.samples + 1)
+    rate = scene.motion(t).twist[:, 0, 2]
+    # The square of 0.04 over the largest rate 1.6 is what the linear motion leaves out.
+    assert skate.growth_of(t, rate) == pytest.approx(scene.growth_rate(), rel=1e-3)
+    assert math.isnan(skate.growth_of(t, np.full_like(t, 1e-3)))
+    limit = list(skate.LIMITED)[1]
+    when = skate.first_beyond(skate.BACKWARDS, limit)
+    assert when is not None
+    before, after = np.abs(skate.BACKWARDS.lateral_force([when - 2e-3, when]))
+    assert before < limit <= after
+    assert skate.first_beyond(skate.BACKWARDS, 1.01 * skate.PEAK) is None
+    lines = {seen.method: seen.outcome for seen in skate.counting(Material({}))}
+    assert lines["pinned body (18.62)"].startswith("(1, 1); integrable")
+    assert (
+        lines["two skates on one axle"] == lines["one skate (18.64)"] == "(3, 2); not integrable: of 3 it can reach 3"
+    )
+    assert lines["two skates in one line"] == "(3, 1); integrable: of 3 it can reach 1"
+    reference = Material({}, {wheels.REFERENCE: answer_to(wheels.REFERENCE)})
+    lines = {seen.method: seen.outcome for seen in wheels.folding(reference) if not seen.setting}
+    assert lines["closed form, at an even speed"] == lines["the reference, driven at an even speed"]
+    assert lines["the drawbar pushed along by that way"] == f"bent by {math.pi / 2:.4f} rad"
+
+
+def experiment(failures: tuple[Failure, ...], title: str) -> Failure:
+    return next(failure for failure in failures if failure.title == title)
+
+
+def remark(failure: Failure, material: Material) -> str:
+    return told_remark(failure, material.of(failure.cells), material)
+
+
+def of(variant: str, every: int = 1) -> Callable[[Cell], bool]:
+    return lambda cell: (cell.engine.variant, cell.every) == (variant, every)
+
+
+RING, LUCK = "A ring of a hundred links, closed by one joint", "Worse as the step shrinks"
+
+
+@pytest.mark.parametrize(
+    ("page", "title", "chosen", "name", "value", "words"),
+    [
+        (pendulum, RING, of("Newton, softening 1e-6"), "angle", 0.037, "right to 0.037 rad"),
+        (pendulum, RING, of("Newton, softening 1e-8"), "energy", 7.3, "(7.3 times as much)"),
+        (
+            pendulum,
+            "Beyond the horizon of the double pendulum",
+            lambda cell: cell.engine == pendulum.HIGHER_ORDER[-1] and cell.every == 10,
+            "angle",
+            7.3,
+            "to 7.3 rad or better",
+        ),
+        (
+            pendulum,
+            "A hundred links at large steps",
+            lambda cell: cell.engine == pymunk.TUNED and cell.samples == 20,
+            "gap",
+            7.3,
+            "by up to 7.3 times a link's",
+        ),
+        (four_bar, LUCK, of("default", 10), "angle", 0.037, "0.037 rad there, 0.5 rad"),
+        (four_bar, LUCK, of("default", 100), "angle", 7.3, "there, 7.3 rad at a tenth"),
+        (rolling, "Polygons", lambda cell: cell.every == 100, "angle", 0.037, "from 0.5 to 0.037 rad"),
+        (rolling, "Steps far too large", lambda cell: cell.samples == 20, "gap", 0.037, "by 0.037 m or more"),
+    ],
+)
+def test_a_number_of_a_remark_is_that_of_its_row_and_its_clause_vanishes_without_it(
+    page, title, chosen, name, value, words
+):
+    failure = experiment(page.FAILURES, title)
+
+    def invented(number: float) -> Material:
+        same = {cell: replace(measured, angle=0.5, gap=0.5, energy=0.5) for cell, measured in blank_rows(failure)}
+        return Material(
+            {cell: replace(each, **{name: number}) if chosen(cell) else each for cell, each in same.items()}
+        )
+
+    assert words in remark(failure, invented(value))
+    without = remark(failure, invented(math.nan))
+    assert " ".join(words.split()[:2]) not in without
+    assert MARK not in without
+
+
+def blank_rows(failure: Failure) -> list[tuple[Cell, Measurement]]:
+    return [(cell, blank(cell, Outcome.FINISHED)) for cell in failure.cells]
+
+
+def test_remarks_count_torn_runs_and_take_delays_from_answers():
+    failure = experiment(four_bar.FAILURES, "Steps far too large")
+    ends = [Outcome.TORN, Outcome.FINISHED, Outcome.TORN, Outcome.RESET, Outcome.TORN]
+    rows = {cell: replace(each, outcome=end) for (cell, each), end in zip(blank_rows(failure), ends, strict=False)}
+    assert "3 of these 5 runs end with finite numbers" in remark(failure, Material(rows))
+    assert "of these" not in remark(failure, Material({}))
+    failure = experiment(slider_crank.FAILURES, "A slider that has to start the crank, next to its dead centre")
+    answers: dict[Task, Answer] = {
+        task: Answer(Outcome.FINISHED, values={"when": np.asarray(when)})
+        for task, when in zip(slider_crank.LEAVING, (1.0, 2.0, 2.5), strict=True)
+    }
+    text = remark(failure, Material({}, answers))
+    assert "nearer leaves 0.5 s later" in text
+    assert "by e every 0.11 s" in text  # 0.5 s over log 100
+
+
+def test_a_claim_that_rows_contradict_or_do_not_have_is_named(monkeypatch):
+    failure = Failure("Falls", cells=common.cells(four_bar.SCENES[1], [pymunk.DEFAULT], (1, 10)))
+    page = replace(four_bar.PAGE, name="toy", failures=(failure,))
+    monkeypatch.setitem(claims.OF_METHODS, ("toy", "Falls"), lambda of: claims.falls(of["pymunk default"]))
+    for errors, wrong in (((1e-2, 1e-3), []), ((1e-2, 9e-3), ["toy: Falls"]), ((), ["toy: Falls"])):
+        rows = dict(zip(failure.cells, falling("pymunk default", errors), strict=False))
+        assert claims.contradicted({page: Material(rows)}) == wrong
+
+
+def test_an_experiment_without_its_section_of_text_is_refused(tmp_path):
+    (tmp_path / "experiments.md").write_text("## One\n\nIt turns\n{{ times }} times.\n\nIt does.\n")
+    (one,) = common.described(str(tmp_path / "page.py"), Failure("One"), times=3)
+    assert (one.expected, one.remark) == ("It turns {{ times }} times.", "It does.")
+    assert one.words(Material({})) == {"times": 3}
+    with pytest.raises(ValueError, match=r"experiments\.md has the sections"):
+        common.described(str(tmp_path / "page.py"), Failure("Two"))
+
+
+# --- capabilities of engines ---
+
+
+def test_every_kind_is_asked_of_an_engine_that_builds_all_but_one():
+    lagrange = next(engine for engine in registry.VARIANTS if engine.name == "lagrange")
+    answers = Capabilities(lagrange).run()
+    assert [answers[kind] for kind in ASKED] == ["yes"] * len(ASKED)
+
+
+@pytest.mark.parametrize("task", [task for task in MATRIX if task.of.building < 1], ids=lambda task: task.of.name)
+def test_a_lack_is_the_engines_only_where_its_documentation_is_named(task):
+    if task.of.missing:
+        pytest.skip(task.of.missing)
+    answers = task.run()
+    for kind in ASKED:
+        word, sentence = verdict(str(answers[kind])), str(answers[kind])
+        assert (word == "not built") == ("our adapter" in sentence and "https://" not in sentence), sentence
+        assert (word == "**has none**") == ("https://" in sentence), sentence
+    contacts = {kind for kind in ASKED if answers[kind] == "by contact"}
+    assert contacts <= {"skate", "disc rolls on a line", "disc rolls in a ring"}
+    assert (task.of.name in ("pymunk", "mujoco")) == bool(contacts)
+
+
+def test_a_release_without_what_the_adapter_calls_is_too_old(monkeypatch):
+    engine = next(engine for engine in registry.VARIANTS if engine.name == "lagrange")
+    build = type(engine).build
+
+    def old(self, mechanism, dt):
+        if len(mechanism.joints) == 1 and mechanism.forces:
+            raise AttributeError("no such member")
+        return build(self, mechanism, dt)
+
+    monkeypatch.setattr(type(engine), "build", old)
+    answers = Capabilities(engine).run()
+    assert (verdict(str(answers["spring"])), verdict(str(answers["hinge"]))) == ("too old", "yes")
