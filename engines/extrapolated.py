@@ -160,8 +160,7 @@ class ExtrapolatedRun(OneShot):
 
     def __init__(self, method: Extrapolated, mechanism: Mechanism, dt: float) -> None:
         self._method, self._mechanism, self._dt = method, mechanism, dt
-        # Unit of differences of poses [m, m, rad].
-        self._scale = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+        self._scale = mechanism.pose_unit
         self._runs = tuple(self._build_at(level) for level in method.levels)
         self.size: Size = self._runs[0].size
 

@@ -343,7 +343,7 @@ class System:
         steps.generalizedAlpha.spectralRadius = engine.damping
         if engine.consistent:
             steps.generalizedAlpha.computeInitialAccelerations = False
-            start = Dynamics(self.mechanism, 0.0).acceleration(self.mechanism.pose, self.mechanism.twist, 0.0)
+            start = Dynamics(self.mechanism).acceleration(self.mechanism.pose, self.mechanism.twist, 0.0)
             self.system.systemData.SetODE2Coordinates_tt(
                 (start / self.unit).reshape(-1).tolist(), configuration=exudyn.ConfigurationType.Initial
             )

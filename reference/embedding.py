@@ -12,7 +12,6 @@ rows are not used, so a motion from here checks them.
 from __future__ import annotations
 
 from abc import abstractmethod
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,11 +19,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.numerics import windows
 from reference.numerics.integration import units_of_motion
-from reference.scene import PlacedScene
+from reference.plane import COMPLEX_STEP
+from reference.scene import PlacedScene, shared
 
 Array = NDArray[np.float64]
-
-COMPLEX_STEP = 1e-100
 
 
 class EmbeddedScene(PlacedScene):
@@ -98,7 +96,7 @@ class EmbeddedScene(PlacedScene):
     def _states(self, times: Array) -> tuple[Array, Array]:
         if not times.any():  # a mechanism needs no more than the start
             return self._split(np.tile(self.start, (len(times), 1)))
-        return self._split(_solved(self, max(self.duration, float(times.max())))(times))
+        return self._split(shared(type(self).solved, self, max(self.duration, float(times.max())))(times))
 
     def truth_error(self, t: ArrayLike) -> Array:
         """A bound on the truth's own error (times,) in c and nu, by two rules."""
@@ -107,9 +105,3 @@ class EmbeddedScene(PlacedScene):
 
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
         return self.embedded(*self._states(times))[1:]
-
-
-@lru_cache(maxsize=16)
-def _solved(scene: EmbeddedScene, until: float) -> windows.Motion:
-    """Kept for all equal scenes, since samples of every number ask for it."""
-    return scene.solved(until)

@@ -19,6 +19,7 @@ from reference.couplings import pairs
 from reference.forces import AppliedForces, CoupledForce, ForceElement
 from reference.joints import Body, Joint, Vector
 from reference.kinds import Floats, of_shape
+from reference.plane import COMPLEX_STEP
 from reference.rows import MANY_ROWS, JointRows, banded_reaction, rank, reactions
 from reference.scales import length_scale, time_scale
 
@@ -175,8 +176,7 @@ class Mechanism(Valid):
     @validated
     def bias(self, pose: Reals, twist: Reals) -> NDArray[np.float64]:
         """-(dJ/dt) v (..., rows): the right-hand side of J a = bias, exact by a complex step along the motion."""
-        step = 1e-100
-        return -np.imag(self.joint_rows.velocities(pose + 1j * step * twist, twist)) / step
+        return -np.imag(self.joint_rows.velocities(pose + 1j * COMPLEX_STEP * twist, twist)) / COMPLEX_STEP
 
     @validated
     def reaction(
@@ -251,6 +251,11 @@ class Mechanism(Valid):
     def length_scale(self) -> float:
         """The largest distance between two joint points of one body, or of one and the centre of mass [m]."""
         return length_scale(self.bodies, self.joints, self.forces)
+
+    @kept
+    def pose_unit(self) -> NDArray[np.float64]:
+        """The unit of a body's pose, (3,) [m, m, rad]: the length scale twice, and 1."""
+        return np.array([self.length_scale, self.length_scale, 1.0])
 
     @cached_property
     def time_scale(self) -> float:

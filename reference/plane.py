@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 
 AnyArray = NDArray[Any]
 
+# Imaginary step of an analytic function: its square is below the smallest double, so the derivative is exact.
+COMPLEX_STEP = 1e-100
+
 
 def components(angle: Any, x: Any, y: Any) -> tuple[Any, Any]:
     """World components (...) of the vector (x, y) (...) of a frame that stands at `angle` (...) [rad]."""

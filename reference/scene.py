@@ -11,8 +11,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import MISSING, fields, replace
-from functools import cached_property, wraps
-from typing import Annotated, Any, ClassVar
+from functools import cached_property, lru_cache, wraps
+from typing import Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,6 +37,19 @@ from reference.trajectory import Trajectory
 SAMPLE_SPACING = 1e-2
 Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # of all bodies; NaN where an engine gave up
 TIMES = (("duration", Positive), ("horizon", Positive), ("samples", Count))  # what a scene's times may be
+
+
+Result = TypeVar("Result")
+
+
+def shared(function: Callable[..., Result], *arguments: Any) -> Result:
+    """function(*arguments), computed once for equal arguments: equal scenes share their integrated motion."""
+    return _shared(function, *arguments)
+
+
+@lru_cache(maxsize=64)
+def _shared(function: Callable[..., Any], *arguments: Any) -> Any:
+    return function(*arguments)
 
 
 class NoMotion(InvalidMechanism):

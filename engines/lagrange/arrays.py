@@ -167,8 +167,7 @@ def _numbers(mechanism: Mechanism, place: Integers) -> tuple[Floats, ...]:
     """What a mechanism is made of, in the order of _NUMBERS; no row is soft."""
     rate = np.zeros(mechanism.row_count)
     rate[place] = mechanism.rate
-    length, time = mechanism.length_scale, mechanism.time_scale
-    unit = np.tile([length, length, 1.0], len(mechanism.bodies) + 1)
+    unit = np.tile(mechanism.pose_unit, len(mechanism.bodies) + 1)
     rolls = [form_of(joint.rolling)[1] for joint in mechanism.joints if isinstance(joint, Roll)]
     ground = np.zeros(3)
     return (
@@ -177,7 +176,7 @@ def _numbers(mechanism: Mechanism, place: Integers) -> tuple[Floats, ...]:
         np.array([parameters(joint) for joint in mechanism.joints], dtype=float).reshape(-1),
         rate,
         unit,
-        unit / time,
+        unit / mechanism.time_scale,
         np.array(rolls, dtype=float).reshape(len(rolls) * 2 * CONSTANTS),
         *(np.zeros_like(rate),) * 4,
         np.array([force_parameters(force) for force in mechanism.forces], dtype=float).reshape(-1),

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853
 from scipy.linalg import get_lapack_funcs
 
+from engines import Softness
 from reference.mechanism import Mechanism
-from reference.rows import rank, solve_symmetric
+from reference.rows import RANK_TOLERANCE, rank, solve_symmetric
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,9 @@ CLOSED = 1e-9
 MOST_STEPS, EACH_SAMPLE = 2_000, 100
 
 (_solve_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
+# A soft row's compliance is counted in its own inverse inertia while the rigid rows hold. Of a row that rigid rows hold
+# already nothing is left: it gets at least this part of the inverse inertia that it has alone.
+LEAST_INVERSE_INERTIA = 0.1
 
 
 class Tableau(NamedTuple):
@@ -68,29 +72,87 @@ def _embedded() -> Embedded:
 ADAPTIVE_DOP853 = _embedded()
 
 
-class Dynamics:
-    """Accelerations and projections of one mechanism, arranged for speed: one call is one evaluation of the rows."""
+def solve_rows(matrix: Array, right: Array, dependent: bool = False, least_pivot: float = 0.0) -> Array:
+    """x (rows,) or (rows, n) with matrix x = right for a symmetric, positive semidefinite matrix (rows, rows).
 
-    def __init__(self, mechanism: Mechanism, baumgarte: float) -> None:
+    By Cholesky's factors; the smallest solution where rows are known to be `dependent`, or where a pivot is below
+    `least_pivot` of its row's diagonal. NaN for a matrix that is not finite.
+    """
+    if not dependent:
+        factor, solution, failed = _solve_positive(matrix, right, lower=True)
+        if not failed and np.all(np.diag(factor) ** 2 >= least_pivot * np.diag(matrix)):
+            return solution
+    if not np.all(np.isfinite(matrix)):
+        return np.full_like(right, np.nan)
+    return solve_symmetric(matrix, right)
+
+
+def constrained_acceleration(
+    mechanism: Mechanism,
+    pose: Array,
+    twist: Array,
+    target: Array | None = None,
+    compliance: Array | float = 0.0,
+    least_pivot: float = RANK_TOLERANCE,
+) -> tuple[Array, Array]:
+    """Accelerations a (bodies, 3) and reactions r (rows,) with M a = f + J^T r and J a + compliance r = target.
+
+    pose, twist (bodies, 3); target (rows,), the bias -J_dot v of ideal rows unless given: subtract damping times slip
+    and stiffness times gap for rows with a spring and a damper. compliance: 0, or symmetric (rows, rows) [1/kg, or
+    1/(kg m^2) in rows of torque]. The smallest reactions where a row's pivot is below `least_pivot` of its diagonal.
+    """
+    free = np.broadcast_to(mechanism.unconstrained(pose, twist), pose.shape)
+    if not mechanism.row_count:
+        return free, np.zeros(0)
+    rows = mechanism.rows(pose)
+    weighted = rows / mechanism.inertias.reshape(-1)
+    target = mechanism.bias(pose, twist) if target is None else target
+    reaction = solve_rows(weighted @ rows.T + compliance, target - rows @ free.reshape(-1), least_pivot=least_pivot)
+    return free + (weighted.T @ reaction).reshape(-1, 3), reaction
+
+
+def inverse_inertia(matrix: Array, soft: NDArray[np.bool_], least: float = LEAST_INVERSE_INERTIA) -> Array:
+    """The inverse inertia (rows,) that each soft row feels while the rigid rows hold, from J M^-1 J^T (rows, rows).
+
+    It is the diagonal of the Schur complement, and at least `least` of the diagonal; rigid rows keep their diagonal.
+    """
+    out = np.diag(matrix).copy()
+    if not soft.all():
+        coupled = matrix[np.ix_(~soft, soft)]
+        held = solve_rows(matrix[np.ix_(~soft, ~soft)], coupled, least_pivot=RANK_TOLERANCE)
+        out[soft] -= np.einsum("ij,ij->j", coupled, held)
+    return np.maximum(out, least * np.diag(matrix))
+
+
+class Dynamics:
+    """Accelerations and projections of one mechanism, arranged for speed: one call is one evaluation of the rows.
+
+    `least_pivot` as in `solve_rows`. The rows that `gives` (rows,) names are soft: J a = bias - damping slip -
+    stiffness gap - compliance r, with the compliance in units of `inverse_inertia`; without the bias where the
+    softness is not complete.
+    """
+
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        softness: Softness | None = None,
+        gives: NDArray[np.bool_] | None = None,
+        least: float = LEAST_INVERSE_INERTIA,
+        least_pivot: float = 0.0,
+    ) -> None:
         self.mechanism = mechanism
-        self.baumgarte = baumgarte  # 1/s; 0 for none
+        self.softness, self.least, self.least_pivot = softness, least, least_pivot
+        self.gives = np.ones(mechanism.row_count, dtype=bool) if gives is None else gives
         self.unclosed = float("nan")  # s, the first time at which a projection left joints open
         self.weight = 1 / mechanism.inertias.reshape(-1)
         self.holonomic = mechanism.holonomic
-        self.unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
+        self.unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
         # Redundant rows (two wheels on one axle) make the row system singular; then the smallest reactions are taken.
         rows = mechanism.rows(mechanism.pose)
         self.redundant = rows.size > 0 and rank(rows, mechanism.length_scale) < rows.shape[0]
 
     def _solve(self, rows: Array, right: Array) -> Array:
-        matrix = (rows * self.weight) @ rows.T
-        if not self.redundant:
-            _, solution, failed = _solve_positive(matrix, right, lower=True)
-            if not failed:
-                return solution
-        if not np.all(np.isfinite(matrix)):
-            return np.full_like(right, np.nan)
-        return solve_symmetric(matrix, right)
+        return solve_rows((rows * self.weight) @ rows.T, right, self.redundant, self.least_pivot)
 
     def acceleration(self, pose: Array, twist: Array, t: float) -> Array:
         """Accelerations (bodies, 3) under gravity, forces and the joints' reactions."""
@@ -107,14 +169,20 @@ class Dynamics:
 
     def reaction(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
         """The rows (rows, 3 bodies), and their multipliers (rows,): the joints' reactions [N, N m]."""
-        mechanism = self.mechanism
+        mechanism, softness = self.mechanism, self.softness
         rows = mechanism.rows(pose)
-        right = mechanism.bias(pose, twist) - rows @ mechanism.unconstrained(pose, twist).reshape(-1)
-        if self.baumgarte:
-            slip = rows @ twist.reshape(-1) - mechanism.rate
-            gap = np.where(self.holonomic, mechanism.gap(pose, t), 0.0)
-            right -= self.baumgarte * (2 * slip + self.baumgarte * gap)
-        return rows, self._solve(rows, right)
+        bias, free = mechanism.bias(pose, twist), mechanism.unconstrained(pose, twist).reshape(-1)
+        if softness is None:
+            return rows, self._solve(rows, bias - rows @ free)
+        slip = rows @ twist.reshape(-1) - mechanism.rate
+        gap = np.where(self.holonomic, mechanism.gap(pose, t), 0.0)
+        bias = bias if softness.complete else np.where(self.gives, 0.0, bias)
+        right = bias - rows @ free - self.gives * (softness.damping * slip + softness.stiffness * gap)
+        matrix = (rows * self.weight) @ rows.T
+        if not softness.compliance:
+            return rows, solve_rows(matrix, right, self.redundant, self.least_pivot)
+        matrix += softness.compliance * np.diag(self.gives * inverse_inertia(matrix, self.gives, self.least))
+        return rows, solve_rows(matrix, right, least_pivot=RANK_TOLERANCE)
 
     def project(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
         """The nearest pose (Newton) and twist, in the metric of the mass matrix, that satisfy the joints."""

@@ -136,7 +136,7 @@ class Lagrange(Engine, Valid):
         return f"{self.integrator} {self.stabilisation}{adaptive}{slow}"
 
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
-        """Baumgarte's springs, which close what the integrator opens; nothing else gives way here."""
+        """Baumgarte's spring and damper in every row, critically damped; None for the other methods."""
         if self.stabilisation != "baumgarte":
             return None
         rate = 1 / (BAUMGARTE_STEPS * dt)
@@ -151,13 +151,11 @@ class Lagrange(Engine, Valid):
 class _LagrangeRun(OneShot):
     def __init__(self, engine: Lagrange, mechanism: Mechanism, dt: float) -> None:
         self._engine, self._mechanism, self._dt = engine, mechanism, dt
-        self._baumgarte = 1 / (BAUMGARTE_STEPS * dt) if engine.stabilisation == "baumgarte" else 0.0
+        self._softness = engine.softness(mechanism, dt)
         self._machine = Machine.of(mechanism) if engine.in_machine_code else None
-        if self._machine is not None and self._baumgarte:
-            # A spring and a damper in every row, at the border of overshooting.
-            soft = Softness(self._baumgarte**2, 2 * self._baumgarte, 0.0, (True,) * mechanism.row_count)
-            self._machine.soften(soft, np.ones(mechanism.row_count, dtype=bool))
-        self._dynamics = Dynamics(mechanism, self._baumgarte) if self._machine is None else None
+        if self._machine is not None and self._softness is not None:
+            self._machine.soften(self._softness, np.ones(mechanism.row_count, dtype=bool))
+        self._dynamics = Dynamics(mechanism, self._softness) if self._machine is None else None
         count = len(mechanism.bodies)
         self.size = Size(count, 3 * count, mechanism.row_count, mechanism.row_count)
 
@@ -165,7 +163,7 @@ class _LagrangeRun(OneShot):
     def dynamics(self) -> Dynamics:
         """The mechanism in numpy, made where compiled code has no say."""
         if self._dynamics is None:
-            self._dynamics = Dynamics(self._mechanism, self._baumgarte)
+            self._dynamics = Dynamics(self._mechanism, self._softness)
         return self._dynamics
 
     def _step(self) -> Step:
@@ -226,13 +224,13 @@ class _LagrangeRun(OneShot):
     def _pushed(self, t: Array, poses: Array, twists: Array, accelerations: Array) -> tuple[str, ...]:
         """The same without a projection, where speeds slip as the integrator lets them: accelerations then do not do
         what rows ask of them. Tables of curves are those of curves that touch, which they surely do at the start."""
-        mechanism, rate = self._mechanism, self._baumgarte
+        mechanism, softness = self._mechanism, self._softness
         if any(isinstance(joint, Roll) for joint in mechanism.joints):
             t, poses, twists, accelerations = t[:1], poses[:1], twists[:1], accelerations[:1]
         missing = mechanism.slip(poses, accelerations) + mechanism.rate - mechanism.bias(poses, twists)
-        if rate:
+        if softness is not None:
             gap = np.where(mechanism.holonomic, mechanism.gap(poses, t), 0.0)
-            missing += rate * (2 * mechanism.slip(poses, twists) + rate * gap)
+            missing += softness.damping * mechanism.slip(poses, twists) + softness.stiffness * gap
         slow = SLOW * mechanism.length_scale / mechanism.time_scale**2
         return _row_lost("accelerations open joints", t[self._beyond(missing, accelerations, slow, HALF)])
 
@@ -352,9 +350,8 @@ class _JudgeRun(OneShot):
         other = self._looser(factor, 2)(2 * samples + 1, every)
         estimate = np.abs(found.pose - other.pose[:-1:2])
         rate = np.abs(found.twist - other.twist[:-1:2]) * self._mechanism.time_scale
-        unit = np.array([self._mechanism.length_scale, self._mechanism.length_scale, 1.0])
         # Both runs may leave the same joint open: masses may be so far apart that its row is lost beside others.
-        left = np.maximum(estimate, rate) / unit
+        left = np.maximum(estimate, rate) / self._mechanism.pose_unit
         left = np.concatenate([left.reshape(len(left), -1), self._left_open(found)], axis=1)
         # Not below, where one is no number.
         above = ~(left < HELD).all(axis=1)

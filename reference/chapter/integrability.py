@@ -19,6 +19,7 @@ from scipy.linalg import qr
 from reference.checks import InvalidMechanism, validated
 from reference.kinds import of_shape
 from reference.mechanism import Mechanism
+from reference.plane import COMPLEX_STEP
 from reference.rows import RANK_TOLERANCE
 
 Array = NDArray[np.float64]
@@ -26,7 +27,6 @@ Place = Annotated[Array, of_shape("coordinates")]
 Pose = Annotated[Array, of_shape("bodies", 3)]
 Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., rows, coordinates), analytic
 
-COMPLEX_STEP = 1e-100
 # Derivatives of brackets by Cauchy's formula on a circle: the error is about (radius / distance to a
 # singularity)^POINTS, and nesting works because everything stays analytic.
 RADIUS = 0.03
@@ -151,7 +151,7 @@ def _rank_basis(known: Array, vectors: list[Array]) -> Array:
 @validated
 def mechanism_rows(mechanism: Mechanism) -> Rows:
     """The one-forms of a mechanism's rows in (q, t), lengths and time in units of its own scales."""
-    scale = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
+    scale = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     rate = -mechanism.rate * mechanism.time_scale
 
     def rows(place: NDArray[Any]) -> NDArray[Any]:
@@ -168,9 +168,8 @@ def mechanism_rows(mechanism: Mechanism) -> Rows:
 @validated
 def mechanism_place(mechanism: Mechanism, pose: Pose | None = None) -> Array:
     """The coordinates of `mechanism_rows` for a pose (bodies, 3), the start unless given."""
-    scale = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
     pose = mechanism.pose if pose is None else pose
-    return np.append((pose / scale).ravel(), 0.0)
+    return np.append((pose / mechanism.pose_unit).ravel(), 0.0)
 
 
 @validated

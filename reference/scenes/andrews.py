@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -28,7 +28,7 @@ from reference.kinds import Floats
 from reference.mechanism import Mechanism
 from reference.numerics import windows
 from reference.plane import from_complex
-from reference.scene import PlacedScene
+from reference.scene import PlacedScene, shared
 
 Array = NDArray[Any]
 Pair = tuple[Positive, float]
@@ -182,7 +182,16 @@ class Andrews(PlacedScene):
         if not times.any():  # a mechanism needs no more than the start
             return np.full((len(times), 2), (self.angle, 0.0), dtype=float)
         until = max(self.duration, float(times.max()))
-        return _integrated(self, until)(times * self.rate_unit).astype(float) * [1.0, self.rate_unit]
+        return shared(Andrews._solved, self, until)(times * self.rate_unit).astype(float) * [1.0, self.rate_unit]
+
+    def _solved(self, until: float) -> windows.Windows:
+        """The motion of time in units of 1 / `rate_unit`."""
+
+        def accelerations(phi: Array, rate: Array) -> Array:
+            return self._rates(np.concatenate([phi, rate], axis=-1))[..., 1:]
+
+        end = until * self.rate_unit * (1 + 1e-15)
+        return windows.integrate(accelerations, [self.angle], [0.0], end, 1.0, tolerance=TOLERANCE)
 
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
         state = self._states(times)
@@ -233,18 +242,6 @@ class Andrews(PlacedScene):
         )
         held = [side * np.sin(first - second) for (first, second), side in zip(folds, SIDES, strict=True)]
         return np.where(np.min(held, axis=0) > 0, 1, -1)
-
-
-@lru_cache(maxsize=8)
-def _integrated(scene: Andrews, until: float) -> windows.Windows:
-    """Kept for all equal scenes, since samples of every number ask for it; of time in units of 1 / `rate_unit`."""
-
-    def accelerations(phi: Array, rate: Array) -> Array:
-        return scene._rates(np.concatenate([phi, rate], axis=-1))[..., 1:]
-
-    return windows.integrate(
-        accelerations, [scene.angle], [0.0], until * scene.rate_unit * (1 + 1e-15), 1.0, tolerance=TOLERANCE
-    )
 
 
 class Moving(NamedTuple):

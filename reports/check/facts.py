@@ -126,7 +126,7 @@ def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tu
 def _stiffest(mechanism: Mechanism) -> float:
     """The largest eigenvalue of small motions about the start, at rest [1/s]; 0 where nothing can move."""
     count = mechanism.pose.size
-    unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
+    unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     rows = mechanism.rows(mechanism.pose) if mechanism.row_count else np.zeros((0, count))
     _, sizes, right = np.linalg.svd(rows * unit, full_matrices=True)
     rank = int(np.sum(sizes > NEVER * sizes[0])) if len(sizes) else 0

@@ -23,6 +23,7 @@ from engines.lagrange.dynamics import Dynamics
 from engines.reading import Give, Reading, left_out
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
+from reference.plane import COMPLEX_STEP
 from reference.rows import solve_symmetric, undetermined
 from reference.trajectory import Trajectory, energy
 from reports.check.one_freedom import has_one_freedom, motion_along_curve
@@ -39,8 +40,7 @@ def accelerations(mechanism: Mechanism, pose: Array, twist: Array, t: float, giv
     if not mechanism.row_count:
         return free.reshape(-1, 3)
     rows = mechanism.joint_rows.dense(pose)
-    step = 1e-100
-    bias = -np.imag(mechanism.joint_rows.velocities(pose + 1j * step * twist, twist)) / step
+    bias = -np.imag(mechanism.joint_rows.velocities(pose + 1j * COMPLEX_STEP * twist, twist)) / COMPLEX_STEP
     right = bias - rows @ free
     matrix = (rows * inverse) @ rows.T
     if give is not None:
@@ -65,7 +65,7 @@ def soft_motion(
     By LSODA: dampers of light bodies, and stiff joints, are much faster than the motion.
     """
     count = mechanism.pose.size
-    lengths = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
+    lengths = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     allowed = tolerance * np.concatenate([lengths, lengths / mechanism.time_scale])
 
     def rates(at: float, state: Array) -> Array:
@@ -209,8 +209,8 @@ def _growth(
     nudge: float,
 ) -> Array:
     """How many times (times,) a disturbance of the start has grown, beyond what the judge's own error explains."""
-    dynamics, random = Dynamics(mechanism, 0.0), np.random.default_rng(seed)
-    unit = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+    dynamics, random = Dynamics(mechanism), np.random.default_rng(seed)
+    unit = mechanism.pose_unit
     none = np.ones(len(motion.t))
     pose = mechanism.pose + nudge * unit * random.uniform(-1, 1, mechanism.pose.shape)
     twist = mechanism.twist + nudge / mechanism.time_scale * unit * random.uniform(-1, 1, mechanism.twist.shape)

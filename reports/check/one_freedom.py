@@ -82,7 +82,7 @@ class _Tangent:
 def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
     """q and v (times, 3 bodies + 1); NaN from where they are not known."""
     tangent, count = _Tangent(mechanism), mechanism.pose.size
-    unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
+    unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     start = float(tangent.last @ (mechanism.inertias.reshape(-1) * mechanism.twist.reshape(-1)))
     speed = float(np.linalg.norm(tangent.root * unit)) / mechanism.time_scale
 

@@ -188,7 +188,7 @@ def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Softness) 
         return None
     poses, twists = machine.empty(samples * PARTS)
     tableau, length = Tableau(*TABLEAUS[4], NODES[4]), spacing / PARTS
-    unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies) + 1)
+    unit = np.tile(mechanism.pose_unit, len(mechanism.bodies) + 1)
     taken, steps = 0, 1
 
     def stepped(part: int, count: int) -> tuple[Array, Array] | None:

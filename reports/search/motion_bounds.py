@@ -134,7 +134,7 @@ def drifted(mechanism: Mechanism, truth: Trajectory, steps: int) -> float:
     of the last gap leaves H e. So a rounded place turns a body by it over its arm, far more than an angle is rounded.
     """
     turn = np.array([1.0, 1.0, mechanism.length_scale])
-    least = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])  # arms, and the cosine of an angle
+    least = mechanism.pose_unit  # arms, and the cosine of an angle
     worst = 0.0
     for pose, twist in zip(truth.pose, truth.twist, strict=True):
         numbers = np.maximum(np.abs(pose), least) + np.abs(twist) * SPAN * mechanism.time_scale

@@ -177,7 +177,7 @@ def _apart(
     if engine.variant != "default" and not np.isfinite(own.pose[-1]).all():
         raise Fault(f"it was lost within {STEPS} steps, and says nothing")
     if own.estimate is not None:  # what rounding makes of a motion has to be in it
-        size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+        size = mechanism.pose_unit
         claimed = max(CLAIM, ESTIMATED * float((own.estimate / size).max()))
         apart = float(np.abs((pose - own.pose[-1]) / size).max())
         if not apart <= claimed:

@@ -274,7 +274,7 @@ def compared(number: int, mechanism: Mechanism, span: float, method: str, tolera
     with np.errstate(all="ignore"):
         judge = TRUTH.build(mechanism, t[1])(SAMPLES, 1)
         loose, tight = (witnessed(mechanism, t, method, tolerance) for tolerance in tolerances)
-    size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+    size = mechanism.pose_unit
 
     def apart(one: Any, other: Any) -> float:
         if not len(one[0]) == len(other[0]) == len(t):

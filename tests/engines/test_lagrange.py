@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from engines import Promise
+from engines import Promise, Softness
 from engines.lagrange import HELD, METHODS, TRUTH, Judge, Lagrange
-from engines.lagrange.dynamics import RK4, Dynamics, runge_kutta
+from engines.lagrange.dynamics import RK4, Dynamics, constrained_acceleration, inverse_inertia, runge_kutta
 from reference.joints import Drive, Pin, Rod, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import energy, joint_gap, slip
@@ -151,17 +151,39 @@ def test_projection_closes_wide_gaps_and_takes_from_a_velocity_only_what_does_wo
     mechanism, random = four_bar(), np.random.default_rng(3)
     apart = mechanism.pose + 0.05 * random.normal(size=mechanism.pose.shape)
     wild = random.normal(size=mechanism.twist.shape)
-    pose, twist = Dynamics(mechanism, 0.0).project(apart, wild, 0.0)
+    pose, twist = Dynamics(mechanism).project(apart, wild, 0.0)
     assert np.max(np.abs(mechanism.gap(pose, 0.0))) < 1e-14
     assert np.max(np.abs(mechanism.slip(pose, twist))) < 1e-13
     # The nearest in the metric of the masses: what is taken away carries no momentum along what is left.
     assert np.sum(mechanism.inertias * (wild - twist) * twist) == pytest.approx(0, abs=1e-13)
 
 
+def test_constrained_acceleration_solves_newtons_law_with_the_rows_ideal_or_soft():
+    mechanism, random = four_bar(), np.random.default_rng(4)
+    pose = mechanism.pose + 0.02 * random.normal(size=mechanism.pose.shape)
+    twist, rows = random.normal(size=mechanism.twist.shape), mechanism.rows(pose)
+    soft = np.arange(mechanism.row_count) % 3 == 0
+    inertia = inverse_inertia((rows / mechanism.inertias.reshape(-1)) @ rows.T, soft)
+    # Of the soft row 0 alone, a unit force gives this acceleration along itself if the rigid rows hold.
+    rigid = np.delete(rows, np.flatnonzero(soft), axis=0) / np.sqrt(mechanism.inertias.reshape(-1))
+    push = rows[0] / np.sqrt(mechanism.inertias.reshape(-1))
+    push = push - rigid.T @ np.linalg.lstsq(rigid.T, push, rcond=None)[0]
+    assert inertia[0] == pytest.approx(max(push @ push, 0.1 * np.sum(rows[0] ** 2 / mechanism.inertias.reshape(-1))))
+    damper = mechanism.bias(pose, twist) - 3.0 * mechanism.slip(pose, twist) * soft
+    for target, compliance in ((None, 0.0), (damper, np.diag(0.2 * inertia * soft))):
+        acceleration, reaction = constrained_acceleration(mechanism, pose, twist, target, compliance)
+        force = mechanism.inertias * (acceleration - mechanism.unconstrained(pose, twist))
+        assert force.reshape(-1) == pytest.approx(rows.T @ reaction, abs=1e-12)
+        left = rows @ acceleration.reshape(-1) + (compliance + np.zeros_like(rows @ rows.T)) @ reaction
+        assert left == pytest.approx(mechanism.bias(pose, twist) if target is None else target, abs=1e-11)
+    dynamics = Dynamics(mechanism, Softness(0.0, 3.0, 0.2, tuple(soft)), soft)
+    assert dynamics.acceleration(pose, twist, 0.0) == pytest.approx(acceleration, abs=1e-11)
+
+
 def test_baumgarte_closes_an_open_joint_critically_damped():
     # A bar pulled off its pin along its own axis, nothing turning it: one coordinate, gap'' = -2 gap'/T - gap/T^2.
     mechanism, constant = replace(pendulum(angle=0.0), gravity=(0.0, 0.0)), 0.1
-    step = runge_kutta(Dynamics(mechanism, 1 / constant), RK4)
+    step = runge_kutta(Dynamics(mechanism, Softness(constant**-2, 2 / constant, 0.0, (True, True))), RK4)
     pose, twist, dt = mechanism.pose + np.array([0.02, 0.0, 0.0]), mechanism.twist, constant / 50
     for i in range(150):
         pose, twist = step(pose, twist, i * dt, dt)

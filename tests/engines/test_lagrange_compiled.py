@@ -36,7 +36,7 @@ pytestmark = pytest.mark.skipif(not loading.installed(), reason="numba, the extr
 
 def differences(mechanism: Mechanism, method: Lagrange, dt: float, every: int = 2) -> tuple[float, float]:
     """How far compiled poses are from those of numpy, and twists, in parts of the mechanism's own length and speed."""
-    unit = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+    unit = mechanism.pose_unit
     runs = [replace(method, compiled=compiled).build(mechanism, dt)(2, every) for compiled in (True, False)]
     pose, twist = (np.abs((getattr(runs[0], what) - getattr(runs[1], what)) / unit).max() for what in ("pose", "twist"))
     return float(pose), float(twist * mechanism.time_scale)
@@ -85,7 +85,7 @@ def test_masses_that_differ_by_many_decades_cost_no_more_digits_than_in_numpy():
         exact = exact_acceleration(mechanism).reshape(-1, 3)
         machine = present(Machine.of(mechanism))
         _, found = machine.reactions(1.0, *machine.empty(0))
-        compared = Dynamics(mechanism, 0.0).acceleration(mechanism.pose, mechanism.twist, 0.0)
+        compared = Dynamics(mechanism).acceleration(mechanism.pose, mechanism.twist, 0.0)
         size, bias = mechanism.inertias * exact**2, mechanism.inertias * mechanism.free_fall**2
         if size.sum() + bias.sum() == 0:  # it turns about its centre of mass
             continue
@@ -287,7 +287,7 @@ def stiffened(mechanism: Mechanism, factor: float) -> Mechanism:
 @pytest.mark.parametrize("number", [5, 13, 17, 25, 29, 41, 44])
 def test_random_mechanisms_with_stiff_springs_hold_the_tolerance_over_their_fastest_swings(number):
     stiff = stiffened(random_mechanism(31, number, HOLONOMIC), 1e6)
-    unit = np.array([stiff.length_scale, stiff.length_scale, 1.0])
+    unit = stiff.pose_unit
     exact, *runs = (
         Lagrange(tolerance=tolerance).build(stiff, stiff.time_scale / 10)(10, 1) for tolerance in (1e-13, 1e-8, 1e-10)
     )

@@ -139,7 +139,7 @@ def missed(engine: Engine, own: Mechanism, name: str, every: int) -> float:
     """In lengths of the mechanism, and rad."""
     run = engine.build(own, span(name) / SAMPLES / every)(SAMPLES, every)
     assert run.reset_at is None
-    return float((np.abs(run.pose - exact(name)) / [own.length_scale, own.length_scale, 1.0]).max())
+    return float((np.abs(run.pose - exact(name)) / own.pose_unit).max())
 
 
 # A loop of rows that repeat is no matter of the vocabulary: extras need not solve it. Every day each engine moves a

@@ -100,7 +100,7 @@ def test_mechanisms_that_were_difficult_are_right_or_unresolved(case: Known) -> 
     samples = max(1, round(case.lasts / case.step))
     run = installed(case.engine).build(own, case.step)(samples, 1)
     truth = TRUTH.build(own, case.step)(samples, 1)
-    size = np.array([own.length_scale, own.length_scale, 1.0])
+    size = own.pose_unit
     error, estimate = (
         float(np.max(values / size)) for values in (np.abs(run.pose - truth.pose), present(run.estimate))
     )

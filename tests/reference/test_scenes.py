@@ -101,7 +101,7 @@ def truth_error(each: Scene) -> Callable[[np.ndarray], np.ndarray] | None:
 
 
 def unit(mechanism: Mechanism) -> np.ndarray:
-    return np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+    return mechanism.pose_unit
 
 
 def fastest(mechanism: Mechanism, motion: Trajectory) -> float:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -17,7 +16,7 @@ from reference.joints import Drive, Joint, Pin, Vector, bodies_of
 from reference.kinds import Floats
 from reference.mechanism import Mechanism
 from reference.numerics.windows import COARSE_STAGES, STAGES
-from reference.scene import Scene
+from reference.scene import Scene, shared
 from reference.scenes.four_bar.forces import Densities, three_densities
 from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion, States
 from reference.scenes.four_bar.linkage import FourBar, Unreachable
@@ -190,7 +189,8 @@ class FreeFourBar(FourBarScene):
         if not times.any():  # a mechanism needs no more than the start
             return curve.bar_angles(np.repeat(start[None], len(times), axis=0))
         try:
-            return curve.bar_angles(_integrated(self, max(self.duration, float(times.max())), stages)(times))
+            states = shared(FreeFourBar._solved, self, max(self.duration, float(times.max())), stages)
+            return curve.bar_angles(states(times))
         except ArithmeticError as failure:
             if self.four_bar.grashof() != "change-point":
                 raise
@@ -199,12 +199,8 @@ class FreeFourBar(FourBarScene):
                 f"change point, beyond which two motions are possible and none is the truth ({failure})"
             ) from None
 
-
-@lru_cache(maxsize=8)
-def _integrated(scene: FreeFourBar, until: float, stages: int) -> States:
-    """Kept for all equal scenes, since samples of every number ask for it."""
-    curve = scene._curve
-    return curve.motion(curve.start(scene.start, scene.rate, scene.branch), until, stages)
+    def _solved(self, until: float, stages: int) -> States:
+        return self._curve.motion(self._curve.start(self.start, self.rate, self.branch), until, stages)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -13,16 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from reference.checks import Count, Positive, require_room
 from reference.joints import Pin, bodies_of
 from reference.mechanism import Mechanism
-from reference.scene import Scene
-from reference.scenes.pendulum.chain import Chain, Motion
+from reference.scene import Scene, shared
+from reference.scenes.pendulum.chain import Chain
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-
-
-@lru_cache(maxsize=8)
-def _integrated(chain: Chain, angle: float, rate: float, until: float) -> Motion:
-    return chain.solved(np.full(chain.links, angle), np.full(chain.links, rate), until)
 
 
 @dataclass(frozen=True)
@@ -58,7 +53,8 @@ class LinkPendulum(Scene):
     def _states(self, times: Array) -> tuple[Array, Array]:
         require_room(f"scene {self.name!r}: a trajectory", (len(times), self.links, 3))
         until = max(self.duration, float(times.max(initial=0.0)))
-        state = _integrated(self.chain, self.angle, self.rate, until)(times)
+        start = (self.angle,) * self.links, (self.rate,) * self.links
+        state = shared(Chain.solved, self.chain, *start, until)(times)
         return state[:, : self.links], state[:, self.links :]
 
     def truth_error(self, t: ArrayLike) -> Array:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -22,7 +22,7 @@ from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, S
 from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import Catenary
 from reference.rolling.roll import Roll
-from reference.scene import Scene
+from reference.scene import Scene, shared
 from reference.scenes.rolling.body import GRAVITY, RollingBody
 from reference.trajectory import Trajectory
 
@@ -59,7 +59,11 @@ class RollingScene(Scene):
     @property
     def motion_law(self) -> RollingBody:
         """The body in its one coordinate: forces, friction, hop, slip, small oscillations."""
-        return _motion_law(self)
+        return shared(RollingScene._motion_law, self)
+
+    def _motion_law(self) -> RollingBody:
+        rolling = Rolling.at_angle(self.body_curve(), self.ground_curve(), self.start_angle, self.ground_arc)
+        return RollingBody(rolling, self.mass, self.inertia, self.start_rate, self.gravity)
 
     @cached_property
     def hop(self) -> float | None:
@@ -69,7 +73,11 @@ class RollingScene(Scene):
     @cached_property
     def comparable_until(self) -> float:  # type: ignore[override]
         """Up to where a contact of this friction slips, or hops: beyond, an engine is right to disagree [s]."""
-        return _until_slip(self)
+        return shared(RollingScene._until_slip, self)
+
+    def _until_slip(self) -> float:
+        slip = self.motion_law.slip(self.friction, self.duration)
+        return math.inf if slip is None else slip
 
     @cached_property
     def horizon(self) -> float:  # type: ignore[override]
@@ -93,19 +101,6 @@ class RollingScene(Scene):
             twist=np.concatenate([velocity, rate[:, None]], axis=-1)[:, None, :],
             reaction=np.stack([tangent, normal], axis=-1),
         )
-
-
-@lru_cache(maxsize=64)
-def _motion_law(scene: RollingScene) -> RollingBody:
-    """Kept for all equal scenes, because it keeps its motion."""
-    rolling = Rolling.at_angle(scene.body_curve(), scene.ground_curve(), scene.start_angle, scene.ground_arc)
-    return RollingBody(rolling, scene.mass, scene.inertia, scene.start_rate, scene.gravity)
-
-
-@lru_cache(maxsize=64)
-def _until_slip(scene: RollingScene) -> float:
-    slip = scene.motion_law.slip(scene.friction, scene.duration)
-    return math.inf if slip is None else slip
 
 
 @dataclass(frozen=True)

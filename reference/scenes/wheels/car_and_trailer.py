@@ -19,6 +19,7 @@ from reference.checks import InvalidMechanism, Positive, validated
 from reference.joints import Joint, Pin, Skate, Triple, bodies_of
 from reference.mechanism import Mechanism
 from reference.numerics.calculus import Antiderivative
+from reference.plane import COMPLEX_STEP
 from reference.scene import Scene
 from reference.scenes.wheels.tractrix import Tow
 from reference.scenes.wheels.trailers import towed
@@ -26,7 +27,6 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-COMPLEX_STEP = 1e-100
 # Newton doubles the digits at every step once near; a bracket that is halved needs at most the mantissa's bits.
 MOST_STEPS = 80
 
