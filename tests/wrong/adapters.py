@@ -1,35 +1,55 @@
-"""Adapters with one mistake each, around a right one: what the checks of `engines.conformance` have to find."""
+"""Engines with one mistake each, around a right one: what `engines.conformance` and the gates have to find."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from engines import Around, Engine, Run, Unsupported
+from engines import Around, Engine, Run, Softness, Unpromised, Unsupported
 from engines.pymunk import LEAPFROG
 from reference.checks import Count, validated
-from reference.joints import Drive, Pin, Skate, Slot
+from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from tests.wrong.mistakes import Mistake
 
-Build = Callable[[Mechanism, float], Any]
+Build = Callable[[Engine, Mechanism, float], Any]
 
 
 @dataclass(frozen=True)
 class Wrong(Around):
-    """A right engine whose `build` or whose run is spoiled as MISTAKES says of its variant."""
+    """A right engine with the mistake that its variant names: in what it builds, or in an answer about itself."""
 
     variant: str
     engine: Engine = LEAPFROG
     name: str = "wrong"  # pyright: ignore[reportIncompatibleMethodOverride]
 
     def build(self, mechanism: Mechanism, dt: float) -> Any:
-        return {**MISTAKES, **SMALL}[self.variant](self.engine, mechanism, dt)
+        building = {**MISTAKES, **SMALL}.get(self.variant, ("", right))[1]
+        return building(self.engine, mechanism, dt)
+
+    def _answer(self, member: str, *arguments: Any) -> Any:
+        _, wrong, answer = ANSWERS.get(self.variant, ("", "", None))
+        return answer(*arguments) if answer and wrong == member else getattr(self.engine, member)(*arguments)
+
+    def order(self, mechanism: Mechanism) -> Any:
+        return self._answer("order", mechanism)
+
+    def step_cost(self, mechanism: Mechanism) -> Any:
+        return self._answer("step_cost", mechanism)
+
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Any:
+        return self._answer("holder", joint, mechanism)
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Any:
+        return self._answer("softness", mechanism, dt)
+
+    def steps_of_runs(self, mechanism: Mechanism) -> Any:
+        return self._answer("steps_of_runs", mechanism)
 
 
 class Spoiled:
@@ -43,20 +63,8 @@ class Spoiled:
         return self._spoil(self._run(samples, every))
 
 
-def after(spoil: Callable[[Trajectory, Mechanism, float], Trajectory]) -> Callable[..., Any]:
-    """The mistake of changing what a right run gives."""
-    return lambda inner, mechanism, dt: Spoiled(inner.build(mechanism, dt), lambda given: spoil(given, mechanism, dt))
-
-
-def moved(given: Trajectory, name: str, by: Any) -> Trajectory:
-    """With something added to one array, from the second sample on."""
-    values = getattr(given, name).copy()
-    values[1:] += np.broadcast_to(by, values.shape)[1:]
-    return replace(given, **{name: values})
-
-
 class Careless:
-    """A run that is what a function of (samples, every) says, whatever these are."""
+    """A run that calls a function of (samples, every), whatever these are."""
 
     def __init__(self, size: Any, call: Callable[[int, int], Any]) -> None:
         self.size, self._call = size, call
@@ -66,32 +74,56 @@ class Careless:
 
 
 class Calls(Careless):
-    """The same, for counts that can be."""
+    """The same, for valid counts."""
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Any:
         return self._call(samples, every)
 
 
-def key_error(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    known = {Pin: "pivot", Drive: "motor", Skate: "groove"}
-    assert all(known[type(joint)] for joint in mechanism.joints)
+def right(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
     return inner.build(mechanism, dt)
 
 
-def terse(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    if any(isinstance(joint, Slot) for joint in mechanism.joints):
-        raise Unsupported("no slots")
-    return inner.build(mechanism, dt)
+def after(spoil: Callable[[Trajectory, Mechanism, float], Trajectory]) -> Build:
+    """The mistake of changing the trajectory of a right run."""
+    return lambda inner, mechanism, dt: Spoiled(inner.build(mechanism, dt), lambda given: spoil(given, mechanism, dt))
 
 
-def refuses_all(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    raise Unsupported("the package that would do this is not installed")
+def before(change: Callable[[Mechanism], Mechanism]) -> Build:
+    """The mistake of building another mechanism."""
+    return lambda inner, mechanism, dt: inner.build(change(mechanism), dt)
 
 
-def needs_joints(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    assert mechanism.joints[0] is not None  # IndexError without any
-    return inner.build(mechanism, dt)
+def moved(given: Trajectory, name: str, by: Any) -> Trajectory:
+    """With something added to one array, from the second sample on."""
+    values = getattr(given, name).copy()
+    values[1:] += np.broadcast_to(by, values.shape)[1:]
+    return replace(given, **{name: values})
+
+
+def times(name: str, factor: float) -> Build:
+    return after(lambda given, mechanism, dt: replace(given, **{name: factor * getattr(given, name)}))
+
+
+def refusing(raise_if: Callable[[Mechanism], Any]) -> Build:
+    """The mistake of failing, by whatever `raise_if` raises, for some mechanisms."""
+
+    def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
+        raise_if(mechanism)
+        return inner.build(mechanism, dt)
+
+    return build
+
+
+def unsupported(reason: str, *kinds: type) -> Callable[[Mechanism], None]:
+    """Refuse mechanisms with joints of these kinds."""
+
+    def check(mechanism: Mechanism) -> None:
+        if any(isinstance(joint, kinds) for joint in mechanism.joints):
+            raise Unsupported(reason)
+
+    return check
 
 
 def any_step(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
@@ -104,7 +136,7 @@ def any_count(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 
 def goes_on(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """A second call gives what comes after the first."""
+    """A second call continues after the first."""
     done = 0
 
     def call(samples: int, every: int) -> Trajectory:
@@ -119,25 +151,9 @@ def goes_on(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
     return Calls(inner.build(mechanism, dt).size, call)
 
 
-def without_reactions(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return replace(given, reaction=given.reaction[:, :0])
-
-
-def without_size(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    return Calls(None, inner.build(mechanism, dt))
-
-
 def time_without_every(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
     run = inner.build(mechanism, dt)
     return Calls(run.size, lambda samples, every: replace(run(samples, every), t=np.arange(samples + 1) * dt))
-
-
-def milliseconds(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return replace(given, stepping=1e3 * given.stepping)
-
-
-def negative_cost(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return replace(given, stepping=-given.stepping)
 
 
 def wall_clock(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
@@ -152,33 +168,25 @@ def wall_clock(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
     return Calls(run.size, call)
 
 
-def second_first(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """The first sample is taken after the first step."""
-    return told_by(inner, mechanism, dt, lambda now, following, before: following, True, ("pose", "twist", "reaction"))
+def told_by(tell: Callable[[Any, Any, Any], Any], first: bool, *names: str) -> Build:
+    """Samples made of the states at them, a step later and a step before; the `first` sample too, or right."""
 
+    def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
+        run = inner.build(mechanism, dt)
 
-def told_by(
-    inner: Engine,
-    mechanism: Mechanism,
-    dt: float,
-    tell: Callable[[Any, Any, Any], Any],
-    first: bool,
-    names: tuple[str, ...],
-) -> Any:
-    """Samples told by the states at them, a step later and a step before; the `first` sample too, or as it is."""
-    run = inner.build(mechanism, dt)
+        def call(samples: int, every: int) -> Trajectory:
+            fine = run(samples * every + 1, 1)
+            parts = {name: getattr(fine, name)[:-1:every].copy() for name in ("pose", "twist", "reaction")}
+            for name in names:
+                whole = getattr(fine, name)
+                earlier = np.concatenate([whole[:1], whole])[: samples * every + 1 : every]
+                told = tell(parts[name], whole[1::every], earlier)
+                parts[name][0 if first else 1 :] = told[0 if first else 1 :]
+            return replace(fine, t=np.arange(samples + 1) * every * dt, **parts)
 
-    def call(samples: int, every: int) -> Trajectory:
-        fine = run(samples * every + 1, 1)
-        parts = {name: getattr(fine, name)[:-1:every].copy() for name in ("pose", "twist", "reaction")}
-        for name in names:
-            whole = getattr(fine, name)
-            before = np.concatenate([whole[:1], whole])[: samples * every + 1 : every]
-            told = tell(parts[name], whole[1::every], before)
-            parts[name][0 if first else 1 :] = told[0 if first else 1 :]
-        return replace(fine, t=np.arange(samples + 1) * every * dt, **parts)
+        return Calls(run.size, call)
 
-    return Calls(run.size, call)
+    return build
 
 
 def kicked_start(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
@@ -218,167 +226,238 @@ def wrapped(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
     return replace(given, pose=pose)
 
 
-def other_sign(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return replace(given, reaction=-given.reaction)
-
-
-def double_force(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return replace(given, reaction=2 * given.reaction)
-
-
-def pose_half_a_step_late(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return moved(given, "pose", given.twist * dt / 2)
-
-
-def twist_half_a_step_late(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    return told_by(inner, mechanism, dt, lambda now, following, before: (now + following) / 2, False, ("twist",))
-
-
-def twist_a_step_early(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    return told_by(inner, mechanism, dt, lambda now, following, before: before, False, ("twist",))
-
-
-def first_order_poses(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return moved(given, "pose", dt * given.t[:, None, None] ** 2)
-
-
-def first_order_twists(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return moved(given, "twist", 5 * dt * given.t[:, None, None] ** 2)
-
-
-def gravity_down(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    return inner.build(replace(mechanism, gravity=(0.0, -float(np.hypot(*mechanism.gravity)))), dt)
-
-
 def walled(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
     """A box of six metres stands around the origin."""
     beyond = np.where(np.abs(mechanism.pose[:, 0]) > 3.0, given.t[:, None] ** 2, 0.0)
     return moved(given, "pose", beyond[..., None])
 
 
-def right_handed(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
+def right_handed(mechanism: Mechanism) -> Mechanism:
     joints = tuple(replace(j, angle=abs(j.angle)) if isinstance(j, Skate) else j for j in mechanism.joints)
-    return inner.build(replace(mechanism, joints=joints), dt)
+    return replace(mechanism, joints=joints)
 
 
-def ascii_only(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    assert all(body.name.encode("ascii") for body in mechanism.bodies)
-    return inner.build(mechanism, dt)
-
-
-def from_the_ground_up(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """Bodies that a joint holds on the ground are told first."""
+def from_the_ground_up(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    """Bodies that a joint holds on the ground come first."""
     grounded = {name for j in mechanism.joints if None in (j.first, j.second) for name in (j.first, j.second)}
     order = sorted(range(len(mechanism.bodies)), key=lambda i: mechanism.bodies[i].name not in grounded)
-    return Spoiled(
-        inner.build(mechanism, dt),
-        lambda given: replace(given, pose=given.pose[:, order], twist=given.twist[:, order]),
-    )
+    return replace(given, pose=given.pose[:, order], twist=given.twist[:, order])
 
 
-def pins_first(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """Reactions of pins are told first."""
+def pins_first(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
     kinds = [not isinstance(joint, Pin) for joint in mechanism.joints for _ in range(joint.size)]
-    order = sorted(range(len(kinds)), key=kinds.__getitem__)
-    return Spoiled(inner.build(mechanism, dt), lambda given: replace(given, reaction=given.reaction[:, order]))
+    return replace(given, reaction=given.reaction[:, sorted(range(len(kinds)), key=kinds.__getitem__)])
 
 
-def always_on_the_body(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """Reactions of joints with the ground are told as forces on the body, whichever is named second."""
+def always_on_the_body(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    """Reactions of joints with the ground are forces on the body, whichever is named second."""
     signs = [-1.0 if joint.second is None else 1.0 for joint in mechanism.joints for _ in range(joint.size)]
-    return Spoiled(inner.build(mechanism, dt), lambda given: replace(given, reaction=given.reaction * signs))
+    return replace(given, reaction=given.reaction * signs)
 
 
-# Mistake -> how it builds; the check that is named like it in FOUND_BY has to find it.
-MISTAKES: dict[str, Callable[..., Any]] = {
-    "nothing": lambda inner, mechanism, dt: inner.build(mechanism, dt),
-    "a kind of joint is looked up": key_error,
-    "a refusal of two words": terse,
-    "nothing is built": refuses_all,
-    "the first joint is looked at": needs_joints,
-    "forces are not looked at": lambda inner, mechanism, dt: inner.build(replace(mechanism, forces=()), dt),
-    "a bad step is replaced": any_step,
-    "a bad count is replaced": any_count,
-    "a second call goes on": goes_on,
-    "reactions are left out": after(without_reactions),
-    "the size is not told": without_size,
-    "time forgets the steps between samples": time_without_every,
-    "the cost is in milliseconds": after(milliseconds),
-    "the cost is negative": after(negative_cost),
-    "the cost is of the wall's clock": wall_clock,
-    "the state after the first step comes first": second_first,
-    "the first velocity has had half a kick": after(kicked_start),
-    "random noise": after(noisy),
-    "the mechanism is written into": written_into,
-    "steps between samples are one long step": one_long_step,
-    "angles are wrapped": after(wrapped),
-    "reactions have the other sign": after(other_sign),
-    "reactions are twice as large": after(double_force),
-    "poses are half a step late": after(pose_half_a_step_late),
-    "velocities are half a step late": twist_half_a_step_late,
-    "velocities are of the step before": twist_a_step_early,
-    "poses are of first order": after(first_order_poses),
-    "velocities are of first order": after(first_order_twists),
-    "gravity points down": gravity_down,
-    "there are walls": after(walled),
-    "a blade's angle has no sign": right_handed,
-    "names are ASCII": ascii_only,
-    "bodies are told from the ground up": from_the_ground_up,
-    "reactions of pins are told first": pins_first,
-    "reactions are always of the body": always_on_the_body,
+LATE = "velocities are half a step late"
+# By the name of the mistake: the check that finds it before any other, and how the wrong engine builds.
+MISTAKES: dict[str, tuple[str, Build]] = {
+    "a kind of joint is looked up": (
+        "builds_or_refuses",
+        refusing(lambda own: [{Pin: 1, Drive: 1, Skate: 1}[type(joint)] for joint in own.joints]),
+    ),
+    "a refusal of two words": ("builds_or_refuses", refusing(unsupported("no slots", Slot))),
+    "nothing is built": ("builds_at_least_one", refusing(unsupported("the package is not installed here", object))),
+    "the first joint is looked at": ("refuses_odd_mechanisms", refusing(lambda own: own.joints[0])),
+    "forces are not looked at": ("feels_forces_or_refuses_them", before(lambda own: replace(own, forces=()))),
+    "a bad step is replaced": ("refuses_bad_steps", any_step),
+    "a bad count is replaced": ("refuses_bad_counts", any_count),
+    "a second call goes on": ("refuses_a_second_call", goes_on),
+    "reactions are left out": (
+        "has_the_right_shapes",
+        after(lambda given, mechanism, dt: replace(given, reaction=given.reaction[:, :0])),
+    ),
+    "the size is not told": (
+        "tells_the_size_of_its_model",
+        lambda inner, mechanism, dt: Calls(None, inner.build(mechanism, dt)),
+    ),
+    "time forgets the steps between samples": ("samples_at_the_right_times", time_without_every),
+    "the cost is in milliseconds": ("tells_the_cpu_time_of_stepping", times("stepping", 1e3)),
+    "the cost is negative": ("tells_the_cpu_time_of_stepping", times("stepping", -1.0)),
+    "the cost is of the wall's clock": ("tells_the_cpu_time_of_stepping", wall_clock),
+    "the state after the first step comes first": (
+        "first_pose_is_the_start",
+        told_by(lambda now, following, earlier: following, True, "pose", "twist", "reaction"),
+    ),
+    "the first velocity has had half a kick": ("first_twist_is_the_start", after(kicked_start)),
+    "random noise": ("gives_the_same_bits", after(noisy)),
+    "the mechanism is written into": ("leaves_the_mechanism_alone", written_into),
+    "steps between samples are one long step": ("sampling_changes_nothing", one_long_step),
+    "angles are wrapped": ("does_not_wrap_angles", after(wrapped)),
+    "reactions have the other sign": ("reactions_have_sign_and_size", times("reaction", -1.0)),
+    "reactions are twice as large": ("reactions_have_sign_and_size", times("reaction", 2.0)),
+    "poses are half a step late": (
+        "poses_stand_at_their_instants",
+        after(lambda given, mechanism, dt: moved(given, "pose", given.twist * dt / 2)),
+    ),
+    LATE: (
+        "twists_stand_at_their_instants",
+        told_by(lambda now, following, earlier: (now + following) / 2, False, "twist"),
+    ),
+    "velocities are of the step before": (
+        "twists_stand_at_their_instants",
+        told_by(lambda now, following, earlier: earlier, False, "twist"),
+    ),
+    "poses are of first order": (
+        "poses_have_their_order",
+        after(lambda given, mechanism, dt: moved(given, "pose", dt * given.t[:, None, None] ** 2)),
+    ),
+    "velocities are of first order": (
+        "twists_have_their_order",
+        after(lambda given, mechanism, dt: moved(given, "twist", 5 * dt * given.t[:, None, None] ** 2)),
+    ),
+    "gravity points down": (
+        "same_if_turned",
+        before(lambda own: replace(own, gravity=(0.0, -float(np.hypot(*own.gravity))))),
+    ),
+    "there are walls": ("same_if_shifted", after(walled)),
+    "a blade's angle has no sign": ("same_if_mirrored", before(right_handed)),
+    "names are ASCII": ("same_if_relabelled", refusing(lambda own: [body.name.encode("ascii") for body in own.bodies])),
+    "bodies are told from the ground up": ("same_if_bodies_are_reordered", after(from_the_ground_up)),
+    "reactions of pins are told first": ("same_if_joints_are_reordered", after(pins_first)),
+    "reactions are always of the body": ("same_if_bodies_of_joints_are_swapped", after(always_on_the_body)),
 }
 
 
-def numbers_off(kind: str, relative: float) -> Callable[..., Any]:
+def numbers_off(kind: str, relative: float) -> Build:
     """The mistake of a number that is off in every model: of the middle body, or of gravity."""
 
-    def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
+    def change(mechanism: Mechanism) -> Mechanism:
         owner = "" if kind == "gravity" else mechanism.bodies[len(mechanism.bodies) // 2].name
-        return inner.build(Mistake(kind, owner).made(mechanism, relative), dt)
+        return Mistake(kind, owner).made(mechanism, relative)
 
-    return build
+    return before(change)
 
 
-def driven_backwards(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
+def driven_backwards(mechanism: Mechanism) -> Mechanism:
     joints = tuple(
         replace(joint, turning_rate=-joint.turning_rate) if isinstance(joint, Drive) else joint
         for joint in mechanism.joints
     )
     bodies = tuple(replace(body, twist=tuple(-value for value in body.twist)) for body in mechanism.bodies)
-    return inner.build(replace(mechanism, joints=joints, bodies=bodies), dt)
-
-
-def times(name: str, factor: float) -> Callable[..., Any]:
-    return after(lambda given, mechanism, dt: replace(given, **{name: factor * getattr(given, name)}))
-
-
-def in_single_precision(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return replace(given, pose=given.pose.astype(np.float32).astype(float))
-
-
-def without_numbers(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return replace(given, reaction=np.full_like(given.reaction, np.nan))
+    return replace(mechanism, joints=joints, bodies=bodies)
 
 
 def longer_steps(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """Steps that are 1 % longer than those asked for, told at the times of these."""
+    """Steps that are 1 % longer than those asked for, at the times of these."""
     return Spoiled(inner.build(mechanism, 1.01 * dt), lambda given: replace(given, t=given.t / 1.01))
 
 
-# Mistakes of which some are smaller than what the questions of the conformance kit see: the gate of theory is asked.
-SMALL: dict[str, Callable[..., Any]] = {
-    "a mass is 1 % off": numbers_off("mass", 1e-2),
-    "a mass is 0.1 % off": numbers_off("mass", 1e-3),
-    "an inertia is 10 % off": numbers_off("inertia", 1e-1),
-    "gravity is 9.80": numbers_off("gravity", 9.80 / 9.81 - 1),
-    "steps are 1 % longer": longer_steps,
-    "the drive turns the other way": driven_backwards,
-    "velocities are 1.001 times as large": times("twist", 1.001),
-    "poses are of single precision": after(in_single_precision),
-    "reactions are 1.01 times as large": times("reaction", 1.01),
-    "reactions are 1.1 times as large": times("reaction", 1.1),
-    "reactions are no numbers": after(without_numbers),
+# Mistakes of which some are smaller than what the conformance checks see; the gate of theory is asked.
+SMALL: dict[str, tuple[str, Build]] = {
+    "a mass is 1 % off": ("", numbers_off("mass", 1e-2)),
+    "a mass is 0.1 % off": ("", numbers_off("mass", 1e-3)),
+    "an inertia is 10 % off": ("", numbers_off("inertia", 1e-1)),
+    "gravity is 9.80": ("", numbers_off("gravity", 9.80 / 9.81 - 1)),
+    "steps are 1 % longer": ("", longer_steps),
+    "the drive turns the other way": ("", before(driven_backwards)),
+    "velocities are 1.001 times as large": ("", times("twist", 1.001)),
+    "poses are of single precision": (
+        "",
+        after(lambda given, mechanism, dt: replace(given, pose=given.pose.astype(np.float32).astype(float))),
+    ),
+    "reactions are 1.01 times as large": ("", times("reaction", 1.01)),
+    "reactions are 1.1 times as large": ("", times("reaction", 1.1)),
+    "reactions are no numbers": ("", times("reaction", np.nan)),
+}
+# By the name of the mistake: the check that finds it, the member of the engine, and its wrong answer.
+ANSWERS: dict[str, tuple[str, str, Callable[..., Any]]] = {
+    "the order is a number": ("promises_an_order", "order", lambda mechanism: 2),
+    "an order is refused in a word": ("promises_an_order", "order", lambda mechanism: Unpromised("no")),
+    "a step costs nothing": ("tells_what_a_step_costs", "step_cost", lambda mechanism: 0.0),
+    "a step's cost is measured": (
+        "tells_what_a_step_costs",
+        "step_cost",
+        lambda mechanism: 1e-6 + 1e-9 * time.perf_counter(),
+    ),
+    "who holds a skate is told in another word": (
+        "tells_who_holds_a_joint",
+        "holder",
+        lambda joint, mechanism: "us" if isinstance(joint, Skate) else "engine",
+    ),
+    "softness counts joints": (
+        "tells_how_joints_give_way",
+        "softness",
+        lambda mechanism, dt: Softness(1.0, 1.0, 0.0, (True,) * len(mechanism.joints)),
+    ),
+    "runs are counted instead of their steps": ("tells_the_steps_of_its_runs", "steps_of_runs", lambda mechanism: 5),
 }
 
-HALF_A_STEP_LATE = Wrong("velocities are half a step late")
+
+@dataclass(frozen=True)
+class TwoLines(Wrong):
+    family: str = "two\nlines"  # pyright: ignore[reportIncompatibleMethodOverride]
+
+
+@dataclass
+class Changeable(Around):
+    """Not frozen."""
+
+    variant: str = "changeable"
+    engine: Engine = LEAPFROG
+    name: str = "wrong"  # pyright: ignore[reportIncompatibleMethodOverride]
+
+    def build(self, mechanism: Mechanism, dt: float) -> Any:
+        return self.engine.build(mechanism, dt)
+
+    __hash__ = object.__hash__
+
+
+@dataclass(frozen=True)
+class Hiding(Wrong):
+    iterations: int = field(default=10, repr=False)
+
+
+@dataclass(frozen=True)
+class Listing(Wrong):
+    levels: list[int] = field(default_factory=lambda: [1, 2])
+
+
+def local() -> Any:
+    """An engine of a class that no other process finds."""
+
+    @dataclass(frozen=True)
+    class Local(Wrong):
+        pass
+
+    return Local("nothing")
+
+
+@dataclass(frozen=True)
+class Forgetful(Wrong):
+    """An attribute that is no field is lost by pickle."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_factor", 0.5)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update({**state, "_factor": 1.0})
+
+    def build(self, mechanism: Mechanism, dt: float) -> Any:
+        return self.engine.build(replace(mechanism, gravity=(0.0, vars(self)["_factor"] * mechanism.gravity[1])), dt)
+
+
+@dataclass(frozen=True)
+class Imported(Wrong):
+    packages: tuple[str, ...] = ("_pymunk_cffi_backend",)  # pyright: ignore[reportIncompatibleMethodOverride]
+
+
+# By the name of the mistake: the check that finds it, and the wrong engine.
+WRONG: dict[str, tuple[str, Any]] = {
+    **{name: (check, Wrong(name)) for name, (check, *_) in {**MISTAKES, **ANSWERS}.items()},
+    "the family has two lines": ("has_a_name", TwoLines("nothing")),
+    "it can be changed": ("is_a_frozen_dataclass", Changeable()),
+    "a setting is not shown": ("is_a_frozen_dataclass", Hiding("nothing")),
+    "a setting is a list": ("can_be_hashed", Listing("nothing")),
+    "its class is local": ("can_be_pickled", local()),
+    "what is no field is lost": ("can_be_pickled", Forgetful("nothing")),
+    "a package has another name": ("names_its_packages", Imported("nothing")),
+}
+HALF_A_STEP_LATE = Wrong(LATE)
 NO_ENGINES: tuple[Wrong, ...] = ()
