@@ -41,7 +41,6 @@ and no threads are started unless a pool is given.
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -50,7 +49,8 @@ import numpy as np
 from engines.capability import Capability
 from engines.contract import Holder, Promise, Size, Unpromised, Unsupported
 from engines.motions import over_three
-from engines.single_run import Optional, Recorded, SingleRun, differences, unwrapped
+from engines.sampling import differences, sampled, unwrapped
+from engines.single_run import Optional, Recorded, SingleRun
 from reference.checks import Count, Name, NonNegative, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -231,25 +231,24 @@ class _World:
         world, bodies = self.world, self.bodies
         pose, twist, before = np.full((3, samples + 1, len(bodies), 3), np.nan)
 
-        def step(length: float, count: int) -> None:
-            if self.mechanism.forces:
-                self._push()
-            world.step(length, count)
+        def advance(count: int) -> None:
+            for _ in range(count):
+                if self.mechanism.forces:
+                    self._push()
+                world.step(dt, substeps)
 
-        begin = time.process_time()
-        for sample in range(samples + 1):
-            if sample:
-                for _ in range(every - 1):
-                    step(dt, substeps)
-                for body, place in zip(bodies, before[sample], strict=True):
-                    velocity = body.linear_velocity
-                    place[:] = velocity.x, velocity.y, body.angular_velocity
-                step(dt, substeps)
+        def record_velocities(sample: int) -> None:
+            for body, speed in zip(bodies, before[sample], strict=True):
+                velocity = body.linear_velocity
+                speed[:] = velocity.x, velocity.y, body.angular_velocity
+
+        def record(sample: int) -> None:
             for body, place, speed in zip(bodies, pose[sample], twist[sample], strict=True):
                 at, turned, velocity = body.position, body.rotation, body.linear_velocity
                 place[:] = at.x, at.y, math.atan2(turned.s, turned.c)
                 speed[:] = velocity.x, velocity.y, body.angular_velocity
-        stepping = time.process_time() - begin
+
+        stepping = sampled([every] * samples, advance, record, record_velocities)
         start = self.mechanism.pose[:, 2]
         pose[..., 2] = unwrapped(pose[..., 2], twist[..., 2], start, dt * every)
         masses = [body.mass_data for body in bodies]

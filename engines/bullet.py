@@ -27,7 +27,6 @@ moves more than 1 / SIMD_EPSILON = 4.5e15, to which it does nothing (btMultiBody
 from __future__ import annotations
 
 import tempfile
-import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
@@ -40,7 +39,8 @@ from engines.capability import Capability
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, tree_states
+from engines.sampling import differences, sampled, tree_states
+from engines.single_run import Optional, Recorded, SingleRun, quiet
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.checks import Count, Fraction, Name, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
@@ -313,22 +313,21 @@ class World:
         columns, links = [self.tree.links[place].column for place in moving], [self.links[place] for place in moving]
         states, server = self.bullet.getJointStates, self.server
 
-        def step(one: int) -> None:
-            if self.mechanism.forces:
-                self._push()
-            self.bullet.stepSimulation(one)
+        def advance(count: int) -> None:
+            for _ in range(count):
+                if self.mechanism.forces:
+                    self._push()
+                self.bullet.stepSimulation(server)
 
-        begin = time.process_time()
-        for sample in range(samples + 1):
-            if sample:
-                for _ in range(every - 1):
-                    step(server)
-                before[sample, columns] = [each[1] for each in states(self.body, links, server)]
-                step(server)
-            told = states(self.body, links, server)
-            position[sample, columns] = [each[0] for each in told]
-            velocity[sample, columns] = [each[1] for each in told]
-        stepping = time.process_time() - begin
+        def record_velocities(sample: int) -> None:
+            before[sample, columns] = [state[1] for state in states(self.body, links, server)]
+
+        def record(sample: int) -> None:
+            now = states(self.body, links, server)
+            position[sample, columns] = [state[0] for state in now]
+            velocity[sample, columns] = [state[1] for state in now]
+
+        stepping = sampled([every] * samples, advance, record, record_velocities)
         acceleration = differences(velocity, before, dt)
         motion = tree_states(self.tree, position, velocity, acceleration)
         warnings = _unmoved(self.mechanism, self.tree, self.motors)

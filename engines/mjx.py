@@ -33,7 +33,6 @@ from __future__ import annotations
 import math
 import os
 import platform
-import time
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, ClassVar
@@ -50,7 +49,8 @@ from engines.mujoco.methods import TUNED as C_TUNED
 from engines.mujoco.model import Model
 from engines.mujoco.releases import full_inertia
 from engines.mujoco.running import UNSOLVED
-from engines.single_run import Optional, Recorded, SingleRun, quiet, tree_states
+from engines.sampling import sampled, tree_states
+from engines.single_run import Optional, Recorded, SingleRun, quiet
 from engines.tree import Tree, spanning_tree
 from engines.units import power_of_two
 from engines.user_cache import cache_folder
@@ -206,17 +206,14 @@ def _programs() -> tuple[Any, Any, Any]:
 
 def _record(model: Model, held: Any, data: Any, samples: int, every: int) -> Recorded:
     mjx, steps, forward = _programs()
-    now = mjx.put_data(model.compiled, data)
-    steps(held, now, 0).qpos.block_until_ready()  # compiles
+    states = [mjx.put_data(model.compiled, data)]
+    steps(held, states[0], 0).qpos.block_until_ready()  # compiles
     position, velocity, acceleration = np.full((3, samples + 1, model.compiled.nq), np.nan)
-    states = [now]
-    begin = time.process_time()
-    for sample in range(samples + 1):
-        if sample:
-            now = steps(held, now, every)
-            states.append(now)
-        position[sample], velocity[sample] = np.asarray(now.qpos), np.asarray(now.qvel)
-    stepping = time.process_time() - begin
+
+    def record(sample: int) -> None:
+        position[sample], velocity[sample] = np.asarray(states[-1].qpos), np.asarray(states[-1].qvel)
+
+    stepping = sampled([every] * samples, lambda count: states.append(steps(held, states[-1], count)), record)
     missed = 0.0
     for sample, each in enumerate(states):
         told = forward(held, each)

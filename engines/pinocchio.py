@@ -30,7 +30,6 @@ gains 100 and 20 (c = 10). Which pin is taken as the loop changes none of these.
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -40,7 +39,8 @@ from numpy.typing import NDArray
 from engines.capability import Capability
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.single_run import Optional, Recorded, SingleRun, tree_states
+from engines.sampling import sampled, tree_states
+from engines.single_run import Optional, Recorded, SingleRun
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.checks import Name, NonNegative, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
@@ -245,17 +245,21 @@ class Model:
         position, velocity, acceleration = np.full((3, *shape), np.nan)
         q, v = np.zeros(tree.coordinates), np.zeros(tree.coordinates)
         v[self.address] = tree.start_rates()
-        position[0], velocity[0] = q, v
         step = self._runge_kutta if integrator == "rk4" else self._euler
-        begin = time.process_time()
-        with np.errstate(all="ignore"):
-            for sample in range(1, samples + 1):
-                for _ in range(every):
-                    q, v = step(q, v, dt)
-                if not (np.isfinite(q).all() and np.isfinite(v).all()):
-                    break
+
+        def advance(count: int) -> None:
+            nonlocal q, v
+            for _ in range(count):
+                q, v = step(q, v, dt)
+
+        def record(sample: int) -> bool:
+            is_lost = not (np.isfinite(q).all() and np.isfinite(v).all())
+            if not is_lost:
                 position[sample], velocity[sample] = q, v
-        stepping = time.process_time() - begin
+            return is_lost
+
+        with np.errstate(all="ignore"):
+            stepping = sampled([every] * samples, advance, record)
         for sample in range(samples + 1):
             if np.isfinite(velocity[sample]).all():
                 acceleration[sample] = self.acceleration(position[sample], velocity[sample])

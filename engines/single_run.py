@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.contract import Engine, OneShot, Size, Unsupported
-from engines.tree import Tree
+from engines.sampling import reactions
 from reference.checks import Count, Valid, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -100,52 +100,6 @@ class Recorded:
     inertias: Array
     gravity: Array
     warnings: tuple[str, ...] = ()
-
-
-def reactions(
-    mechanism: Mechanism,
-    pose: Array,
-    twist: Array,
-    acceleration: Array,
-    inertias: Array,
-    gravity: Array | tuple[float, float],
-) -> Array:
-    """Reactions from accelerations at samples, with the engine's own masses and gravity; NaN where these are none."""
-    out = np.full((len(pose), mechanism.row_count), np.nan)
-    # Squares of the numbers must be finite as well, or the factorisation raises instead of giving NaN.
-    sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
-    if mechanism.row_count and np.any(sane):
-        with np.errstate(all="ignore"):
-            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity), twist[sane])
-    return out
-
-
-def tree_states(tree: Tree, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:
-    """Poses, twists and accelerations of bodies, of tree coordinates (times, coordinates) that may be NaN."""
-    with np.errstate(all="ignore"):
-        return tree.motion(position, velocity, acceleration)
-
-
-def differences(twist: Array, before: Array, dt: float) -> Array:
-    """Accelerations (samples + 1, bodies, 3) as changes of velocity over the last step; NaN at t = 0."""
-    out = np.full_like(twist, np.nan)
-    with np.errstate(all="ignore"):
-        out[1:] = (twist[1:] - before[1:]) / dt
-    return out
-
-
-def unwrapped(angle: Array, rate: Array, start: Array, spacing: float) -> Array:
-    """Angles (times, bodies) that an engine keeps within a turn, each whole turn taken back by what rates predict.
-
-    The prediction is the trapezoidal rule between samples, so it is right while alpha spacing^2 / 12 is below pi.
-    """
-    out = angle.copy()
-    out[0] = start
-    with np.errstate(all="ignore"):
-        for sample in range(1, len(out)):
-            expected = out[sample - 1] + (rate[sample - 1] + rate[sample]) / 2 * spacing
-            out[sample] += 2 * np.pi * np.round((expected - out[sample]) / (2 * np.pi))
-    return out
 
 
 class SingleRun(OneShot):

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -21,6 +20,7 @@ from engines.mujoco.joints.roll import roll_warnings
 from engines.mujoco.model import Model
 from engines.mujoco.releases import marks
 from engines.mujoco.solver_check import unsolved
+from engines.sampling import sampled
 from reference.checks import Count, validated
 from reference.rows import RANK_TOLERANCE
 from reference.trajectory import Trajectory
@@ -246,29 +246,25 @@ class MuJoCoRun:
         compiled, data = self.model.compiled, self.data
         position, velocity = np.empty((len(counts), compiled.nq)), np.empty((len(counts), compiled.nv))
         clock = np.empty(len(counts))
-        now_position, now_velocity, advance = data.qpos, data.qvel, mujoco.mj_step
-        position[0], velocity[0], clock[0] = now_position, now_velocity, data.time
+        now_position, now_velocity, step = data.qpos, data.qvel, mujoco.mj_step
         overwrite = self.model.drive == "overwrite" and self.model.driven
         before = self.model.hooks.before
-        steps = list(enumerate(np.diff(counts).tolist(), 1))
-        begin = time.process_time()
-        if before:
-            for sample, every in steps:
-                for _ in range(every):
+
+        def advance(count: int) -> None:
+            if not (before or overwrite):
+                step(compiled, data, nstep=count)
+                return
+            for _ in range(count):
+                if before:
                     before(compiled, data)
-                    advance(compiled, data)
-                position[sample], velocity[sample], clock[sample] = now_position, now_velocity, data.time
-        elif overwrite:
-            for sample, every in steps:
-                for _ in range(every):
-                    advance(compiled, data)
+                step(compiled, data)
+                if overwrite:
                     self._overwrite()
-                position[sample], velocity[sample], clock[sample] = now_position, now_velocity, data.time
-        else:
-            for sample, every in steps:
-                advance(compiled, data, nstep=every)
-                position[sample], velocity[sample], clock[sample] = now_position, now_velocity, data.time
-        return position, velocity, clock, time.process_time() - begin
+
+        def record(sample: int) -> None:
+            position[sample], velocity[sample], clock[sample] = now_position, now_velocity, data.time
+
+        return position, velocity, clock, sampled(np.diff(counts).tolist(), advance, record)
 
     def _overwrite(self) -> None:
         for driven in self.model.driven:

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import repeat
-from typing import Any
 
 import numpy as np
 import pymunk
@@ -18,7 +15,7 @@ from engines import OneShot, Size
 from engines.extrapolated import UNCONVERGED
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
-from engines.single_run import reactions
+from engines.sampling import reactions, sampled
 from reference.checks import Count, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -104,30 +101,27 @@ def record(
     step, space = model.stepper(raw)
     dt /= model.unit
     visitor, before, after = recorder.visitor, recorder.velocities, recorder.states
-    visit_each(pointer, visitor, after)
-    steps_between = range(every - 1)
     stopped = ""
     own = model.space.iterations
     first = [own, *reversed(settling)] if settling else []  # the last one stays
 
-    def settle(space: Any, dt: float) -> None:
-        if first:
-            lib.cpSpaceSetIterations(pointer, first.pop())
-        step(space, dt)
+    def advance(count: int) -> bool:
+        nonlocal stopped
+        try:
+            for _ in range(count):
+                if first:
+                    lib.cpSpaceSetIterations(pointer, first.pop())
+                step(space, dt)
+        except (ValueError, ArithmeticError) as reason:  # a joint that our code places has no place any more
+            stopped = f"ours: stopped, as a joint could no longer be placed ({reason})"
+        return bool(stopped)
 
-    begin = time.process_time()
-    try:
-        for _ in repeat(None, samples):
-            move = settle if first else step
-            if velocities:
-                for _ in steps_between:
-                    move(space, dt)
-                visit_each(pointer, visitor, before)
-            move(space, dt)
-            visit_each(pointer, visitor, after)
-    except (ValueError, ArithmeticError) as reason:  # what is aimed by hand has no place to be aimed at any more
-        stopped = f"ours: stopped, as a joint could no longer be placed ({reason})"
-    stepping = time.process_time() - begin
+    stepping = sampled(
+        [every] * samples,
+        advance,
+        lambda _: visit_each(pointer, visitor, after),
+        (lambda _: visit_each(pointer, visitor, before)) if velocities else None,
+    )
     states, earlier = recorder.read(samples, velocities)
     with np.errstate(all="ignore"):  # a motion that blew up is a result
         states[..., 3:] /= model.unit

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from engines import Promise, Size, Unsupported, mjx, registry, single_run
+from engines import Promise, Size, Unsupported, mjx, registry, sampling, single_run
 from engines.conformance.worlds import WORLDS
 from engines.lagrange.engine import TRUTH
 from engines.pinocchio import Model
@@ -252,7 +252,7 @@ def test_whole_turns_are_taken_back_by_what_rates_predict():
     angle = (3.0 * np.sin(2 * t) + 50 * t)[:, None]
     rate = (6.0 * np.cos(2 * t) + 50)[:, None]
     wrapped = np.arctan2(np.sin(angle), np.cos(angle))
-    np.testing.assert_allclose(single_run.unwrapped(wrapped, rate, angle[0], 0.1), angle, atol=1e-12)
+    np.testing.assert_allclose(sampling.unwrapped(wrapped, rate, angle[0], 0.1), angle, atol=1e-12)
 
 
 def test_exudyns_explicit_integrators_take_no_joint():

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import copy
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -26,6 +25,7 @@ from engines.mujoco.running import _listening
 from engines.mujoco.stiffness import STIFFEST
 from engines.mujoco.written_file import INTEGRATORS, SOLVERS
 from engines.reading import Change, Give, Note, Obstacle
+from engines.sampling import sampled
 from reference.joints import Rod
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -178,15 +178,15 @@ class OwnMuJoCo:
         data = self._fresh(model)
         qpos, qvel = np.full((samples + 1, model.nq), np.nan), np.full((samples + 1, model.nv), np.nan)
         now_qpos, now_qvel = data.qpos, data.qvel
-        qpos[0], qvel[0] = now_qpos, now_qvel
-        with _listening(data) as complaints:
-            begin = time.process_time()
-            for sample in range(1, samples + 1):
-                mujoco.mj_step(model, data, nstep=steps)
-                if data.time < t[sample] - spacing / 2:  # MuJoCo has started anew
-                    break
+
+        def record(sample: int) -> bool:
+            has_restarted = data.time < t[sample] - spacing / 2
+            if not has_restarted:
                 qpos[sample], qvel[sample] = now_qpos, now_qvel
-            stepping = time.process_time() - begin
+            return has_restarted
+
+        with _listening(data) as complaints:
+            stepping = sampled([steps] * samples, lambda count: mujoco.mj_step(model, data, nstep=count), record)
             reset = complaints.reset_at
             sound = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
             if reset is not None:

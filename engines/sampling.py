@@ -1,0 +1,86 @@
+"""The sampling loop that all engines share, and accelerations, angles and reactions of the sampled states."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.tree import Tree
+from reference.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+
+
+def sampled(
+    steps: Iterable[int],
+    advance: Callable[[int], object],
+    record: Callable[[int], object],
+    record_before: Callable[[int], object] | None = None,
+) -> float:
+    """Step a model and record its states; returns the CPU time of stepping and recording [s].
+
+    `steps`: the number of steps before each sample after the first; `advance(count)` takes that many; `record(sample)`
+    stores the state of sample 0, 1, ...; `record_before(sample)` stores what is needed one step before a sample. The
+    loop ends early where `advance` or `record` returns True. The first sample is not timed.
+    """
+    counts = list(steps)
+    record(0)
+    begin = time.process_time()
+    for sample, count in enumerate(counts, 1):
+        if record_before is not None:
+            if advance(count - 1) is True:
+                break
+            record_before(sample)
+            count = 1
+        if advance(count) is True or record(sample) is True:
+            break
+    return time.process_time() - begin
+
+
+def reactions(
+    mechanism: Mechanism,
+    pose: Array,
+    twist: Array,
+    acceleration: Array,
+    inertias: Array,
+    gravity: Array | tuple[float, float],
+) -> Array:
+    """Reactions from accelerations at samples, with the engine's own masses and gravity; NaN where these are none."""
+    out = np.full((len(pose), mechanism.row_count), np.nan)
+    # Squares of the numbers must be finite as well, or the factorisation raises instead of giving NaN.
+    sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
+    if mechanism.row_count and np.any(sane):
+        with np.errstate(all="ignore"):
+            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity), twist[sane])
+    return out
+
+
+def tree_states(tree: Tree, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:
+    """Poses, twists and accelerations of bodies, of tree coordinates (times, coordinates) that may be NaN."""
+    with np.errstate(all="ignore"):
+        return tree.motion(position, velocity, acceleration)
+
+
+def differences(twist: Array, before: Array, dt: float) -> Array:
+    """Accelerations (samples + 1, bodies, 3) as changes of velocity over the last step; NaN at t = 0."""
+    out = np.full_like(twist, np.nan)
+    with np.errstate(all="ignore"):
+        out[1:] = (twist[1:] - before[1:]) / dt
+    return out
+
+
+def unwrapped(angle: Array, rate: Array, start: Array, spacing: float) -> Array:
+    """Angles (times, bodies) that an engine keeps within a turn, each whole turn taken back by what rates predict.
+
+    The prediction is the trapezoidal rule between samples, so it is right while alpha spacing^2 / 12 is below pi.
+    """
+    out = angle.copy()
+    out[0] = start
+    with np.errstate(all="ignore"):
+        for sample in range(1, len(out)):
+            expected = out[sample - 1] + (rate[sample - 1] + rate[sample]) / 2 * spacing
+            out[sample] += 2 * np.pi * np.round((expected - out[sample]) / (2 * np.pi))
+    return out
