@@ -23,6 +23,11 @@ class Quantity:
     unit: str
     rounding: float
 
+    @property
+    def axis(self) -> str:
+        """The label of an axis with its errors."""
+        return f"{self.label} error [{self.unit}]"
+
 
 QUANTITIES = (
     Quantity("position", "position", "m", 1e-11),

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 from engines import mujoco, pymunk
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
@@ -18,10 +19,13 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
 from reports.pages.atlas.page import lines as atlas_lines
 from reports.pages.engines import experiments as engines
+from reports.pages.guides import page as guides
 from reports.pages.pendulum.page import PATIENT, SWEPT
 from reports.pages.rolling import experiments as rolling
 from reports.pages.skate import experiments as skate
 from reports.pages.wheels import page as wheels
+from reports.write.rows import Rows
+from reports.write.unmeasured import UNMEASURED
 
 Methods = Mapping[str, list[Measurement]]  # the rows of each method, largest step first
 BROKEN = (Outcome.TORN, Outcome.RESET)
@@ -240,6 +244,31 @@ def one_setting_moves_each_engine(material: Material) -> bool:
     )
 
 
+def settings_of_a_loop(material: Material) -> bool:
+    """One change wins little, both win much, and implicitfast does what Euler does."""
+    rows = Rows(material.sweep((guides.FOUR_BAR,)))
+
+    def method(name: str) -> Rows:
+        return rows.of(guides.FOUR_BAR.name, name)
+
+    def at(name: str, every: int = guides.EVERY) -> Any:
+        return next((row for row in method(name) if row.every == every), UNMEASURED)
+
+    euler, implicit, tuned = (f"mujoco {name}" for name in ("stiff Euler", "stiff implicitfast", "tuned"))
+    shipped, extended = at("mujoco default").angle, at("pymunk extended")
+    return (
+        min(at("mujoco RK4 alone").angle, at(euler).angle) > shipped / 2
+        and at(tuned).angle < 1e-3 * shipped
+        and all(abs(at(implicit, n).angle / at(euler, n).angle - 1) < 0.01 for n in (1, guides.EVERY))
+        and all(
+            abs(method(name).sweep().order - order) < 0.1 for name, order in ((euler, 1), (implicit, 1), (tuned, 2))
+        )
+        and not method(tuned).sweep().plateau > 0
+        and method(tuned).sweep("reaction").plateau > 10 * at(tuned).angle
+        and extended.reaction > 100 * extended.angle
+    )
+
+
 def map_of(subject: str) -> dict[str, dict[float, tuple[Outcome, ...]]]:
     """Outcomes of a map of the atlas by method and value, largest step first."""
     found: dict[str, dict[float, tuple[Outcome, ...]]] = {}
@@ -291,6 +320,7 @@ OF_PAGES: Mapping[tuple[str, str], Callable[[Material], bool]] = {
     ("rolling", "Chatter on curved ground"): chatters,
     ("rolling", "Polygons"): lambda material: polygons(material.rows),
     ("rolling", "Softer and stiffer contacts"): lambda material: softness(material.rows),
+    ("settings", "the settings of a loop"): settings_of_a_loop,
     ("skate", "Friction too low to hold"): late_slips,
     ("wheels", "A reversing trailer jack-knifes"): late_folds,
     ("wheels", "Both wheels of every axle"): lambda material: second_wheels(material.rows),

@@ -61,11 +61,10 @@ def picture(found: list[Line]) -> str:
             column: [(line, Column.WHOLE if Column.WHOLE in line.columns else column) for line in own]
             for column in COLUMNS
         }
-        told = quantity(own[0].name)
         rows.append(
             Compared(
                 title,
-                f"largest {told.label} error [{told.unit}]",
+                f"largest {quantity(own[0].name).axis}",
                 {
                     column: {
                         line.engine: reached([rows for _, rows in line.columns.get(place, ())], line.name)

@@ -1,6 +1,6 @@
-"""What every user of pymunk or MuJoCo should know: findings, each told only while its rows bear it out.
+"""Findings that every user of pymunk or MuJoCo should know, each dropped where its rows contradict it.
 
-A finding is a sentence with its numbers from the rows, what has to hold for it, and a small picture for telephones.
+`findings.md` has the sentences; here are their numbers, a predicate for each, and a small picture for telephones.
 """
 
 from __future__ import annotations
@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,18 +31,15 @@ from reports.versions.catalogue import COST_ROSE_IN
 from reports.versions.table import ACCELERATION, Entry
 from reports.write.page_tables import COMPARED, advice
 from reports.write.rows import Rows, own_rows
-from reports.write.unmeasured import MARK, UNMEASURED, formatted, milliseconds, number
+from reports.write.templates import template
+from reports.write.unmeasured import MARK, UNMEASURED
 
 # Inches, 360 pixels of a browser: a telephone shows it unscaled, so that the letters keep their size.
 WIDTH, HEIGHT = 3.75, 2.55
-# By position, so that lines of one colour, and all of them in grey, differ by dashes, marks and filling.
-LOOKS: tuple[dict[str, Any], ...] = (
-    {"linestyle": ":", "marker": "o", "filled": False},
-    {"linestyle": "--", "marker": "s", "filled": True},
-    {"linestyle": "-", "marker": "D", "filled": True},
-    {"linestyle": "-.", "marker": "^", "filled": False},
-)
+# Dashes, mark and whether it is filled, by position: lines of one colour, and all of them in grey, differ.
+LOOKS = ((":", "o", False), ("--", "s", True), ("-", "D", True), ("-.", "^", False))
 STEP, CPU, RELEASE = "step [ms]", "CPU time [ms per simulated second]", "release"
+TENTH = 1e-4  # s
 
 
 @dataclass(frozen=True)
@@ -67,12 +66,6 @@ def of_releases(label: str, entries: Iterable[Entry]) -> Line:
     return Line(label, shown[0].engine if shown else "", tuple((entry.version, entry.error) for entry in shown))
 
 
-def axis_label(name: str) -> str:
-    """What stands beside the errors: the quantity with its unit."""
-    told = quantity(name)
-    return f"{told.label} error [{told.unit}]"
-
-
 def draw(lines: Sequence[Line], x: str, y: str, theme: Theme = LIGHT) -> Figure:
     """Lines against x, both axes logarithmic, but for releases, which stand side by side; an engine has its own colour.
 
@@ -83,18 +76,17 @@ def draw(lines: Sequence[Line], x: str, y: str, theme: Theme = LIGHT) -> Figure:
     with settings():
         figure = new_figure(HEIGHT, theme, WIDTH)
         axes = figure.subplots()
-        for line, look in zip(lines, LOOKS, strict=False):
+        for line, (dashes, mark, filled) in zip(lines, LOOKS, strict=False):
             if not line.points:
                 continue
             paint = colour(line.engine, theme)
             axes.plot(
-                [place for place, _ in line.points],
-                [value for _, value in line.points],
+                *zip(*line.points, strict=True),
                 label=line.label,
                 color=paint,
-                linestyle=look["linestyle"],
-                marker=look["marker"],
-                markerfacecolor=paint if look["filled"] else theme.paper,
+                linestyle=dashes,
+                marker=mark,
+                markerfacecolor=paint if filled else theme.paper,
                 markeredgecolor=paint,
                 markersize=5,
                 linewidth=1.6,
@@ -117,12 +109,9 @@ def draw(lines: Sequence[Line], x: str, y: str, theme: Theme = LIGHT) -> Figure:
     return figure
 
 
-TENTH = 1e-4  # s
-
-
 @dataclass(frozen=True)
 class Known:
-    """What findings are taken from: rows from coarse to fine, and answers to tasks; the releases' rows are a file's."""
+    """The source of findings: rows from coarse to fine, and answers to tasks; the releases' rows are a file's."""
 
     rows: Rows
     answers: Mapping[Task, Answer] = field(default_factory=dict)
@@ -134,17 +123,29 @@ class Known:
 
 
 @dataclass(frozen=True)
-class Finding:
-    """name: of the picture; title and text: Markdown, without the link to the page; lines: what the picture shows."""
+class Evidence:
+    """Values of a finding's sentences, whether the rows bear it out, and the lines and axes of its picture."""
 
-    name: str
-    title: str
-    text: str
-    page: str
+    words: Mapping[str, Any]
     holds: bool
     lines: tuple[Line, ...]
-    y: str  # of the picture
+    y: str
     x: str = STEP
+
+    def figure(self) -> Figure:
+        """Its picture."""
+        return draw(self.lines, self.x, self.y)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """`name`: that of the picture; `title` and `text`: Markdown, without the link to the page."""
+
+    name: str
+    page: str
+    title: str
+    text: str
+    evidence: Evidence
 
     @property
     def picture(self) -> str:
@@ -154,206 +155,134 @@ class Finding:
     @property
     def alternative(self) -> str:
         """The picture in words, for who can't see it."""
-        return f"{self.y} against {self.x}: {'; '.join(line.label for line in self.lines)}"
+        return f"{self.evidence.y} against {self.evidence.x}: {'; '.join(line.label for line in self.evidence.lines)}"
 
     @property
-    def told(self) -> bool:
+    def is_sound(self) -> bool:
         """Whether the rows have its numbers and bear its claims out."""
-        return self.holds and MARK not in self.title + self.text
+        return self.evidence.holds and MARK not in self.title + self.text
 
 
-def spring(known: Known) -> Finding:
-    """MuJoCo's loop as shipped, by Euler and by RK4 the same limit; and what documented settings win and cost."""
-    rows, scene, integrated = known.rows, "free_four_bar", "mujoco RK4 alone"
-    shipped, tuned = rows.of(scene, "mujoco default"), rows.of(scene, "mujoco tuned")
-    limit, same = shipped.sweep(), rows.of(scene, integrated).sweep()
-    gap, wide = rows.of(scene, integrated).sweep("gap"), shipped.sweep("gap")
+def _against_steps(words: Mapping[str, Any], holds: bool, lines: Mapping[str, Rows], name: str = "angle") -> Evidence:
+    """Evidence whose picture has the errors of a quantity against the step."""
+    drawn = tuple(of_rows(label, rows, name) for label, rows in lines.items())
+    return Evidence(words, holds, drawn, quantity(name).axis)
+
+
+def spring(known: Known) -> Evidence:
+    """MuJoCo's loop as shipped: Euler and RK4 have the same limit; gain and cost of documented settings."""
+    rows = known.rows.of("free_four_bar")
+    shipped, integrated, tuned = (rows.of(method=f"mujoco {each}") for each in ("default", "RK4 alone", "tuned"))
+    limit, same, wide, gap = shipped.sweep(), integrated.sweep(), shipped.sweep("gap"), integrated.sweep("gap")
     before, after = shipped.at(COMPARED), tuned.at(COMPARED)
     costs = after.cpu / before.cpu if before.cpu else UNMEASURED  # not timed
-    return Finding(
-        "spring",
-        "MuJoCo as shipped closes a loop by a spring, which no smaller step cures; documented settings do",
-        f"As the step goes to zero, a freely swinging four-bar as shipped is {number(same.plateau)} rad off. The pin "
-        f"that closes its loop is {number(1e3 * gap.plateau)} mm open, by Euler and by RK4 alike. The cure is a "
-        "`solref` of five steps, a `solimp` with both ends at 0.9999, and RK4: then the four-bar is "
-        f"{number(after.angle)} rad off at 1 ms, for {number(costs)} times the CPU time. It takes MuJoCo 3.7 or later; "
-        "install `mujoco-core` 4.0.1, since the newest `mujoco` brings 4.0.0, which can factorise wrongly.",
-        "four_bar",
+    return _against_steps(
+        {"same": same, "gap": gap, "after": after, "costs": costs},
         limit.verdict is same.verdict is gap.verdict is Verdict.PLATEAU
         and abs(limit.plateau - same.plateau) < 0.1 * same.plateau
         and abs(wide.plateau - gap.plateau) < 0.1 * gap.plateau
         and after.angle < 1e-3 * same.plateau
         and after.angle < shipped.at(TENTH).angle,
-        (
-            of_rows("as shipped (Euler)", shipped, "angle"),
-            of_rows("as shipped, RK4", rows.of(scene, integrated), "angle"),
-            of_rows("RK4, stiff loop", tuned, "angle"),
-        ),
-        axis_label("angle"),
+        {"as shipped (Euler)": shipped, "as shipped, RK4": integrated, "RK4, stiff loop": tuned},
     )
 
 
-def luck(known: Known) -> Finding:
+def luck(known: Known) -> Evidence:
     """Two errors that cancel at one step."""
-    scene, shipped, tuned = "spinning_four_bar", "mujoco default", "mujoco tuned"
-    rows = known.rows
-    found, best = rows.of(scene, shipped).sweep(), rows.of(scene, shipped).at(COMPARED)
-    return Finding(
-        "luck",
-        "A small error at one step may be luck",
-        f"A spinning four-bar in MuJoCo as shipped is {number(best.angle)} rad off at 1 ms, but "
-        f"{number(found.plateau)} rad as the step goes to zero. The error of the step and that of the soft loop have "
-        "opposite signs, and at 1 ms they cancel. Compare three steps before you believe one.",
-        "four_bar",
-        found.verdict is Verdict.PLATEAU
-        and found.lucky
-        and best.angle == found.best
-        and best.angle < found.plateau / 5,
-        (
-            of_rows("as shipped", rows.of(scene, shipped), "angle"),
-            of_rows("RK4, stiff loop", rows.of(scene, tuned), "angle"),
-        ),
-        axis_label("angle"),
+    shipped, tuned = (known.rows.of("spinning_four_bar", f"mujoco {each}") for each in ("default", "tuned"))
+    limit, best = shipped.sweep(), shipped.at(COMPARED)
+    return _against_steps(
+        {"limit": limit, "best": best},
+        limit.verdict is Verdict.PLATEAU
+        and limit.lucky
+        and best.angle == limit.best
+        and best.angle < limit.plateau / 5,
+        {"as shipped": shipped, "RK4, stiff loop": tuned},
     )
 
 
-def crank(known: Known) -> Finding:
+def crank(known: Known) -> Evidence:
     """Overwriting the crank's state after each step, with the loop as shipped and tuned."""
-    scene, shipped, stiff, inside = (
-        "driven_four_bar",
-        "mujoco default, overwritten crank",
-        "mujoco tuned, overwritten crank",
-        "mujoco tuned",
-    )
-    rows = known.rows
-    soft = [rows.of(scene, shipped, "failure").at(step) for step in (COMPARED, TENTH)]
-    over, right = rows.of(scene, stiff, "failure").at(COMPARED), rows.of(scene, inside).at(COMPARED)
-    return Finding(
-        "crank",
-        "A crank whose angle is overwritten after each step is not a driven crank",
-        "MuJoCo still takes it for a body that the loop's forces accelerate, so these forces are wrong. With the loop "
-        f"as shipped the linkage is {number(soft[0].angle)} rad off at 1 ms and {number(soft[1].angle)} rad at 0.1 ms. "
-        f"With a stiff loop it is {number(over.angle)} rad off at 1 ms. Give the crank an armature that nothing can "
-        f"accelerate (in pymunk: make it a kinematic body), and it is {number(right.angle)} rad off.",
-        "four_bar",
-        soft[1].angle > 0.9 * soft[0].angle and soft[0].angle > over.angle > 1000 * right.angle,
-        (
-            of_rows("overwritten, as shipped", rows.of(scene, shipped, "failure"), "angle"),
-            of_rows("overwritten, stiff loop", rows.of(scene, stiff, "failure"), "angle"),
-            of_rows("armature, stiff loop", rows.of(scene, inside), "angle"),
-        ),
-        axis_label("angle"),
+    rows, scene = known.rows, "driven_four_bar"
+    soft, stiff = (rows.of(scene, f"mujoco {each}, overwritten crank", "failure") for each in ("default", "tuned"))
+    armature = rows.of(scene, "mujoco tuned")
+    coarse, fine, over, right = soft.at(COMPARED), soft.at(TENTH), stiff.at(COMPARED), armature.at(COMPARED)
+    return _against_steps(
+        {"coarse": coarse, "fine": fine, "over": over, "right": right},
+        fine.angle > 0.9 * coarse.angle and coarse.angle > over.angle > 1000 * right.angle,
+        {"overwritten, as shipped": soft, "overwritten, stiff loop": stiff, "armature, stiff loop": armature},
     )
 
 
-def start(known: Known) -> Finding:
+def start(known: Known) -> Evidence:
     """pymunk's loop as shipped, with all of its gap closed, and started half a step ahead."""
-    scene, rows = "free_four_bar", known.rows
-    shipped, plain, ahead = (rows.of(scene, f"pymunk {variant}") for variant in ("default", "tuned", "leapfrog"))
+    rows = known.rows.of("free_four_bar")
+    shipped, plain, ahead = (rows.of(method=f"pymunk {each}") for each in ("default", "tuned", "leapfrog"))
     first, second = plain.sweep(), ahead.sweep()
     before, closed, after = (each.at(COMPARED) for each in (shipped, plain, ahead))
-    return Finding(
-        "start",
-        "In pymunk `error_bias = 0` and velocities that start half a step ahead give second order",
-        f"A free four-bar as shipped is {number(before.angle)} rad off at 1 ms. With `error_bias = 0` and as many "
-        f"iterations as the loop needs it is {number(closed.angle)} rad off, and of order "
-        f"{formatted('%.1f', first.order)}. Give the bodies the velocities of half a step later at the start as well: "
-        f"then it is {number(after.angle)} rad off, and of order {formatted('%.1f', second.order)}. The velocity at "
-        "$t$ is then the mean of the two around it; to read it so alone changes no position.",
-        "four_bar",
+    return _against_steps(
+        {"before": before, "closed": closed, "after": after, "first": first, "second": second},
         abs(first.order - 1) < 0.1
         and abs(second.order - 2) < 0.1
         and after.angle < closed.angle / 5
         and closed.angle < before.angle / 5,
-        (
-            of_rows("as shipped", shipped, "angle"),
-            of_rows("error_bias = 0", plain, "angle"),
-            of_rows("and started half a step ahead", ahead, "angle"),
-        ),
-        axis_label("angle"),
+        {"as shipped": shipped, "error_bias = 0": plain, "and started half a step ahead": ahead},
     )
 
 
-def seconds(rows: Rows) -> float:
+def _seconds(rows: Rows) -> float:
     """How long their scene is [s]; NaN without any."""
     return next((row.samples * row.every * row.step for row in rows), math.nan)
 
 
-def energy(known: Known) -> Finding:
+def energy(known: Known) -> Evidence:
     """The pendulum that slows down, in both engines as shipped and set."""
-    scene, rows = "pendulum_1", known.rows
-    methods = {
-        "pymunk as shipped": "pymunk default",
-        "pymunk, error_bias = 0": "pymunk tuned",
-        "MuJoCo as shipped": "mujoco default",
-        "MuJoCo's tree, RK4": "mujoco tuned",
+    rows = known.rows.of("pendulum_1")
+    lines = {
+        "pymunk as shipped": rows.of(method="pymunk default"),
+        "pymunk, error_bias = 0": rows.of(method="pymunk tuned"),
+        "MuJoCo as shipped": rows.of(method="mujoco default"),
+        "MuJoCo's tree, RK4": rows.of(method="mujoco tuned"),
     }
-    lost, kept, euler, exact = (_at(COMPARED, rows.of(scene, method), "energy") for method in methods.values())
-    return Finding(
-        "energy",
-        "A pendulum without friction slows down in pymunk as shipped; one setting makes it as good as MuJoCo's",
-        f"After {number(seconds(rows.of(scene)))} s at 1 ms the energy is off by {number(100 * lost)} % of the largest "
-        f"kinetic energy in pymunk as shipped, and by {number(100 * kept)} % with `error_bias = 0` on the pin. MuJoCo "
-        f"as shipped (Euler) is off by {number(100 * euler)} %, and with RK4 by {number(100 * exact)} %: its pendulum "
-        "is a tree, whose hinges are exact.",
-        "pendulum",
-        lost > 10 * kept > 1e3 * exact and kept < 1.5 * euler,
-        tuple(of_rows(label, rows.of(scene, method), "energy") for label, method in methods.items()),
-        axis_label("energy"),
+    # A run whose angle is lost has an energy all the same.
+    lost, closed, euler, exact = (
+        next((error for step, error in each.points("energy") if is_step(step, COMPARED)), math.nan)
+        for each in lines.values()
     )
+    words = {"seconds": _seconds(rows), "lost": lost, "closed": closed, "euler": euler, "exact": exact}
+    return _against_steps(words, lost > 10 * closed > 1e3 * exact and closed < 1.5 * euler, lines, "energy")
 
 
-def _at(step: float, rows: Rows, quantity: str) -> float:
-    """The error at a step [s], of a failed run too; NaN without one."""
-    return next((error for other, error in rows.points(quantity) if is_step(other, step)), math.nan)
+def _person(known: Known, count: int) -> Rows:
+    """The person whose joints are swept so often in a step, with all of each gap closed."""
+    return known.rows.of("person_one_foot", f"pymunk {count} sweeps, all of the gap", "failure")
 
 
-def person(count: int) -> tuple[str, str, str]:
-    """Scene, method and purpose of the person whose joints are swept so often in a step."""
-    return "person_one_foot", f"pymunk {count} sweeps, all of the gap", "failure"
-
-
-def iterations(known: Known) -> Finding:
+def iterations(known: Known) -> Evidence:
     """Ten iterations and twenty, on a person that falls, with all of each gap closed in a step; and as shipped."""
-    rows = known.rows
-    coarse, fine = (rows.of(*person(10)).at(step) for step in (1e-2, COMPARED))
-    right = rows.of(*person(20)).at(COMPARED)
-    shipped = rows.of("person_one_foot", "pymunk default")
-    return Finding(
-        "iterations",
-        "In pymunk with `error_bias = 0`, but not as shipped, too few iterations make a smaller step worse",
-        "A falling person is a chain of five unequal bodies. With all of each gap closed in every step, "
-        f"pymunk's usual 10 iterations leave an error of {number(coarse.angle)} rad at 10 ms, and "
-        f"of {number(fine.angle)} rad at 1 ms. 20 iterations leave {number(right.angle)} rad at 1 ms, and the same 10 "
-        f"with `error_bias` as shipped {number(shipped.at(COMPARED).angle)} rad. Long chains and unequal masses "
-        "need more iterations before they need smaller steps.",
-        "person",
+    five, ten, twenty = (_person(known, count) for count in (5, 10, 20))
+    shipped = known.rows.of("person_one_foot", "pymunk default")
+    coarse, fine, right = ten.at(1e-2), ten.at(COMPARED), twenty.at(COMPARED)
+    return _against_steps(
+        {"coarse": coarse, "fine": fine, "right": right, "shipped": shipped.at(COMPARED)},
         fine.angle > 2 * coarse.angle
         and right.angle < fine.angle / 20
         and shipped.at(COMPARED).angle < shipped.at(1e-2).angle / 5,
-        (
-            *(
-                of_rows(f"{count} iterations, error_bias = 0", rows.of(*person(count)), "angle")
-                for count in (5, 10, 20)
-            ),
-            of_rows("10 iterations, as shipped", shipped, "angle"),
-        ),
-        axis_label("angle"),
+        {
+            "5 iterations, error_bias = 0": five,
+            "10 iterations, error_bias = 0": ten,
+            "20 iterations, error_bias = 0": twenty,
+            "10 iterations, as shipped": shipped,
+        },
     )
 
 
-def forces(known: Known) -> Finding:
+def forces(known: Known) -> Evidence:
     """The same motion with 20 and with 100 iterations, but not the same reactions."""
-    few, many = (known.rows.of(*person(count)) for count in (20, 100))
+    few, many = (_person(known, count) for count in (20, 100))
     less, more = few.at(COMPARED), many.at(COMPARED)
-    return Finding(
-        "forces",
-        "The right motion does not mean the right forces",
-        "Take the same falling person in pymunk at 1 ms. With 20 and with 100 iterations the motion is the same, "
-        f"{number(less.angle)} rad off. But with 20 the joint forces are off by {number(100 * less.reaction)} % of "
-        f"the largest, and with 100 by {number(100 * more.reaction)} %. Before you use a force, see whether it "
-        "changes with the iterations and with the step.",
-        "person",
+    return Evidence(
+        {"less": less, "more": more},
         abs(less.angle - more.angle) < 0.02 * more.angle and less.reaction > 5 * more.reaction,
         (
             of_rows("forces, 20 iterations", few, "reaction"),
@@ -365,51 +294,37 @@ def forces(known: Known) -> Finding:
     )
 
 
-def releases(known: Known) -> Finding:
-    """What MuJoCo 3.7.0 mended, by the rows of the releases; and what a step as shipped has come to cost."""
-    own = table()
-    entries = [entry for entry in own.entries if entry.engine == "mujoco"]
-    versions = own.versions("mujoco")
+def releases(known: Known) -> Evidence:
+    """The cure of MuJoCo 3.7.0, by the rows of the releases; and how the cost of a step as shipped has grown."""
+    entries = [entry for entry in table().entries if entry.engine == "mujoco"]
+    versions = table().versions("mujoco")
     lines = {
         scene: [entry for entry in entries if (entry.scene, entry.variant) == (scene, "tuned")]
         for scene in ("free_four_bar", "spinning_four_bar", "driven_slider_crank")
     }
-    error = {(entry.scene, entry.version): entry.error for found in lines.values() for entry in found}
-    old, new, newest = (error.get(("free_four_bar", each), math.nan) for each in ("3.6.0", "3.7.0", versions[-1]))
+    error = {entry.version: entry.error for entry in lines["free_four_bar"]}
+    old, new, newest = (error.get(version, math.nan) for version in ("3.6.0", "3.7.0", versions[-1]))
     cost = ratios(entries, versions, "default")
     oldest, later = (float(np.median(cost[each])) if each in cost else math.nan for each in (versions[0], "3.3.7"))
-    return Finding(
-        "releases",
-        "MuJoCo 3.7.0 divided the error of stiff loops by ten thousand: never judge an engine without its release",
-        f"With the same settings a free four-bar at 1 ms is {number(old)} rad off in 3.6.0 and {number(new)} rad in "
-        "3.7.0, which gave loops the velocity term that they lacked. An upgrade costs as well: as shipped a step takes "
-        f"{number(later / oldest)} times the CPU time of {versions[0]} in 3.3.7, in the median of the scenes; the rise "
-        f"came with {COST_ROSE_IN}.",
-        "versions",
+    return Evidence(
+        {"old": old, "new": new, "oldest": oldest, "later": later, "first": versions[0], "rose_in": COST_ROSE_IN},
         3e3 < old / new < 3e4 and later / oldest > 1.4 and newest < 1.1 * new,
-        tuple(of_releases(scene.replace("_", " "), found) for scene, found in lines.items()),
-        axis_label("angle"),
+        tuple(of_releases(scene.replace("_", " "), shown) for scene, shown in lines.items()),
+        quantity("angle").axis,
         RELEASE,
     )
 
 
-def trees(known: Known) -> Finding:
+def trees(known: Known) -> Evidence:
     """Random trees with loops across, in MuJoCo with the stiffest documented settings and with stiffer rows of ours."""
-    own = table()
-    newest = own.versions("mujoco")[-1]
-    found = [entry for entry in own.entries if entry.engine == "mujoco" and entry.quantity == ACCELERATION]
-    tuned, ours = ([entry for entry in found if entry.variant == variant] for variant in ("tuned", "extended"))
-    last = {entry.variant: entry for entry in found if entry.version == newest}
+    newest = table().versions("mujoco")[-1]
+    entries = [entry for entry in table().entries if (entry.engine, entry.quantity) == ("mujoco", ACCELERATION)]
+    tuned, ours = ([entry for entry in entries if entry.variant == variant] for variant in ("tuned", "extended"))
+    last = {entry.variant: entry for entry in entries if entry.version == newest}
     many, _, rest = last["tuned"].sentence.partition(" of ") if "tuned" in last else ("0", "", "")
     soft, hard = (last[variant].error if variant in last else math.nan for variant in ("tuned", "extended"))
-    return Finding(
-        "trees",
-        "On random trees with loops MuJoCo's stiffest documented settings may still be too soft",
-        f"MuJoCo {newest}: the accelerations of {many} of {rest.partition(' ')[0]} random trees of twelve bodies and "
-        f"four loops are off by more than 1 %, of the worst by {number(100 * soft)} %. Where loops nearly depend on "
-        "one another, what `solimp` leaves of softness is as large as what it is added to. With softness divided by "
-        f"1e8 in the compiled model the worst is {number(100 * hard)} % off.",
-        "versions",
+    return Evidence(
+        {"newest": newest, "many": many, "all": rest.partition(" ")[0], "soft": soft, "hard": hard},
         int(many) >= 10 and soft > 0.1 and hard < 1e-3,
         (of_releases("documented settings", tuned), of_releases("with our code", ours)),
         "error [relative]",
@@ -417,7 +332,7 @@ def trees(known: Known) -> Finding:
     )
 
 
-# What each script of the page of faults shows, in a few words.
+# The fault that each script of the page of faults shows, in a few words.
 FAULTS: Mapping[str, str] = {
     "pymunk_groove": "a `GrooveJoint` off the centre of mass creates velocity across itself",
     "pymunk_kinetic_energy": "`Body.kinetic_energy` is twice the kinetic energy",
@@ -427,23 +342,20 @@ FAULTS: Mapping[str, str] = {
 }
 
 
-def faults(known: Known) -> Finding:
-    """What the newest releases compute wrongly at one instant, by the scripts that were run with them."""
+def faults(known: Known) -> Evidence:
+    """Faults of the newest releases at one instant, by the scripts that were run with them."""
     # Of each script the newest release, as it was released.
     last = {row.script: row for row in recorded() if not row.version.endswith(PATCHED)}
-    told = []
+    wrong = []
     for title, names in (("pymunk", PYMUNK), ("MuJoCo", MUJOCO)):
-        own = [last[name] for name in names if name in FAULTS and name in last]
-        words = "; ".join(FAULTS[row.script] for row in own if not row.right)
-        told.append(f"{title} {own[0].version if own else MARK}: {words}.")
+        scripts = [last[name] for name in names if name in FAULTS and name in last]
+        words = "; ".join(FAULTS[row.script] for row in scripts if not row.right)
+        wrong.append(f"{title} {scripts[0].version if scripts else MARK}: {words}.")
     answer = known.answers.get(OFFSETS)
-    measured = answer.array("across") if answer is not None and answer.finished else np.array([])
-    line = Line("pymunk's groove (ideal: 0)", "pymunk", tuple(zip(OFFSETS.offsets, -measured, strict=False)))
-    return Finding(
-        "faults",
-        "Releases of today compute some things wrongly, at any step: grooves, curved equalities, an energy",
-        " ".join(told) + " Each has a script that needs the engine alone.",
-        "faults",
+    across = answer.array("across") if answer is not None and answer.finished else np.array([])
+    line = Line("pymunk's groove (ideal: 0)", "pymunk", tuple(zip(OFFSETS.offsets, -across, strict=False)))
+    return Evidence(
+        {"wrong": " ".join(wrong)},
         all(name in last and not last[name].right for name in FAULTS) and len(line.points) > 3,
         (line,),
         "velocity across [m/s]",
@@ -451,113 +363,102 @@ def faults(known: Known) -> Finding:
     )
 
 
-def exact(known: Known) -> Finding:
+def exact(known: Known) -> Evidence:
     """The plain judge against both engines, by the CPU time that errors of four sizes cost."""
     rows = known.rows.of("free_four_bar")
-    least: dict[tuple[str, float], Any] = {}
-    for each in advice(rows, "angle"):
-        least.update({(each.engine, target): each.row for target in each.targets})
-    targets = sorted({target for _, target in least})
+    least = {(each.engine, target): each.row for each in advice(rows, "angle") for target in each.targets}
     cost = {key: row.cpu if row is not None and row.cpu > 0 else math.inf for key, row in least.items()}
-    fine = {engine: cost.get((engine, 1e-6), math.nan) for engine in ("lagrange", "mujoco", "pymunk")}
-    return Finding(
-        "exact",
-        "On a small loop, plain exact multipliers in compiled code beat both engines per CPU second",
-        "This suite's judge solves for the forces of ideal joints, with textbook integrators and nothing else. On the "
-        f"free four-bar an error of 1e-6 rad costs it {milliseconds(fine['lagrange'])} ms of CPU time per simulated "
-        f"second, MuJoCo {milliseconds(fine['mujoco'])} ms and pymunk {milliseconds(fine['pymunk'])} ms at their best. "
-        "Errors of 1e-2 and 1e-9 rad cost it least too. It is planar, without the contacts that engines are made for.",
-        "four_bar",
+    targets = {target for _, target in least}
+    engines = {
+        "pymunk, half a step ahead": "pymunk leapfrog",
+        "MuJoCo, RK4, stiff loop": "mujoco tuned",
+        "exact multipliers, RK4": "lagrange rk4 none",
+        "pymunk, 5 runs extrapolated": "pymunk extended",
+    }
+    return Evidence(
+        {"fine": {engine: cost.get((engine, 1e-6), math.nan) for engine in ("lagrange", "mujoco", "pymunk")}},
         len(targets) > 1
         and all(
             cost.get(("lagrange", target), math.nan) < cost.get((engine, target), math.nan)
             for target in targets
             for engine in ("mujoco", "pymunk")
         ),
-        (
-            of_rows("pymunk, half a step ahead", rows.of(method="pymunk leapfrog"), "angle", CPU),
-            of_rows("MuJoCo, RK4, stiff loop", rows.of(method="mujoco tuned"), "angle", CPU),
-            of_rows("exact multipliers, RK4", rows.of(method="lagrange rk4 none"), "angle", CPU),
-            of_rows("pymunk, 5 runs extrapolated", rows.of(method="pymunk extended"), "angle", CPU),
-        ),
-        axis_label("angle"),
+        tuple(of_rows(label, rows.of(method=method), "angle", CPU) for label, method in engines.items()),
+        quantity("angle").axis,
         CPU,
     )
 
 
-def contact(known: Known) -> Finding:
+def contact(known: Known) -> Evidence:
     """An ellipse that rolls: as a polygon, as an ellipsoid, and by two rows."""
-    scene, polygon, ellipsoid, written = "rolling_ellipse", "pymunk tuned", "mujoco default", "mujoco extended"
-    rows = known.rows
-    corners, smooth = rows.of(scene, polygon).sweep(), rows.of(scene, ellipsoid).sweep()
-    stiff, exactly = (rows.of(scene, method).at(COMPARED) for method in ("mujoco tuned", written))
-    return Finding(
-        "contact",
-        "A body that is not round does not roll truly on contact as shipped, nor as a polygon",
-        f"pymunk has no ellipses. However small the step, a rolling ellipse is {number(corners.plateau)} rad off as a "
-        f"polygon of 512 corners (our choice) in pymunk, and {number(smooth.plateau)} rad on MuJoCo's contact as "
-        f"shipped. A contact as stiff as the step allows does converge: {number(stiff.angle)} rad at 1 ms. With two "
-        f"constraint rows of our code instead of the contact it is {number(exactly.angle)} rad.",
-        "rolling",
+    rows = known.rows.of("rolling_ellipse")
+    polygon, ellipsoid = rows.of(method="pymunk tuned"), rows.of(method="mujoco default")
+    tuned, written = rows.of(method="mujoco tuned"), rows.of(method="mujoco extended")
+    corners, smooth = polygon.sweep(), ellipsoid.sweep()
+    stiff, exactly = tuned.at(COMPARED), written.at(COMPARED)
+    return _against_steps(
+        {"corners": corners, "smooth": smooth, "stiff": stiff, "exactly": exactly},
         corners.verdict is smooth.verdict is Verdict.PLATEAU
         and stiff.angle < 0.1 * smooth.plateau
         and exactly.angle < 1e-6 * min(corners.plateau, smooth.plateau),
-        (
-            of_rows("pymunk, 512 corners", rows.of(scene, polygon), "angle"),
-            of_rows("MuJoCo's contact as shipped", rows.of(scene, ellipsoid), "angle"),
-            of_rows("MuJoCo's contact, stiff", rows.of(scene, "mujoco tuned"), "angle"),
-            of_rows("MuJoCo with two rows of ours", rows.of(scene, written), "angle"),
-        ),
-        axis_label("angle"),
+        {
+            "pymunk, 512 corners": polygon,
+            "MuJoCo's contact as shipped": ellipsoid,
+            "MuJoCo's contact, stiff": tuned,
+            "MuJoCo with two rows of ours": written,
+        },
     )
 
 
-def skate(known: Known) -> Finding:
+def skate(known: Known) -> Evidence:
     """The naive skate, which no step improves, and a groove."""
-    scene, rows = "sleigh", known.rows
-    naively, groove = rows.of(scene, "pymunk default"), rows.of(scene, "pymunk tuned")
-    least = min((error for _, error in naively.points("position")), default=math.nan)
+    rows = known.rows.of("sleigh")
+    naive, groove = rows.of(method="pymunk default"), rows.of(method="pymunk tuned")
+    least = min((error for _, error in naive.points("position")), default=math.nan)
     better = groove.at(COMPARED)
-    return Finding(
-        "skate",
-        "To stop a body's centre sideways makes no skate, unless the blade is there",
-        "Neither engine has a skate or an ideal wheel. A common trick sets the sideways velocity of the body's centre "
-        "to zero after each step. Where the blade is not below the centre, that is another mechanism: after "
-        f"{number(seconds(rows.of(scene)))} s it is off by {number(least)} m or more at every step. A groove of pymunk "
-        f"that our code aims anew before each step is {number(better.position)} m off at 1 ms.",
-        "skate",
-        len(naively) >= 3 and least > 1.0 and better.position < 1e-3 * least,
-        (
-            of_rows("centre's velocity zeroed", naively, "position"),
-            of_rows("groove, aimed anew each step", groove, "position"),
-        ),
-        axis_label("position"),
+    return _against_steps(
+        {"seconds": _seconds(rows), "least": least, "better": better},
+        len(naive) >= 3 and least > 1.0 and better.position < 1e-3 * least,
+        {"centre's velocity zeroed": naive, "groove, aimed anew each step": groove},
+        "position",
     )
 
 
-FINDINGS: tuple[Callable[[Known], Finding], ...] = (
-    spring,
-    luck,
-    crank,
-    releases,
-    faults,
-    exact,
-    start,
-    energy,
-    forces,
-    iterations,
-    trees,
-    contact,
-    skate,
-)
+FINDINGS: Mapping[str, Callable[[Known], Evidence]] = {
+    find.__name__: find
+    for find in (
+        spring, luck, crank, releases, faults, exact, start, energy, forces, iterations, trees, contact, skate,
+    )
+}  # fmt: skip
+
+
+@cache
+def texts() -> Mapping[str, tuple[str, str, str]]:
+    """Page, title and text of each finding by its name."""
+    sections = Path(__file__).with_name("findings.md").read_text(encoding="utf-8").removeprefix("## ").split("\n## ")
+    found = {}
+    for section in sections:
+        heading, title, text = (" ".join(paragraph.split()) for paragraph in section.strip().split("\n\n"))
+        name, _, page = heading.partition(" on ")
+        found[name] = (page, title, text)
+    return found
+
+
+def finding(name: str, known: Known) -> Finding:
+    """The finding of this name with its numbers from these rows."""
+    page, title, text = texts()[name]
+    evidence = FINDINGS[name](known)
+    return Finding(name, page, title, template(text).render(**evidence.words), evidence)
 
 
 def findings(pages: Mapping[Page, Material]) -> list[Finding]:
     """Those that these rows bear out and that one of these pages explains, in the order of FINDINGS."""
     known, names = Known.of(pages), {page.name for page in pages}
-    return [found for find in FINDINGS if (found := find(known)).told and found.page in names]
+    return [each for name in FINDINGS if (each := finding(name, known)).is_sound and each.page in names]
 
 
-def pictures(told: Iterable[Finding]) -> dict[str, str]:
+def pictures(shown: Iterable[Finding]) -> dict[str, str]:
     """The SVG text of each finding's picture by file name."""
-    return {found.picture: svg(draw(found.lines, found.x, found.y), found.title) for found in told}
+    return {
+        each.picture: svg(draw(each.evidence.lines, each.evidence.x, each.evidence.y), each.title) for each in shown
+    }

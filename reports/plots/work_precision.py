@@ -139,7 +139,7 @@ def work_precision(
                 panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants, theme))
             panel.set_xlabel("CPU time per simulated second [ms]")
             if panels.index(panel) % COLUMNS == 0:
-                panel.set_ylabel(f"largest {quantity(field).label} error [{quantity(field).unit}]")
+                panel.set_ylabel(f"largest {quantity(field).axis}")
             _finish(panel)
         handles = _handles(variants, theme)
         handles.append(Line2D([], [], color=theme.grid, linewidth=8, label="nothing is better and cheaper"))
@@ -166,7 +166,7 @@ def error_against_step(
             panel.axhspan(1e-16, quantity(field).rounding, color=theme.grid, alpha=0.45, linewidth=0, zorder=0)
             panel.set_xlabel("step [ms]")
             if panels.index(panel) % COLUMNS == 0:
-                panel.set_ylabel(f"largest {quantity(field).label} error [{quantity(field).unit}]")
+                panel.set_ylabel(f"largest {quantity(field).axis}")
         for panel in panels:
             panel.set_ylim(bottom=min(getattr(row, field) for row in rows) / 3)
         for panel in panels:
