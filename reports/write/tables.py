@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from unicodedata import combining, east_asian_width
 
 from reports.model.convergence import ENOUGH, Sweep, Verdict, by_method, groups, sweeps
 from reports.model.errors import NAN
@@ -16,10 +17,14 @@ HOLDER = "joints held by"
 Held = Mapping[str, str] | None
 
 
-def number(value: float, digits: int = 2) -> str:
-    """A number as it is printed everywhere: 1.3e-4, 1e-3, 0.25, 12; a dash for an unknown one."""
+def number(value: float, digits: int = 2, unknown: str = NOTHING, infinite: str = "∞") -> str:
+    """A number as text with so many significant digits: 1.3e-4, 1e-3, 0.25, 12.
+
+    All of reports prints numbers by this function. Other words for NaN and infinity are passed, not wrapped:
+    `number(error, infinite="gave up")` for a run that diverged, `number(value, unknown=MARK)` in a sentence.
+    """
     if not math.isfinite(value):
-        return NOTHING if math.isnan(value) else "∞"
+        return unknown if math.isnan(value) else infinite
     if value == 0:
         return "0"
     if abs(value) < 1e4 and abs(float(f"{value:.{digits - 1}e}")) >= 1e-2:
@@ -33,14 +38,49 @@ def words_of(cell: str | float) -> str:
     return cell if isinstance(cell, str) else str(cell) if isinstance(cell, int) else number(cell)
 
 
-def milliseconds(seconds: float) -> str:
-    """CPU seconds as milliseconds."""
-    return number(1e3 * seconds)
+def milliseconds(seconds: float, unknown: str = NOTHING) -> str:
+    """CPU seconds as milliseconds, without the unit."""
+    return number(1e3 * seconds, unknown=unknown)
 
 
-def step_words(seconds: float) -> str:
-    """A step as it is printed everywhere: '10 ms', '0.33 ms'; a dash for an unknown one."""
-    return NOTHING if math.isnan(seconds) else f"{number(1e3 * seconds)} ms"
+def step_words(seconds: float, unknown: str = NOTHING) -> str:
+    """A step with its unit: '10 ms', '0.33 ms'."""
+    return unknown if math.isnan(seconds) else f"{number(1e3 * seconds)} ms"
+
+
+def text_table(
+    header: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    left: int | None = None,
+    separators: tuple[str, str] = ("  ", "  "),
+    rule: tuple[str, str] | None = None,
+) -> list[str]:
+    """Lines of a table in aligned columns, for a terminal; the header is the first line.
+
+    Args:
+        left: how many of the first columns are aligned to the left; None for all of them.
+        separators: the text between two columns in the header, and in the rows.
+        rule: (character, text between two columns) of a line below the header; None for no such line.
+    """
+    lines = [tuple(header), *map(tuple, rows)]
+    widths = [max(map(display_width, column)) for column in zip(*lines, strict=True)]
+    left = len(widths) if left is None else left
+
+    def padded(line: Sequence[str], separator: str) -> str:
+        spaces = [" " * (width - display_width(cell)) for cell, width in zip(line, widths, strict=True)]
+        cells = [cell + pad if i < left else pad + cell for i, (cell, pad) in enumerate(zip(line, spaces, strict=True))]
+        return separator.join(cells).rstrip()
+
+    head = [padded(lines[0], separators[0])]
+    head += [rule[1].join(rule[0] * width for width in widths)] if rule else []
+    return head + [padded(line, separators[1]) for line in lines[1:]]
+
+
+def display_width(text: str) -> int:
+    """Columns of a terminal that a text takes: two for a wide character, none for a combining one."""
+    if text.isascii():
+        return len(text)
+    return sum(0 if combining(char) else 2 if east_asian_width(char) in "WF" else 1 for char in text)
 
 
 def markdown(

@@ -8,6 +8,7 @@ leaves out the text up to `{% endfilter %}` if a mark is in it; `without_marks` 
 from __future__ import annotations
 
 import re
+from functools import partial
 from typing import Any
 
 from reports.write import tables
@@ -59,19 +60,10 @@ def if_measured(clause: str) -> str:
     return "" if MARK in clause else clause
 
 
-def number(value: float, digits: int = 2) -> str:
-    """A number as in the tables; MARK for an unknown one, since a sentence can't say a dash."""
-    return MARK if value != value else tables.number(value, digits)
-
-
-def milliseconds(seconds: float) -> str:
-    """CPU seconds as milliseconds."""
-    return number(1e3 * seconds)
-
-
-def step(seconds: float) -> str:
-    """A step in milliseconds, with the unit."""
-    return MARK if seconds != seconds else tables.step_words(seconds)
+# Numbers in sentences, where a dash can't stand for an unknown one.
+number = partial(tables.number, unknown=MARK)
+milliseconds = partial(tables.milliseconds, unknown=MARK)
+step = partial(tables.step_words, unknown=MARK)
 
 
 def formatted(pattern: str, *values: Any) -> str:

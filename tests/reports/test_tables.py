@@ -46,6 +46,12 @@ def test_numbers_are_printed_with_as_many_digits_as_asked(value, text, digits):
     assert tables.number(value, digits) == text
 
 
+def test_a_text_table_is_aligned_by_the_width_on_a_terminal():
+    lines = tables.text_table(["case", "error"], [["四節", "1e-3"], ["θ", "12"]], 1, (" ┃ ", " │ "), ("━", "━╇━"))
+    assert lines == ["case ┃ error", "━━━━━╇━━━━━━", "四節 │  1e-3", "θ    │    12"]
+    assert tables.text_table(["a", "b"], [["wide", "-"]]) == ["a     b", "wide  -"]
+
+
 def test_an_error_table_has_each_quantity_under_its_name():
     head, [line] = tables.ERROR_HEADER, tables.error_rows([row()])
     assert dict(zip(head, line, strict=True)) == {

@@ -85,12 +85,11 @@ def figures(material: Material) -> dict[str, str]:
 
 def table(found: Mapping[str, Any]) -> str:
     """The settings that were tried, with their errors."""
-    body = [[each["words"], _number(each["error"]), _number(each["reaction"])] for each in found["tried"]]
+    body = [
+        [each["words"], *("gave up" if each[key] is None else number(each[key]) for key in ("error", "reaction"))]
+        for each in found["tried"]
+    ]
     return markdown(list(HEADER), body)
-
-
-def _number(value: float | None) -> str:
-    return "gave up" if value is None else number(value)
 
 
 def words(material: Material) -> Mapping[str, Any]:
