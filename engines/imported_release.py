@@ -64,11 +64,10 @@ def _difference_of(package: str, module: str, elsewhere: bool) -> str:
         return ""  # it adds to a package of another distribution, as mujoco-mjx to mujoco
     if not any(map(_is_changed, files)):
         return ""
-    own = {*map(str, files)}
     others = [
         f"{other.name} {other.version}"
         for other in metadata.distributions()
-        if other.name != distribution.name and not own.isdisjoint(map(str, other.files or ()))
+        if other.name != distribution.name and f"{module}/__init__.py," in (other.read_text("RECORD") or "")
     ]
     cause = f"files of {', '.join(others)} lie over its own" if others else "its files were changed"
     return f"{line}, since {cause}: pip install --force-reinstall --no-deps {package}=={distribution.version}"

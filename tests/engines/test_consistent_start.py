@@ -6,13 +6,13 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import atan2, cos, dist, hypot, sin
+from math import cos, dist, hypot, sin
 
 import mujoco
 import numpy as np
 import pymunk
 import pytest
-from pymunk.constraints import GearJoint, PinJoint, PivotJoint, SimpleMotor
+from pymunk.constraints import PinJoint, PivotJoint, SimpleMotor
 from scipy.integrate import solve_ivp
 
 from engines import Unsupported
@@ -92,12 +92,6 @@ def two_motors_on_a_moving_chain():
     return space, bars, pivots, [(None, bars[0], 0, 3.0), (bars[0], bars[1], 1, -2.0)]
 
 
-def a_motor_and_a_gear():
-    space, bars, pivots = linkage(A, B, C, ground=None)
-    space.add(SimpleMotor(space.static_body, bars[0], 4), GearJoint(bars[0], bars[1], 0.0, 2.0))
-    return space, bars, pivots, [(None, bars[0], 0, -4.0), (bars[0], bars[1], 0.5, 0.0)]
-
-
 def a_motor_twice():
     space, bars, pivots, rates = one_motor()
     space.add(SimpleMotor(space.static_body, bars[0], -5), PivotJoint(bars[0], bars[1], B))
@@ -110,13 +104,7 @@ def pivots_alone():
     return space, bars, pivots, []
 
 
-def a_light_coupler():
-    space, bars, pivots, rates = one_motor()
-    bars[1].mass, bars[1].moment = 0.01, 1e-3
-    return space, bars, pivots, rates
-
-
-STARTS = [one_motor, two_motors_on_a_moving_chain, a_motor_and_a_gear, a_motor_twice, pivots_alone, a_light_coupler]
+STARTS = [one_motor, two_motors_on_a_moving_chain, a_motor_twice, pivots_alone]
 
 
 @pytest.mark.parametrize("make", STARTS)
@@ -155,23 +143,6 @@ def test_rates_that_contradict_each_other_are_one_line(rates, named):
         read(space)
     assert all(name in str(refused.value) for name in named)
     assert "\n" not in str(refused.value)
-
-
-def test_a_motor_from_rest_moves_a_four_bar_as_its_closed_form_says():
-    space, *_ = one_motor()
-    mechanism = read(space).mechanism
-    motion = TRUTH.build(mechanism, 0.01)(100, 1)
-    lengths = dist(B, C), dist(C, D)
-    for t, pose in zip(motion.t, motion.pose, strict=True):
-        crank = np.pi / 2 + 5 * t
-        at = 0.5 * cos(crank), 0.5 * sin(crank)
-        apart = hypot(D[0] - at[0], D[1] - at[1])
-        along = (lengths[0] ** 2 - lengths[1] ** 2 + apart**2) / (2 * apart)
-        up = np.sqrt(lengths[0] ** 2 - along**2)
-        x, y = (D[0] - at[0]) / apart, (D[1] - at[1]) / apart
-        knee = at[0] + along * x - up * y, at[1] + along * y + up * x
-        assert pose[1, :2] == pytest.approx([(at[0] + knee[0]) / 2, (at[1] + knee[1]) / 2], abs=1e-9)
-        assert pose[1, 2] == pytest.approx(atan2(knee[1] - at[1], knee[0] - at[0]) - atan2(0.4, 1.2), abs=1e-9)
 
 
 def test_a_rod_that_hangs_on_a_driven_crank_swings_as_one_equation_says():

@@ -223,12 +223,6 @@ def test_reactions_are_told_by_the_forces_that_act_and_not_by_themselves(monkeyp
         assert any("reactions are resolved" in words for words in found.warnings) == told
 
 
-def test_the_start_on_which_all_levels_agree_comes_out_exact():
-    trajectory = run(Extrapolated(Toy(), "extended", (2, 3, 4, 6, 8), (2, 3, 4, 5)))
-    assert np.array_equal(trajectory.pose[0], np.ones((1, 3)))
-    assert trajectory.t == pytest.approx(np.arange(11) * 0.3, rel=1e-15)
-
-
 def test_a_level_that_fails_makes_the_samples_not_a_number_and_is_not_dropped():
     trajectory = run(Extrapolated(Toy(broken_below=0.04), "extended", (1, 2, 3), (2, 3)))
     assert np.all(np.isfinite(trajectory.pose[0]))
@@ -246,16 +240,6 @@ def test_cost_is_the_sum_and_warnings_and_the_first_reset_are_passed_on():
     assert trajectory.reset_at == pytest.approx(100 * 0.1 / 3)
     assert trajectory.warnings[:3] == ("reset", "at step 0.05", "at step 0.0333")
     assert run(Extrapolated(Toy(), "extended", (1, 2), (2,))).reset_at is None
-
-
-def test_name_variant_size_and_refusals_are_the_inner_engines():
-    method = Extrapolated(Toy(), "extended", (1, 2), (2,))
-    assert (method.name, method.variant) == ("toy", "extended")
-    assert method.build(sledge(), 0.1).size == Size(1, 3, 2, 2)
-    one = sledge()
-    twins = Mechanism((one.bodies[0], one.bodies[0].__class__("other", 1.0, 1.0, (0.0, 0.0, 0.0))), ())
-    with pytest.raises(Unsupported, match="one body"):
-        method.build(twins, 0.1)
 
 
 @pytest.mark.parametrize(

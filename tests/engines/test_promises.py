@@ -11,9 +11,7 @@ from engines import EXACT, Holder, Promise, Unpromised, method_name, mujoco, pym
 from engines.extrapolated import Extrapolated
 from engines.lagrange import TRUTH, Lagrange
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
-from engines.mujoco import methods as mujoco_methods
 from engines.mujoco.methods import DRIVES, ROLLS, SKATES
-from engines.pymunk import methods as pymunk_methods
 from engines.pymunk.methods import SKATE_PROJECTED
 from reference.forces import Torque
 from reference.joints import Drive, Joint, Pin, Skate, Slot
@@ -26,7 +24,6 @@ from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.gate.change import Altered
 from reports.write.holders import held_by
-from tests.all_elements import ALL, ALONE, WELD
 from tests.mechanisms import four_bar
 from tests.toys import Toy
 
@@ -182,20 +179,6 @@ def test_every_variant_says_who_holds_skates_contacts_and_slots(engine, skate, c
     assert held_by(engine, DRIVEN) == "engine"
 
 
-def test_every_construction_of_a_skate_says_who_holds_it():
-    ours = {"skate: centre's velocity zeroed", "skate: point's velocity zeroed", "skate: impulse at the blade"}
-    engines = {"friction blade"}
-    for engine in (*pymunk_methods.SKATES, *mujoco_methods.SKATES):
-        expected = "ours" if engine.variant in ours else "engine" if engine.variant in engines else SHARED
-        assert held_by(engine, SKATE) == expected, engine.variant
-
-
-def test_every_construction_of_a_rolling_contact_says_who_holds_it():
-    assert {held_by(engine, ROLL) for engine in (pymunk.DEFAULT, *pymunk_methods.ROLL_FACETED)} == {"engine"}
-    assert {held_by(engine, ROLL) for engine in (pymunk.EXTENDED, pymunk_methods.ROLL_PIVOT)} == {SHARED}
-    assert [held_by(engine, ROLL) for engine in mujoco_methods.ROLLS] == ["engine"]
-
-
 def test_a_slot_that_no_groove_holds_exactly_is_aimed_by_our_rows():
     # The slotted point off the centre of mass of a slider that may turn: a push across the slot turns it.
     slot = next(joint for joint in SLIDER.joints if isinstance(joint, Slot))
@@ -207,12 +190,6 @@ def test_a_slot_that_no_groove_holds_exactly_is_aimed_by_our_rows():
     naive = replace(pymunk.DEFAULT, slot="groove")
     assert held_by(naive, mechanism) == "engine"
     assert isinstance(naive.order(mechanism), Unpromised)
-
-
-def test_an_overwritten_crank_is_ours():
-    servo, overwritten = mujoco_methods.DRIVES
-    assert held_by(servo, DRIVEN) == "engine"
-    assert held_by(overwritten, DRIVEN) == "engine; drive: ours"
 
 
 @dataclass(frozen=True)
@@ -227,14 +204,3 @@ def test_joints_of_one_kind_that_differ_are_told_by_name():
     mechanism = four_bar()
     others = " and ".join(joint.name for joint in mechanism.joints[1:])
     assert held_by(Divided(), mechanism) == f"engine; {others}: engine, our rows"
-
-
-def test_free_bodies_have_no_joints_to_hold():
-    assert held_by(pymunk.DEFAULT, Mechanism(SKATE.bodies, ())) == "no joints"
-
-
-def test_who_holds_a_rod_and_a_weld_is_told():
-    rod = ALONE["rod"].joints[1]
-    assert mujoco.DEFAULT.holder(rod, ALONE["rod"]) == "engine"
-    assert mujoco.EXTENDED.holder(rod, ALONE["rod"]) == SHARED
-    assert mujoco.EXTENDED.holder(WELD, ALL) == "engine"

@@ -14,23 +14,20 @@ import pymunk
 import pytest
 from numpy.typing import NDArray
 from pymunk import constraints
-from pymunk._chipmunk_cffi import lib
 
 from engines import Size, Unsupported
 from engines.extrapolated import Extrapolated
-from engines.lagrange import TRUTH, Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, bare_loop
-from engines.pymunk.methods import AIMED, SETTLED, SKATES
-from engines.pymunk.running import Recorder
-from reference.joints import Drive, Joint, Pin
+from engines.pymunk.methods import SKATES
+from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
-from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
+from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.rolling.scenes import RollingEllipse, RollingOnCircle
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from tests import ROOT
 from tests.engines.test_matrix import elbow
-from tests.mechanisms import bar, four_bar, pendulum
+from tests.mechanisms import four_bar
 
 FREE, MOVING, DRIVEN = four_bar(), four_bar(10.0), four_bar(10.0, drive=10.0)
 every_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
@@ -89,67 +86,6 @@ def test_a_crank_turns_about_its_pin_whatever_the_order_of_its_joints(grounded_f
         assert error[0].max() < {DEFAULT: 0.09, TUNED: 0.09, LEAPFROG: 6e-3, EXTENDED: 1e-9}[method] * 2.0 * 9.81
 
 
-def test_bodies_are_recorded_in_the_order_asked_for_whatever_the_order_in_which_c_visits_them():
-    model = DEFAULT.model(four_bar(), 1e-3)
-    told = []
-    for bodies in (model.bodies, model.bodies[::-1]):
-        recorder = Recorder(model.space, bodies, 2, 0)
-        for _ in range(2):
-            lib.cpSpaceEachBody(model.space._space, recorder.visitor, recorder.states)
-        told.append(recorder.read(1, with_velocities=False)[0])
-    np.testing.assert_array_equal(told[0], told[1][:, ::-1])
-    np.testing.assert_array_equal(told[0][0, :, :3], four_bar().pose)
-
-
-def test_a_velocity_read_at_the_wrong_instant_would_be_seen():
-    """What the engine holds in a leapfrog is half a step ahead; taken for the velocity now, it is first order."""
-    model = LEAPFROG.model(pendulum(), 1e-3)
-    model.kick(0.5e-3)
-    for _ in range(500):
-        model.space.step(1e-3)
-    exact = TRUTH.build(pendulum(), 0.5)(1, 1)
-    rate, acceleration = exact.twist[1, 0, 2], -1.5 * 9.81 * np.cos(exact.pose[1, 0, 2])
-    held = model.bodies[0].angular_velocity
-    read = LEAPFROG.build(pendulum(), 1e-3)(1, 500).twist[1, 0, 2]
-    assert held - rate == pytest.approx(0.5e-3 * acceleration, rel=0.05)
-    assert abs(read - rate) < 0.05 * abs(held - rate)
-
-
-@pytest.mark.parametrize("method", [DEFAULT, TUNED], ids=lambda method: method.variant)
-def test_reactions_are_the_engines_own_impulses_over_the_step(method):
-    dt, every = 1e-3, 7
-    model = method.model(MOVING, dt)
-    reaction = method.build(MOVING, dt)(20, every).reaction
-    for sample in range(1, 21):
-        for _ in range(every):
-            model.space.step(dt)
-        forces = [constraint.impulse / dt for constraint in model.space.constraints]
-        # A difference of velocities near 10 m/s over 1e-3 s: rounding 1e-12, times the row system's condition.
-        assert np.hypot(*reaction[sample].reshape(4, 2).T) == pytest.approx(forces, abs=1e-9)
-
-
-@every_method
-def test_two_free_bodies_keep_their_momentum(method):
-    left, right = (
-        bar("left", (0.0, 0.0), (1.0, 0.0), rate=3.0),
-        bar("right", (1.0, 0.0), (1.5, 0.5), (0.0, 3.0), rate=-2.0),
-    )
-    mechanism = Mechanism((left, right), (Pin("B", "left", "right", (0.5, 0.0), (-np.sqrt(0.125), 0.0)),))
-    trajectory = method.build(mechanism, 1e-3)(100, 10)
-    mass = np.array([left.mass, right.mass])
-    momentum = np.sum(mass[:, None] * trajectory.twist[..., :2], axis=1)
-    assert largest(momentum - momentum[0]) < 1e-11  # impulses are equal and opposite: rounding only
-    assert largest(trajectory.reaction) > 0.1  # and there are some
-
-
-@pytest.mark.parametrize("method", [SETTLED, AIMED], ids=lambda method: method.variant)
-def test_how_often_a_run_is_sampled_changes_neither_its_poses_nor_its_iterations(method):
-    """A run begins with many iterations a step; they end with the steps that ask for them, wherever a sample stands."""
-    mechanism = TenLinks().mechanism() if method is SETTLED else ChaplyginSleigh().mechanism()
-    often, seldom = (method.build(mechanism, 1e-3)(60 // every, every).pose for every in (1, 10))
-    assert np.array_equal(often[::10], seldom)
-
-
 def test_two_bodies_of_prescribed_motion_cannot_be_joined():
     one = Body("one", 1.0, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
     joints = (
@@ -160,23 +96,6 @@ def test_two_bodies_of_prescribed_motion_cannot_be_joined():
     for pinned in (0, 1):  # a crank, and a body that can only turn as driven
         with pytest.raises(Unsupported, match="'second' joins two bodies whose motion is already prescribed"):
             TUNED.build(Mechanism((one,), joints[pinned:]), 1e-3)
-
-
-def test_a_joint_that_has_no_construction_is_refused_in_a_sentence():
-    class Weld:
-        """Looks like a joint to the mechanism, is none that the engine knows."""
-
-        def __init__(self, pin: Joint) -> None:
-            self.pin = pin
-
-        def __getattr__(self, name: str):
-            return getattr(self.pin, name)
-
-    mechanism = pendulum()
-    odd = replace(mechanism)
-    object.__setattr__(odd, "joints", (Weld(mechanism.joints[0]),))
-    with pytest.raises(Unsupported, match="no construction for a Weld"):
-        TUNED.build(odd, 1e-3)
 
 
 @every_method
@@ -203,8 +122,8 @@ def thrown(mass: float | None = None) -> Mechanism:
         (METHODS, RollingEllipse().mechanism(), 1e200),
         (METHODS, RollingOnCircle().mechanism(), 1e200),
         (SKATES, thrown(), 1e200),
-        (METHODS, thrown(1e-300), 1e-3),
-        (METHODS, thrown(1e300), 1e-3),
+        (METHODS[:3], thrown(1e-300), 1e-3),
+        (METHODS[:2], thrown(1e300), 1e-3),
     ],
     ids=["ellipse", "hill", "sleigh", "light", "heavy"],
 )
@@ -222,12 +141,6 @@ def test_the_bare_loop_takes_all_steps_of_a_run(engine, levels, monkeypatch):
     assert steps == [20 * level for level in levels]
 
 
-def test_the_bare_loop_of_another_engine_is_refused():
-    other = Extrapolated(Lagrange("rk4", "none"), "extended", (1, 2), (4,))
-    with pytest.raises(ValueError, match="it must be pymunk"):
-        bare_loop(other, FREE, 1e-3, 10)
-
-
 def test_no_space_is_left_for_the_end_of_the_interpreter():
     """Freeing one there may crash the process after it has said all, and its exit status is another."""
     code = """
@@ -237,21 +150,3 @@ print([each for each in gc.get_objects() if isinstance(each, (pymunk.Space, pymu
 """
     told = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
     assert (told.returncode, told.stdout, told.stderr) == (0, "[]\n", "")
-
-
-@pytest.mark.parametrize("rest", [1.0, 3.0])
-def test_the_impulse_of_a_spring_has_a_sign_as_the_page_on_settings_says(rest):
-    pushes = 1 if rest > 2 else -1  # at a length of 2
-    for spring, speed in (
-        (lambda a, b: pymunk.constraints.DampedSpring(a, b, (0, 0), (0, 0), rest, 50, 0), lambda b: b.velocity.x),
-        (lambda a, b: pymunk.constraints.DampedRotarySpring(a, b, rest - 2, 50, 0), lambda b: b.angular_velocity),
-    ):
-        space, body = pymunk.Space(), pymunk.Body(1, 1)
-        body.position = 2, 0
-        joint = spring(space.static_body, body)
-        space.add(body, joint)
-        space.step(0.01)
-        assert abs(joint.impulse) > 0.1
-        if isinstance(joint, pymunk.constraints.DampedSpring):
-            assert joint.impulse * pushes > 0
-        assert joint.impulse == pytest.approx(speed(body))

@@ -35,14 +35,10 @@ from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import energy, joint_gap
 from reports.search.mechanisms import mechanism
 from reports.search.parts import EVERY
-from tests.engines.test_pymunk import every_method
+from tests.engines.test_pymunk import every_method, largest
 from tests.mechanisms import four_bar
 
 MOTOR = (451161196, 54)  # seed and number of a motor among pins and a gear
-
-
-def largest(values) -> float:
-    return float(np.nanmax(np.abs(values)))
 
 
 def test_a_groove_joint_pushes_a_free_body_that_only_slides_along_it():
@@ -53,16 +49,6 @@ def test_a_groove_joint_pushes_a_free_body_that_only_slides_along_it():
     space.step(1e-9)
     across = body.velocity.y + 0.3 * body.angular_velocity
     assert abs(across) > 0.01
-
-
-@every_method
-def test_a_body_driven_against_the_ground_without_a_pin_turns_exactly(method):
-    body = Body("block", 1.0, 0.1, (0.0, 0.0, 0.2), (1.0, 0.0, 2.0))
-    joints = (Drive("level", None, "block", 2.0, 0.2), Slot("guide", None, "block", (0.0, 0.0), 0.0, (0.0, 0.0)))
-    trajectory = method.build(Mechanism((body,), joints, (0.0, -9.81)), 1e-2)(50, 4)
-    assert largest(trajectory.pose[:, 0, 2] - 0.2 - 2.0 * trajectory.t) < 1e-11  # 1600 steps, weighted
-    # A slot stops the fall, and nothing stops the slide.
-    assert largest(trajectory.pose[-1, 0, 0] - trajectory.t[-1]) < 1e-11
 
 
 @every_method
@@ -111,14 +97,6 @@ def test_sweeps_are_counted_for_the_worst_pose_of_the_motion():
     assert worst_contraction(larger, scene.duration) == pytest.approx(worst_contraction(mechanism, scene.duration))
     assert LEAPFROG.sweeping(mechanism, scene.duration).iterations > LEAPFROG.sweeping(mechanism).iterations
     assert LEAPFROG.sweeping(mechanism, scene.duration).gain == 1
-
-
-def test_the_gain_is_all_with_enough_sweeps_and_less_in_proportion_to_what_is_missing():
-    rho = contraction(TenLinks().mechanism())
-    assert gain(rho, sweeps(rho)) == 1
-    assert gain(rho, 2) < gain(rho, 10) < 1
-    assert sweeps(0.0) == 5
-    assert sweeps(1 - 1e-9) == 300
 
 
 @pytest.mark.parametrize("iterations", [2, 10])
@@ -213,17 +191,6 @@ def test_a_small_gain_does_not_underflow_to_a_gain_of_one_at_small_steps():
     assert model.unit == 1e-5
     assert next(iter(model.space.constraints)).error_bias == pytest.approx(1 - gain(rho, 300), rel=1e-12)
     assert model.space.gravity == pytest.approx((0.0, -9.81e-10), rel=1e-12)
-
-
-def test_units_of_time_change_no_motion():
-    """The same method in seconds and in steps, at a gain that both can express."""
-    mechanism = replace(LinkPendulum(tip=1e4), rate=0.5).mechanism()
-    rho = contraction(mechanism)
-    seconds = Pymunk("mine", 300, (1 - gain(rho, 300)) ** (1 / 1e-2), leapfrog=True)
-    one, other = (engine.build(mechanism, 1e-2)(20, 2) for engine in (seconds, LEAPFROG))
-    for quantity in ("pose", "twist"):
-        assert largest(getattr(one, quantity) - getattr(other, quantity)) < 1e-9
-    assert any("not converged, 300 sweeps leave 97%" in warning for warning in other.warnings)
 
 
 def test_a_hundred_links_are_reported_as_not_converged_and_stay_together():

@@ -156,15 +156,6 @@ def test_a_groove_beside_the_centre_of_mass_is_named_since_chipmunk_pushes_other
         refuse_disagreement(read(space_of(beside, spin=0.0), 0.01))
 
 
-def test_a_groove_in_a_body_that_turns_is_named():
-    def carried(space, first, second):
-        at = first.world_to_local(second.position)
-        return GrooveJoint(first, second, (at.x - 1, at.y), (at.x + 1, at.y), (0, 0))
-
-    with pytest.raises(Unsupported, match=r"^GrooveJoint 1: "):
-        refuse_disagreement(read(space_of(carried, spin=0.0), 0.01))
-
-
 def test_a_force_that_stands_on_a_body_is_constant_and_told():
     def pushed(space, first, second):
         second.force, second.torque = (1.0, 0.5), -0.25

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engines import rolling_table
-from engines.rolling_table import RoundOnLine, RoundOnRound, Table, rolled
+from engines.rolling_table import Table, rolled
 from engines.tree import pushes, spanning_tree
 from reference.rolling.closed_curves import Ellipse
 from reference.rolling.curves import Circle, Line, Placed, Ring, Side
@@ -89,16 +89,6 @@ def test_places_contacts_and_arms_are_the_references_to_rounding(rolling: Rollin
         assert abs(own + arm * cmath.rect(1.0, -angle)) < 1e-13
 
 
-def test_round_pairs_are_in_closed_form_and_others_are_not() -> None:
-    kinds = {name: type(rolled(rolling)) for name, rolling in PAIRS.items()}
-    assert {name for name, kind in kinds.items() if kind is RoundOnLine} == {"rolling_disc", "placed disc on a slope"}
-    assert {name for name, kind in kinds.items() if kind is RoundOnRound} == {
-        *("rolling_on_circle", "disc_in_hole", "placed disc on a placed hill", "placed disc in a hole"),
-        "ring round a disc",
-    }
-    assert kinds["rolling_ellipse"] is kinds["ellipse on a disc"] is kinds["disc on an ellipse"] is Table
-
-
 def test_a_disc_that_nearly_fits_its_hole_is_where_forty_digits_put_it() -> None:
     """Its contact runs round 1e5 times as fast as it turns; a search for it would leave seven digits only."""
     clearance, theta = 1e-5, 5.0
@@ -153,17 +143,6 @@ MECHANISMS = (
     *(random_mechanism(21, number, EVERY) for number in range(6)),
     *(scene.mechanism() for scene in SCENES if len(scene.mechanism().bodies) < 20),
 )
-
-
-def test_the_mechanisms_have_every_kind_of_link():
-    links = [link for mechanism in MECHANISMS for link in spanning_tree(mechanism).links]
-    assert {(link.kind, link.turns) for link in links} == {
-        ("free", True),
-        ("hinge", True),
-        ("hinge", False),
-        ("slot", True),
-        ("slot", False),
-    }
 
 
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=range(len(MECHANISMS)))
