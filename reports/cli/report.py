@@ -88,7 +88,7 @@ def report(
             rows = {page: kept_numbers.as_published(given.rows, before) for page, given in material.items()}
             material = {page: replace(given, rows=rows[page]) for page, given in material.items()}
             if wrong := contradicted(material):
-                raise BadInput(f"nothing is published, since rows contradict these remarks: {'; '.join(wrong)}")
+                raise BadInput(f"nothing is published, since rows contradict these claims of pages: {'; '.join(wrong)}")
         command = "make publish" if publish else "crosscheck report"
         many = sum(len(given.rows) for given in material.values()) > MANY
         words = () if publish else store.remembered()

@@ -51,6 +51,7 @@ class Failure:
     columns: tuple[str, ...] = ()
     tasks: tuple[Task, ...] = ()
     words: Callable[[Material], Mapping[str, Any]] = no_words
+    claims: tuple[str, ...] = ()  # expressions that hold where the remark is true (`reports.pages.claims`)
 
 
 @dataclass(frozen=True)

@@ -50,25 +50,33 @@ def cells_to_rounding(
 def described(source: str, *failures: Failure, **values: Any) -> tuple[Failure, ...]:
     """The experiments with their texts from `experiments.md` beside the file `source`.
 
-    A section has the experiment's title, a paragraph with what is expected, and, if there is one, a paragraph with what
-    the outcomes teach. Both are templates of `values` and of the experiment's own words. Raises ValueError unless each
-    experiment has a section and each section an experiment.
+    A section has the experiment's title, a paragraph with the expectation, a paragraph with the lesson if there is one,
+    and a list of the claims in it (`reports.pages.claims`). All are templates of `values` and of the experiment's own
+    words. Raises ValueError unless each experiment has a section and each section an experiment.
     """
     text = Path(source).with_name("experiments.md").read_text(encoding="utf-8")
-    sections: dict[str, list[str]] = {}
+    sections = {}
     for section in text.removeprefix("## ").split("\n## "):
         title, *paragraphs = section.strip().split("\n\n")
-        sections[title] = [" ".join(paragraph.split()) for paragraph in paragraphs]
+        sections[title] = paragraphs
     if list(sections) != (titles := [failure.title for failure in failures]):
         raise ValueError(f"{source}: experiments.md has the sections {list(sections)}; the experiments are {titles}")
-    return tuple(_with_text(failure, values, *sections[failure.title]) for failure in failures)
+    return tuple(_with_text(failure, sections[failure.title], values) for failure in failures)
 
 
-def _with_text(failure: Failure, values: Mapping[str, Any], expected: str, remark: str = "") -> Failure:
+def _with_text(failure: Failure, paragraphs: Iterable[str], values: Mapping[str, Any]) -> Failure:
     def words(material: Material) -> Mapping[str, Any]:
         return {**values, **failure.words(material)}
 
-    return replace(failure, expected=expected, remark=remark, words=words if values else failure.words)
+    texts = [" ".join(each.split()) for each in paragraphs if not each.startswith("- ")]
+    claims = [line.removeprefix("- ") for each in paragraphs if each.startswith("- ") for line in each.splitlines()]
+    return replace(
+        failure,
+        expected=texts[0],
+        remark=" ".join(texts[1:]),
+        claims=tuple(claims),
+        words=words if values else failure.words,
+    )
 
 
 Found = Mapping[str, Mapping[tuple[str, str], Mapping[str, float] | Outcome]]

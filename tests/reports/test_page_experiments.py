@@ -25,6 +25,7 @@ from reference.scenes.slider_crank.scenes import RodEndInSlot, SliderAtDeadCentr
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy, joint_gap, slip
 from reports.gate.prediction import all_tasks
+from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, blank, measure, stopped_where_it_ends
 from reports.model.outcomes import Outcome
@@ -351,20 +352,50 @@ def test_remarks_count_torn_runs_and_take_delays_from_answers():
     assert "by e every 0.11 s" in text  # 0.5 s over log 100
 
 
-def test_a_claim_that_rows_contradict_or_do_not_have_is_named(monkeypatch):
-    failure = Failure("Falls", cells=common.cells(four_bar.SCENES[1], [pymunk.DEFAULT], (1, 10)))
+ROWS = [*falling("pymunk a", (8e-2, 4e-2, 1e-2)), *falling("pymunk b", (2e-2, 1.8e-2, 1.7e-2), outcome="torn")]
+SETS = replace(common.cells(four_bar.SCENES[1], [pymunk.DEFAULT], (1,))[0], samples=7)
+
+
+@pytest.mark.parametrize(
+    ("claim", "holds"),
+    [
+        ('falls("pymunk a", 1.9)', True),
+        ('falls("pymunk a")', False),
+        ('falls("pymunk c")', False),  # a method that was not run
+        ('stays("pymunk b")', True),
+        ('stays("pymunk a")', False),
+        ('ratio("pymunk a") == 0.25', True),
+        ('above("pymunk a", "pymunk b")', False),
+        ('above("pymunk a", "pymunk b", 0.5)', True),
+        ('share("torn") == 0.5 and share("torn", without="pymunk a") == 1', True),
+        ('comparable("pymunk b") == [false, false, false] and ends("pymunk a")[0] == "finished"', True),
+        ('smallest("angle", "pymunk a") < smallest("angle", "pymunk b") < largest("angle", "pymunk a")', True),
+        ('unresolved("pymunk a") or silent() or estimated("pymunk a")', False),
+        ('at("pymunk a", 1e-2).angle == times', True),
+        ('alike("disc", "angle", "pymunk a")', True),
+        ('alike("another", "angle", "pymunk a")', False),
+    ],
+)
+def test_a_claim_that_rows_contradict_or_do_not_have_is_named(claim, holds):
+    cells = [replace(SETS, every=every) for every in range(1, 7)]
+    failure = Failure("Falls", cells=tuple(cells), claims=(claim,), words=lambda material: {"times": 4e-2})
     page = replace(four_bar.PAGE, name="toy", failures=(failure,))
-    monkeypatch.setitem(claims.OF_METHODS, ("toy", "Falls"), lambda of: claims.falls(of["pymunk default"]))
-    for errors, wrong in (((1e-2, 1e-3), []), ((1e-2, 9e-3), ["toy: Falls"]), ((), ["toy: Falls"])):
-        rows = dict(zip(failure.cells, falling("pymunk default", errors), strict=False))
-        assert claims.contradicted({page: Material(rows)}) == wrong
+    wrong = claims.contradicted({page: Material(dict(zip(cells, ROWS, strict=True)))})
+    assert wrong == ([] if holds else [f"toy, Falls: {claim}"])
+
+
+def test_every_claim_of_our_pages_can_be_read_and_none_holds_without_rows():
+    wrong = claims.contradicted({page: Material({}) for page in PAGES})
+    written = sum(len(failure.claims) for page in PAGES for failure in page.failures)
+    assert len(wrong) >= written > 50
 
 
 def test_an_experiment_without_its_section_of_text_is_refused(tmp_path):
-    (tmp_path / "experiments.md").write_text("## One\n\nIt turns\n{{ times }} times.\n\nIt does.\n")
+    text = "## One\n\nIt turns\n{{ times }} times.\n\nIt does.\n\n- times == 3\n- times > 2\n"
+    (tmp_path / "experiments.md").write_text(text)
     (one,) = common.described(str(tmp_path / "page.py"), Failure("One"), times=3)
     assert (one.expected, one.remark) == ("It turns {{ times }} times.", "It does.")
-    assert one.words(Material({})) == {"times": 3}
+    assert (one.claims, one.words(Material({}))) == (("times == 3", "times > 2"), {"times": 3})
     with pytest.raises(ValueError, match=r"experiments\.md has the sections"):
         common.described(str(tmp_path / "page.py"), Failure("Two"))
 
