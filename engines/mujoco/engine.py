@@ -25,7 +25,7 @@ from engines.mujoco.model import Coordinates, Model, Settings, build_model
 from engines.mujoco.running import ORDER, MuJoCoRun
 from engines.mujoco.solver_check import choose_solver, ease
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
-from engines.mujoco.written_file import as_text
+from engines.mujoco.writers import mjcf
 from engines.tree import Tree, spanning_tree
 from reference.checks import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
 from reference.joints import Drive, Joint, Rod, Skate, Slot
@@ -199,12 +199,9 @@ class MuJoCo(Engine, Valid):
         return MuJoCoRun(model, data, size, lambda other: self.build(mechanism, other))
 
     @validated
-    def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False, unit: Positive | None = None) -> Model:
-        """The compiled model alone; `as_text`: from text of ours with all digits, in kg, which `written_as` keeps.
-
-        `unit`: that of mass [kg], if not `engines.mujoco.model.unit_of_mass`.
-        """
-        return self._model(mechanism, dt, as_text, unit)
+    def model(self, mechanism: Mechanism, dt: Positive, unit: Positive | None = None) -> Model:
+        """The compiled model alone; `unit`: that of mass [kg], if not `engines.mujoco.model.unit_of_mass`."""
+        return self._model(mechanism, dt, unit)
 
     @validated
     def text(self, mechanism: Mechanism, dt: Positive) -> str:
@@ -212,9 +209,9 @@ class MuJoCo(Engine, Valid):
 
         Raises Unsupported where rows are written, or compliances changed, while or before it is stepped.
         """
-        return as_text(self._model(mechanism, dt, as_text=True), self.stiffness.softening)
+        return mjcf(self._model(mechanism, dt, 1.0), self.stiffness.softening)
 
-    def _model(self, mechanism: Mechanism, dt: float, as_text: bool, unit: float | None = None) -> Model:
+    def _model(self, mechanism: Mechanism, dt: float, unit: float | None = None) -> Model:
         stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
         integrator = "Euler" if stepwise else self.integrator
         options = {
@@ -235,7 +232,6 @@ class MuJoCo(Engine, Valid):
             self.skates,
             self.rolls,
             self.rods,
-            as_text,
             unit,
         )
         model = build_model(mechanism, dt, settings)

@@ -74,8 +74,8 @@ class LimitedTendon(MuJoCo):
 
     limit: Positive = 1.0
 
-    def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False, unit: Positive | None = None) -> Model:
-        model = super().model(mechanism, dt, as_text, unit)
+    def model(self, mechanism: Mechanism, dt: Positive, unit: Positive | None = None) -> Model:
+        model = super().model(mechanism, dt, unit)
         model.compiled.tendon_frictionloss[:] = self.limit / model.unit
         return model
 

@@ -26,7 +26,6 @@ from engines.mujoco.joints.skate import SkateBy, add_skates
 from engines.mujoco.joints.slot import SlotBy, add_slots
 from engines.mujoco.releases import NO_ISLANDS
 from engines.mujoco.stiffness import Stiffness
-from engines.mujoco.written_model import Written, new_specification
 from engines.tree import Tree, spanning_tree
 from engines.units import counted_in, power_of_two
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
@@ -58,7 +57,6 @@ class Settings:
     skates: SkateBy
     rolls: RollBy
     rods: RodBy
-    as_text: bool = False  # write it as text with all digits, masses in kg
     unit: float | None = None  # kg: of mass, if not `unit_of_mass`
 
 
@@ -78,7 +76,7 @@ class Model:
     start_rates: tuple[tuple[int, float], ...] = ()  # of coordinates that stand for no body of the mechanism
     unit: float = 1.0  # kg: masses, forces and torques in the compiled model are in this
     halves: tuple[tuple[str, int], ...] = ()  # bodies of the model alone, and the one that each is a part of
-    written_as: Written | None = None  # the model as text, where that was asked for
+    spec: Any = None  # mujoco.MjSpec
     softening: float | None = None  # of its rows, where that is not what was asked for
 
     @contextmanager
@@ -125,7 +123,7 @@ class Model:
 def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
     CAPABILITY.require(mechanism)
-    whole, unit = mechanism, 1.0 if settings.as_text else settings.unit or unit_of_mass(mechanism)
+    whole, unit = mechanism, settings.unit or unit_of_mass(mechanism)
     mechanism = counted_in(mechanism, unit)
 
     def of(kind: type[Any]) -> list[Any]:
@@ -174,13 +172,13 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
         rates,
         unit,
         tuple(building.halves),
-        spec if settings.as_text else None,
+        spec,
     )
 
 
 def _spec(tree: Tree, dt: float, settings: Settings) -> Any:
     """A mujoco.MjSpec with the options and the bodies of the tree, and nothing else."""
-    spec = Written() if settings.as_text else new_specification()
+    spec = mujoco.MjSpec()
     spec.compiler.degree = False
     spec.option.timestep = dt
     spec.option.gravity = [*tree.mechanism.gravity, 0.0]

@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 MARK = "known to be wrong"  # what rows and pages know such a release by
+CAPITALS = ("RK4", "PGS", "CG")  # words of MJCF that are not in small letters
+MIXED = {"EULER": "Euler", "NEWTON": "Newton"}
 # The flag that solves all rows as one. Before 3.3.6 there was none, and islands had to be asked for.
 NO_ISLANDS = int(getattr(mujoco.mjtDisableBit, "mjDSBL_ISLAND", 0))
 
@@ -48,6 +50,12 @@ def full_inertia(compiled: Any, data: Any) -> NDArray[np.float64]:
     except TypeError:
         mujoco.mj_fullM(compiled, dense, data.qM)
     return dense
+
+
+def spelled(constant: Any) -> str:
+    """A constant of MuJoCo's as MJCF spells it: 'implicitfast' for mjINT_IMPLICITFAST."""
+    word = constant.name.split("_")[1]
+    return MIXED.get(word, word if word in CAPITALS else word.lower())
 
 
 def marks() -> list[str]:

@@ -1,25 +1,41 @@
-"""What `crosscheck export` and `view` ask of MuJoCo: MJCF and URDF that run without this suite, and its viewer."""
+"""What `crosscheck export` and `view` ask of MuJoCo: MJCF and URDF that run without this suite, and its viewer.
+
+MJCF is what `mujoco.MjSpec` writes, with all digits instead of six. Bodies have the mechanism's names, the start is a
+keyframe, and bars and points let the mechanism be seen: nothing touches these, and they have no mass.
+"""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
 
 from __future__ import annotations
 
-import math
 import os
 import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as xml
+
+import mujoco
+import numpy as np
 
 from engines import Unsupported
 from engines.capability import Capability
-from engines.mujoco.methods import VARIANTS
+from engines.mujoco.releases import spelled
 from engines.tree import Link, spanning_tree
-from reference.joints import Drive, Pin, Slot, Weld
+from reference.joints import Drive, Pin, Slot, Vector, Weld
 from reference.mechanism import Mechanism
+from reference.plane import rotated
+
+if TYPE_CHECKING:
+    from engines.mujoco.model import Model
+
+FLAGS = ("contact", "island")
+THICKNESS = 0.02  # of bars, in the mechanism's lengths
+UNTOUCHED = {"contype": "0", "conaffinity": "0", "mass": "0"}
+REFERRING = ("name", "body", "body1", "body2")
 
 
 @dataclass(frozen=True)
@@ -30,6 +46,8 @@ class Mjcf:
 
     def write(self, mechanism: Mechanism, dt: float, variant: str) -> str:
         """The file's text. Raises Unsupported where no file can hold it, ValueError for an unknown variant."""
+        from engines.mujoco.methods import VARIANTS
+
         known = {engine.variant: engine for engine in VARIANTS}
         if variant not in known:
             raise ValueError(f"--variant is {variant!r}; it must be one of {', '.join(known)}")
@@ -57,7 +75,6 @@ def show(text: str) -> None:
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Unsupported("there is no display")
     try:
-        import mujoco
         import mujoco.viewer  # an extra of MuJoCo's: it asks for a window system
     except ImportError as reason:
         raise Unsupported(f"MuJoCo's viewer is not installed: {reason}") from None
@@ -86,7 +103,7 @@ def urdf(mechanism: Mechanism) -> str:
         if isinstance(joint, Drive) and joint not in tree.kept:
             raise Unsupported(f"drive {joint.name!r} prescribes a motion, which URDF has no word for")
     root = xml.Element("robot", {"name": "crosscheck"})
-    xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _row(*_upright(*mechanism.gravity))})
+    xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _row(_upright(*mechanism.gravity))})
     if mechanism.twist.any():
         root.append(
             xml.Comment(" The mechanism starts in motion, which URDF has no word for: here it starts at rest. ")
@@ -105,7 +122,7 @@ def _add(root: xml.Element, mechanism: Mechanism, link: Link) -> None:
         raise Unsupported(f"body {body.name!r} is held by less than a hinge or a slide, which URDF has no joint for")
     element = xml.SubElement(root, "link", {"name": body.name})
     inertial = xml.SubElement(element, "inertial")
-    xml.SubElement(inertial, "origin", {"xyz": _row(*_upright(-link.anchor[0], -link.anchor[1])), "rpy": "0 0 0"})
+    xml.SubElement(inertial, "origin", {"xyz": _row(_upright(-link.anchor[0], -link.anchor[1])), "rpy": "0 0 0"})
     xml.SubElement(inertial, "mass", {"value": repr(float(body.mass))})
     tensor = {name: repr(float(body.inertia)) for name in ("ixx", "iyy", "izz")} | dict.fromkeys(
         ("ixy", "ixz", "iyz"), "0"
@@ -120,10 +137,10 @@ def _add(root: xml.Element, mechanism: Mechanism, link: Link) -> None:
     if link.parent is not None:
         base = _anchor(mechanism, link.parent)
         at = (at[0] - base[0], at[1] - base[1])
-    xml.SubElement(joint, "origin", {"xyz": _row(*_upright(*at)), "rpy": "0 0 0"})
+    xml.SubElement(joint, "origin", {"xyz": _row(_upright(*at)), "rpy": "0 0 0"})
     axis = (0.0, -1.0, 0.0) if link.kind == "hinge" else _upright(*link.direction)
     if kind != "fixed":
-        xml.SubElement(joint, "axis", {"xyz": _row(*axis)})
+        xml.SubElement(joint, "axis", {"xyz": _row(axis)})
     if link.kind == "slot":
         xml.SubElement(joint, "limit", {"lower": "-1e9", "upper": "1e9", "effort": "1e9", "velocity": "1e9"})
 
@@ -138,5 +155,155 @@ def _upright(x: float, y: float) -> tuple[float, float, float]:
     return (x, 0.0, y)
 
 
-def _row(*values: Any) -> str:
-    return " ".join(repr(float(value) if not math.isclose(value, 0.0, abs_tol=0.0) else 0.0) for value in values)
+def mjcf(model: Model, softening: float) -> str:
+    """The text of a model in kg. Raises Unsupported for a model that our code helps while it is stepped."""
+    hooks = model.hooks
+    if hooks.control or hooks.before:
+        raise Unsupported("this variant writes rows while it steps: a file would not run without this suite")
+    if softening != 1:
+        raise Unsupported("this variant changes compliances that no file can state; take default or tuned")
+    root = xml.fromstring(model.spec.to_xml())
+    root.set("model", "crosscheck")
+    root.remove(root.find("option"))  # pyright: ignore[reportArgumentType]
+    root.insert(1, _option(model.compiled.opt))
+    _write_all_digits(root, model.spec, model.compiled)
+    add_visuals(root, model.mechanism)
+    _rename(root, model)
+    start = model.start()
+    key = {"name": "start", "qpos": _row(start.qpos), "qvel": _row(start.qvel)}
+    if model.compiled.nu:
+        key["ctrl"] = _row(start.ctrl)
+    xml.SubElement(xml.SubElement(root, "keyframe"), "key", key)
+    xml.indent(root)
+    return xml.tostring(root, encoding="unicode") + "\n"
+
+
+def _option(option: Any) -> xml.Element:
+    """The settings as compiled, those that are MuJoCo's own too."""
+    enums = {
+        "integrator": mujoco.mjtIntegrator,
+        "solver": mujoco.mjtSolver,
+        "jacobian": mujoco.mjtJacobian,
+        "cone": mujoco.mjtCone,
+    }
+    attributes = {
+        "timestep": _row(option.timestep),
+        "gravity": _row(option.gravity),
+        "tolerance": _row(option.tolerance),
+    }
+    attributes |= {name: spelled(enum(getattr(option, name))) for name, enum in enums.items()}
+    element = xml.Element("option", attributes | {"iterations": str(int(option.iterations))})
+    off = [flag for flag in FLAGS if option.disableflags & int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag.upper()}"))]
+    if off:
+        xml.SubElement(element, "flag", dict.fromkeys(off, "disable"))
+    return element
+
+
+def _write_all_digits(root: xml.Element, spec: Any, compiled: Any) -> None:
+    """Replace the numbers in the text of a mujoco.MjSpec, which have six digits.
+
+    Shapes stand where the compiled model has them: a blade is pressed into its plane once its weight is known.
+    """
+    for element in root.iter("body"):
+        body = spec.body(element.get("name"))
+        _set(element, pos=body.pos)
+        _set(element.find("inertial"), pos=body.ipos, mass=body.mass, diaginertia=body.inertia)
+        for child in element.findall("joint"):
+            joint = spec.joint(child.get("name"))
+            _set(child, axis=joint.axis, pos=joint.pos, armature=joint.armature)
+    for element in root.iter("geom"):
+        shape, size = compiled.geom(element.get("name")), len(element.get("size", "").split())
+        _set(element, pos=shape.pos, quat=shape.quat, size=shape.size[:size])
+    for element in root.iterfind("worldbody//site"):
+        _set(element, pos=spec.site(element.get("name")).pos)
+    places = iter(compiled.wrap_prm)
+    for element in root.find("tendon") or ():
+        tendon = spec.tendon(element.get("name"))
+        linear = {name: np.ravel(getattr(tendon, name))[:1] for name in ("stiffness", "damping")}
+        _set(element, springlength=tendon.springlength, **linear)
+        for child, coefficient in zip(element, places, strict=False):
+            if child.tag == "joint":
+                _set(child, coef=coefficient)
+    for number, (element, held) in enumerate(zip(root.find("equality") or (), spec.equalities, strict=True)):
+        _set(element, solref=held.solref, solimp=held.solimp)
+        if element.tag == "weld":
+            _set(element, relpose=compiled.eq_data[number][3:10])
+        if element.tag != "tendon":
+            _set(element, anchor=held.data[:3])
+    for element, pair in zip(root.find("contact") or (), spec.pairs, strict=True):
+        names = ("friction", "solref", "solimp", "solreffriction", "margin")
+        _set(element, **{name: getattr(pair, name) for name in names})
+    for element, actuator in zip(root.find("actuator") or (), spec.actuators, strict=True):
+        _set(element, gear=actuator.gear, biasprm=actuator.biasprm, gainprm=actuator.gainprm)
+
+
+def _set(element: xml.Element | None, **numbers: Any) -> None:
+    """Set these attributes; zeros that MJCF leaves out stay so."""
+    assert element is not None
+    for name, values in numbers.items():
+        if np.any(values) or name in element.attrib:
+            element.set(name, _row(values))
+
+
+def _rename(root: xml.Element, model: Model) -> None:
+    """Bodies under the mechanism's names, where these are not taken by something else."""
+    names = {f"body {number}": body.name for number, body in enumerate(model.mechanism.bodies)}
+    if set(names) & set(names.values()):
+        return
+    for element in root.iter():
+        for attribute in REFERRING:
+            value = element.get(attribute)
+            if value in names and (attribute != "name" or element.tag == "body"):
+                element.set(attribute, names[value])
+
+
+def _row(values: Any) -> str:
+    return " ".join(repr(float(value) + 0.0) for value in np.ravel(values))
+
+
+def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
+    """Bars through the joints of every "body i" of a model that has no shapes yet, and the view onto its plane."""
+    size = repr(THICKNESS * mechanism.length_scale)
+    visual = xml.Element("visual")
+    xml.SubElement(visual, "global", {"azimuth": "90", "elevation": "-90"})
+    xml.SubElement(visual, "headlight", {"ambient": "0.5 0.5 0.5"})
+    root.insert(1, visual)
+    world = root.find("worldbody")
+    assert world is not None
+    for index, body in enumerate(mechanism.bodies):
+        element = next(each for each in world.iter("body") if each.get("name") == f"body {index}")
+        if element.find("geom") is not None:
+            continue
+        # The file's bodies stand parallel to the world at the start.
+        ends = [_place(rotated(body.pose[2], np.array(point))) for point in _points(mechanism, body.name)]
+        for first, second in pairwise(ends):
+            look = {"type": "capsule", "fromto": f"{first} {second}", "size": size, "rgba": "0.3 0.5 0.8 1"}
+            element.append(xml.Element("geom", {**look, **UNTOUCHED}))
+        if len(ends) == 1:
+            look = {"type": "sphere", "size": repr(3 * float(size)), "rgba": "0.3 0.5 0.8 1"}
+            element.append(xml.Element("geom", {**look, **UNTOUCHED}))
+    for point in _points(mechanism, None):
+        look = {
+            "type": "sphere",
+            "pos": _place(np.array(point)),
+            "size": repr(1.5 * float(size)),
+            "rgba": "0.5 0.5 0.5 1",
+        }
+        world.append(xml.Element("geom", {**look, **UNTOUCHED}))
+
+
+def _points(mechanism: Mechanism, name: str | None) -> list[Vector]:
+    """Joint points of a body, with its centre of mass where there is at most one; those of the ground alone."""
+    points = [
+        tuple(getattr(joint, which))
+        for joint in mechanism.joints
+        for owner, which in ((joint.first, "first_point"), (joint.second, "second_point"))
+        if owner == name and hasattr(joint, which) and not (isinstance(joint, Slot) and which == "first_point")
+    ]
+    if name is not None and len(set(points)) < 2:
+        points.append((0.0, 0.0))
+    return list(dict.fromkeys(points))
+
+
+def _place(point: np.ndarray) -> str:
+    return f"{float(point[0])!r} {float(point[1])!r} 0.0"

@@ -347,7 +347,7 @@ def of_mujoco(engine: Any, recipe: Recipe, check: str = "acceleration") -> str:
         raise Unsupported(f"{inner.name} declares no accelerations")
     method = inner.settings if isinstance(inner, Mjx) else inner
     dt, term = instant_mujoco.STEP * mechanism.time_scale, check != instant_mujoco.WITHOUT
-    text, model = method.text(mechanism, dt), method.model(mechanism, dt, as_text=True)
+    text, model = method.text(mechanism, dt), method.model(mechanism, dt, unit=1.0)
     run = replace(method, estimates=False).build(mechanism, dt)
     finite = np.isfinite(run(1, instant_mujoco.STEPS).pose).all()
     by_mjx = "jax.jit(mjx.forward)(mjx.put_model(model), mjx.put_data(model, data))"

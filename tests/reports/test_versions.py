@@ -12,11 +12,8 @@ import numpy as np
 import pytest
 
 from engines.lagrange import Lagrange
-from engines.mujoco import DEFAULT, EXTENDED, TUNED
-from engines.mujoco import model as mujoco_model
+from engines.mujoco import DEFAULT, TUNED
 from engines.mujoco.releases import full_inertia
-from engines.mujoco.written_model import Written
-from reference.scenes.catalogue import SCENES
 from reports.cli import compare
 from reports.cli.terminal import Terminal
 from reports.model.cells import Cell
@@ -139,19 +136,6 @@ def test_trees_that_could_not_be_built_are_told():
     found = entries("mujoco", VersionColumn("1", (), (answered, failed)), {})
     assert [(each.outcome, each.error, each.sentence[:8]) for each in found[:1]] == [("finished", np.inf, "2 of 3 b")]
     assert found[1].outcome == "unsupported"
-
-
-@pytest.mark.parametrize("method", [DEFAULT, TUNED, EXTENDED], ids=lambda each: each.variant)
-def test_a_model_as_text_moves_as_one_that_is_built(method, monkeypatch):
-    for scene in SCENES:
-        if scene.name not in ("driven_four_bar", "free_slider_crank", "sleigh", "rolling_ellipse", "pinned_body"):
-            continue
-        motions = []
-        for made in (mujoco_model.new_specification, Written):
-            monkeypatch.setattr(mujoco_model, "new_specification", made)
-            motions.append(method.build(scene.mechanism(), scene.spacing)(5, 1).pose)
-        # The same numbers, written with all digits; a quaternion is normalised once more while it is read.
-        np.testing.assert_allclose(motions[1], motions[0], rtol=0, atol=1e-12)
 
 
 def test_the_page_reads_its_rows_and_names_their_steps(monkeypatch):

@@ -20,10 +20,9 @@ from engines.mujoco.reading.elements import Scene
 from engines.mujoco.reading.frame import angles_of, name_of
 from engines.mujoco.reading.obstacles import obstacles, positions
 from engines.mujoco.reading.settings import TIED_STEPS, changes, declared, switch_off
-from engines.mujoco.releases import marks
+from engines.mujoco.releases import marks, spelled
 from engines.mujoco.running import _listening
 from engines.mujoco.stiffness import STIFFEST
-from engines.mujoco.written_file import INTEGRATORS, SOLVERS
 from engines.reading import Change, Give, Note, Obstacle
 from engines.sampling import sampled
 from reference.joints import Rod
@@ -87,11 +86,11 @@ class OwnMuJoCo:
         option = model.opt
         out = {
             "timestep": f"{option.timestep:g} s",
-            "integrator": _spelled(INTEGRATORS, mujoco.mjtIntegrator(option.integrator)),
-            "solver": _spelled(SOLVERS, mujoco.mjtSolver(option.solver)),
+            "integrator": spelled(mujoco.mjtIntegrator(option.integrator)),
+            "solver": spelled(mujoco.mjtSolver(option.solver)),
             "iterations": f"{option.iterations}",
             "tolerance": f"{option.tolerance:g}",
-            "cone": mujoco.mjtCone(option.cone).name.split("_")[1].lower(),
+            "cone": spelled(mujoco.mjtCone(option.cone)),
         }
         for index, joints in self.scene.held.items():
             if joints:
@@ -169,7 +168,7 @@ class OwnMuJoCo:
         if change is not None:
             options = dict(change.options)
             model.opt.timestep = change.dt
-            model.opt.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{options['integrator']}")
+            model.opt.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{options['integrator'].upper()}")
             if options["tied"]:
                 model.eq_solref[:] = (TIED_STEPS * change.dt, 1.0)
                 model.eq_solimp[:] = STIFFEST
@@ -263,12 +262,6 @@ class OwnMuJoCo:
             mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
             out[index, :2], out[index, 2] = frame.both @ jac[0], frame.normal @ jac[1]
         return out.reshape(-1, model.nv)
-
-
-def _spelled(words: Mapping[str, str], value: Any) -> str:
-    """MuJoCo's constant as MJCF spells it."""
-    word = value.name.split("_")[1]
-    return words.get(word, word.lower())
 
 
 @contextmanager

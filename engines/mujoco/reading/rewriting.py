@@ -6,7 +6,6 @@ import re
 from xml.parsers import expat
 
 from engines.mujoco.reading.settings import tied_values
-from engines.mujoco.written_file import INTEGRATORS
 from engines.reading import Change, refuse
 
 Tag = tuple[tuple[str, ...], int, int]  # the path of an element, and where its start tag begins and ends
@@ -15,8 +14,7 @@ Tag = tuple[tuple[str, ...], int, int]  # the path of an element, and where its 
 def rewritten(source: bytes, change: Change) -> bytes:
     """The file with these settings. What an included file says is out of reach. Raises Unsupported if it is no XML."""
     options = dict(change.options)
-    integrator = INTEGRATORS.get(options["integrator"], options["integrator"].lower())
-    option = {"timestep": f"{change.dt!r}", "integrator": integrator}
+    option = {"timestep": f"{change.dt!r}", "integrator": options["integrator"]}
     tags = _tags(source)
     root = tags[0]
     home = root if root[0] == ("mujoco",) else next((tag for tag in tags if tag[0] == (root[0][0], "mujoco")), None)

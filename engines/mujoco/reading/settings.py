@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.mujoco.reading.elements import Scene, equality_rows
+from engines.mujoco.releases import spelled
 from engines.mujoco.stiffness import STIFFEST
-from engines.mujoco.written_file import INTEGRATORS
 from engines.reading import Change, Give
 from reference.joints import Rod
 from reference.mechanism import Mechanism
@@ -183,8 +183,7 @@ def changes(
     file has classes, which have copied what their parent had before. `further`: more halvings.
     """
     own_step = float(model.opt.timestep)
-    own = mujoco.mjtIntegrator(model.opt.integrator).name.split("_")[1]
-    integrators = list(dict.fromkeys([own, "RK4"]))
+    integrators = list(dict.fromkeys([spelled(mujoco.mjtIntegrator(model.opt.integrator)), "RK4"]))
     out = []
     for tied in (False, True) if soft else (False,):
         for integrator in integrators:
@@ -192,9 +191,8 @@ def changes(
                 dt = own_step / divisor
                 if dt < smallest:
                     break
-                name = INTEGRATORS.get(integrator, integrator.lower())
-                words = f"{name}, step {dt * 1e3:.4g} ms" + (", stiff loops" if tied else "")
-                option = f'<option timestep="{dt!r}" integrator="{name}"/>'
+                words = f"{integrator}, step {dt * 1e3:.4g} ms" + (", stiff loops" if tied else "")
+                option = f'<option timestep="{dt!r}" integrator="{integrator}"/>'
                 lines = [f"<mujoco>{option}</mujoco>" if urdf else option]
                 if tied:
                     values = " ".join(f'{name}="{value}"' for name, value in tied_values(dt).items())

@@ -14,7 +14,7 @@ from pymunk.constraints import GrooveJoint, PivotJoint
 from engines import Unsupported
 from engines.mujoco import MuJoCo
 from engines.mujoco.model import Model as TreeModel
-from engines.mujoco.written_file import as_text
+from engines.mujoco.writers import mjcf
 from engines.pymunk import Pymunk
 from engines.pymunk.joints.skate import AimedGroove, Zeroed
 from engines.pymunk.model import Model
@@ -40,10 +40,10 @@ def text_of(engine: MuJoCo, mechanism: Mechanism, step: float) -> Text:
 
     Raises Unsupported where our code helps while it is stepped: the page has none.
     """
-    model = engine.model(mechanism, step, as_text=True)
+    model = engine.model(mechanism, step, unit=1.0)
     springs = model.compiled.neq or model.compiled.npair
     return Text(
-        as_text(model, engine.stiffness.softening),
+        mjcf(model, engine.stiffness.softening),
         tuple(int(model.compiled.body(f"body {number}").id) for number in range(len(mechanism.bodies))),
         links(model),
         () if springs else tuple(name for name in ENGINES["mujoco"] if name != "integrator"),
