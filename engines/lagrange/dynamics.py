@@ -170,17 +170,16 @@ class Dynamics:
     def reaction(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
         """The rows (rows, 3 bodies), and their multipliers (rows,): the joints' reactions [N, N m]."""
         mechanism, softness = self.mechanism, self.softness
-        rows = mechanism.rows(pose)
-        bias, free = mechanism.bias(pose, twist), mechanism.unconstrained(pose, twist).reshape(-1)
-        if softness is None:
-            return rows, self._solve(rows, bias - rows @ free)
-        slip = rows @ twist.reshape(-1) - mechanism.rate
-        gap = np.where(self.holonomic, mechanism.gap(pose, t), 0.0)
-        bias = bias if softness.complete else np.where(self.gives, 0.0, bias)
-        right = bias - rows @ free - self.gives * (softness.damping * slip + softness.stiffness * gap)
+        rows, bias = mechanism.rows(pose), mechanism.bias(pose, twist)
+        if softness is not None:
+            slip = rows @ twist.reshape(-1) - mechanism.rate
+            gap = np.where(self.holonomic, mechanism.gap(pose, t), 0.0)
+            bias = bias if softness.complete else np.where(self.gives, 0.0, bias)
+            bias = bias - self.gives * (softness.damping * slip + softness.stiffness * gap)
+        right = bias - rows @ mechanism.unconstrained(pose, twist).reshape(-1)
+        if softness is None or not softness.compliance:
+            return rows, self._solve(rows, right)
         matrix = (rows * self.weight) @ rows.T
-        if not softness.compliance:
-            return rows, solve_rows(matrix, right, self.redundant, self.least_pivot)
         matrix += softness.compliance * np.diag(self.gives * inverse_inertia(matrix, self.gives, self.least))
         return rows, solve_rows(matrix, right, least_pivot=RANK_TOLERANCE)
 

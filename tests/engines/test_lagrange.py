@@ -9,11 +9,11 @@ import pytest
 from scipy.special import ellipj, ellipk
 
 from engines import Promise, Softness
-from engines.lagrange import HELD, METHODS, TRUTH, Judge, Lagrange
+from engines.lagrange import HELD, TRUTH, Judge, Lagrange
 from engines.lagrange.dynamics import RK4, Dynamics, constrained_acceleration, inverse_inertia, runge_kutta
 from reference.joints import Drive, Pin, Rod, Skate, Slot
 from reference.mechanism import Body, Mechanism
-from reference.trajectory import energy, joint_gap, slip
+from reference.trajectory import joint_gap, slip
 from tests.mechanisms import four_bar, pendulum
 from tests.present import present
 
@@ -84,15 +84,6 @@ def test_a_joint_whose_row_is_lost_beside_others_is_told(method, stabilisation, 
     assert (run.warnings == ()) is held
 
 
-@pytest.mark.parametrize(("part", "told"), [(1e-8, False), (2e-8, True)])
-def test_half_of_the_digits_of_speeds_may_slip_after_a_projection_and_no_more(part, told):
-    own, ran = pendulum(angle=-np.pi / 2 + 1.0), Lagrange("rk4").build(pendulum(angle=-np.pi / 2 + 1.0), 0.01)
-    run = Lagrange("rk4").build(own, 0.01)(20, 1)
-    speed = np.abs(run.twist * [1.0, 1.0, own.length_scale]).max(axis=(1, 2))
-    off = run.twist + part * speed[:, None, None] * np.eye(3)[0]
-    assert bool(ran._slipped(run.t, run.pose, off)) is told
-
-
 def test_a_skate_that_leaves_no_velocity_free_leaves_poses_to_the_integrator():
     """A crank is driven, and a bar on it has a blade: all velocities follow from the pose, no pose from the time."""
     crank = Body("crank", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 2.0))
@@ -111,14 +102,6 @@ def test_a_skate_that_leaves_no_velocity_free_leaves_poses_to_the_integrator():
     assert errors[1] == pytest.approx(errors[0] / 2, rel=0.1)
     promised = [Lagrange("euler").order(towed), Lagrange("rk4").order(towed)]
     assert [isinstance(each, Promise) and each.of("angle") for each in promised] == [1, 4]
-
-
-def test_a_long_run_may_take_more_steps_for_every_sample_and_a_sample_that_takes_too_many_ends_it(monkeypatch):
-    monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
-    monkeypatch.setattr("engines.lagrange.dynamics.MOST_STEPS", 30)
-    long, dense = TRUTH.build(pendulum(), 0.02)(60, 1), TRUTH.build(pendulum(), 4.0)(1, 1)
-    assert np.isfinite(long.pose).all()  # two steps or so of each sample are 120
-    assert np.isnan(dense.pose[-1]).all()
 
 
 @pytest.mark.parametrize(("integrator", "order"), [("euler", 1), ("rk4", 4)])
@@ -183,7 +166,8 @@ def test_constrained_acceleration_solves_newtons_law_with_the_rows_ideal_or_soft
 def test_baumgarte_closes_an_open_joint_critically_damped():
     # A bar pulled off its pin along its own axis, nothing turning it: one coordinate, gap'' = -2 gap'/T - gap/T^2.
     mechanism, constant = replace(pendulum(angle=0.0), gravity=(0.0, 0.0)), 0.1
-    step = runge_kutta(Dynamics(mechanism, Softness(constant**-2, 2 / constant, 0.0, (True, True))), RK4)
+    softness = Lagrange("rk4", "baumgarte").softness(mechanism, constant / 5)  # its time constant is five steps
+    step = runge_kutta(Dynamics(mechanism, softness), RK4)
     pose, twist, dt = mechanism.pose + np.array([0.02, 0.0, 0.0]), mechanism.twist, constant / 50
     for i in range(150):
         pose, twist = step(pose, twist, i * dt, dt)
@@ -199,55 +183,11 @@ def test_baumgartes_spring_knows_the_drives_angle_at_every_stage():
     assert np.max(np.abs(joint_gap(mechanism, run)[:, -1])) < 1e-13
 
 
-def test_baumgartes_time_constant_is_five_steps():
-    mechanism = pendulum()
-    run = Lagrange("rk4", "baumgarte").build(mechanism, 1e-3)
-    moved = mechanism.pose + np.array([1e-3, 0.0, 0.0])
-    # At rest and open by a millimetre the joint accelerates back by gap / T^2.
-    back = mechanism.rows(moved) @ run.dynamics.acceleration(moved, mechanism.twist, 0.0).reshape(-1)
-    np.testing.assert_allclose(back, [-1e-3 / 5e-3**2, 0.0], atol=1e-9)
-
-
-def test_a_driven_crank_keeps_its_rate_and_its_torque_balances_the_power():
-    mechanism = four_bar(crank_rate=10.0, drive=10.0)
-    run = TRUTH.build(mechanism, 2 * np.pi / 1000)(100, 1)
-    np.testing.assert_allclose(run.twist[:, 0, 2], 10.0, atol=1e-12)
-    # d(energy)/dt = torque * rate over one revolution; the trapezoidal rule is spectral for a periodic power.
-    assert np.mean(run.reaction[:-1, -1]) * 10.0 == pytest.approx(0, abs=1e-9)
-    assert np.ptp(energy(mechanism, run)) > 1  # and the power was not zero all along
-
-
-def test_redundant_rows_change_no_motion():
-    mechanism = pendulum()
-    twice = replace(mechanism, joints=(*mechanism.joints, replace(mechanism.joints[0], name="A again")))
-    for method in (Lagrange("rk4", "none"), Lagrange("rk4", "projection"), Lagrange("rk4", "baumgarte")):
-        once, again = (method.build(m, 1e-2)(50, 1) for m in (mechanism, twice))
-        np.testing.assert_allclose(again.pose, once.pose, atol=1e-12)
-
-
-def test_a_body_without_joints_falls_freely():
-    mechanism = Mechanism((Body("stone", 2.0, 1.0, (0, 0, 0), (1.0, 2.0, 3.0)),), (), (0.0, -9.81))
-    run = Lagrange("rk4", "projection").build(mechanism, 0.1)(10, 1)
-    np.testing.assert_allclose(run.pose[-1, 0], [1.0, 2.0 - 9.81 / 2, 3.0], atol=1e-14)
-
-
 def test_eulers_method_drifts_with_the_velocity_after_its_kick():
     mechanism = Mechanism((Body("stone", 2.0, 1.0, (0, 0, 0), (1.0, 0.0, 3.0)),), (), (0.0, -9.81))
     run = Lagrange("euler", "none").build(mechanism, 0.1)(10, 1)
     # Ten kicks of g dt, each felt by the drift of its own step: g dt^2 (1 + 2 + ... + 10), not (0 + 1 + ... + 9).
     np.testing.assert_allclose(run.pose[-1, 0], [1.0, -9.81 * 0.01 * 55, 3.0], rtol=1e-14)
-
-
-def test_every_integrator_comes_with_every_stabilisation():
-    assert len({method.variant for method in METHODS}) == 9
-
-
-def test_a_wrong_length_is_caught():
-    """A rocker longer by 1e-3 moves visibly otherwise: the comparison of the suite could fail."""
-    right = pendulum()
-    wrong = pendulum(length=1.001)
-    runs = [TRUTH.build(m, 0.01)(100, 1).pose[..., 2] for m in (right, wrong)]
-    assert np.max(np.abs(runs[0] - runs[1])) > 1e-4
 
 
 @pytest.mark.parametrize(

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from dataclasses import replace
 
-import mpmath
 import numpy as np
 import pytest
 
 from engines import Softness
-from engines.lagrange import METHODS, VARIANTS, Lagrange, loading
+from engines.lagrange import METHODS, Lagrange, loading
 from engines.lagrange.arrays import CHANGE, FORCE_KINDS, KINDS, MATRIX, ROWS, arrays_of
-from engines.lagrange.dynamics import RK4, Dynamics
+from engines.lagrange.dynamics import RK4
 from engines.lagrange.machine import Machine
 from reference.couplings import Coupling
 from reference.forces import CoupledForce, Damper, Spring, TorsionDamper, TorsionSpring
@@ -27,7 +25,6 @@ from reference.trajectory import joint_gap, slip
 from reports.gate.judge import in_numpy, integrate
 from reports.search.mechanisms import mechanism as random_mechanism
 from reports.search.parts import EVERY
-from tests import ROOT
 from tests.mechanisms import four_bar, pendulum
 from tests.present import present
 
@@ -62,39 +59,6 @@ def test_the_random_mechanisms_have_every_joint_link_and_force_of_the_compiled_c
     drawn = [random_mechanism(21, number, EVERY) for number in range(12)]
     kinds = {type(part) for mechanism in drawn for part in (*mechanism.joints, *mechanism.forces)}
     assert kinds == {*KINDS, *FORCE_KINDS} - {Coupling, CoupledForce}  # see tests/engines/test_couplings.py
-
-
-def exact_acceleration(mechanism: Mechanism) -> np.ndarray:
-    """Accelerations (3 bodies,) at the start, with the row system solved to sixty digits."""
-    with mpmath.workdps(60):
-        rows = mpmath.matrix(mechanism.rows(mechanism.pose).tolist())
-        weight = mpmath.diag([1 / mpmath.mpf(value) for value in mechanism.inertias.reshape(-1)])
-        fall = mpmath.matrix(mechanism.free_fall.reshape(-1).tolist())
-        right = mpmath.matrix(mechanism.bias(mechanism.pose, mechanism.twist).tolist()) - rows * fall
-        moved = fall + weight * rows.T * mpmath.lu_solve(rows * weight * rows.T, right)
-    return np.array([float(value) for value in moved])
-
-
-def test_masses_that_differ_by_many_decades_cost_no_more_digits_than_in_numpy():
-    """Masses and sizes over decades; errors by the work that they would do, in parts of that of all accelerations."""
-    mine, theirs = [], []
-    for number in range(60):
-        mechanism = random_mechanism(12, number, kinds=("pin", "slot", "skate", "drive"), decades=2)
-        if not mechanism.row_count or not (mechanism.twist.any() or any(mechanism.gravity)):
-            continue
-        exact = exact_acceleration(mechanism).reshape(-1, 3)
-        machine = present(Machine.of(mechanism))
-        _, found = machine.reactions(1.0, *machine.empty(0))
-        compared = Dynamics(mechanism).acceleration(mechanism.pose, mechanism.twist, 0.0)
-        size, bias = mechanism.inertias * exact**2, mechanism.inertias * mechanism.free_fall**2
-        if size.sum() + bias.sum() == 0:  # it turns about its centre of mass
-            continue
-        for errors, value in ((mine, found[0]), (theirs, compared)):
-            errors.append(np.sqrt(np.sum(mechanism.inertias * (value - exact) ** 2) / (size.sum() + bias.sum())))
-    # The rows are rounded, which costs as many digits as they are near to dependence, about 1e-5 at the worst here; by
-    # their product alone it would be twice as many.
-    assert max(mine) < 1e-10
-    assert max(mine) <= max(theirs)
 
 
 def test_rows_that_follow_from_others_change_no_motion_and_share_the_reaction():
@@ -168,21 +132,6 @@ def test_a_pendulum_that_no_step_can_follow_is_told_and_ends(compiled, monkeypat
     assert "can't be held beyond" in hopeless.warnings[0]
 
 
-def test_a_run_whose_every_sample_takes_thousands_of_steps_is_told_and_ends():
-    # Masses and lengths five decades apart: some 15000 steps from one sample to the next, which each of them may take.
-    own = random_mechanism(1, 152, decades=5)
-    found = Lagrange(tolerance=1e-13).build(own, own.time_scale / 10)(20, 1)
-    assert np.isnan(found.pose[-1]).all()
-    assert "can't be held beyond" in found.warnings[0]
-
-
-def test_a_step_costs_the_same_whether_numba_is_there_or_not(monkeypatch):
-    mechanism = four_bar()
-    expected = [engine.step_cost(mechanism) for engine in VARIANTS]
-    monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
-    assert [engine.step_cost(mechanism) for engine in VARIANTS] == expected
-
-
 SOFT = (
     Softness(2500.0, 100.0, 0.01, (True,) * 8),
     Softness(2500.0, 100.0, 0.0, (True,) * 8, complete=False),
@@ -198,55 +147,6 @@ def test_the_gates_judge_is_the_same_compiled_and_in_numpy(soft, project):
     expected = in_numpy(scene.mechanism(), len(found.t) - 1, scene.spacing, 4, 4, soft, project)
     np.testing.assert_allclose(found.pose, expected.pose, rtol=0, atol=1e-13)
     np.testing.assert_allclose(found.reaction, expected.reaction, rtol=0, atol=1e-10 * np.abs(expected.reaction).max())
-
-
-def test_without_numba_the_same_runs_in_numpy(monkeypatch):
-    monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
-    engine = Lagrange("rk4")
-    assert "numba" not in engine.packages
-    run = engine.build(four_bar(), 1e-2)
-    assert run.dynamics is not None
-    assert np.isfinite(run(2, 2).pose).all()
-
-
-PROGRAM = "from engines.lagrange import loading; loading.compiled(); print(loading._folder())"
-
-
-def started(**environment: str) -> subprocess.Popen[str]:
-    """A process that loads the compiled code."""
-    return subprocess.Popen(
-        [sys.executable, "-W", "error", "-c", PROGRAM],
-        cwd=ROOT,
-        env={**os.environ, **environment},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
-@pytest.mark.slow  # compiles once anew
-def test_processes_that_start_at_once_compile_once(tmp_path):
-    working = [started(NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(3)]
-    assert [process.communicate()[1] for process in working] == [""] * 3
-    assert [process.returncode for process in working] == [0] * 3
-    compiled = list(tmp_path.rglob("*.nbc"))
-    assert len(compiled) == 1
-    before = compiled[0].stat().st_mtime_ns
-    with started(NUMBA_CACHE_DIR=str(tmp_path)) as later:
-        assert later.communicate()[1] == ""
-    assert later.returncode == 0
-    assert compiled[0].stat().st_mtime_ns == before
-
-
-def test_an_installation_that_cannot_be_written_to_keeps_compiled_code_in_the_users_cache(tmp_path, monkeypatch):
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    blocked = tmp_path / "installation"
-    blocked.write_text("a file, in which no folder can be made")
-    monkeypatch.setattr(loading, "_beside", lambda: blocked / "__pycache__")
-    assert present(loading._folder()).parent == tmp_path / "planar-crosscheck"
-    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
-    assert loading._folder() is None
 
 
 def test_a_command_that_steps_nothing_imports_no_numba():

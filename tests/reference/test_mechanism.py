@@ -1,27 +1,43 @@
-"""The description of a mechanism: rows, gaps, biases, reactions, freedoms, and what it refuses."""
+"""The description of a mechanism: rows, gaps, biases, reactions, force elements, scales, and its memory."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
+import tracemalloc
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 
+from engines import method_name
+from engines.lagrange import TRUTH
+from engines.registry import ENGINES
 from reference.checks import InvalidMechanism
-from reference.joints import Pin, Skate, Slot
+from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.numerics.calculus import derivative
 from reference.plane import components, from_complex, perpendicular, rotated, rotation_acceleration, rotation_velocity
-from reference.rolling.traced import Traced
+from reference.rows import banded_reaction, rank, reactions, solve_symmetric, undetermined
+from reference.scales import length_scale, time_scale
 from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.many_links import LongPendulum
+from reference.scenes.n_four_bar import NFourBar, TenFourBars
+from reference.scenes.pendulum.chain import Chain
+from reference.scenes.pendulum.link import Pendulum
+from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import Trajectory, energy, joint_gap, slip
-from tests.all_elements import ALL
-from tests.mechanisms import bar, four_bar, pendulum
+from tests.all_elements import ALL, ALONE, DAMPED, DAMPERS, GRAVITY, PUSHES, SPRINGS
+from tests.mechanisms import four_bar, pendulum
 
 RANDOM = np.random.default_rng(20)
 
@@ -83,16 +99,6 @@ def test_velocity_and_acceleration_are_derivatives_of_a_rotated_vector():
     np.testing.assert_allclose(rotation_acceleration(rate, alpha, arm), derivative(place, 0.0, order=2), atol=1e-11)
 
 
-def test_everything_broadcasts_over_times(driven):
-    poses = driven.pose + RANDOM.normal(size=(5, *driven.pose.shape))
-    twists = RANDOM.normal(size=poses.shape)
-    times = np.linspace(0, 1, 5)
-    for i, t in enumerate(times):
-        np.testing.assert_array_equal(driven.rows(poses)[i], driven.rows(poses[i]))
-        np.testing.assert_array_equal(driven.gap(poses, times)[i], driven.gap(poses[i], t))
-        np.testing.assert_array_equal(driven.bias(poses, twists)[i], driven.bias(poses[i], twists[i]))
-
-
 def test_reactions_read_from_accelerations_obey_newtons_law(driven):
     rows = driven.rows(driven.pose)
     reaction = RANDOM.normal(size=driven.row_count)
@@ -105,12 +111,6 @@ def test_reactions_read_from_accelerations_obey_newtons_law(driven):
 def test_a_hanging_bar_at_rest_loads_its_pin_with_its_weight_upwards():
     mechanism = pendulum(angle=-np.pi / 2)
     np.testing.assert_allclose(mechanism.reaction(mechanism.pose, np.zeros((1, 3))), [0, 9.81], atol=1e-14)
-
-
-def test_redundant_rows_share_the_reaction_equally():
-    mechanism = pendulum(angle=-np.pi / 2)
-    twice = replace(mechanism, joints=(*mechanism.joints, replace(mechanism.joints[0], name="A again")))
-    np.testing.assert_allclose(twice.reaction(twice.pose, np.zeros((1, 3))), [0, 9.81 / 2, 0, 9.81 / 2], atol=1e-12)
 
 
 def test_an_engine_with_other_masses_and_gravity_has_applied_other_reactions():
@@ -160,29 +160,6 @@ def test_a_start_off_a_joint_by_more_than_rounding_is_refused(miss, taken):
             replace(sound, bodies=(wrong,))
 
 
-@pytest.mark.parametrize(
-    ("make", "says"),
-    [
-        (lambda: Mechanism((), ()), "no bodies"),
-        (lambda: Mechanism((bar("b", (0, 0), (1, 0)),) * 2, ()), "two bodies are called 'b'"),
-        (
-            lambda: Mechanism((bar("b", (0, 0), (1, 0)),), (Pin("A", None, "c", (0, 0), (0, 0)),)),
-            "no body is called 'c'; there are 'b'",
-        ),
-        (lambda: Mechanism((bar("b", (0, 0), (1, 0)),), (Pin("A", "b", "b", (0, 0), (0, 0)),)), "with itself"),
-        (
-            lambda: Mechanism((bar("b", (0, 0), (1, 0)),), (Pin("A", None, "b", (0.1, 0), (-0.5, 0)),)),
-            "'A x' is open by 0.1",
-        ),
-        (lambda: four_bar(crank_rate=10.0, drive=9.0), "'drive torque' is moving apart at 1"),
-    ],
-)
-def test_what_cannot_be_is_refused_with_a_sentence(make, says):
-    with pytest.raises(InvalidMechanism, match=r".") as refusal:
-        make()
-    assert says in str(refusal.value)
-
-
 @pytest.mark.parametrize("scale", [1e-9, 1e9])
 def test_a_start_off_a_joint_is_judged_by_the_mechanisms_own_size(scale):
     def hung(open_by):
@@ -230,12 +207,389 @@ def test_no_array_that_is_kept_for_all_can_be_written(scene):
     assert [path for path, array in found if array.flags.writeable] == []
 
 
-def test_what_is_made_of_an_array_does_not_change_with_it():
-    points = np.column_stack([np.cos(np.linspace(0, 1, 20)), np.sin(np.linspace(0, 1, 20))])
-    curve = Traced(np.linspace(0, 1, 20), points)
-    before = curve.point_of(0.5).copy()
-    points += 1.0
-    assert abs(curve.points).max() <= 1.0
-    np.testing.assert_array_equal(curve.point_of(0.5), before)
-    with pytest.raises(ValueError, match="read-only"):
-        curve.points[0] = 0.0
+TINY = 1e-100  # a complex step: no difference is taken, so no digit is lost
+RANDOM = np.random.default_rng(5)
+POSES, TWISTS = RANDOM.normal(size=(2, 20, 4, 3))
+
+
+def one_body(*forces, mass=2.0, inertia=0.5, pose=(0.0, 0.0, 0.0), twist=(0.0, 0.0, 0.0), gravity=(0.0, 0.0)):
+    return Mechanism((Body("b", mass, inertia, pose, twist),), (), gravity, forces)
+
+
+def truth(mechanism: Mechanism, spacing: float, samples: int = 20):
+    return TRUTH.build(mechanism, spacing)(samples, 1)
+
+
+@pytest.mark.parametrize("force", [*SPRINGS, *PUSHES], ids=lambda force: force.name)
+def test_a_force_is_minus_the_derivative_of_its_potential(force):
+    alone = replace(ALL, forces=(force,)).applied
+    for coordinate in range(12):
+        step = np.zeros(12)
+        step[coordinate] = TINY
+        slope = np.imag(alone.potential(POSES + 1j * step.reshape(4, 3))) / TINY
+        np.testing.assert_allclose(
+            alone.on(POSES, TWISTS).reshape(20, 12)[:, coordinate], -slope, rtol=1e-12, atol=1e-12
+        )
+
+
+@pytest.mark.parametrize("damper", DAMPERS, ids=lambda damper: damper.name)
+def test_a_damper_is_half_the_derivative_of_the_power_that_it_takes(damper):
+    alone = replace(ALL, forces=(damper,)).applied
+
+    def power(twist):
+        return np.sum(alone.on(POSES.astype(twist.dtype), twist) * twist, axis=(-2, -1))
+
+    assert np.all(power(TWISTS) < 0)
+    for coordinate in range(12):
+        step = np.zeros(12)
+        step[coordinate] = TINY
+        slope = np.imag(power(TWISTS + 1j * step.reshape(4, 3))) / TINY
+        np.testing.assert_allclose(
+            alone.on(POSES, TWISTS).reshape(20, 12)[:, coordinate], slope / 2, rtol=1e-12, atol=1e-12
+        )
+
+
+@pytest.mark.parametrize("force", [SPRINGS[1], SPRINGS[2], SPRINGS[3], PUSHES[1], *DAMPERS[1:]], ids=lambda f: f.name)
+def test_what_acts_between_two_bodies_neither_pushes_nor_turns_both_together(force):
+    forces = replace(ALL, forces=(force,)).applied.on(POSES, TWISTS)
+    x, y, turning = np.moveaxis(forces, -1, 0)
+    moment = turning + POSES[..., 0] * y - POSES[..., 1] * x
+    for total in (x, y, moment):
+        np.testing.assert_allclose(total.sum(axis=-1), 0, atol=1e-12)
+
+
+@pytest.mark.parametrize("turning", [False, True])
+def test_a_damped_oscillation_dies_out_as_its_exponential_says(turning):
+    # x'' + 2 c x' + f^2 x = 0 with f = 3 and c = 1, of an inertia of 2.
+    if turning:
+        forces = (TorsionSpring("s", None, "b", 18.0), TorsionDamper("d", None, "b", 4.0))
+        mechanism, column = one_body(*forces, inertia=2.0, pose=(0.0, 0.0, 0.2)), 2
+    else:
+        far = (-1.0, 0.0)
+        forces = (Spring("s", None, "b", far, (0.0, 0.0), 18.0, 1.0), Damper("d", None, "b", far, (0.0, 0.0), 4.0))
+        mechanism, column = one_body(*forces, pose=(0.2, 0.0, 0.0)), 0
+    motion, rate = truth(mechanism, 0.1), math.sqrt(8.0)
+    expected = 0.2 * np.exp(-motion.t) * (np.cos(rate * motion.t) + np.sin(rate * motion.t) / rate)
+    np.testing.assert_allclose(motion.pose[:, 0, column], expected, atol=1e-12)
+
+
+def test_the_energy_stays_without_dampers_and_falls_by_what_they_take():
+    kept = truth(ALL, 0.05)
+    span = np.ptp(np.sum(ALL.inertias * kept.twist**2, axis=(1, 2))) / 2
+    assert np.ptp(energy(ALL, kept)) < 1e-11 * span
+    fine = truth(DAMPED, 0.0025, 400)
+    taken = np.sum(DAMPED.applied.on(fine.pose, fine.twist) * fine.twist, axis=(1, 2))
+    others = replace(DAMPED, forces=ALL.forces).applied.on(fine.pose, fine.twist)
+    power = taken - np.sum(others * fine.twist, axis=(1, 2))
+    work = np.sum(power[:-2:2] + 4 * power[1:-1:2] + power[2::2]) * 0.0025 / 3  # Simpson's, of order 4
+    lost = energy(DAMPED, fine)[-1] - energy(DAMPED, fine)[0]
+    assert work < -0.1
+    assert lost == pytest.approx(work, rel=1e-7)
+
+
+def test_reactions_are_told_with_the_forces_that_act_beside_them():
+    motion = truth(DAMPED, 0.05, 4)
+    forces = DAMPED.applied.on(motion.pose, motion.twist)
+    rows = DAMPED.rows(motion.pose)
+    pushed = np.einsum("trc,tr->tc", rows, motion.reaction).reshape(forces.shape)
+    free = DAMPED.unconstrained(motion.pose, motion.twist)
+    acceleration = free + pushed / DAMPED.inertias
+    told = DAMPED.reaction(motion.pose, acceleration, twist=motion.twist)
+    np.testing.assert_allclose(told, motion.reaction, atol=1e-9 * np.abs(motion.reaction).max())
+    with pytest.raises(InvalidMechanism, match="twist is None; dampers need it"):
+        DAMPED.reaction(motion.pose, acceleration)
+
+
+def test_a_body_on_a_rod_is_a_point_pendulum():
+    # The rod holds its centre of mass, so that nothing turns it.
+    length, angle = 0.8, 1.1
+    place = (length * np.sin(angle), -length * np.cos(angle))
+    body = Body("b", 2.0, 0.3, (*place, 0.0))
+    mechanism = Mechanism((body,), (Rod("r", None, "b", (0.0, 0.0), (0.0, 0.0), length),), GRAVITY)
+    motion = TRUTH.build(mechanism, 0.1)(20, 1)
+    exact, _ = Pendulum(np.sqrt(9.81 / length), angle).motion(motion.t)[:2]
+    np.testing.assert_allclose(motion.pose[:, 0, 0], length * np.sin(exact), atol=1e-11)
+    np.testing.assert_allclose(motion.pose[:, 0, 1], -length * np.cos(exact), atol=1e-11)
+    np.testing.assert_allclose(motion.pose[:, 0, 2], 0.0, atol=1e-14)
+    # It pulls, which is negative, by weight and centripetal force.
+    rate = motion.twist[:, 0, :2]
+    pull = 2.0 * (9.81 * np.cos(exact) + np.sum(rate**2, axis=1) / length)
+    np.testing.assert_allclose(motion.reaction[:, 0], -pull, rtol=1e-9)
+
+
+def test_a_gear_pair_has_one_freedom_and_the_inertia_of_both():
+    inertias, ratio, torque = (0.3, 0.2), -2.5, 1.7
+    bodies = tuple(Body(n, 1.0, i, (x, 0.0, 0.0)) for n, i, x in (("a", inertias[0], 0.0), ("b", inertias[1], 1.0)))
+    pins = tuple(Pin(n.upper(), None, n, (x, 0.0), (0.0, 0.0)) for n, x in (("a", 0.0), ("b", 1.0)))
+    mechanism = Mechanism(bodies, (*pins, Gear("g", "a", "b", ratio)), (0.0, 0.0), (Torque("t", None, "a", torque),))
+    assert mechanism.degrees_of_freedom() == (1, 1)
+    motion = TRUTH.build(mechanism, 0.1)(10, 1)
+    gain = torque / (inertias[0] + ratio**2 * inertias[1])
+    np.testing.assert_allclose(motion.pose[:, 0, 2], gain * motion.t**2 / 2, atol=1e-12)
+    np.testing.assert_allclose(motion.pose[:, 1, 2], ratio * gain * motion.t**2 / 2, atol=1e-12)
+    # The torque on the second body; the first feels -ratio times as much.
+    np.testing.assert_allclose(motion.reaction[:, -1], inertias[1] * ratio * gain, rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("name", "freedoms"),
+    [("rod to the ground", 2), ("rod", 3), ("gear", 4), ("weld", 2), ("weld to the ground", 1), ("weld in a loop", 1)],
+)
+def test_freedoms_are_counted_by_rank(name, freedoms):
+    assert ALONE[name].degrees_of_freedom() == (freedoms, freedoms)
+
+
+RNG = np.random.default_rng(7)
+
+
+def in_fifty_digits(rows, inertias, excess):
+    """J M^-1 J^T f = J excess, without rounding; the rows must be independent."""
+    with mpmath.workdps(50):
+        jacobian = mpmath.matrix(rows.tolist())
+        weighted = mpmath.matrix(
+            [[mpmath.mpf(v) / mpmath.mpf(m) for v, m in zip(row, inertias, strict=True)] for row in rows]
+        )
+        found = mpmath.lu_solve(weighted * jacobian.T, jacobian * mpmath.matrix(excess.tolist()))
+        return np.array([float(value) for value in found])
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1e-9, 1e9])
+def test_forces_are_those_of_fifty_digits_however_different_the_masses_are(ratio):
+    rows = RNG.normal(size=(8, 9))
+    inertias = np.array([1.0] * 3 + [ratio] * 3 + [1.0] * 3)
+    forces = RNG.normal(size=8)
+    excess = (rows.T @ forces) / inertias
+    found = reactions(rows, inertias, excess, np.ones(8), 1.0)
+    exact = in_fifty_digits(rows, inertias, excess)
+    # The square root of the ratio is what least squares lose; the product J M^-1 J^T would lose the ratio itself.
+    assert np.abs(found - exact).max() < 1e-13 * max(ratio, 1 / ratio) ** 0.5 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("density", [(1.0, 1.0, 1e8), (1e8, 1.0, 1.0), (1.0, 1e-8, 1.0), (1e-6, 1.0, 1e6)])
+def test_the_free_four_bars_forces_are_those_of_fifty_digits_whatever_its_densities(density):
+    scene = FreeFourBar(density=density)
+    mechanism, motion = scene.mechanism(), scene.motion([0.1])
+    pose = motion.pose[0]
+    excess = excess_of(mechanism, pose, motion.twist[0])
+    exact = in_fifty_digits(mechanism.rows(pose), mechanism.inertias.reshape(-1), excess)
+    assert np.abs(motion.reaction[0] - exact).max() < 1e-9 * np.abs(exact).max()
+
+
+def excess_of(mechanism, pose, twist):
+    """Accelerations less free fall, from the mechanism alone and in 50 digits: M a = f + J^T r with J a = bias."""
+    rows, inertias = mechanism.rows(pose), mechanism.inertias.reshape(-1)
+    right = mechanism.bias(pose, twist) - rows @ mechanism.free_fall.reshape(-1)
+    with mpmath.workdps(50):
+        jacobian = mpmath.matrix(rows.tolist())
+        light = mpmath.diag([1 / mpmath.mpf(value) for value in inertias])
+        forces = mpmath.lu_solve(jacobian * light * jacobian.T, mpmath.matrix(right.tolist()))
+        return np.array([float(value) for value in light * jacobian.T * forces])
+
+
+def test_what_is_not_finite_gives_forces_that_are_no_numbers_and_harms_no_other_time():
+    rows = np.stack([RNG.normal(size=(2, 3))] * 3)
+    excess = np.ones((3, 3))
+    excess[1, 0] = np.nan
+    found = reactions(rows, np.ones(3), excess, np.ones(2), 1.0)
+    assert np.isnan(found[1]).all()
+    assert np.isfinite(found[[0, 2]]).all()
+    assert found[0] == pytest.approx(found[2])
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_freedoms_do_not_depend_on_the_unit_of_length(scale):
+    body = Body("slider", 1.0, scale**2, (scale, 0.0, 0.0))
+    arm = Body("arm", 1.0, scale**2, (0.0, 0.0, 0.0))
+    joints = (
+        Pin("pivot", None, "arm", (0.0, 0.0), (0.0, 0.0)),
+        Pin("hinge", "arm", "slider", (scale, 0.0), (0.0, 0.0)),
+        Drive("motor", None, "arm", 0.0, 0.0),
+        Slot("guide", None, "slider", (scale, 0.0), 0.3, (0.0, 0.0)),
+    )
+    freedoms = [Mechanism((arm, body), joints[:count]).degrees_of_freedom() for count in (2, 3, 4)]
+    assert freedoms == [(2, 2), (1, 1), (1, 1)]  # the arm stands along x: a slot at 0.3 rad holds it, as the motor does
+
+
+def test_rows_that_repeat_are_undetermined_and_others_are_not():
+    rows = np.array([[1.0, 0.0, 0.3], [2.0, 0.0, 0.6], [0.0, 1.0, 0.0]])
+    assert undetermined(rows, 1.0).tolist() == [True, True, False]
+    assert rank(rows, 1.0) == 2
+    assert rank(np.zeros((0, 3)), 1.0) == 0
+    assert rank(np.zeros((2, 3)), 1.0) == 0
+
+
+def test_a_symmetric_system_is_solved_in_any_unit_and_shared_equally_where_it_is_singular():
+    matrix = np.array([[2e-12, 1e-12], [1e-12, 2e-12]])
+    assert solve_symmetric(matrix, np.array([3e-12, 3e-12])) == pytest.approx([1.0, 1.0])
+    assert solve_symmetric(np.ones((2, 2)), np.array([1.0, 1.0])) == pytest.approx([0.5, 0.5])
+
+
+def test_a_row_that_takes_a_thousandth_part_in_idle_forces_is_undetermined_too():
+    rows = np.zeros((4, 6))
+    rows[0, 0] = 1.0
+    rows[1, :2] = 1.0, 1e-3
+    rows[2, 1] = 1.0  # the second is the first and a thousandth of the third
+    rows[3, 4] = 1.0  # and this one stands alone
+    assert undetermined(rows, 1.0).tolist() == [True, True, True, False]
+    assert undetermined(np.stack([rows, np.eye(6)[:4]]), 1.0).tolist() == [[True, True, True, False], [False] * 4]
+
+
+def displaced(mechanism: Mechanism) -> tuple[Any, Any]:
+    random = np.random.default_rng(0)
+    pose = mechanism.pose + 0.1 * random.normal(size=(3, *mechanism.pose.shape))
+    return pose, random.normal(size=pose.shape)
+
+
+@pytest.mark.parametrize("scene", [HundredLinks(), TenFourBars()], ids=["open chain", "closed chain"])
+def test_the_band_gives_the_forces_that_make_the_accelerations(scene: Any) -> None:
+    mechanism = scene.mechanism()
+    pose, _ = displaced(mechanism)
+    # Made from forces that are known: M a = f + J^T reaction, read backwards again.
+    given = np.random.default_rng(1).normal(size=(3, mechanism.row_count))
+    pull = np.einsum("trc,tr->tc", mechanism.rows(pose), given).reshape(pose.shape)
+    found = banded_reaction(mechanism.joint_rows, pose, pull / mechanism.inertias, mechanism.inertias)
+    # The condition of a hundred links' system is about 1e4: that many roundings.
+    assert np.abs(found - given).max() < 1e-11
+    # Free fall, added and taken away again, leaves a rounding of the accelerations.
+    whole = mechanism.reaction(pose, mechanism.free_fall + pull / mechanism.inertias)
+    assert np.abs(whole - found).max() < 1e-11
+
+
+def with_a_pin_beside_the_last(distance: float) -> Mechanism:
+    """Ten links, the last on two pins this far apart [m]: their rows differ by as much where the angles do."""
+    mechanism = TenLinks().mechanism()
+    last = mechanism.joints[-1]
+    assert isinstance(last, Pin)
+    (x1, y1), (x2, y2) = last.first_point, last.second_point
+    beside = replace(last, name="beside", first_point=(x1, y1 + distance), second_point=(x2, y2 + distance))
+    return replace(mechanism, joints=(*mechanism.joints, beside))
+
+
+def test_two_pins_a_micrometre_apart_fall_back_to_the_dense_system_which_keeps_their_digits() -> None:
+    nearly = with_a_pin_beside_the_last(1e-6)
+    pose, _ = displaced(nearly)
+    given = np.random.default_rng(1).normal(size=(3, nearly.row_count))
+    pull = np.einsum("trc,tr->tc", nearly.rows(pose), given).reshape(pose.shape)
+    # The band's factorisation would end, with pivots of 1e-12: the product J M^-1 J^T has the rows' condition squared.
+    assert np.isnan(banded_reaction(nearly.joint_rows, pose, pull / nearly.inertias, nearly.inertias)).any(axis=1).all()
+    # The rows' own condition is 6e7: that many roundings are 1e-8, and the product would leave no digit at all.
+    assert np.abs(nearly.reactions_of(pose, pull / nearly.inertias, nearly.inertias) - given).max() < 1e-6
+
+
+def test_two_pins_closer_than_the_rank_can_tell_share_the_force() -> None:
+    dependent = with_a_pin_beside_the_last(1e-11)
+    pose, acceleration = displaced(dependent)
+    assert np.isnan(banded_reaction(dependent.joint_rows, pose, acceleration, dependent.inertias)).any(axis=1).all()
+    once, shared = TenLinks().mechanism().reaction(pose, acceleration), dependent.reaction(pose, acceleration)
+    assert np.abs(shared).max() < 2 * np.abs(once).max()
+    assert np.abs(shared[:, -4:-2] + shared[:, -2:] - once[:, -2:]).max() < 1e-6 * np.abs(once).max()
+
+
+LINKS = 5_000
+# Measured: 1.4 to 1.9 kB a link, in Python objects and in arrays of all of them. One dense matrix of the rows alone
+# would be 48 N bytes a link: 240 kB with 5000 links.
+BYTES_A_LINK = 4_000
+
+
+def peak(build) -> int:
+    """The largest number of bytes that `build` held at any time."""
+    tracemalloc.start()
+    try:
+        build()
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.parametrize("scene", [LinkPendulum(links=LINKS), NFourBar(LINKS // 2)], ids=["open chain", "closed chain"])
+def test_a_long_chain_is_built_and_its_start_checked_in_memory_in_proportion_to_its_links(scene):
+    def build():
+        mechanism = scene.mechanism()
+        assert mechanism.length_scale == pytest.approx(scene.length)
+        assert 0.1 < mechanism.time_scale < 1
+
+    assert peak(build) < BYTES_A_LINK * LINKS
+
+
+MECHANISMS = {
+    "four-bar with a drive": four_bar(crank_rate=10.0, drive=10.0),
+    "open chain": LinkPendulum(links=7).mechanism(),
+    "closed chain": NFourBar(5).mechanism(),
+    "skate": ChaplyginSleigh().mechanism(),
+    "pins and skates": CarAndTrailer().mechanism(),
+    "rolls, that are taken one by one": EllipticGears().mechanism(),
+}
+
+
+@pytest.mark.parametrize("mechanism", MECHANISMS.values(), ids=MECHANISMS)
+def test_velocities_joint_by_joint_are_those_of_the_dense_rows(mechanism):
+    random = np.random.default_rng(8)
+    pose = mechanism.pose + 1e-3 * random.normal(size=(4, *mechanism.pose.shape))
+    twist = random.normal(size=pose.shape)
+    flat = twist.reshape(len(twist), -1, 1)
+    dense = (mechanism.rows(pose) @ flat)[..., 0] - mechanism.rate
+    np.testing.assert_allclose(mechanism.slip(pose, twist), dense, rtol=0, atol=1e-14)  # sums in another order
+    dense = -np.imag(mechanism.rows(pose + 1e-100j * twist) @ flat)[..., 0] / 1e-100
+    np.testing.assert_allclose(mechanism.bias(pose, twist), dense, rtol=1e-13, atol=1e-13)
+    np.testing.assert_array_equal(mechanism.slip(pose[0], twist), mechanism.slip(pose[[0] * 4], twist))
+
+
+def test_what_can_not_fit_is_refused_with_the_bytes_it_would_take():
+    chain = LongPendulum(20_000).mechanism()
+    with pytest.raises(InvalidMechanism, match=r"dense rows .* would take 1\.92e\+10 bytes; more than 2\.15e\+09"):
+        chain.rows(chain.pose)
+    loops = NFourBar(1000).mechanism()
+    with pytest.raises(InvalidMechanism, match=r"the rank of rows .* would take 2\.88e\+08 bytes"):
+        loops.degrees_of_freedom()
+    with pytest.raises(InvalidMechanism, match=r"inertia matrix .* would take 3\.2e\+09 bytes"):
+        _ = Chain((1.0,) * 20_000, (1.0,) * 20_000).inertia_matrix
+    for scene in (NFourBar(5_000), LinkPendulum(links=10_000)):
+        with pytest.raises(InvalidMechanism, match=r"a trajectory .* would take 2\.4e\+09 bytes"):
+            scene.motion(np.zeros(10_000))
+
+
+@pytest.mark.parametrize("engine", ENGINES, ids=method_name)
+def test_no_engine_begins_a_run_whose_trajectory_can_not_fit(engine):
+    run = engine.build(LinkPendulum(links=2).mechanism(), 1e-3)
+    with pytest.raises(ValueError, match=r"a trajectory of the shape \(100000001, 2, 3\) would take 4\.8e\+09 bytes"):
+        run(100_000_000, 1)
+
+
+BODY = Body("b", 2.0, 0.5, (0.0, 0.0, 0.0))
+AT = (0.3, 0.4)  # half a metre from the centre: a force there feels 1/2 + 0.25/0.5 = 1 per kilogram
+
+
+@pytest.mark.parametrize(
+    ("force", "rate"),
+    [
+        (Spring("f", None, "b", (1.0, 1.0), AT, 9.0, 1.0), 3.0),
+        (Damper("f", None, "b", (1.0, 1.0), AT, 7.0), 7.0),
+        (TorsionSpring("f", None, "b", 8.0), 4.0),
+        (TorsionDamper("f", None, "b", 3.0), 6.0),
+        (Torque("f", None, "b", 2.0), 2.0),
+        (Torque("f", None, "b", -2.0), 2.0),
+        (Force("f", "b", AT, (0.0, -12.0)), 4.0),
+    ],
+    ids=lambda each: type(each).__name__ if not isinstance(each, float) else "",
+)
+def test_a_force_alone_sets_the_time_by_what_it_does_to_its_body(force, rate):
+    assert time_scale(0.75, (0.0, 0.0), [BODY], [], [force]) == pytest.approx(1 / rate, rel=1e-14)
+
+
+def test_two_bodies_of_a_spring_count_together_and_a_faster_start_more():
+    pair = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0))]
+    spring = Spring("f", "c", "b", (0.0, 0.0), AT, 8.0, 1.0)
+    assert time_scale(0.75, (0.0, 0.0), pair, [], [spring]) == pytest.approx(1 / 4, rel=1e-14)  # 1 + 1 per kilogram
+    turning = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0), (0.0, 0.0, -5.0))]
+    assert time_scale(0.75, (0.0, 0.0), turning, [], [spring]) == pytest.approx(1 / 5, rel=1e-14)
+    moving = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0), (-3.0, 4.0, 0.0))]
+    assert time_scale(0.5, (0.0, 0.0), moving, [], [spring]) == pytest.approx(1 / 10, rel=1e-14)
+
+
+def test_a_rod_is_as_long_as_the_mechanism_even_between_centres_of_mass():
+    pair = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0))]
+    rod = Rod("r", "b", "c", (0.0, 0.0), (0.0, 0.0), 3.0)
+    assert length_scale(pair, [rod]) == 3.0
+    assert length_scale(pair, [rod], [Spring("s", None, "b", (0.0, 0.0), (3.0, 4.0), 1.0)]) == 5.0
+    assert length_scale(pair, [], [Spring("s", "b", "c", (0.0, 0.0), (0.0, 0.0), 1.0, 0.2)]) == 0.2
+    assert length_scale(pair, []) == 1.0

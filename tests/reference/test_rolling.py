@@ -1,24 +1,101 @@
-"""Rolling: the known roulettes, where two curves touch, the rows of a roll, and pairs that can't roll.
-
-Contacts in fifty digits are asked by `laws`.
-"""
+"""Curves, where two of them touch, the rows of a roll, and bodies that roll, slip and hop under gravity."""
 
 from __future__ import annotations
 
 import math
+import random
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
 
 from reference.checks import InvalidMechanism
 from reference.mechanism import Body, Mechanism
+from reference.numerics.roots import solve_increasing
 from reference.rolling.closed_curves import Cam, Ellipse
-from reference.rolling.contact import NEAR_CONFORMAL
 from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
 from reference.rolling.roll import Roll
+from reference.rolling.traced import Traced
+from reference.scenes.rolling.body import GRAVITY, RollingBody
+from reference.scenes.rolling.scenes import (
+    RollingDisc,
+    RollingDownhill,
+    RollingEllipse,
+    RollingInRing,
+    RollingOnCircle,
+)
+from tests.present import present
+
+CASES = {
+    **{
+        "line": Line(1.1, (0.2, 0.3)),
+        "side": Side(2.0),
+        "circle": Circle(0.4, (0.1, 0.2)),
+        "ring": Ring(0.7, (0.1, 0.2)),
+    },
+    **{"ellipse": Ellipse(0.5, 0.3), "upright ellipse": Ellipse(0.3, 0.5), "parabola": Parabola(0.3)},
+    **{"catenary": Catenary(0.4), "cam": Cam(0.4, (0.05, 0.02, 0.01), (0.0, 0.03)), "spiral": LogSpiral(0.5, 0.3)},
+    "placed": Placed(Ellipse(0.5, 0.3), (1.0, 2.0), 0.7),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_curve_goes_along_its_direction_at_unit_speed_and_turns_by_its_curvature(case):
+    curve, step = CASES[case], 1e-3
+    arc = np.linspace(0.1, 0.9, 9)
+    weights, shifts = np.array([1, -8, 8, -1]) / 12 / step, np.array([-2, -1, 1, 2]) * step
+    way = sum(weight * curve.point(arc + shift) for weight, shift in zip(weights, shifts, strict=True))
+    turned = sum(weight * curve.angle(arc + shift) for weight, shift in zip(weights, shifts, strict=True))
+    # The fourth power of the step, in a tenth of a metre of the narrowest bend; material is on the left.
+    along = np.stack([np.cos(curve.angle(arc)), np.sin(curve.angle(arc))], axis=-1)
+    np.testing.assert_allclose(way, along, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(turned, curve.curvature(arc), rtol=1e-6, atol=1e-9)
+    if case not in ("line", "side"):
+        np.testing.assert_allclose(curve.arc(curve.angle(arc)), arc, rtol=1e-12)
+
+
+@pytest.mark.parametrize("case", ["circle", "ring", "ellipse", "upright ellipse", "cam"])
+def test_nothing_jumps_over_many_turns(case):
+    curve = CASES[case]
+    arc = np.linspace(-7 * curve.length, 7 * curve.length, 5001)
+    step = arc[1] - arc[0]
+    steepest = max(map(abs, curve.curvature_range))
+    assert np.abs(np.diff(curve.angle(arc))).max() <= 1.001 * steepest * step
+    assert np.abs(np.diff(curve.point(arc), axis=0)).max() <= 1.001 * step
+    np.testing.assert_allclose(curve.arc(curve.angle(arc)), arc, rtol=0, atol=1e-13)
+    turned = curve.angle(arc + curve.length) - curve.angle(arc)
+    np.testing.assert_allclose(turned, math.copysign(2 * np.pi, steepest * curve.curvature_range[0]), atol=1e-13)
+
+
+def test_a_placed_curve_is_moved_as_a_rigid_body():
+    curve, placed = Ellipse(0.5, 0.3), Placed(Ellipse(0.5, 0.3), (1.0, 2.0), 0.7)
+    arc = np.linspace(-5, 5, 50)
+    x, y = curve.point(arc).T
+    moved = np.stack([1 + np.cos(0.7) * x - np.sin(0.7) * y, 2 + np.sin(0.7) * x + np.cos(0.7) * y], axis=-1)
+    np.testing.assert_allclose(placed.point(arc), moved, atol=1e-15)
+    np.testing.assert_allclose(placed.arc(placed.angle(arc)), arc, atol=1e-14)
+
+
+def test_a_traced_ellipse_is_the_ellipse_in_pieces():
+    u = np.linspace(0, 2, 200)
+    traced, exact = Traced(u, np.stack([0.5 * np.cos(u), 0.3 * np.sin(u)], axis=-1)), Ellipse(0.5, 0.3)
+    arc = np.linspace(0.01, traced.limits[1] - 0.01, 37)
+    # Spacing 0.01: (0.01)^8 for points, two powers less for the curvature; then rounding over the spacing.
+    np.testing.assert_allclose(traced.point(arc), exact.point(arc), atol=1e-14)
+    np.testing.assert_allclose(traced.angle(arc), exact.angle(arc), atol=1e-12)
+    np.testing.assert_allclose(traced.curvature(arc), exact.curvature(arc), rtol=1e-9)
+    np.testing.assert_allclose(traced.arc(traced.angle(arc)), arc, atol=1e-12)
+
+
+def test_a_root_out_of_reach_is_an_error_and_not_a_number():
+    with pytest.raises(ArithmeticError, match="no root"):
+        solve_increasing(lambda x: (np.tanh(x), 1 / np.cosh(np.clip(x, -300, 300)) ** 2), [2.0], [0.0], 1.0)
+    with pytest.raises(ArithmeticError, match="finite"):
+        solve_increasing(lambda x: (x, np.ones_like(x)), [np.nan], [0.0], 1.0)
+
 
 # Poses are a few roundings of lengths near 1 m, times the turns.
 ROUNDING = 1e-13
@@ -95,15 +172,6 @@ def test_a_turn_advances_by_the_circumference_and_the_check_catches_a_principal_
 SPIRAL = LogSpiral(0.5, 0.3)
 
 
-@pytest.mark.parametrize("body_arc", [0.0, 2.0, 5.0])
-def test_a_ring_about_an_ellipse_is_refused_by_the_ellipses_length_wherever_the_rings_centre_of_mass_is(body_arc):
-    ring = Placed(Ring(1.0), turn=0.4, shift=(0.3, 0.1))
-    # It touches at an end of its long axis, which has room across a circle of 1 m up to 2 m.
-    Rolling.at_arcs(ring, Ellipse(0.999, 0.5), 0.0, body_arc)
-    with pytest.raises(InvalidMechanism, match=r"reaches 0\.002 m beyond"):
-        Rolling.at_arcs(ring, Ellipse(1.001, 0.5), 0.0, body_arc)
-
-
 def test_an_ellipse_in_a_tight_ring_rolls_until_its_flat_side_fits_both_ways():
     shape, ring = Ellipse(0.5, 0.3), Ring(0.7)
     for start in (0.0, 0.1, -0.1):
@@ -178,51 +246,6 @@ def test_acceleration_is_as_if_pinned_plus_a_rolling_term_small_when_sharp_and_l
     assert conformal == pytest.approx(4 * 99, rel=1e-12)
 
 
-REFUSED = {
-    "a ring smaller than its roller": (lambda: Rolling.at_arcs(Circle(0.5), Ring(0.3)), "sum must be positive"),
-    "a ring of its roller's size": (lambda: Rolling.at_arcs(Circle(1.0), Ring(1 + NEAR_CONFORMAL / 4)), "so closely"),
-    "flat on flat": (lambda: Rolling.at_arcs(Side(1.0), Line()), "sum must be positive"),
-    "an ellipse too long for its ring": (lambda: Rolling.at_angle(Ellipse(0.5, 0.3), Ring(0.45), 0.0), "beyond it"),
-    "an ellipse too long for a ring that was moved": (
-        lambda: Rolling.at_angle(Ellipse(0.5, 0.3), Placed(Ring(0.45, (0.2, 0.1)), (1.0, -2.0), 0.7), 0.7),
-        "beyond it",
-    ),
-    "a ring too narrow to roll about an ellipse": (
-        lambda: Rolling.at_arcs(Ring(0.45), Ellipse(0.5, 0.3)),
-        "beyond it",
-    ),
-    "an ellipse that fits at the tip only": (
-        lambda: Rolling.at_angle(Ellipse(0.5, 0.3), Ring(0.7)).contact(2.0),
-        "can't turn to 2.0 rad",
-    ),
-    "curves that cross": (lambda: Rolling(Circle(0.5), Line(), 0.0, 0.0, 0.1), "cross at an angle"),
-    "a start not finite": (lambda: Rolling.at_angle(Circle(0.5), Line(), math.nan), "finite"),
-    "a rotation not finite": (lambda: Rolling.at_angle(Circle(0.5), Line()).pose(math.inf), "finite"),
-}
-
-
-@pytest.mark.parametrize("case", REFUSED)
-def test_what_can_not_roll_is_refused_with_the_place(case):
-    make, reason = REFUSED[case]
-    with pytest.raises(InvalidMechanism, match=reason):
-        make()
-
-
-def test_an_ellipse_in_a_narrow_ring_is_stopped_by_its_rim_before_curvature_stops_it():
-    rolling = Rolling.at_angle(Ellipse(0.5, 0.3), Ring(0.7))
-    stop = rolling.limits[1]
-    # The place where the curvatures cancel, found from the ellipse's own formula: speed^3 = a b R.
-    sine = math.sqrt(((0.5 * 0.3 * 0.7) ** (2 / 3) - 0.3**2) / (0.5**2 - 0.3**2))
-    arc = rolling.body.arc_of(-math.asin(sine))
-    expected = -float(arc) * -1 / 0.7 - (float(rolling.body.angle(arc)) - math.pi / 2)
-    assert stop == pytest.approx(expected, abs=1e-6)
-    assert np.all(np.isfinite(rolling.pose(0.1)))
-    with pytest.raises(InvalidMechanism, match="beyond it"):
-        rolling.contact(stop - 1e-3)
-    with pytest.raises(InvalidMechanism, match="fit each other"):
-        rolling.contact(stop + 1e-3)
-
-
 def complex_derivative(function, pose):
     """d function / d pose (..., 6) of the two bodies' poses by complex steps."""
     columns = []
@@ -273,7 +296,123 @@ def test_a_mechanism_of_two_rollers_has_a_freedom_each_and_its_bias_is_the_chapt
     np.testing.assert_allclose(reaction[:2], [0.0, 9.81], atol=1e-12)
 
 
-def test_a_roll_that_starts_open_is_refused():
-    rolling = Rolling.at_angle(Circle(0.5), Line())
-    with pytest.raises(InvalidMechanism, match=r"roll normal.*open"):
-        Mechanism((Body("wheel", 1.0, 1.0, (0.0, 0.501, 0.0)),), (Roll("roll", None, "wheel", rolling),))
+def test_the_incline_falls_to_minus_x_so_that_the_ellipse_goes_faster():
+    scene = RollingDownhill()
+    truth = scene.motion(np.array([0.0, scene.duration]))
+    along, up = truth.pose[1, 0, :2] - truth.pose[0, 0, :2]
+    assert along < -2
+    # It sinks by the slope, but for the 0.1 m by which its half axes differ.
+    assert up == pytest.approx(math.tan(scene.slope) * along, abs=0.11)
+    assert abs(truth.twist[1, 0, 2]) > abs(truth.twist[0, 0, 2])
+
+
+def disc(radius, ground, rate, theta=0.0, **more):
+    rolling = Rolling.at_angle(Circle(radius), ground, theta, **more)
+    return RollingBody(rolling, 1.0, radius**2 / 2, rate)
+
+
+def test_a_round_disc_downhill_accelerates_by_two_thirds_and_needs_a_third_of_the_slope():
+    slope = 0.3
+    law = disc(0.4, Line(math.pi + slope), 0.0)
+    t = np.linspace(0, 2, 21)
+    theta, _ = law.states(t)
+    np.testing.assert_allclose(theta, GRAVITY * math.sin(slope) / (1.5 * 0.4) * t**2 / 2, atol=1e-11)
+    np.testing.assert_allclose(law.required_friction(t), math.tan(slope) / 3, rtol=1e-11)
+    # Along e_t, downhill: friction holds back.
+    np.testing.assert_allclose(law.forces(t)[0], -GRAVITY * math.sin(slope) / 3, rtol=1e-11)
+    assert law.slip(0.99 * math.tan(slope) / 3, 2.0) == 0.0
+    assert law.slip(1.01 * math.tan(slope) / 3, 2.0) is None
+
+
+def test_a_round_disc_leaves_a_round_hill_where_the_textbook_says():
+    hill, radius, rate = 1.0, 0.25, 0.6
+    law = disc(radius, Circle(hill), rate, ground_arc=hill * math.pi / 2)
+    instant = law.hop(3.0)
+    assert instant is not None
+    x, y = law.rolling.position(law.states(instant)[0])[0]
+    # Energy 3/4 m v^2 and m v^2 / (R + r) = m g cos(angle) from the top: 4/7 from rest.
+    start = 0.75 * (radius * rate) ** 2 / (GRAVITY * (hill + radius))
+    assert y / math.hypot(x, y) == pytest.approx((1 + start) / 1.75, abs=1e-12)
+    assert law.forces(instant)[1] == pytest.approx(0.0, abs=1e-10)
+    assert np.all(law.forces(np.linspace(0, instant - 1e-6, 50))[1] > 0)
+    # It slips before it hops, whatever the friction, and the later the larger it is.
+    slips = [present(law.slip(mu, 3.0)) for mu in (0.2, 0.5, 2.0, 50.0)]
+    assert slips == sorted(slips)
+    assert slips[-1] < instant
+    for mu, at in zip((0.2, 0.5, 2.0), slips, strict=False):
+        assert law.required_friction(at)[0] == pytest.approx(mu, rel=1e-9)
+
+
+def test_a_scene_that_slips_and_hops_ends_its_horizon_there():
+    scene = RollingOnCircle()
+    assert scene.horizon == scene.comparable_until < present(scene.hop) < scene.duration
+    assert scene.motion_law.required_friction(scene.horizon)[0] == pytest.approx(scene.friction, rel=1e-9)
+    # However rough, it holds no longer than to the hop.
+    assert RollingOnCircle(friction=1e9).horizon == pytest.approx(scene.hop, rel=1e-6)
+    assert RollingEllipse().horizon == RollingEllipse().duration
+    assert RollingEllipse().comparable_until == math.inf
+    # The ellipse asks for 0.2993 at most.
+    assert RollingEllipse(friction=0.25).horizon < 1.0
+
+
+def test_small_oscillations_have_the_closed_frequencies():
+    a, b = 0.5, 0.3
+    flat = RollingEllipse().motion_law
+    # Radius of curvature at the flat side less the height of the centre, over the inertia about the contact.
+    assert flat.small_frequency(0.0) ** 2 == pytest.approx(GRAVITY * (a * a / b - b) / ((a * a + b * b) / 4 + b * b))
+    centred = RollingDisc(start_angle=-1.3)
+    rest = centred.motion_law.equilibrium(math.pi / 2)
+    assert rest == pytest.approx(math.pi / 2, abs=1e-14)
+    near = 0.4 - 0.15
+    assert centred.motion_law.small_frequency(rest) ** 2 == pytest.approx(GRAVITY * 0.15 / (0.4**2 / 2 + near**2))
+    inside = disc(0.3, Ring(1.0), 0.0, math.pi / 2, ground_arc=math.pi / 2)
+    # A disc in a bowl: g / (1.5 (R - r)) of the centre's swing, the same for any coordinate.
+    assert inside.small_frequency(math.pi / 2) ** 2 == pytest.approx(GRAVITY / (1.5 * 0.7), rel=1e-12)
+
+
+def watched(scene, looks=4001):
+    """By looking, at so many instants: when the contact would first pull, and first needs more than its friction."""
+    t = np.linspace(0, scene.duration, looks)
+    tangent, normal = scene.motion_law.forces(t)
+    rounding = 1e-11 * (1 + scene.friction) * np.abs([tangent, normal]).max()
+    out = []
+    for spare in (normal, scene.friction * normal - np.abs(tangent)):
+        below = np.flatnonzero(spare < -rounding)
+        out.append((t[max(0, below[0] - 1)], t[below[0]]) if below.size else None)
+    return out
+
+
+def some_scene(seed):
+    """Any start: at rest, next to a balance, fast; in any unit of length and of time."""
+    rng = random.Random(seed)
+    length, time = 10 ** rng.choice([0.0, -9.0, 9.0]), 10 ** rng.choice([0.0, -9.0, 9.0])
+    given: dict[str, Any] = {
+        "start_rate": rng.choice([0.0, 1e-6, 1e-3, rng.uniform(-6, 6)]) / time,
+        "start_angle": rng.choice([0.0, rng.uniform(-3, 3)]),
+        "gravity": (0.0, -GRAVITY * length / time**2),
+        "friction": 10 ** rng.uniform(-2, 1.5),
+        "duration": 3 * time,
+    }
+    if rng.random() < 0.6:
+        sizes: dict[str, Any] = {"hill": rng.uniform(0.3, 3) * length, "radius": rng.uniform(0.1, 1) * length}
+        return RollingOnCircle(**given, **sizes, eccentricity=rng.choice([0.0, rng.uniform(0, 0.09)]) * length)
+    if rng.random() < 0.5:
+        return RollingDisc(**given, radius=0.4 * length, eccentricity=rng.uniform(0, 0.39) * length)
+    return RollingEllipse(**given, along_x=0.5 * length, along_y=rng.uniform(0.3, 0.7) * length)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_hops_and_slips_are_the_first_that_looking_finds(seed):
+    scene = some_scene(seed)
+    law = scene.motion_law
+    slips = law.slip(scene.friction, scene.duration)
+    for told, seen in zip((scene.hop, slips), watched(scene), strict=True):
+        if seen is None:
+            assert told is None
+        else:
+            assert seen[0] * (1 - 1e-12) <= present(told) <= seen[1]
+
+
+@pytest.mark.parametrize("scene", [RollingEllipse(), RollingDisc(eccentricity=0.1), RollingInRing()])
+def test_a_body_that_has_shown_all_its_forces_is_not_followed_for_ever(scene):
+    assert scene.motion_law.hop(1e9) is None

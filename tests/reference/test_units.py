@@ -37,8 +37,9 @@ UNITS = {
 }
 OTHER = {("elliptic_gears", "eccentricity"): (0, 0, 0)}
 POSES = ("start", "pose")  # x, y, angle, where they are three numbers
-SCALES = {"nano": 2.0**-30, "giga": 2.0**30}
-KINDS = {"length": LENGTH, "time": TIME, "mass": MASS, "length and time": (1, 1, 0)}
+# Units of length [m], time [s] and mass [kg]: exponents of which no sum with small factors is zero, so that no mistake
+# in one of them makes up for one in another.
+SCALES = {"small": (2.0**-30, 2.0**-17, 2.0**23), "large": (2.0**30, 2.0**19, 2.0**-13)}
 
 
 def scaled(value, factor):
@@ -67,10 +68,8 @@ def off(found, expected):
     return float(np.nanmax(np.abs(found - expected), initial=0.0) / size) if size else float(np.nanmax(np.abs(found)))
 
 
-def difference(scene: Scene, kind: str, scale: float) -> float:
+def difference(scene: Scene, unit: tuple[float, float, float]) -> float:
     """The largest of poses, twists and reactions, of the motion in metres and seconds (or of 1)."""
-    length, time, mass = (scale**exponent for exponent in KINDS[kind])
-    unit = (length, time, mass)
     other = in_other_units(scene, unit)
     until = min(scene.duration, scene.horizon, scene.comparable_until, getattr(scene, "corner", math.inf) / 2)
     times = until * np.array([0.0, 0.13, 0.5, 1.0])
@@ -110,18 +109,18 @@ COSTLY = (
 
 
 @pytest.mark.parametrize("scale", SCALES)
-@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(
     "scene",
     [pytest.param(each, marks=pytest.mark.slow if each.name in COSTLY else ()) for each in ALL],
     ids=lambda scene: scene.name,
 )
-def test_a_scene_in_other_units_is_the_same_scene(scene: Scene, kind: str, scale: str) -> None:
+def test_a_scene_in_other_units_is_the_same_scene(scene: Scene, scale: str) -> None:
     # In closed form, or integrated in nearly the same steps, or solved for iteratively: what is left is rounding, which
     # of costly ones grows tenfold and more up to the horizon.
-    assert difference(scene, kind, SCALES[scale]) < 1e-12
+    allowed = 1e-11 if scene.name == "pendulum_100" else 1e-12  # joint forces of a hundred links sum more roundings
+    assert difference(scene, SCALES[scale]) < allowed
 
 
 def test_a_number_left_in_its_old_unit_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(UNITS, "gravity", LENGTH)
-    assert difference(RollingDisc(), "time", SCALES["nano"]) > 1e-3  # it hardly falls; in "giga" it never ends
+    assert difference(RollingDisc(), (1.0, 2.0**-30, 1.0)) > 1e-3  # it hardly falls

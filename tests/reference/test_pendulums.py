@@ -1,0 +1,282 @@
+"""Pendulums, chains, N-four-bars and a falling person: closed forms, modes, passages and singular instants."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import mpmath
+import mpmath as mp
+import numpy as np
+import pytest
+from scipy.special import jn_zeros
+
+from reference.numerics.elliptic import incomplete, jacobi, quarter_period
+from reference.scenes.n_four_bar import NFourBar, TenFourBars
+from reference.scenes.pendulum.chain import Chain
+from reference.scenes.pendulum.link import BarPendulum, Pendulum, PointPendulum
+from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.scenes.person import (
+    HEAD_ARMS_TRUNK,
+    SHANK,
+    SHANK_AND_FOOT,
+    THIGH,
+    UPRIGHT,
+    OneFoot,
+    SwayingOnOneFoot,
+    TwoFeet,
+    modes_upright,
+)
+from tests.reference.laws.pendulums import links as law_of
+
+FREQUENCY = 3.0
+
+
+@pytest.mark.parametrize("complement", [1.0, 0.1, 1e-8, 1e-30])
+def test_jacobi_functions_keep_their_digits_down_to_the_separatrix(complement: float) -> None:
+    with mpmath.workdps(60):
+        parameter = 1 - mpmath.mpf(complement)
+        quarter = quarter_period(complement)
+        exact = mpmath.pi / 2 / mpmath.agm(1, mpmath.sqrt(mpmath.mpf(complement)))
+        assert abs(quarter / exact - 1) < 5e-16
+        for argument in np.linspace(-3.3 * quarter, 3.3 * quarter, 23):
+            sn, cn, dn, amplitude = (float(value) for value in jacobi(argument, complement))
+            exact_sn, exact_cn, exact_dn = (
+                mpmath.ellipfun(f, mpmath.mpf(argument), m=parameter) for f in ("sn", "cn", "dn")
+            )  # The argument's own rounding is up to 230 * 1e-16 and the functions' slopes are at most 1.
+            tolerance = 8e-16 * (1 + abs(argument))
+            assert abs(sn - exact_sn) < tolerance
+            assert abs(cn - exact_cn) < tolerance
+            assert abs(dn / exact_dn - 1) < tolerance
+            assert abs(math.sin(amplitude) - exact_sn) < tolerance
+
+
+def test_the_incomplete_integral_keeps_its_digits_beside_the_quarter_period() -> None:
+    for complement in (0.5, 1e-8, 1e-30):
+        for sine, cosine in ((0.3, 0.7), (1.0, 1e-9), (1.0, -1e-9), (-1.0, -0.2), (1.0, 0.0)):
+            with mpmath.workdps(60):
+                exact = mpmath.ellipf(mpmath.atan2(mpmath.mpf(sine), mpmath.mpf(cosine)), 1 - mpmath.mpf(complement))
+                assert abs(float(incomplete(sine, cosine, complement)) - exact) < 1e-15 * (1 + abs(exact))
+
+
+def test_small_swings_have_the_small_period_and_the_kinds_are_named() -> None:
+    # K(k) = pi/2 (1 + k^2/4 + ...), k = 5e-4.
+    assert Pendulum(2.0, 1e-3).period == pytest.approx(math.pi * (1 + 1e-6 / 16), rel=1e-12)
+    assert Pendulum(2.0, 1.0).kind == "swinging"
+    assert Pendulum(2.0, 0.0, 4.1).kind == "whirling"
+    assert Pendulum(2.0, 0.0, 4.0).kind == "separatrix"
+    assert math.isinf(Pendulum(2.0, 0.0, 4.0).period)
+
+
+def test_the_benchmark_pendulum_keeps_its_phase_for_845_periods() -> None:
+    scene = PointPendulum()
+    assert scene.samples == 4000
+    with mpmath.workdps(40):
+        frequency = mpmath.sqrt(mpmath.mpf(9.81))
+        quarter = mpmath.ellipk(mpmath.mpf(1) / 2)
+        period = 4 * quarter / frequency
+        assert abs(scene.pendulum.period / period - 1) < 5e-16
+        assert int(2000 / period) == 844
+        times = [0.5, 999.5, 1234.5, 2000.0]
+        found = scene.bob(scene.motion(times).pose)
+        for t, (x, y) in zip(times, found, strict=True):
+            phase = mpmath.fmod(mpmath.mpf(t), period) * frequency + quarter
+            sine = mpmath.ellipfun("sn", phase, m=0.5) / mpmath.sqrt(2)
+            # 845 periods, each rounded at 2e-16 of 2.4 s, at speeds to 4.4 m/s.
+            assert abs(x - 2 * sine * mpmath.sqrt(1 - sine**2)) < 3e-12
+            assert abs(y + 1 - 2 * sine**2) < 3e-12
+
+
+@pytest.mark.parametrize("pendulum", [Pendulum(3.0, 1.0, 0.2), Pendulum(3.0, -2.5, -1.0), Pendulum(2.0, 3.0, 5.0)])
+def test_passages_are_all_those_that_looking_finds_up_to_the_last(pendulum):
+    t = np.linspace(0, 12 * pendulum.period, 120_001)
+    motion = pendulum.motion(t)[0]
+    for angle in (0.5, -0.9, 0.0):
+        side = np.sin((motion - angle) / 2)
+        seen = t[1:][side[1:] * side[:-1] < 0]
+        assert len(seen) > 10
+        np.testing.assert_allclose(pendulum.passages(angle, float(t[-1])), seen, atol=2 * t[1])
+        for last in (0, 3, len(seen) - 1):  # `until` just after a passage, and just before it
+            exact = float(pendulum.passages(angle, float(t[-1]))[last])
+            assert len(pendulum.passages(angle, exact * (1 + 1e-12))) == last + 1
+            assert len(pendulum.passages(angle, exact * (1 - 1e-12))) == last
+
+
+def random_chain(links: int) -> tuple[Chain, np.ndarray, np.ndarray]:
+    generator = np.random.default_rng(links)
+    chain = Chain(tuple(generator.uniform(0.5, 2, links)), tuple(generator.uniform(0.5, 2, links)))
+    return chain, generator.uniform(-3, 3, (4, links)), generator.normal(size=(4, links))
+
+
+@pytest.mark.parametrize("links", [1, 5, 40])
+def test_joint_forces_and_lagrange_give_the_same_accelerations(links: int) -> None:
+    chain, angle, rate = random_chain(links)
+    found = chain.accelerations(angle, rate)
+    expected = np.array([lagrangian_accelerations(chain, a, r) for a, r in zip(angle, rate, strict=True)])
+    # Both systems' condition numbers grow like links^2.
+    assert np.abs(found - expected).max() < 1e-15 * (10 + links**2) * np.abs(expected).max()
+    alone = np.array([chain.forces(a, r) for a, r in zip(angle, rate, strict=True)])
+    assert np.abs(chain.forces(angle, rate) - alone).max() < 1e-12 * np.abs(alone).max()
+
+
+def lagrangian_accelerations(chain: Chain, angle, rate):
+    """angle'' (links,) [rad/s^2] by Lagrange's equations, dense: no joint force in it; the second opinion."""
+    difference = angle[:, None] - angle
+    right = -(chain.inertia_matrix * np.sin(difference)) @ rate**2 - chain.stiffness * np.sin(angle)
+    return np.linalg.solve(chain.inertia_matrix * np.cos(difference), right)
+
+
+def test_the_stated_error_is_above_the_true_one_of_a_motion_known_in_closed_form() -> None:
+    chain, exact = LinkPendulum(links=1, angle=2.0, duration=3.0), BarPendulum()
+    t = np.linspace(0, 3, 26)
+    true = np.abs(chain.motion(t).pose - exact.motion(t).pose)[..., 0, 2].max()
+    stated = chain.truth_error(t).max()
+    assert stated > true > 0
+    # Ten times two errors of one size: a bound that says something.
+    assert stated < 1e3 * true
+    # Some dozen windows, each with a rounding of its accelerations.
+    assert true < 1e-14
+
+
+@pytest.mark.parametrize("scene", [LinkPendulum(), TenLinks(), HundredLinks()])
+def test_the_stated_horizon_is_within_the_measured_one(scene: LinkPendulum) -> None:
+    measured, _ = scene.chain.horizon(
+        np.full(scene.links, scene.angle), np.full(scene.links, scene.rate), scene.duration
+    )
+    assert scene.horizon <= measured
+
+
+def test_modes_of_one_two_and_many_links_are_the_known_ones() -> None:
+    gravity, length = 9.81, 0.7
+    one, _ = Chain((length,), (3.0,), gravity).modes()
+    assert one[0] == pytest.approx(math.sqrt(1.5 * gravity / length), rel=1e-14)
+    two, _ = Chain((length,) * 2, (3.0,) * 2, gravity).modes()
+    # det(K - w^2 M) = 0 with M = m l^2 (4/3, 1/2; 1/2, 1/3), K = m g l (3/2, 1/2).
+    exact = np.sqrt((3 + np.array([-6, 6]) / math.sqrt(7)) * gravity / length)
+    assert np.abs(two / exact - 1).max() < 1e-14
+    links = 300
+    many, _ = Chain((1 / links,) * links, (1 / links,) * links, gravity).modes()
+    rope = jn_zeros(0, 3) / 2 * math.sqrt(gravity)  # Daniel Bernoulli's hanging chain of unit length
+    assert np.abs(many[:3] / rope - 1).max() < 20 / links**2
+
+
+def test_modes_are_the_motion_of_the_joint_force_equations() -> None:
+    chain, _, _ = random_chain(6)
+    frequencies, shapes = chain.modes()
+    small = 1e-5
+    found = chain.accelerations(small * shapes.T, np.zeros((6, 6)))
+    # sin x = x - x^3/6, relative 1e-9 for these shapes; the rest is rounding of the weights.
+    assert np.abs(found / small + (frequencies**2 * shapes).T).max() < 1e-6 * np.abs(frequencies**2 * shapes).max()
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1e2, 1e4, 1e6, 1e9])
+def test_a_heavy_tip_costs_no_digits(ratio: float) -> None:
+    generator = np.random.default_rng(3)
+    # Extended precision has 11 bits more than a double, and a ratio of masses costs as many digits as it has.
+    allowed = 1e-14 + 1e-3 * 2.2e-16 * ratio
+    for links in (2, 5):
+        chain = Chain((1.0,) * links, (1.0,) * (links - 1) + (ratio,))
+        for _ in range(4):
+            angle, rate = generator.uniform(-2, 2, (2, links))
+            numbers = map(mp.mpf, (*chain.lengths, *chain.masses, *angle.tolist(), *rate.tolist(), chain.gravity))
+            with mp.workdps(60):
+                exact = np.array([float(value) for value in law_of(links).exact(*numbers)])
+            assert np.abs(chain.accelerations(angle, rate) - exact).max() < allowed * (1 + np.abs(exact).max())
+
+
+SCENES = [NFourBar(loops=1), NFourBar(), NFourBar(loops=3, length=0.7, mass=2.0, speed=-2.5), TenFourBars()]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_at_the_singular_instants_n_more_freedoms_open(scene: NFourBar) -> None:
+    mechanism = scene.mechanism()
+    times = scene.singular_times(3 * scene.period)
+    assert len(times) == 6  # twice a turn
+    motion = scene.motion(times)
+    for pose in motion.pose:
+        assert abs(math.cos(pose[0, 2]) ** 2 - 1) < 1e-14
+        assert mechanism.degrees_of_freedom(pose) == (scene.loops + 1, scene.loops + 1)
+    between = scene.motion((times[1:] + times[:-1]) / 2)
+    for pose in between.pose:
+        assert mechanism.degrees_of_freedom(pose) == (1, 1)
+
+
+def test_forces_have_no_limit_at_a_singular_position_unless_there_is_one_loop() -> None:
+    before = np.array([1e-2, 1e-3, 1e-4])
+    for loops, grows in ((1, False), (2, True), (10, True)):
+        scene = NFourBar(loops=loops)
+        largest = np.abs(scene.motion(scene.singular_times(2.0)[0] - before).reaction).max(axis=1)
+        # cos(angle) = rate * time left: ten times nearer, ten times larger, once the finite part is left behind.
+        ratio = largest[2] / largest[1]
+        assert (7 < ratio < 11) if grows else (0.9 < ratio < 1.1)
+
+
+def test_the_branch_tells_parallelograms_from_folded_loops() -> None:
+    scene = NFourBar()
+    motion = scene.motion(np.linspace(0, 10, 501))
+    assert np.all(scene.branch_of(motion.pose) == 1)
+    assert np.all(scene.branch_of(scene.motion(scene.singular_times(10.0)).pose) == 1)
+    # Fold the first loop on its left: crank 0 along the ground, coupler 0 on crank 1; the rest stays.
+    folded = scene.motion([0.3]).pose[0].copy()
+    crank = folded[1, 2]
+    folded[0], folded[3] = (0.5, 0.0, 0.0), (1 + 0.5 * math.cos(crank), 0.5 * math.sin(crank), crank)
+    assert np.abs(scene.mechanism().gap(folded, 0.0)).max() < 1e-14  # a branch too
+    assert scene.branch_of(folded) == -1
+    # And the second on its right: crank 2 along the ground to pivot 1, coupler 1 back along crank 1; while crank 1
+    # stands upright, and while it lies to the left, where a parallelogram is nearer than the first way to fold.
+    for t in (0.3, 1.25):
+        folded = scene.motion([t]).pose[0].copy()
+        crank = folded[1, 2]
+        folded[2] = (1.5, 0.0, math.pi)
+        folded[4] = (1 + 0.5 * math.cos(crank), 0.5 * math.sin(crank), crank + math.pi)
+        assert np.abs(scene.mechanism().gap(folded, 0.0)).max() < 1e-14
+        assert scene.branch_of(folded) == -1
+    assert math.cos(crank) < -1 / 2
+
+
+def test_cranks_that_start_upright_at_rest_stay_there_for_ever():
+    scene = NFourBar(speed=0.0, duration=1000.0)
+    assert scene.period == math.inf
+    assert scene.singular_times(1e6).size == 0
+    motion = scene.motion([0.0, 50.0, 1000.0])
+    assert np.abs(motion.pose - motion.pose[0]).max() == 0
+    assert np.abs(motion.twist).max() == 0
+
+
+def test_the_table_adds_up_to_one_body() -> None:
+    """Winter: HAT and two legs with feet; both centres and both radii obey his third column, the radius about an
+    end.
+    """
+    assert HEAD_ARMS_TRUNK.mass + 2 * THIGH.mass + 2 * SHANK_AND_FOOT.mass == pytest.approx(1.0, abs=1e-12)
+    for segment, about_the_end in ((HEAD_ARMS_TRUNK, 0.798), (THIGH, 0.540), (SHANK, 0.528), (SHANK_AND_FOOT, 0.735)):
+        # printed to three digits
+        assert math.hypot(segment.centre, segment.gyration) == pytest.approx(about_the_end, abs=1e-3)
+    scene = OneFoot()
+    assert scene.masses.sum() == pytest.approx(75.0 * (1 - 0.0145), rel=1e-12)  # the standing foot is ground
+
+
+def test_the_branch_is_the_bend_of_the_knees() -> None:
+    for scene in (TwoFeet(), TwoFeet(knees=-1, stance=0.3, hip_x=0.1, trunk=0.2, mass=60.0, height=1.6, hip_y=0.72)):
+        assert np.all(scene.branch_of(scene.motion(np.linspace(0, scene.duration, 9)).pose) == scene.knees)
+
+
+def test_the_sway_starts_on_a_swinging_mode_and_upright_grows_in_three_others() -> None:
+    scene = SwayingOnOneFoot()
+    squares, shapes = modes_upright(scene)
+    assert np.sum(squares < 0) == 2
+    parts = np.abs(np.linalg.solve(shapes, scene.start[:5] - UPRIGHT))
+    # Six digits of the start are given: what lies on the other modes is what they leave out.
+    assert np.all(np.delete(parts, 0) < 1e-5 * parts[0])
+    # The linearised motion: a quarter of a swing brings the lifted leg to upright, but for third powers of 0.1 rad.
+    quarter = math.pi / 2 / math.sqrt(-squares[0])
+    aside = scene.states([quarter])[0][0] - np.array(UPRIGHT)
+    assert np.abs(aside).max() < 0.05 * 0.1
+    # The fastest growing mode alone, by the equations of motion: it must keep its shape and grow like cosh.
+    rate = math.sqrt(squares[-1])
+    start = 1e-7 * shapes[:, -1] / np.abs(shapes[:, -1]).max()
+    grown = replace(
+        scene,
+        **dict(zip(("left_shank", "left_thigh", "trunk", "right_thigh", "right_shank"), start.tolist(), strict=True)),
+    )
+    end = grown.states([0.2])[0][0] - UPRIGHT
+    assert np.abs(end - start * math.cosh(rate * 0.2)).max() < 1e-5 * np.abs(end).max()

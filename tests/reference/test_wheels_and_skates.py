@@ -1,0 +1,386 @@
+"""Skates, sleighs, tows, trains and casters, and which of their velocity rows are integrable."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from reference.chapter.integrability import (
+    exterior_derivatives,
+    freedoms_by_brackets,
+    growth,
+    is_integrable,
+    mechanism_is_integrable,
+    obstruction,
+)
+from reference.chapter.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
+from reference.chapter.skates import coriolis_factors, frobenius, one_form, skate_of
+from reference.checks import InvalidMechanism
+from reference.joints import Pin, Skate
+from reference.mechanism import Body, Mechanism
+from reference.scenes.skates.pinned_body import PinnedBody
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart, Casters
+from reference.scenes.wheels.tractrix import Tow
+from reference.scenes.wheels.trailers import CarWithTrailers
+from tests.mechanisms import four_bar
+from tests.present import present
+
+
+def test_the_joint_has_the_row_of_18_64_and_leaves_three_configurations_and_two_velocities():
+    for angle in (0.0, 0.7, -2.0):
+        body = Body("sledge", 2.0, 0.3, (0.4, 0.1, angle))
+        mechanism = Mechanism((body,), (Skate("skate", None, "sledge", (-0.5, 0.3)),))
+        printed = [-math.sin(angle), math.cos(angle), -0.5]  # the coordinate y' of C drops out
+        assert np.abs(mechanism.rows(mechanism.pose)[0] - printed).max() < 1e-15
+        assert mechanism.degrees_of_freedom() == (3, 2)
+        assert np.isnan(mechanism.gap(mechanism.pose, 0.0)).all()
+
+
+def test_a_blade_at_an_angle_and_on_another_body_stops_the_relative_velocity_across_it():
+    rng = np.random.default_rng(5)
+    poses, twists = rng.normal(size=(2, 2, 3))
+    point, angle = (0.3, -0.4), 0.9
+    bodies = tuple(Body(name, 1.0, 1.0, tuple(pose.tolist())) for name, pose in zip("ab", poses, strict=True))
+    mechanism = Mechanism(bodies, (Skate("blade", "a", "b", point, angle),))
+    turn = np.array([[math.cos(poses[1, 2]), -math.sin(poses[1, 2])], [math.sin(poses[1, 2]), math.cos(poses[1, 2])]])
+    place = poses[1, :2] + turn @ point
+
+    def at(body):
+        arm = place - poses[body, :2]
+        return twists[body, :2] + twists[body, 2] * np.array([-arm[1], arm[0]])
+
+    left = np.array([-math.sin(poses[1, 2] + angle), math.cos(poses[1, 2] + angle)])
+    assert mechanism.slip(poses, twists)[0] == pytest.approx((at(1) - at(0)) @ left, abs=1e-14)
+
+
+def test_any_pose_is_reached_from_any_other_by_turn_slide_turn():
+    rng = np.random.default_rng(7)
+    for start, goal in zip(rng.uniform(-9, 9, (50, 3)), rng.uniform(-9, 9, (50, 3)), strict=True):
+        for backwards in (True, False):
+            moves = park(tuple(start), tuple(goal), backwards)
+            assert np.abs(stops(tuple(start), moves)[-1] - goal).max() < 1e-13
+            assert abs(moves[0].turn) <= (math.pi / 2 if backwards else math.pi)
+    assert park((1.0, 2.0, 0.0), (1.0, 2.0, 3.0)) == (Move(), Move(turn=3.0))
+
+
+def test_no_part_of_a_manoeuvre_skids():
+    path = trace((0.0, 0.0, 0.3), (*park((0.0, 0.0, 0.3), (1.0, 2.0, -1.0)), *sidestep(1.0, 0.7, 0.5)))
+    moved, middle = np.diff(path, axis=0), 0.5 * (path[1:, 2] + path[:-1, 2])
+    assert np.abs(-np.sin(middle) * moved[:, 0] + np.cos(middle) * moved[:, 1]).max() < 1e-14
+
+
+def test_the_commutator_moves_sideways_by_the_product_of_its_moves_as_they_shrink():
+    assert (
+        np.abs(stops((0.0, 0.0, 0.0), commutator(0.6, 0.5))[-1] - [*commutator_displacement(0.6, 0.5), 0.0]).max()
+        < 1e-15
+    )
+    turn = np.array([1e-1, 1e-2, 1e-3])
+    rest = commutator_displacement(turn, turn) / turn[:, None] ** 2 - [0.0, 1.0]
+    assert np.abs(rest[:, 0] / turn + 1 / 2).max() < 1e-3  # -turn/2 + turn^3/24
+    assert np.abs(rest[:, 1] / turn**2 + 1 / 6).max() < 1e-4  # -turn^2/6 + turn^4/120
+
+
+def test_a_sidestep_is_exactly_sideways_within_its_room():
+    for distance in (2.3, -0.01, 1e-6):
+        moves = sidestep(distance, 0.5, 0.4)
+        assert np.abs(stops((0.0, 0.0, 0.0), moves)[-1] - [0.0, distance, 0.0]).max() < 1e-14
+        assert np.abs(trace((0.0, 0.0, 0.0), moves)[:, 2]).max() <= 0.4 + 1e-12
+    assert sidestep(0.0, 1.0, 1.0) == ()
+    with pytest.raises(InvalidMechanism, match="room"):
+        sidestep(1.0, 0.0, 1.0)
+
+
+def test_a_skate_almost_below_the_centre_of_mass_moves_as_one_below_it():
+    almost, below = (ChaplyginSleigh(offset=offset).motion([1.0, 3.0]) for offset in (1e-9, 0.0))
+    assert np.abs(almost.pose - below.pose).max() < 1e-7
+
+
+def test_a_stiff_sleigh_settles_and_is_then_followed_for_ever():
+    for sleigh in (ChaplyginSleigh(speed=1e5, duration=1e3), ChaplyginSleigh(offset=-1e-3, inertia=1e-9, duration=1e3)):
+        long = sleigh.skate_pose([1e-2 + sleigh._settled, 1000.0])
+        gone, settled = long[1] - long[0], long[1, 2]
+        top = math.copysign(sleigh._top_speed * (1000 - 1e-2 - sleigh._settled), sleigh.offset)
+        assert np.abs(gone[:2] - top * np.array([math.cos(settled), math.sin(settled)])).max() < 1e-14 * abs(top)
+    # Before it settles the quadrature alone has the motion: the two halves agree.
+    sleigh = ChaplyginSleigh()
+    later = sleigh._settled + 1.0
+    assert abs(sleigh._moved(later) - sleigh.skate_pose(later)[0] @ [1, 1j, 0]) < 1e-13
+
+
+def test_backwards_a_small_turning_grows_at_the_linear_rate_and_the_sleigh_turns_round():
+    sleigh = SleighBackwards(turning_rate=1e-9)
+    turning = sleigh.rates([1.0, 2.0])[1]
+    assert math.log(turning[1] / turning[0]) == pytest.approx(sleigh.growth_rate(), rel=1e-14)
+    assert ChaplyginSleigh().growth_rate() < 0
+    speed = SleighBackwards().rates([0.0, 20.0])[0]
+    assert speed[0] == pytest.approx(-1.0, abs=1e-6)
+    assert speed[1] == pytest.approx(1.0, abs=1e-6)
+    # Two turns of the heading's limit: pi k/|a| for a full reversal from a straight run.
+    assert SleighBackwards().heading(200.0) == pytest.approx(math.pi * math.sqrt(0.4) / 0.5, rel=1e-3)
+
+
+def test_a_tow_on_a_circle_settles_or_goes_round_for_ever():
+    for radius in (3.0, -1.5):
+        tow = Tow(1.0, 2.0, radius)
+        assert tow.relative_angle(60.0) == pytest.approx(-math.asin(1.0 / radius), abs=1e-14)
+    slow = Tow(1.0, 0.0, 1.0)  # R = L: the wheel comes to the centre as 2 L^2 / s
+    assert (slow.relative_angle(1e6) + math.pi / 2) * 1e6 == pytest.approx(2, rel=1e-5)
+    round_and_round = Tow(1.0, 0.3, 0.5)
+    period = 2 * math.pi / math.sqrt(0.5**-2 - 1)  # psi falls by a full turn
+    turned = round_and_round.relative_angle([0.0, period, 7 * period, -period])
+    assert np.abs(turned - 0.3 + 2 * math.pi * np.array([0, 1, 7, -1])).max() < 1e-13
+
+
+def test_a_tow_started_straight_behind_or_folded_over_stays_so():
+    assert np.abs(Tow(1.0, 0.0).relative_angle([1.0, -1.0, 1e3, -1e3])).max() == 0
+    assert np.all(Tow(1.0, math.pi).relative_angle([1.0, 1e3]) == math.pi)
+    assert Tow(1.0, 1e-9).relative_angle(-1e3) == pytest.approx(math.pi, abs=1e-15)  # pushed, it folds over
+
+
+@pytest.mark.parametrize(("hitch", "speed"), [(0.0, 1.3), (0.6, 1.3), (-0.4, 1.3), (0.6, -0.4)])
+def test_a_trailer_behind_a_circling_car_is_a_tow(hitch, speed):
+    car, t = CarWithTrailers(2.5, (3.0,), (hitch,)), np.linspace(0, 20, 21)
+    driven = car.drive(speed, 0.3, (1.0, 2.0, 0.3), (0.4,), t)
+    curvature = math.tan(0.3) / 2.5
+    pace, direction = math.hypot(1, hitch * curvature), 0.3 - math.atan(hitch * curvature)
+    tow = Tow(3.0, 0.7 - direction, pace / curvature, (0.0, 0.0, direction))
+    assert np.abs(tow.heading(pace * speed * t) - driven.pose[:, 1, 2]).max() < 2e-12
+    assert driven.error.max() < 2e-11
+    if speed > 0:  # v sin b - h w cos b = L w: it circles with the car
+        settled = -(math.asin(3.0 * curvature / pace) + math.atan(hitch * curvature))
+        assert car.drive(speed, 0.3, (0, 0, 0), (0.4,), [300.0]).bends[0, 0] == pytest.approx(settled, abs=1e-11)
+
+
+def test_no_axle_of_a_train_skids_whatever_is_steered():
+    car = CarWithTrailers(1.0, (0.9, 1.1, 0.7), (0.2, 0.0, -0.1))
+    t, step = np.linspace(0.1, 6, 13), 1e-3
+    weights = np.array([-1, 9, -45, 45, -9, 1]) / 60 / step
+    shifts = np.array([-3, -2, -1, 1, 2, 3]) * step
+
+    def driven(t):
+        speed, steering = (lambda t: 1 + 0.5 * np.sin(t)), (lambda t: 0.5 * np.cos(1.3 * t))
+        return car.drive(speed, steering, (0.0, 0.0, 0.0), (0.3, -0.5, 0.2), t)
+
+    middle = driven(t)
+    velocity = np.sum([w * driven(t + s).pose for w, s in zip(weights, shifts, strict=True)], axis=0)
+    heading = middle.pose[:, :, 2]
+    across = -np.sin(heading) * velocity[..., 0] + np.cos(heading) * velocity[..., 1]
+    along = np.cos(heading) * velocity[..., 0] + np.sin(heading) * velocity[..., 1]
+    assert np.abs(across).max() < 1e-8  # order 6 of rates about 2/s, and 1e-12/h
+    assert np.abs(along - middle.speed).max() < 1e-8
+
+
+def test_a_reversing_trailer_jackknifes_when_its_exact_angle_says():
+    car = CarWithTrailers(2.0, (1.5,), (0.0,))
+    driven = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.01,), [10.0, 20.0])
+    # tan(psi/2) grows as exp(s/L); it is 1 at a right angle.
+    assert driven.jackknifed_at == pytest.approx(-1.5 * math.log(math.tan(0.005)), abs=1e-10)
+    assert driven.jackknifed == 1
+    assert driven.bends[-1, 0] == pytest.approx(2 * math.atan(math.tan(0.005) * math.exp(20 / 1.5)), abs=1e-10)
+    assert car.drive(1.0, 0.0, (0.0, 0.0, 0.0), (0.01,), [20.0]).jackknifed_at is None
+    assert car.drive(1.0, 0.0, (0.0, 0.0, 0.0), (-2.0,), [1.0]).jackknifed_at == 0.0
+
+
+@pytest.mark.parametrize("turning_rate", [0.5, -0.5])
+def test_a_caster_on_a_circling_cart_is_a_tow(turning_rate):
+    casters, t = Casters(((1.0, 0.3), (1.0, -0.3)), 0.1), np.linspace(0, 5, 11)
+    swung, error = casters.swing((1.0, 2.0), 0.7, turning_rate, t)
+    assert error.max() < 1e-11
+    for index, angle in enumerate((1.0, 2.0)):
+        tow, speed = casters.tow(index, angle, 0.7, turning_rate)
+        assert np.abs(tow.relative_angle(speed * t) + angle - tow.angle - swung[:, index]).max() < 1e-11
+
+
+def test_casters_swing_round_when_the_cart_is_reversed():
+    casters = Casters(((1.0, 0.3), (1.0, -0.3)), 0.1)
+    swung, _ = casters.swing((1e-3, -1e-3), -0.5, 0.0, [0.0, 20.0])
+    assert np.abs(swung[1] - [math.pi, -math.pi]).max() < 1e-10
+    assert np.abs(casters.swing((0.0, 0.0), -0.5, 0.0, [20.0])[0]).max() == 0
+    # Halfway when tan(beta/2) = 1: s = c log(1/tan(0.0005)).
+    way = -0.1 * math.log(math.tan(0.0005))
+    assert casters.swing((1e-3, 0.0), -0.5, 0.0, [way / 0.5])[0][0, 0] == pytest.approx(math.pi / 2, abs=1e-8)
+
+
+def test_a_cart_stands_on_its_wheels_where_its_drawing_says():
+    """Written down by hand, in metres from each body's centre of mass: the truth takes its places from `Casters`."""
+    cart = Cart(centre=0.3, front=0.8, width=0.5, trail=0.12, caster_centre=0.04, redundant=True).mechanism()
+    points = {joint.name: joint.second_point for joint in cart.joints if isinstance(joint, Skate)}
+    assert points["left wheel"] == pytest.approx((-0.3, 0.25))
+    assert points["right wheel"] == pytest.approx((-0.3, -0.25))
+    for side, sign in (("left", 1), ("right", -1)):
+        kingpin = next(joint for joint in cart.joints if joint.name == f"{side} caster's kingpin")
+        assert isinstance(kingpin, Pin)
+        assert (kingpin.first, kingpin.second) == ("cart", f"{side} caster")
+        assert kingpin.first_point == pytest.approx((0.5, sign * 0.25))
+        assert kingpin.second_point == pytest.approx((0.04, 0.0))
+        assert points[f"{side} caster's wheel"] == pytest.approx((0.04 - 0.12, 0.0))
+
+
+@pytest.mark.parametrize(("bends", "which"), [((0.1, -2.0), 2), ((2.0, 0.1), 1), ((0.1, 0.2), None)])
+@pytest.mark.parametrize("times", [[0.0], [0.0, 1e-3]])
+def test_a_trailer_that_is_folded_at_the_start_is_told_by_its_number(bends, which, times):
+    found = CarWithTrailers(1.0, (0.9, 1.1), (0.2, 0.0)).drive(1.0, 0.0, (0.0, 0.0, 0.0), bends, times)
+    assert (found.jackknifed_at, found.jackknifed) == (None if which is None else 0.0, which)
+
+
+@pytest.mark.parametrize("bend", [-0.3, 0.3])
+def test_the_second_trailer_that_folds_to_either_side_is_told_by_its_number(bend):
+    car = CarWithTrailers(1.0, (0.9, 1.1), (0.0, 0.0))
+    found = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.0, bend), [4.0], limit=1.0)
+    assert found.jackknifed == 2
+    # Straight behind the car, the first trailer's axle pushes the second as a tow.
+    at = present(found.jackknifed_at)
+    assert Tow(1.1, 0.3).relative_angle(-at) == pytest.approx(1.0, abs=1e-11)
+
+
+def test_a_joint_that_passes_the_limit_for_a_moment_is_dated():
+    car = CarWithTrailers(1.0, (1.0,), (0.0,))
+
+    def drive(limit):
+        return car.drive(1.0, lambda t: 0.9 * np.sin(3 * t), (0.0, 0.0, 0.0), (0.0,), [6.0], limit)
+
+    t = np.linspace(0, 6, 6001)
+    largest = np.abs(car.drive(1.0, lambda t: 0.9 * np.sin(3 * t), (0.0, 0.0, 0.0), (0.0,), t).bends).max()
+    assert drive(largest + 1e-5).jackknifed_at is None
+    assert drive(largest - 1e-9).jackknifed == 1
+
+
+RANDOM = np.random.default_rng(185)
+ROWS = [*map(tuple, RANDOM.normal(size=(12, 3)).tolist()), (1e-9, 2e-9, 3e-9), (1e9, 0.0, -1e9), (0.0, -2.0, 0.0)]
+
+
+@pytest.mark.parametrize("row", ROWS)
+def test_a_row_with_a_part_along_the_plane_is_a_skate_and_never_integrable(row):
+    skate, size = skate_of(row), np.hypot(*row[:2])
+    assert skate is not None
+    place = np.zeros(3)
+    for place in RANDOM.normal(size=(4, 3)):
+        body = Body("body", 1.0, 1.0, tuple(place.tolist()))
+        held = Mechanism((body,), (skate,)).rows(place[None])[0]
+        # Rounding of a point and a blade's angle, relative to the row.
+        assert held == pytest.approx(one_form(row)(place)[0] / size, abs=1e-15 * (1 + np.abs(row).max() / size))
+        assert frobenius(row, place) == pytest.approx(-(size**2), rel=1e-13)
+    unit = tuple(number / max(map(abs, row)) for number in row)
+    assert not is_integrable(one_form(unit), place)
+    assert growth(one_form(unit), place) == (2, 3)
+
+
+def test_a_row_of_turning_alone_is_no_skate_and_integrable():
+    assert skate_of((0.0, 0.0, -3.0)) is None
+    assert is_integrable(one_form((0.0, 0.0, -3.0)), np.array([0.3, -0.2, 0.8]))
+    with pytest.raises(InvalidMechanism, match="one of its three numbers must differ from zero"):
+        skate_of((0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("speed", "rate", "alpha"), [(1.3, 1.7, -0.6), (-2.0, 0.4, 5.0), (1e-6, -1e6, 0.0), (3, 1e-6, 0)]
+)
+def test_the_skates_coriolis_like_term_stands_once_and_a_sliders_twice(speed, rate, alpha):
+    assert coriolis_factors(speed, rate, alpha) == pytest.approx((1.0, 2.0), rel=1e-12)
+
+
+POINT = (0.4, -0.7)
+PLACE = np.array([0.3, -0.2, 0.8])
+
+
+def pin(place):
+    """(18.62), analytic."""
+    cosine, sine, one = np.cos(place[..., 2]), np.sin(place[..., 2]), 1 + 0 * place[..., 2]
+    x = np.stack([one, 0 * one, -sine * POINT[0] - cosine * POINT[1]], axis=-1)
+    y = np.stack([0 * one, one, cosine * POINT[0] - sine * POINT[1]], axis=-1)
+    return np.stack([x, y], axis=-2)
+
+
+def skate(place):
+    """The one-form of (18.64) as the very combination of the pin's two."""
+    cosine, sine = np.cos(place[..., 2])[..., None], np.sin(place[..., 2])[..., None]
+    both = pin(place)
+    return (-sine * both[..., 0, :] + cosine * both[..., 1, :])[..., None, :]
+
+
+def scaled_position(place):
+    """exp(x) times d(y + theta^2): one row that is not exact, and yet integrable after division by a factor."""
+    factor = np.exp(place[..., 0])
+    return np.stack([0 * factor, factor, 2 * place[..., 2] * factor], axis=-1)[..., None, :]
+
+
+def test_the_pins_two_rows_are_exact_and_each_alone_is_integrable():
+    assert np.abs(exterior_derivatives(pin, PLACE)).max() < 1e-15
+    for row in (0, 1):
+        assert is_integrable(lambda place, row=row: pin(place)[..., row : row + 1, :], PLACE)
+    assert is_integrable(pin, PLACE)
+    assert growth(pin, PLACE) == (1,)
+
+
+def test_a_combination_of_the_pins_rows_is_the_skate_and_not_integrable_alone():
+    """Erratum 12: the skate's row is in the span of the pin's, and only without its partner it can't be integrated."""
+    expected = [-np.sin(PLACE[2]), np.cos(PLACE[2]), POINT[0]]
+    assert np.abs(skate(PLACE)[0] - expected).max() < 1e-15
+    assert not is_integrable(skate, PLACE)
+    assert growth(skate, PLACE) == (2, 3)
+    assert is_integrable(lambda place: np.concatenate([skate(place), pin(place)[..., :1, :]], axis=-2), PLACE)
+
+
+def test_a_row_that_is_not_exact_may_be_integrable():
+    """A test of exactness, as the box has it, would call this one nonholonomic."""
+    assert np.abs(exterior_derivatives(scaled_position, PLACE)).max() > 0.1
+    assert np.abs(obstruction(scaled_position, PLACE)).max() < 1e-14
+    assert is_integrable(scaled_position, PLACE)
+    assert growth(scaled_position, PLACE) == (2,)
+
+
+def test_a_row_that_passes_at_one_place_only_is_refused():
+    """w = dy + x^2 dtheta has w . curl w = 2 x: zero at x = 0, where a test at one place would be deceived."""
+
+    def deceiving(place):
+        x = place[..., 0]
+        return np.stack([0 * x, 1 + 0 * x, x**2], axis=-1)[..., None, :]
+
+    assert np.abs(obstruction(deceiving, np.zeros(3))).max() < 1e-15
+    assert not is_integrable(deceiving, np.zeros(3))
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "counted", "bracketed"),
+    [
+        (PinnedBody().mechanism(), (1, 1), (1,)),
+        (ChaplyginSleigh().mechanism(), (3, 2), (2, 3)),
+        (four_bar(), (1, 1), (1,)),
+        (four_bar(1.0, 1.0), (0, 0), (0,)),
+        (Cart().mechanism(), (5, 2), (2, 3, 5)),
+        (Cart(redundant=True).mechanism(), (5, 2), (2, 3, 5)),
+        # One freedom of velocity is one curve: skates that hold the steering can be integrated together.
+        (CarAndTrailer().mechanism(), (4, 1), (1,)),
+        (CarAndTrailer(redundant=True).mechanism(), (4, 1), (1,)),
+    ],
+    ids=["pinned", "sleigh", "four-bar", "driven four-bar", "cart", "cart, redundant", "car", "car, redundant"],
+)
+def test_freedoms_by_rank_and_by_brackets(mechanism, counted, bracketed):
+    assert mechanism.degrees_of_freedom() == counted
+    assert freedoms_by_brackets(mechanism) == bracketed
+    assert bracketed[0] == counted[1]
+    assert mechanism_is_integrable(mechanism) == (len(bracketed) == 1)
+
+
+def test_a_steered_car_reaches_four_configurations_with_two_velocities():
+    frame, wheel = Body("frame", 1.0, 1.0, (0.0, 0.0, 0.2)), Body("wheel", 1.0, 1.0, (np.cos(0.2), np.sin(0.2), 0.5))
+    joints = (
+        Skate("rear", None, "frame", (0.0, 0.0)),
+        Pin("fork", "frame", "wheel", (1.0, 0.0), (0.0, 0.0)),
+        Skate("front", None, "wheel", (0.0, 0.0)),
+    )
+    car = Mechanism((frame, wheel), joints)
+    assert car.degrees_of_freedom() == (4, 2)
+    assert freedoms_by_brackets(car) == (2, 3, 4)
+
+
+def test_two_skates_in_one_line_stop_turning_and_three_askew_stop_everything():
+    body = Body("body", 1.0, 1.0, (0.1, 0.2, 0.3))
+    first, second = Skate("a", None, "body", (0.5, 0.0)), Skate("b", None, "body", (-0.5, 0.0))
+    assert Mechanism((body,), (first, second)).degrees_of_freedom() == (3, 1)
+    askew = Skate("c", None, "body", (0.0, 0.5), np.pi / 2)
+    assert Mechanism((body,), (first, second, askew)).degrees_of_freedom() == (3, 0)
