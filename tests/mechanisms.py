@@ -1,4 +1,4 @@
-"""Mechanisms built by hand for tests of the core: no scene, no reference."""
+"""Mechanisms built by hand for tests of the core, and scenes at the limits of their parameters."""
 
 from __future__ import annotations
 
@@ -6,6 +6,17 @@ import numpy as np
 
 from reference.joints import Drive, Joint, Pin
 from reference.mechanism import Body, Mechanism
+from reference.scenes.four_bar.scenes import OverdrivenFourBar, Parallelogram
+from reference.scenes.many_links import LongPendulum, SpinningRing
+from reference.scenes.rolling.scenes import DiscInHole, SquareOnCatenaries
+from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
+from reference.scenes.slider_crank.scenes import RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.slider_crank.slotted_lever import SlottedLever
+
+SCENES_OF_LIMITS = (
+    *(Parallelogram(), OverdrivenFourBar(), SkateOnSlope(), HeldBySkates(), DiscInHole(), SquareOnCatenaries()),
+    *(SpinningRing(links=5), RodEndInSlot(), SliderAtDeadCentre(), LongPendulum(), SlottedLever()),
+)
 
 
 def bar(

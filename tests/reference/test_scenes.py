@@ -30,8 +30,8 @@ from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCr
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart
 from reference.trajectory import Trajectory, energy, joint_gap, slip
+from tests.mechanisms import SCENES_OF_LIMITS
 from tests.present import present
-from tests.samples import SCENES_OF_LIMITS
 
 # No bar of this one turns fully: released here, the crank runs into both of its limits within two seconds.
 TRIPLE_ROCKER = FreeFourBar(crank=1.0, coupler=0.5, rocker=0.6, ground=(1.2, 0.1), start=0.2, duration=2.0)

@@ -16,7 +16,7 @@ from reference.joints import Drive
 from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
 from reference.scenes.rolling.scenes import RollingDisc
-from tests.samples import SCENES_OF_LIMITS
+from tests.mechanisms import SCENES_OF_LIMITS
 
 # Exponents of length, time and mass of each field's unit; what is not here has none.
 LENGTH, TIME, MASS = (1, 0, 0), (0, 1, 0), (0, 0, 1)
