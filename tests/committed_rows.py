@@ -40,14 +40,9 @@ def committed_rows(cells: Iterable[Cell]) -> dict[Cell, Measurement]:
     """The committed row of each cell that has one.
 
     Several cells differ in the scene's numbers or the engine's settings alone: their digests tell them apart. Where
-    those have changed since, no row is the cell's own (`stale`).
+    settings have changed since, the only row with these numbers stands in until the next publishing.
     """
     return {cell: row for cell in cells if (row := _row(cell)) is not None}
-
-
-def stale(cells: Iterable[Cell]) -> list[str]:
-    """The cells that have rows by their names, none of which has their numbers and settings: to be published anew."""
-    return [cell.label for cell in cells if _lines_of(cell) and _line(cell) is None]
 
 
 @cache
@@ -69,8 +64,9 @@ def _lines_of(cell: Cell) -> list[dict[str, str]]:
 
 
 def _line(cell: Cell) -> dict[str, str] | None:
-    own = (digest(repr(cell.scene), SHORT), digest(repr(cell.engine), SHORT))
-    return next((line for line in _lines_of(cell) if (line["parameters"], line["settings"]) == own), None)
+    alike = [line for line in _lines_of(cell) if line["parameters"] == digest(repr(cell.scene), SHORT)]
+    own = [line for line in alike if line["settings"] == digest(repr(cell.engine), SHORT)]
+    return own[0] if own else alike[0] if len(alike) == 1 else None
 
 
 def _row(cell: Cell) -> Measurement | None:

@@ -19,14 +19,10 @@ from reference import trajectory as outlines
 from reference.chapter.centrodes import Centrodes
 from reference.joints import Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.scenes.rolling.elliptic_gears import EllipticGears
-from reference.scenes.rolling.scenes import RollingEllipse, RollingOnCircle
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.pages.centrodes.page import draw_centrodes, draw_rate
-from reports.pages.rolling import drawings as rolling_drawings
-from reports.pages.rolling import page as rolling_charts
 from reports.pages.scaling.experiments import Point, Series
 from reports.pages.scaling.page import scaling_chart
 from reports.plots import looks as families
@@ -183,15 +179,6 @@ def test_all_engines_share_one_look_and_one_scale_in_every_panel_and_what_is_abs
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["pymunk", "MuJoCo"]
 
 
-def test_the_front_holds_what_nothing_beats_whatever_the_order():
-    given = [(3.0, 5e-3), (5.0, 1e-9), (1.0, 1e-2), (4.0, 1e-3), (2.0, 1e-3)]
-    for start in range(len(given)):
-        rotated = given[start:] + given[:start]
-        assert charts.pareto(rotated) == [(1.0, 1e-2), (2.0, 1e-3), (5.0, 1e-9)]
-    assert charts.pareto([(1.0, 2.0), (1.0, 1.0)]) == [(1.0, 1.0)]
-    assert charts.pareto([]) == []
-
-
 def test_any_number_of_families_are_told_apart_and_those_of_the_registry_keep_theirs():
     strangers = [f"engine {number:02}" for number in range(60)]
     pairs = {name: (families.role(name, strangers), families.mark(name, strangers)) for name in ("mujoco", *strangers)}
@@ -336,21 +323,6 @@ def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_c
     assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
 
 
-def test_friction_is_that_of_the_scenes_law_with_each_limits_instant():
-    scenes = (RollingEllipse(), RollingOnCircle())
-    for panel, scene in zip(rolling_charts.draw_friction(scenes).axes, scenes, strict=True):
-        demanded = lines(panel)[0]
-        assert demanded[5:50, 1] == pytest.approx(scene.motion_law.required_friction(demanded[5:50, 0]))
-        assert demanded[-1, 0] == pytest.approx(scene.hop or scene.duration)
-        slips = {mu: scene.motion_law.slip(mu, scene.duration) for mu in rolling_charts.COEFFICIENTS}
-        marked = [tuple(line[0]) for line in lines(panel) if len(line) == 1]
-        assert marked == [(pytest.approx(slip), mu) for mu, slip in slips.items() if slip is not None]
-        told = sorted(text.get_text() for text in panel.texts if "s " in text.get_text())
-        hops = [] if scene.hop is None else [f"hops {scene.hop:.3f} s"]
-        assert told == sorted([*hops, *(f"slips {s:.3f} s" for s in slips.values() if s is not None)])
-        assert panel.get_xlim() == (0, scene.duration)
-
-
 def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
     """A wheel of 0.5 m that rolls on a line, held by no joint but a pin of another body."""
     bodies = (Body("wheel", 1.0, 1.0, (0.0, 1.0, 0.0)), Body("crank", 1.0, 1.0, (0.0, 0.0, 0.0)))
@@ -403,30 +375,6 @@ def test_an_outline_has_further_points_in_order_along_the_body_and_a_path_those_
     assert found == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
     found = path(Disc(rate=2.0), "disc", (1.0, 0.5), np.array([0.0, math.pi / 4]))
     assert found == pytest.approx(np.array([[1.0, 0.5], [-0.5, 1.0]]), abs=1e-12)
-
-
-def test_gears_stand_at_the_instants_that_their_titles_tell_and_turn_at_the_truths_rates():
-    scene = EllipticGears()
-    *pictures, rates = rolling_drawings.draw_gears(scene).axes
-    turn = 2 * math.pi / scene.turning_rate
-    for index, panel in enumerate(pictures):
-        t = (0.15 + index) * turn / 4
-        assert panel.get_title(loc="left") == f"t = {t:.2f} s"
-        for gear, pose in enumerate(scene.motion([t]).pose[0]):
-            assert has(panel, [[2 * scene.major * gear, 0.0], pose[:2]])
-    first, second = lines(rates)
-    truth = scene.motion(first[:, 0]).twist[:, :, 2]
-    assert first[:, 1] == pytest.approx(truth[:, 0])
-    assert second[:, 1] == pytest.approx(truth[:, 1])
-
-
-@pytest.mark.parametrize("draw", [charts.work_precision, charts.error_against_step])
-def test_the_quantity_that_was_asked_for_is_drawn_with_its_unit(draw):
-    figure = draw(falling("pymunk default", (1e-2, 1e-3), "position", angle=5.0), field="position")
-    [panel] = panels(figure)
-    [drawn] = series(panel).values()
-    assert [y for _, y in drawn] == [1e-2, 1e-3]
-    assert panel.get_ylabel() == "largest position error [m]"
 
 
 def test_a_strip_takes_its_poses_at_equal_times_and_says_so():

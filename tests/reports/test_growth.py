@@ -10,49 +10,31 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import Promise, Unpromised, Unsupported, method_name
+from engines import Promise, Unpromised, Unsupported
 from engines.lagrange import Lagrange
-from engines.registry import VARIANTS
 from reference.chapter.centrodes import Centrodes
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.many_links import LongPendulum
-from reference.scenes.pendulum.link import BarPendulum
-from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.cli.selection import BadInput, steps_per_sample
 from reports.model import measure as measuring
 from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
-from reports.model.measure import measure, repeated_stepping
+from reports.model.measure import repeated_stepping
 from reports.model.outcomes import Outcome
-from reports.model.page import Material
 from reports.pages.centrodes.page import returned
-from reports.pages.rendering import render_page
 from reports.pages.scaling.experiments import (
     LAST,
     BandedChain,
     Point,
     Series,
-    cost_exponent,
     exponent,
     series_of,
 )
-from reports.pages.scaling.page import CELLS, COSTLY, PAGE, STEP, cost_table, crossing
+from reports.pages.scaling.page import STEP, cost_table, crossing
 from reports.pages.skate.page import constructions
 from reports.write.rows import Rows
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Plain, Toy
-
-
-def links(cell: Cell) -> int:
-    assert isinstance(cell.scene, LongPendulum)
-    return cell.scene.links
-
-
-TINY = tuple(cell for cell in CELLS if links(cell) <= 3)
-
-
-@pytest.fixture(scope="module")
-def material():
-    return Material({cell: measure(cell, repeat=False) for cell in TINY})
 
 
 def test_what_the_long_chain_knows_is_what_linear_algebra_finds():
@@ -93,29 +75,6 @@ def test_the_reference_refuses_what_is_no_chain_of_uniform_bars():
             BandedChain().build(mechanism, STEP)
 
 
-def test_every_cell_has_the_same_step_and_the_largest_are_run_for_their_cost_alone():
-    assert {round(cell.step / STEP, 9) for cell in CELLS} == {1.0}
-    assert all(cell.scene.duration < 0.5 for cell in CELLS if links(cell) in COSTLY)
-    assert len({cell.key for cell in CELLS}) == len(CELLS)
-
-
-def test_costs_are_of_a_step_and_errors_of_whole_runs_alone(material):
-    for series in series_of(material.rows, 0.5):
-        for point in series.points:
-            assert 1e-8 < point.step < 1  # s: a step, not a simulated second
-            assert point.error < 0.1
-    timed_only = series_of(material.rows, 0.6)
-    assert all(math.isnan(point.error) and point.step > 0 for series in timed_only for point in series.points)
-
-
-def test_the_page_is_whole_with_rows_and_without(material):
-    files = render_page(PAGE, material, "the command")
-    assert "scaling_cost.svg" in files
-    for method in {row.method for row in material.rows.values()}:
-        assert files["scaling.md"].count(f"| {method} |") == 3, method
-    assert "Nothing was run yet" in render_page(PAGE, Material({}), "the command")["scaling.md"]
-
-
 def test_a_power_law_is_found_at_the_large_end_only():
     sizes = [1, 10, 100, 200, 400]
     assert exponent(sizes, [0.5 + 1e-3 * n**2.5 for n in sizes])[0] == pytest.approx(2.5, abs=0.05)
@@ -126,13 +85,6 @@ def test_a_power_law_is_found_at_the_large_end_only():
 
 
 SERIES = Series("pymunk", "tuned", tuple(Point(n, 1e-6 * n**2, 1e-3 * n, "finished") for n in (1, 10, 100)))
-
-
-def test_a_cost_has_its_exponent_at_the_sizes_that_are_asked():
-    assert cost_exponent(SERIES) == (pytest.approx(2.0), 1, 100)
-    assert cost_exponent(SERIES, least=10) == (pytest.approx(2.0), 10, 100)
-    assert cost_exponent(SERIES, most=10)[1:] == (1, 10)
-    assert (SERIES.at(10), SERIES.at(7)) == (SERIES.points[1], None)
 
 
 @dataclass(frozen=True)
@@ -271,13 +223,6 @@ def test_a_cells_step_is_the_duration_over_its_samples_and_steps_and_its_cost_th
     assert Cell(Disc(), Toy("tuned"), 3).label == "disc / toy tuned / 3.3e-03 s"
     assert estimated_cost(Cell(Disc(), Costly(), 7)) == pytest.approx(20 * 7 * 3e-3)
     assert estimated_cost(Cell(Disc(), Costly(), 7, samples=5)) == pytest.approx(5 * 7 * 3e-3)
-
-
-@pytest.mark.parametrize("engine", VARIANTS, ids=method_name)
-def test_a_step_costs_more_with_more_bodies(engine):
-    costs = [engine.step_cost(scene.mechanism()) for scene in (BarPendulum(), TenLinks(), HundredLinks())]
-    assert 0 < 3 * costs[0] < costs[1]
-    assert 9 * costs[1] < costs[2]
 
 
 def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():

@@ -15,7 +15,7 @@ from reports.model.quantities import quantity
 from reports.write.page_tables import advice
 from reports.write.programs import KEPT, Program, advised_programs, file_of, program
 from tests.committed_rows import page_rows
-from tests.reports.test_page_shape import FENCED, MECHANISMS, named, run, texts, undrawn
+from tests.reports.test_pages import FENCED, MECHANISMS, named, run, texts, undrawn
 
 __all__ = ["undrawn"]
 

@@ -1,4 +1,4 @@
-"""Rendering of invented rows, and the command line's answers to good and bad words."""
+"""Rendering of invented rows: each number from its own row, tables, files, digests and pictures."""
 
 from __future__ import annotations
 
@@ -9,28 +9,35 @@ import re
 import xml.etree.ElementTree as xml
 from dataclasses import replace
 from importlib import metadata
+from typing import ClassVar
 
 import numpy as np
 import pytest
 
-from reports import __main__ as command_line
+from reports.cli.report import moving_picture
 from reports.cli.selection import (
     choose_cells,
-    shown_cells,
 )
-from reports.model import catalogue
-from reports.model.catalogue import PAGES
 from reports.model.cells import QUICK, Cell, sweep_cells
+from reports.model.convergence import Verdict
 from reports.model.measure import measure
+from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation, Page
-from reports.pages.rendering import render_all
+from reports.model.tasks import Answer, Task
+from reports.pages.four_bar.page import MOVED, MOVING, MOVING_PICTURE
+from reports.pages.index import render_readme
+from reports.pages.rendering import render_all, render_page
+from reports.pages.your_loop.page import ASKED, FRESH
+from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.plots.looks import SHADE_NAMES
 from reports.plots.theme import DARK, LIGHT, SERIES, new_figure, settings, style_axes, svg
-from tests.committed_rows import stale
-from tests.reports.test_any_rows import undrawn
+from reports.write.provenance import machine
+from reports.write.rows import lookups
+from reports.write.templates import marks
+from reports.write.unmeasured import UNMEASURED
+from tests.rows import falling, row_of, table
 from tests.toys import FAILURES, Disc, FailingToy, Toy
 
-__all__ = ["undrawn"]
 ENGINES = (Toy(), Toy("soft", plateau=1e-3), FailingToy("unsupported"), FailingToy("tear"))
 FAST_FAILURES = tuple(FailingToy(v) for v in FAILURES if v not in ("abort", "exit", "hang", "raise"))
 LARGE = tuple(Cell(Disc(), Toy("default", factor=0.1), every, "large") for every in QUICK)
@@ -151,45 +158,131 @@ def test_a_quick_run_has_the_failures_of_the_pages_and_a_full_one_the_large_ones
     assert {cell.every for cell in choose_cells((Disc(),), ENGINES, (page,), False, every=[4])} == {4}
 
 
-@pytest.mark.parametrize(
-    ("words", "telling"),
-    [
-        (["run", "fuor_bar"], "four_bar"),
-        (["run", "--engine", "pymonk"], "pymunk"),
-        (["run", "--every", "0"], "greater than or equal to 1"),
-        (["run", "--step", "0.0033"], "does not divide"),
-        (["run", "--limit", "0"], "greater than zero"),
-        (["show", "driven_four_bar"], "crosscheck run"),
-        (["report"], "crosscheck run"),
-        (["rnu"], "rnu"),
-        (["run", "--nonsense"], "--nonsense"),
-    ],
-)
-def test_bad_input_is_one_line_on_stderr_and_exit_status_2(words, telling, tmp_path, capfd):
-    arguments = [*words, "--results", str(tmp_path)] if words[0] in ("run", "show", "report") else words
-    with pytest.raises(SystemExit) as ending:
-        command_line.main(arguments)
-    out, err = capfd.readouterr()
-    assert ending.value.code == 2
-    assert out == ""
-    assert len(err.strip().splitlines()) == 1
-    assert telling in err
+README = "\n".join(marks("loop"))
 
 
-def test_run_report_and_show_from_an_empty_folder(tmp_path, capfd, undrawn, at_home, monkeypatch):
-    """One page of ours, without its pictures, which test_installations.py has drawn by an installation."""
-    monkeypatch.setattr(catalogue, "PAGES", tuple(page for page in PAGES if page.name == "four_bar"))
-    chosen = ["free_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte"]
-    for words in (["run", *chosen, "--every", "1"], ["report"], ["show", *chosen]):
-        with pytest.raises(SystemExit) as ending:
-            command_line.main([*words, "--results", str(tmp_path)])
-        assert ending.value.code == 0
-    out = capfd.readouterr().out
-    assert "1 of 1 cells run" in out
-    assert "lagrange euler baumgarte" in out
-    assert {"index.md", "four_bar.md", "errors.csv", "timings.csv"} <= {path.name for path in tmp_path.iterdir()}
+class OtherDisc(Disc):
+    """Another scene.
+
+    Of which only the first paragraph is told.
+    """
+
+    name: ClassVar[str] = "other_disc"
+    source: ClassVar[str] = "invented too"
 
 
-def test_no_published_row_is_of_other_numbers_or_settings_than_the_present_ones():
-    found = stale(dict.fromkeys(cell for page in PAGES for cell in shown_cells(page)))
-    assert found == [], f"{len(found)} cells have to be published anew: {', '.join(found[:5])}"
+DISCS = Page("base", "Discs", "One disc.", (Disc(), OtherDisc()), (Toy(),))
+DISC, OTHER = Disc(), OtherDisc()
+
+
+CELLS = {
+    Cell(scene, Toy(variant), every): row_of(
+        f"mujoco {variant}", scene=scene.name, every=every, step=0.1 / every, angle=angle / every**2, cpu=angle
+    )
+    for scene, factor in ((DISC, 1.0), (OTHER, 0.1))
+    for variant, angle in (("default", 1.1e-2 * factor), ("tuned", 1.3e-3 * factor))
+    for every in (1, 10, 100)
+}
+
+
+def test_sentences_take_the_rows_of_the_scene_and_method_that_they_name():
+    words = lookups(Material(CELLS), (DISC, OTHER))
+    best = words["best"]("disc", "mujoco", "default")
+    assert (best.scene, best.variant, best.angle) == ("disc", "default", pytest.approx(1.1e-6))
+    assert words["best"]("other_disc", "mujoco", "tuned").angle == pytest.approx(1.3e-8)
+    assert words["best"]("disc", "pymunk", "tuned") is UNMEASURED
+    at = words["at"]("disc", "mujoco", "tuned", 10)
+    assert (at.scene, at.variant, at.every) == ("disc", "tuned", 10)
+    assert words["at"]("disc", "mujoco", "tuned", 7) is UNMEASURED
+    sweep = words["sweep"]("other_disc", "mujoco", "tuned")
+    assert (sweep.scene, sweep.variant, sweep.quantity.name) == ("other_disc", "tuned", "angle")
+    assert (sweep.best, sweep.verdict) == (pytest.approx(1.3e-8), Verdict.FALLS)
+    assert words["sweep"]("disc", "mujoco", "tuned", "gap").quantity.name == "gap"
+    assert words["sweep"]("disc", "pymunk", "tuned") is UNMEASURED
+    assert words["ended"]("disc", "mujoco", "tuned") == ["finished"]
+    only = lookups(Material(CELLS), (OTHER,))
+    assert only["best"]("disc", "mujoco", "default") is UNMEASURED
+
+
+def test_a_page_of_two_scenes_has_in_its_tables_the_rows_of_the_advised_one_alone():
+    for advised, errors in (("disc", ["1.1e-6", "1.3e-7"]), ("other_disc", ["1.1e-7", "1.3e-8"])):
+        text = render_page(replace(DISCS, advised=advised), Material(CELLS), "the command")["base.md"]
+        assert not {"saturated", "torn"} & set(re.findall(r"\w+", text))
+        _, *lines = table(text.split("at a step of")[1].split("\n\n")[1])
+        assert [line[1] for line in lines] == errors
+
+
+def test_a_page_judges_by_the_quantity_that_it_compares():
+    errors = falling("mujoco default", (1e-2, 3e-5, 3e-5, 3e-5), "position")
+    errors = [replace(r, angle=1e-2 * r.step**2) for r in errors]
+    rows = {Cell(DISC, Toy(), 10**i): r for i, r in enumerate(errors)}
+    for quantity, words in (("position", "plateau **3e-5**"), ("angle", "2.00 (±")):
+        page = replace(DISCS, scenes=(DISC,), quantity=quantity)
+        text = render_page(page, Material(rows), "the command")["base.md"]
+        assert words in next(line for line in text.splitlines() if line.startswith("| mujoco default"))
+
+
+def test_the_readme_has_medians_of_fresh_mechanisms_and_is_the_same_after_a_run_that_took_another_time():
+    rows = {each: row_of("mujoco tuned", angle=3.4e-7, cpu=1.0) for each in ASKED}
+    slower = {each: replace(row, cpu=7.0) for each, row in rows.items()}
+
+    def answers_of(median: float) -> dict[Task, Answer]:
+        error = np.array([1e-9, median, 0.3])
+        return {task: Answer(Outcome.FINISHED, values={"error": error}) for task in FRESH}
+
+    answers, worse = answers_of(2.5e-6), answers_of(2.5e-3)
+    told = " ".join(render_readme(README, {YOUR_LOOP: Material(rows, answers)}).split())
+    assert told.count("2.5e-6 rad (1e-9 to 0.3) with these lines") == 2
+    assert "3.4e-7" not in told
+    assert render_readme(README, {YOUR_LOOP: Material(slower, answers)}).split() == told.split()
+    assert render_readme(README, {YOUR_LOOP: Material(rows, worse)}).split() != told.split()
+
+
+def test_all_files_end_with_one_end_of_line_and_have_every_row_once():
+    keyed = {cell: replace(r, key=str(i)) for i, (cell, r) in enumerate(CELLS.items())}
+    files = render_all({DISCS: Material(keyed), replace(DISCS, title="Again"): Material(keyed)}, "the command")
+    assert {"index.md", "base.md", "errors.csv", "timings.csv", "descriptions.csv"} <= set(files)
+    for name, text in files.items():
+        assert text.endswith("\n"), name
+        assert not text.endswith("\n\n"), name
+    for name in ("errors.csv", "timings.csv"):
+        lines = [line for line in files[name].splitlines() if not line.startswith("#")]
+        found = list(csv.DictReader(lines))
+        assert sorted((r["scene"], r["variant"], r["every"]) for r in found) == sorted(
+            (r.scene, r.variant, str(r.every)) for r in CELLS.values()
+        )
+    assert "angle" not in files["timings.csv"].splitlines()[-1]
+    assert all(words in files["timings.csv"] for words in ("the command", machine()))
+
+
+def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
+    torn, sound = (Cell(DISC, Toy(name), 1, "failure") for name in ("torn", "sound"))
+    rows = {
+        torn: row_of("mujoco torn", outcome=Outcome.TORN, sentence="it tore", gap=1.7, step=0.1),
+        sound: row_of("mujoco sound", sentence="", step=0.1),
+    }
+    first = Failure("First", "It should turn.", (torn,), lambda material: [Observation("by hand", "a way", "0.02 rad")])
+    second = Failure("Second", "So should this.", (sound,), columns=("energy",))
+    page = replace(DISCS, scenes=(DISC,), failures=(first, second))
+    text = render_page(page, Material(rows), "the command")["base.md"]
+    one, two = (text.split(f"### {name}")[1].split("\n## ")[0].split("\n### ")[0] for name in ("First", "Second"))
+    for words in ("| mujoco torn | **torn** 1.7 m |", "| by hand | a way | 0.02 rad |"):
+        assert (words in one, words in two) == (True, False)
+    assert "| mujoco sound | 100 ms | 5.3e-3 |" in two
+
+
+# --- the picture of README that moves ---
+
+
+def test_the_moving_picture_is_small_moves_by_style_alone_and_stands_still_for_who_asks():
+    answers: dict[Task, Answer] = {task: Answer(Outcome.FINISHED, "", task.run()) for task in MOVED}
+    (text,) = moving_picture([Material({}), Material({}, answers)]).values()
+    assert len(text.encode()) < 300_000
+    assert not [each for each in xml.fromstring(text).iter() if each.tag.endswith(("script", "foreignObject", "image"))]
+    still, moves = text.split("@media (prefers-reduced-motion: no-preference) {")
+    assert "@keyframes" not in still
+    assert "(prefers-color-scheme: dark)" in still
+    # Three engines and the truth, three bars each, and the errors that grow.
+    assert len(re.findall(r"@keyframes m\d+b\d+\{", moves)) == 3 * (len(MOVING) + 1)
+    assert text == moving_picture([Material({}, answers)])[MOVING_PICTURE]
+    assert moving_picture([Material({}, dict(list(answers.items())[1:]))]) == {}

@@ -1,27 +1,36 @@
-"""Every page can be read, whatever was run: any part of the rows of the committed results, and any of them failed."""
+"""Every page can be read whatever was run, its links lead somewhere, and its programs run as they are printed."""
 
 from __future__ import annotations
 
+import cmath
+import contextlib
 import inspect
+import io
+import itertools
 import json
 import math
 import random
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.check.picture_data import PictureData, Pose
+from reports.cli.drawing import drawn, material_of
 from reports.cli.selection import shown_cells
 from reports.gate.prediction import Softened, all_tasks
-from reports.model.catalogue import PAGES
+from reports.gate.pytest_plugin import _engines
+from reports.model.catalogue import PAGES, _without_doubles, generic_page, with_scenes
 from reports.model.cells import Cell
-from reports.model.measure import Measurement, blank
+from reports.model.measure import Measurement, blank, measure
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_words
 from reports.model.quantities import QUANTITIES
@@ -41,21 +50,18 @@ from reports.pages.wheels.page import Folding
 from reports.pages.your_loop.experiments import BeforeAndAfter, Fresh
 from reports.pages.your_model.experiments import Walk
 from reports.plots import theme
+from reports.run.store import Store
 from reports.write.experiments import observe
-from reports.write.templates import environment
+from reports.write.templates import anchor, environment, headings
 from reports.write.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests import ROOT
-from tests.committed_rows import answer_to, page_rows
+from tests.committed_rows import RESULTS, answer_to, page_rows
+from tests.toys import Disc, Toy
 
-SUBSETS, MORE = 2, 16  # of every page: every day, and among the slow tests
+SUBSETS = 2  # of every page
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
 NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name != "step"]
 FROM_ROWS = tuple(page for page in PAGES if shown_cells(page))  # the others have none, or compute when written
-
-
-def third(pages: Sequence[Page]) -> list[Any]:
-    """Each third page every day, the others among the slow tests."""
-    return [pytest.param(page, marks=() if n % 3 == 0 else pytest.mark.slow) for n, page in enumerate(pages)]
 
 
 # The pictures of the others show the truth alone, with trajectories over it that no row holds.
@@ -147,27 +153,17 @@ def written(page: Page, rows: Rows) -> Mapping[str, str]:
     return render_page(page, Material(rows), "the command")
 
 
-def read_from_parts_of_its_rows(page: Page, seeds: range) -> None:
-    for seed in seeds:
-        rows = some(page_rows(page), random.Random(f"{page.name} {seed}"))
-        assert complaints(page.name, written(cheap(page), rows)) == [], seed
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
-def test_a_page_can_be_read_whatever_many_parts_of_its_rows_it_is_written_from(page, undrawn):
-    read_from_parts_of_its_rows(page, range(SUBSETS, MORE))
-
-
 @pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
 def test_a_page_can_be_read_whatever_rows_it_is_written_from(page, undrawn):
-    read_from_parts_of_its_rows(page, range(SUBSETS))
+    for seed in range(SUBSETS):
+        rows = some(page_rows(page), random.Random(f"{page.name} {seed}"))
+        assert complaints(page.name, written(cheap(page), rows)) == [], seed
     assert complaints(page.name, written(cheap(page), {})) == []
     failed = {cell: blank(cell, Outcome.FAILED, "RuntimeError: something") for cell in page_rows(page)}
     assert complaints(page.name, written(cheap(page), failed)) == []
 
 
-@pytest.mark.parametrize("page", third(FROM_ROWS), ids=lambda page: page.name)
+@pytest.mark.parametrize("page", FROM_ROWS[::3], ids=lambda page: page.name)
 def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
     """Really drawn: what is cheap to draw, since a chart of little is where axes and legends break."""
     chance, rows = random.Random(page.name), page_rows(page)
@@ -356,3 +352,150 @@ def test_a_referee_that_fails_is_named_and_the_others_rule():
     unsupported = Answer(Outcome.UNSUPPORTED, "no such joint")
     assert referees.rulings([(first, still(first, lost=True)), (second, unsupported)], lost) == ()
     assert lost[1:] == ["pymunk extended where a disc rolls off a round hill: its motion is not finite"]
+
+
+# --- shape ---
+
+
+MECHANISMS = tuple(page for page in FROM_ROWS if page.scenes)
+FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+named = pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
+
+
+@cache
+def texts(page: Page) -> dict[str, str]:
+    """The Markdown files of a page from the committed rows, without its pictures; call under `undrawn`."""
+    return {name: text for name, text in written(cheap(page), page_rows(page)).items() if name.endswith(".md")}
+
+
+@cache
+def anchors(file: str) -> frozenset[str]:
+    """What links to a page's file may end with, whichever page it is; call under `undrawn`.
+
+    Raises FileNotFoundError for a file of no page.
+    """
+    page = next((page for page in PAGES if file == page.document), None)
+    # The index is of all pages.
+    text = (RESULTS / file).read_text(encoding="utf-8") if page is None else texts(page)[file]
+    return frozenset(anchor(title) for title in headings(text))
+
+
+@named
+def test_every_link_of_a_page_has_its_heading(page, undrawn):
+    for name, text in texts(page).items():
+        for target, heading in re.findall(r"\]\((\w+\.md)?#([^)]*)\)", text):
+            assert heading in anchors(target or name), (name, target, heading)
+
+
+@cache
+def run(source: str) -> tuple[dict, str]:
+    """What a program's names are at its end, and what it printed; run once, whichever test asks."""
+    names, said = {"__name__": "__main__"}, io.StringIO()
+    with contextlib.redirect_stdout(said):
+        exec(compile(source, "a page", "exec"), names)
+    return names, said.getvalue()
+
+
+@named
+def test_every_block_of_code_on_a_page_runs_as_printed_and_prints_its_result(page, undrawn):
+    for text in texts(page).values():
+        for language, source in FENCED.findall(text):
+            assert language == "python", f"{language}: only programs that run as they are belong on a page"
+            assert run(source)[1].strip()
+
+
+@named
+def test_no_method_is_told_by_its_settings_as_python_prints_them(page, undrawn):
+    for text in texts(page).values():
+        assert not re.search(r"\b(Pymunk|MuJoCo|Lagrange|Extended|Extrapolated)\(\w+=", text)
+
+
+def called(name: str) -> Disc:
+    """A disc in a scene of this name."""
+    return type("Named", (Disc,), {"name": name})()
+
+
+def test_pages_of_scenes_whose_names_are_alike_share_no_document():
+    names = ("a/b", "a b")
+    pages = with_scenes((), [called(name) for name in names], (Toy(),))
+    assert [page.scenes[0].name for page in pages] == list(names)
+    assert len({page.document for page in pages}) == len(names)
+
+
+def test_a_scene_called_index_does_not_replace_the_index():
+    assert generic_page(called("index"), (Toy(),)).document == "index_2.md"
+
+
+def test_a_page_whose_document_is_another_pages_is_left_out_in_a_line():
+    first = Page("x", "X", "One.", (called("one"),), (Toy(),))
+    second = replace(first, scenes=(called("two"),))
+    kept, troubles = _without_doubles([first, second, replace(second, name="index")])
+    assert kept == (first,)
+    assert troubles == (
+        "crosscheck.pages: the page 'x' is left out, since it would have the file x.md, as 'x' has",
+        "crosscheck.pages: the page 'index' is left out, since it would have the file index.md, as the index of all "
+        "pages has",
+    )
+
+
+def test_engines_of_the_gate_are_names_or_references(tmp_path, monkeypatch):
+    monkeypatch.setattr("sys.path", [*__import__("sys").path])
+    assert _engines(["pymunk", "mujoco tuned"]) == ((), ("pymunk", "mujoco tuned"))
+    (tmp_path / "own_toy.py").write_text("from tests.toys import Toy\nOWN = (Toy('a'), Toy('b'))\n")
+    found = _engines([f"{tmp_path}/own_toy.py:OWN", "engines.pymunk:TUNED"])
+    assert [engine.variant for engine in found[0]] == ["a", "b", "tuned"]
+    assert found[1] == ("toy a", "toy b", "pymunk tuned")
+    (tmp_path / "another.py").write_text("from tests.toys import Toy\nOTHER = Toy('tuned', name='pymunk')\n")
+    with pytest.raises(pytest.UsageError, match="another engine is called 'pymunk tuned'; give it another name"):
+        _engines([f"{tmp_path}/another.py"])
+    with pytest.raises(pytest.UsageError, match="there is no such file"):
+        _engines([f"{tmp_path}/missing.py"])
+
+
+def test_pages_of_workers_are_those_of_one_process(tmp_path: Path) -> None:
+    pages = [page for page in PAGES if page.name in ("settings", "person")]
+    path = tmp_path / "cells.sqlite"
+    with Store(path) as store:
+        for cell in [next(c for c in shown_cells(page) if c.engine.name == "pymunk") for page in pages]:
+            store.put(measure(cell, repeat=False))
+    with Store.read(path) as store:
+        material = {page: material_of(page, store) for page in pages}
+    made = drawn(material, (), "make report", tmp_path)
+    alone = {page.name: render_page(page, given, "make report") for page, given in material.items()}
+    assert set(made) == {page.name for page in pages}
+    assert made == alone
+
+
+# --- what the chapter states and asks ---
+
+
+def text_of(name: str) -> str:
+    page = next(page for page in PAGES if page.name == name)
+    return render_page(page, Material({}), "made")[page.document]
+
+
+def test_the_two_problems_have_their_answers_and_the_derivative_agrees():
+    lines = re.findall(r"\| (18\.5\.[12]) ([abc]) \| \((\S+), (\S+)\) m/s²? \| (\S+) \|", text_of("pendulum"))
+    assert [(problem, part) for problem, part, *_ in lines] == [(f"18.5.{n}", part) for n in (1, 2) for part in "abc"]
+    assert all(float(miss) < 1e-14 for *_, miss in lines)
+    # By hand: l = 0.7 m, phi = (0.4, -1.1), rates (2, 3), and for 18.5.2 (-5, 0.6) rad/s^2.
+    velocity = 0.7 * (2 * cmath.exp(0.4j) + 3 * cmath.exp(-1.1j))
+    acceleration = 0.7 * ((-5 + 4j) * cmath.exp(0.4j) + (0.6 + 9j) * cmath.exp(-1.1j))
+    for line, by_hand in ((lines[2], velocity), (lines[5], acceleration)):
+        assert complex(float(line[2]), float(line[3])) == pytest.approx(by_hand, abs=1e-5)
+
+
+def test_both_assemblies_of_the_sample_are_those_that_a_search_over_all_angles_finds():
+    scene = DrivenFourBar()
+    crank = scene.crank * cmath.exp(1j * scene.start)
+
+    def too_long(beta: float) -> float:
+        return abs(crank + scene.coupler * cmath.exp(1j * beta) - complex(*scene.ground)) - scene.rocker
+
+    angles = np.linspace(-math.pi, math.pi, 721)
+    roots = [brentq(too_long, a, b) for a, b in itertools.pairwise(angles) if too_long(a) * too_long(b) < 0]
+    found = re.findall(r"\| [+-]1 \| 90\.00 \| (\S+) \| (\S+) \|", text_of("four_bar"))
+    assert sorted(float(beta) for beta, _ in found) == pytest.approx(
+        sorted(math.degrees(float(root)) for root in roots),  # type: ignore[arg-type]
+        abs=0.005,
+    )
