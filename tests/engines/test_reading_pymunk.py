@@ -83,6 +83,10 @@ def geared(space, first, second):
     return GearJoint(first, second, 2.0 * second.angle - first.angle, 2.0)
 
 
+def held_by_a_gear(space, first, second):
+    return GearJoint(space.static_body, second, 2.0 * second.angle, 2.0)
+
+
 def driven(space, first, second):
     second.angular_velocity = first.angular_velocity - 1.5
     return SimpleMotor(first, second, 1.5)
@@ -128,7 +132,8 @@ def off_centre(space, first, second):
 
 
 MAKERS = {
-    make.__name__: make for make in (elbow, rod, geared, driven, spring, damper, torsion, kinematic, steady, off_centre)
+    make.__name__: make
+    for make in [elbow, rod, geared, held_by_a_gear, driven, spring, damper, torsion, kinematic, steady, off_centre]
 }
 
 
