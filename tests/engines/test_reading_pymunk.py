@@ -235,6 +235,18 @@ def test_limits_are_noted_and_named_when_they_are_reached():
     ]
 
 
+@pytest.mark.parametrize("x", [0.4, 1.6])
+def test_both_ends_of_a_groove_are_noticed(x):
+    def short(space, first, second):
+        return GrooveJoint(space.static_body, second, (0.5, second.position.y), (1.5, second.position.y), (0, 0))
+
+    reading = read(space_of(short, spin=0.0), 0.01)
+    pose = reading.mechanism.pose[None].copy()
+    pose[0, 1, 0] = x
+    (met,) = reading.model.obstacles(np.zeros(1), pose, np.zeros_like(pose))
+    assert met.words == "GrooveJoint 1 reaches its end"
+
+
 def test_the_users_own_space_is_run_and_never_changed():
     space = space_of(elbow)
     before = [(tuple(body.position), body.angle, tuple(body.velocity)) for body in space.bodies]
