@@ -15,6 +15,7 @@ import pytest
 from reports.model.catalogue import PAGES
 from reports.model.outcomes import SATURATED, TORN, Outcome
 from reports.model.page import Material
+from reports.model.tasks import Answer, Task
 from reports.pages import findings as module
 from reports.pages.faults.page import OFFSETS, SCRIPTS
 from reports.pages.findings import CPU, FINDINGS, LOOKS, STEP, TENTH, Known, Line, draw, finding, findings, of_rows
@@ -144,7 +145,7 @@ def test_findings_that_the_releases_contradict_are_dropped(monkeypatch):
     assert not finding("releases", Known(Rows())).is_sound
     entries(lambda entry: entry.quantity == ACCELERATION, error=1e-4)
     assert not finding("trees", Known(Rows())).is_sound
-    answers = {task: answer_to(task) for task in (OFFSETS, *SCRIPTS.values())}
+    answers: dict[Task, Answer] = {task: answer_to(task) for task in (OFFSETS, *SCRIPTS.values())}
     assert finding("faults", Known(Rows(), answers)).is_sound
     groove = SCRIPTS["pymunk_groove"]
     values = {**answers[groove].values, "found": answers[groove].values["expected"]}
