@@ -1,6 +1,6 @@
 """Engines that are extras: what is particular to one of them, what they leave behind, what says that one is missing.
 
-Orders, elements and configurations of all are asked by `test_promised`, random mechanisms by `test_random`. A model of
+Orders, elements and configurations of all are asked by `test_promised`, random mechanisms by `test_claims`. A model of
 MJX takes tens of seconds to compile, so its tests are slow ones, in tests/engines/test_mjx.py.
 """
 
