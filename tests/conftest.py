@@ -44,7 +44,7 @@ def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
     from reports.run import cluster, supervisor
     from tests.toys import in_process
 
-    monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Pool(1, in_process))
+    monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Workforce(1, in_process))
     monkeypatch.setattr(supervisor, "supervise", in_process)  # for what commands import when they are called
     monkeypatch.setattr(walk, "supervise", in_process)
 

@@ -173,7 +173,7 @@ def _answers(requests: list[CheckRequest], limit: float) -> Answers:
     from reports.check.request import Refused, answered
     from reports.model.outcomes import Loss
     from reports.run.files import temporary_folder
-    from reports.run.queue import usable
+    from reports.run.running import worker_count
     from reports.run.supervisor import supervise
 
     found: dict[str, CheckReport | Refused] = {}
@@ -181,7 +181,7 @@ def _answers(requests: list[CheckRequest], limit: float) -> Answers:
         tell = _Progress(folder / "progress")
         items = [replace(each, notes=str(tell.notes)) for each in requests] if len(requests) == 1 else requests
         try:
-            for item, result, _ in supervise(answered, items, limit, len(usable()), watch=tell, wall=limit + 60):
+            for item, result, _ in supervise(answered, items, limit, worker_count(), watch=tell, wall=limit + 60):
                 if isinstance(result, Loss):
                     result = Refused(f"{item.word}: {LOSSES.get(result.outcome, LOST).format(result.sentence)}")
                 found[item.word] = result

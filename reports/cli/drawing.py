@@ -75,7 +75,7 @@ def drawn(
     work = Drawing(tuple(words), command)
     found: dict[str, dict[str, str]] = {}
     with suppress(WorkersLost):
-        for (name, _), result, _ in supervise(work, asked, LIMIT, worker_count(timed=False)):
+        for (name, _), result, _ in supervise(work, asked, LIMIT, worker_count()):
             if not isinstance(result, Loss):
                 found[name] = result
     return found

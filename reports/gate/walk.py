@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -30,8 +29,7 @@ from reports.model.cells import Cell, mechanism_of
 from reports.model.checks import CHANGE, Check, complaints, nearest
 from reports.model.measure import Measurement
 from reports.model.outcomes import Loss
-from reports.run.queue import kin_of
-from reports.run.running import run_cells
+from reports.run.running import run_cells, worker_count
 from reports.run.supervisor import Answer, Supervise, supervise
 
 # The judge's largest scenes take this long [s] on a busy machine.
@@ -82,60 +80,23 @@ class CaseVerdict:
 
 
 @dataclass(frozen=True)
-class Foretold:
-    """What the judge is asked: a scene, and the kinds of softness."""
+class PredictionJob:
+    """A prediction to make: of a scene, for these kinds of softness."""
 
     scene: Scene
     soft: frozenset[SoftKind]
 
     @property
-    def kin(self) -> Scene:
-        """As a cell's: what is worked out once a process of a scene's exact motion serves both."""
-        return self.scene
-
-    @property
     def label(self) -> str:
         return f"the judge on {self.scene.name}"
 
-
-@dataclass(frozen=True)
-class Either:
-    """What a worker does with a cell (`function`), or with a Foretold."""
-
-    function: Callable[[Any], Any]
-
-    def __call__(self, item: Any) -> Any:
-        return prediction(item.scene, item.soft) if isinstance(item, Foretold) else self.function(item)
+    def __call__(self) -> Prediction:
+        return prediction(self.scene, self.soft)
 
 
 @dataclass(frozen=True)
-class Judging:
-    """As `supervise`, with the judge's own work beside that of the cells: first of each scene's, scenes as they come.
-
-    found: what the judge said, as it is known. Raises RuntimeError where it fails.
-    """
-
-    asked: tuple[Foretold, ...]
-    found: dict[Scene, Prediction]
-
-    def __call__(
-        self, function: Callable[[Any], Any], items: Iterable[Any], limit: float, *terms: Any
-    ) -> Iterator[Answer]:
-        items = tuple(items)
-        place = {kin: number for number, kin in enumerate(dict.fromkeys(map(kin_of, items)))}
-        jobs = [*sorted(self.asked, key=lambda item: place.get(item.scene, len(place))), *items]
-        for item, result, note in supervise(Either(function), jobs, max(limit, JUDGE_LIMIT), *terms):
-            if not isinstance(item, Foretold):
-                yield item, result, note
-            elif isinstance(result, Loss):
-                raise RuntimeError(f"the judge has no prediction for {item.scene.name}: {result.sentence}")
-            else:
-                self.found[item.scene] = result
-
-
-@dataclass(frozen=True)
-class Soft:
-    """What the judge is asked of a scene with a case's own softness."""
+class SoftPredictionJob:
+    """A run of the judge to make: of a scene with a method's own softness."""
 
     scene: Scene
     softness: Softness
@@ -144,19 +105,44 @@ class Soft:
     def label(self) -> str:
         return f"the judge on {self.scene.name}, as soft as a method"
 
+    def __call__(self) -> Mapping[str, float]:
+        return errors_as_soft(self.scene, self.softness)
 
-def _run(item: Soft) -> Mapping[str, float]:
-    return errors_as_soft(item.scene, item.softness)
+
+Job = PredictionJob | SoftPredictionJob
 
 
-def _as_soft(asked: Iterable[Soft], workers: int) -> Mapping[Soft, Mapping[str, float]]:
-    """The judge's errors, in as many processes; many bodies, which take longest, begin first."""
-    items = sorted(set(asked), key=lambda item: -len(mechanism_of(item.scene).bodies))
-    told = {item: result for item, result, _ in supervise(_run, items, JUDGE_LIMIT, workers)}
-    for item, result in told.items():
-        if isinstance(result, Loss):
-            raise RuntimeError(f"{item.label}: {result.sentence}")
-    return told
+@dataclass(frozen=True)
+class CellOrJob:
+    """The function that a worker applies to a cell, or to a job of the judge."""
+
+    function: Callable[[Any], Any]
+
+    def __call__(self, item: Any) -> Any:
+        return item() if isinstance(item, Job) else self.function(item)
+
+
+@dataclass(frozen=True)
+class WithJobs:
+    """As `supervise`, with jobs of the judge before the cells; their results are put into `results`.
+
+    Raises RuntimeError where the judge fails.
+    """
+
+    jobs: tuple[Job, ...]
+    results: dict[Job, Any]
+
+    def __call__(
+        self, function: Callable[[Any], Any], items: Iterable[Any], limit: float, *terms: Any
+    ) -> Iterator[Answer]:
+        work = CellOrJob(function)
+        for item, result, note in supervise(work, [*self.jobs, *items], max(limit, JUDGE_LIMIT), *terms):
+            if not isinstance(item, Job):
+                yield item, result, note
+            elif isinstance(result, Loss):
+                raise RuntimeError(f"{item.label}: {result.sentence}")
+            else:
+                self.results[item] = result
 
 
 def walk(
@@ -167,10 +153,18 @@ def walk(
     `dearest`: how many times the baseline's CPU time a case may take; then runs are timed as those of a report are.
     Raises RuntimeError when the judge itself fails.
     """
-    chosen, workers = tuple(chosen), workers or os.cpu_count() or 1
-    judging = Judging(tuple(Foretold(scene, soft) for scene, soft in predictions(chosen).items()), {})
+    chosen, workers = tuple(chosen), workers or worker_count()
     cells = {case: case.cells() for case in chosen}
-    rows = _measured((cell for own in cells.values() for cell in own), workers, judging, dearest is not None)
+    wanted = {scene: PredictionJob(scene, soft) for scene, soft in predictions(chosen).items()}
+    results: dict[Job, Any] = {}
+    rows = _measured(_all(cells.values()), workers, WithJobs(tuple(wanted.values()), results), dearest is not None)
+    judge = {scene: results[job] for scene, job in wanted.items()}
+    finished = {case: tuple(rows[cell] for cell in own) for case, own in cells.items()}
+    own_soft = {
+        case: SoftPredictionJob(case.scene, softness)
+        for case, own in finished.items()
+        if (softness := own_softness(case, own, judge[case.scene])) is not None
+    }
     old = baseline.cells
     doubtful = [
         cell
@@ -180,14 +174,9 @@ def walk(
         and (before := old.get(identity(rows[cell]))) is not None
         and moved(rows[cell], before, case.amplified)
     ]
-    nudged = _measured((other for cell in doubtful for other in nudged_cells(cell)), workers)
-    finished = {case: tuple(rows[cell] for cell in own) for case, own in cells.items()}
-    own_soft = {
-        case: Soft(case.scene, softness)
-        for case, own in finished.items()
-        if (softness := own_softness(case, own, judging.found[case.scene])) is not None
-    }
-    soft = _as_soft(own_soft.values(), workers)
+    # Many bodies take longest, and begin first.
+    soft = sorted(set(own_soft.values()), key=lambda job: -len(mechanism_of(job.scene).bodies))
+    nudged = _measured(_all(map(nudged_cells, doubtful)), workers, WithJobs(tuple(soft), results))
     out: dict[Case, CaseVerdict] = {}
     for case, own in cells.items():
         measured = finished[case]
@@ -200,8 +189,9 @@ def walk(
             elif then is not None:
                 changed += drift(row, then)
         changed += vanished(case, before)
-        told = checks(case, measured, judging.found[case.scene], soft.get(own_soft[case]) if case in own_soft else None)
-        verdict = CaseVerdict(case, measured, told, tuple(changed), before)
+        as_soft = results[own_soft[case]] if case in own_soft else None
+        theory = checks(case, measured, judge[case.scene], as_soft)
+        verdict = CaseVerdict(case, measured, theory, tuple(changed), before)
         if dearest is not None and not math.isnan(verdict.cost):
             costly = Check(CHANGE, "CPU time", verdict.cost, dearest, sentence=" times the baseline's")
             verdict = replace(verdict, change=(*verdict.change, costly))
@@ -247,8 +237,12 @@ def remarks(verdict: CaseVerdict) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*known, *dear]))
 
 
+def _all(groups: Iterable[Iterable[Cell]]) -> Iterator[Cell]:
+    return (cell for group in groups for cell in group)
+
+
 def _measured(
-    cells: Iterable[Cell], workers: int, supervised: Supervise = supervise, timed: bool = False
+    cells: Iterable[Cell], workers: int, supervised: Supervise, timed: bool = False
 ) -> Mapping[Cell, Measurement]:
     by_key = {cell.key: cell for cell in cells}
     rows = {row.key: row for row in run_cells(by_key.values(), workers=workers, timed=timed, supervised=supervised)}

@@ -13,7 +13,7 @@ from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.model.digest import LONG, digest
 from reports.model.ending import BadInput, describe
-from reports.model.fingerprint import digest_of, modules_behind, modules_of
+from reports.model.fingerprint import fingerprint
 
 Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 
@@ -55,11 +55,6 @@ class Cell(Valid):
         return self.scene.duration / self.sample_count / self.every
 
     @property
-    def kin(self) -> Scene:
-        """Cells of a scene share its exact motion (`reports.run.queue`)."""
-        return self.scene
-
-    @property
     def label(self) -> str:
         return f"{self.scene.name} / {method_name(self.engine)} / {self.step:.1e} s"
 
@@ -75,26 +70,21 @@ class Cell(Valid):
             repr(self.engine),
             self.every,
             self.sample_count,
-            digest_of(_modules(self.scene, self.engine)),
+            _fingerprint(self.scene, self.engine),
         )
         return digest("\0".join(map(str, parts)), LONG)
 
     @cached_property
     def truth(self) -> str:
         """A digest of all that the scene's exact motion depends on, but for the instants (`reports.model.truths`)."""
-        sources = digest_of(_modules_of_truth(self.scene))
+        sources = fingerprint(self.scene, folders=("reference",))
         parts = (self.scene.name, type(self.scene).__qualname__, repr(self.scene), sources)
         return digest("\0".join(parts), LONG)
 
 
 @lru_cache(maxsize=4096)  # a scene in an engine has a cell for every step
-def _modules(scene: Scene, engine: Engine) -> frozenset[str]:
-    return modules_of(scene, engine)
-
-
-@lru_cache(maxsize=512)
-def _modules_of_truth(scene: Scene) -> frozenset[str]:
-    return frozenset(modules_behind(scene))
+def _fingerprint(scene: Scene, engine: Engine) -> str:
+    return fingerprint(scene, engine)
 
 
 def estimated_cost(cell: Cell) -> float:

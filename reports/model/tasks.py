@@ -6,7 +6,7 @@ Nothing is stepped or integrated while a page is written: it reads the answers t
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -18,7 +18,7 @@ from engines.contract import flaw
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell, estimated_cost
 from reports.model.digest import LONG, digest
-from reports.model.fingerprint import fingerprint
+from reports.model.fingerprint import OURS, fingerprint
 from reports.model.outcomes import Outcome, refusal
 from reports.model.spending import spending
 
@@ -56,8 +56,7 @@ class Answer:
 class Task(ABC):
     """Subclasses are frozen dataclasses: a task is data, which travels to a worker, and its fields name it.
 
-    A subclass stands in a module of its own, apart from words and pictures: its answer is stale when a file changes
-    that its module imports.
+    An answer is stale when a file of ours changes.
     """
 
     @property
@@ -75,11 +74,6 @@ class Task(ABC):
         """What is run; None for a method that is no engine."""
         return None
 
-    @property
-    def kin(self) -> Hashable:
-        """What is shared with cells and other tasks (`reports.run.queue`); None: nothing."""
-        return None
-
     @abstractmethod
     def run(self) -> Values:
         """Numbers (float64 arrays) and words by name. Raises Unsupported, or ValueError for input that can't be."""
@@ -87,7 +81,7 @@ class Task(ABC):
     @cached_property
     def key(self) -> str:
         """A digest of all that the answer depends on; equal keys mean that a stored answer still holds."""
-        parts = ("task", type(self).__qualname__, repr(self), fingerprint(self))
+        parts = ("task", type(self).__qualname__, repr(self), fingerprint(self, folders=OURS))
         return digest("\0".join(parts), LONG)
 
 
@@ -108,10 +102,6 @@ class Motion(Task):
     @property
     def engine(self) -> Engine:
         return self.cell.engine
-
-    @property
-    def kin(self) -> Hashable:
-        return self.cell.kin
 
     def run(self) -> Values:
         cell, mechanism = self.cell, self.cell.scene.mechanism()

@@ -1,48 +1,33 @@
-"""Files written whole or not at all, and temporary folders that nothing leaves behind.
-
-An interruption takes folders away, and the next program what a kill left: whoever made a folder holds a lock on it as
-long as he lives, by which another program knows whether he does.
-"""
+"""Files written whole or not at all, and temporary folders that an interruption removes too."""
 
 from __future__ import annotations
 
 import atexit
 import os
-import re
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from reports.model.ending import FileTrouble
 
-fcntl: Any
-try:
-    import fcntl
-except ImportError:  # Windows: nothing is swept there
-    fcntl = None
-
-PREFIX, SUFFIX = ".crosscheck-", ".part"
-NAME = re.compile(rf"{re.escape(PREFIX)}[a-z0-9_]{{8}}{re.escape(SUFFIX)}")  # of no folder that somebody else makes
-# Sockets stand in a folder that lasts, and systems take 104 bytes of their path at least: this is what is left of them
-# for the folder's place.
-LONGEST_PLACE = 104 - len(f"/{PREFIX}12345678{SUFFIX}/listener-12345678") - 1
+# Versions before this one remove folders called ".crosscheck-" that no process has locked.
+PREFIX = ".crosscheck_"
+SOCKET_PATH = 104  # bytes of the path of a socket that every system takes
 TRIES = 20  # to remove a folder into which a process writes that is just being ended
 
-_own: dict[Path, int | None] = {}  # folder -> what holds its lock
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_own.clear)  # they stay those of the process that made them
+_folders: list[Path] = []
 
 
 @contextmanager
 def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
-    """A new folder in `parent`, the system's place for such if None, that is gone afterwards. Raises OSError."""
-    place = Path(tempfile.gettempdir()) if parent is None else parent
-    _sweep(place)
-    folder = _made(place)
+    """A new folder in `parent`, in the system's folder for temporary files if None, removed afterwards.
+
+    Raises OSError.
+    """
+    folder = _new_folder(parent)
     try:
         yield folder
     finally:
@@ -50,41 +35,29 @@ def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
 
 
 @cache
-def lasting_folder() -> Path:
-    """A folder for as long as this process lives: for a library that removes its own only if nothing interrupts it.
-
-    It stands in the system's place for such, or in /tmp where the name of that one is too long for a socket.
-    """
+def socket_folder() -> Path:
+    """A folder for sockets, removed at the end: in /tmp where the path of the system's folder is too long."""
     atexit.register(remove_all)
-    place = Path(tempfile.gettempdir())
-    too_long = len(os.fsencode(place)) > LONGEST_PLACE and os.access("/tmp", os.W_OK)
-    return _made(Path("/tmp") if too_long else place)
+    folder = Path(tempfile.gettempdir())
+    too_long = len(os.fsencode(folder)) + len(f"/{PREFIX}12345678.part/listener-12345678") >= SOCKET_PATH
+    return _new_folder(Path("/tmp") if too_long and os.access("/tmp", os.W_OK) else folder)
 
 
-def held_folders() -> tuple[Path, ...]:
+def temporary_folders() -> tuple[Path, ...]:
     """The temporary folders that this process has made and not removed yet."""
-    return tuple(_own)
+    return tuple(_folders)
 
 
 def remove_all() -> None:
-    """Remove every folder of this process that is there; for a process that ends where it stands."""
-    for folder in list(_own):
+    """Remove every temporary folder of this process; for a process that ends at once."""
+    for folder in temporary_folders():
         _remove(folder)
 
 
-def _made(place: Path) -> Path:
-    while True:
-        folder = Path(tempfile.mkdtemp(SUFFIX, PREFIX, place))
-        _own[folder] = None
-        if fcntl is None:
-            return folder
-        with suppress(FileNotFoundError):  # another program found it without a lock: make another
-            held = _own[folder] = os.open(folder, os.O_RDONLY)
-            with suppress(OSError):  # a file system without locks: nobody sweeps there
-                fcntl.flock(held, fcntl.LOCK_EX)
-            if folder.is_dir():
-                return folder
-        _remove(folder)
+def _new_folder(parent: Path | None) -> Path:
+    folder = Path(tempfile.mkdtemp(".part", PREFIX, parent))
+    _folders.append(folder)
+    return folder
 
 
 def _remove(folder: Path) -> None:
@@ -92,30 +65,7 @@ def _remove(folder: Path) -> None:
         shutil.rmtree(folder, ignore_errors=True)
         if not folder.exists():
             break
-    held = _own.pop(folder, None)
-    if held is not None:
-        os.close(held)
-
-
-@cache
-def _sweep(place: Path) -> None:
-    """Remove what programs that were killed have left in a place; once in a process."""
-    if fcntl is None:
-        return
-    with suppress(OSError):
-        for folder in place.iterdir():
-            if NAME.fullmatch(folder.name) and folder not in _own:
-                _remove_unless_held(folder)
-
-
-def _remove_unless_held(folder: Path) -> None:
-    with suppress(OSError):  # somebody else's, or gone
-        held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
-        try:
-            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            shutil.rmtree(folder, ignore_errors=True)
-        finally:
-            os.close(held)
+    _folders.remove(folder)
 
 
 def folder_for(path: Path, remedy: str) -> Path:
@@ -136,36 +86,31 @@ def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
     their names leaves some old and some new ones, each of them whole. What is no file, such as /dev/stdout or a pipe,
     is written into at the end. Raises FileTrouble, ending in the remedy.
     """
-    with ExitStack() as stack:
-        asides: dict[Path, Path] = {}  # folder -> a folder in it, hence on the same disk
-        complete: dict[Path, Path] = {}
-        streams = {path: text for path, text in texts.items() if is_stream(path)}
-        for path, text in texts.items():
-            if path in streams:
-                continue
-            folder = folder_for(path.parent, remedy)
-            try:
+    path = Path()
+    try:
+        with ExitStack() as stack:
+            asides: dict[Path, Path] = {}  # folder -> a folder in it, hence on the same disk
+            streams = [path for path in texts if is_stream(path)]
+            for path in texts:
+                if path in streams:
+                    continue
+                folder = folder_for(path.parent, remedy)
                 if path.is_dir() and not path.is_symlink():
                     raise IsADirectoryError(None, "a folder has its name")
                 if folder not in asides:
                     asides[folder] = stack.enter_context(temporary_folder(folder))
-                complete[path] = asides[folder] / path.name
-                with complete[path].open("w", encoding="utf-8", newline="\n") as file:
-                    file.write(text)
+                with (asides[folder] / path.name).open("w", encoding="utf-8", newline="\n") as file:
+                    file.write(texts[path])
                     file.flush()
                     os.fsync(file.fileno())
-            except OSError as reason:
-                raise FileTrouble(f"{path} can't be written ({reason.strerror or reason}): {remedy}") from None
-        for path in texts:
-            try:
-                if path in streams:
-                    # At its end: /dev/stdout may lead to a file in which something stands already.
-                    with path.open("a", encoding="utf-8", newline="\n") as file:
-                        file.write(streams[path])
-                else:
-                    complete[path].replace(path)
-            except OSError as reason:
-                raise FileTrouble(f"{path} can't be written ({reason.strerror or reason}): {remedy}") from None
+            for path in texts:
+                if path not in streams:
+                    (asides[path.parent] / path.name).replace(path)
+                    continue
+                with path.open("a", encoding="utf-8", newline="\n") as file:  # /dev/stdout may lead to a file
+                    file.write(texts[path])
+    except OSError as reason:
+        raise FileTrouble(f"{path} can't be written ({reason.strerror or reason}): {remedy}") from None
 
 
 def is_stream(path: Path) -> bool:

@@ -1,30 +1,31 @@
-"""Cells and tasks through supervised workers: one answer for every one, kept in a store as soon as it is there."""
+"""Cells and tasks through supervised workers: one answer for every one, stored as soon as it is there."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from reports.model.cells import Cell
-from reports.model.measure import TIMED, Measurement, blank, measure
+from reports.model.cells import Cell, estimated_cost
+from reports.model.measure import Measurement, blank, measure
 from reports.model.outcomes import Loss, Outcome
 from reports.model.tasks import Answer, Task, answered
 from reports.model.truths import FOLDER
 from reports.run.files import folder_for
-from reports.run.queue import apart, dearest_first, usable
 from reports.run.store import ELSEWHERE, Store
 from reports.run.supervisor import Supervise, Watch, WorkersLost, supervise
 
 TIME_LIMIT = 60.0  # s of CPU time for one cell: far above the cost limit of the grid, so only a hang meets it
+LEAST = 3e-3  # s that a cell takes besides stepping
 
 Item = TypeVar("Item", bound=Cell | Task)
 
 
 @dataclass(frozen=True)
 class Working:
-    """What a worker does with a cell or a task: see `run_items`."""
+    """The function that a worker applies to a cell or a task: see `run_items`."""
 
     timed: bool
     truths: Path | None
@@ -33,9 +34,27 @@ class Working:
         return measure(item, self.timed, self.truths) if isinstance(item, Cell) else answered(item)
 
 
-def worker_count(timed: bool) -> int:
-    """How many workers run at the same time: one on each processor; of those that time, one on each core."""
-    return len(apart()) if timed else len(usable())
+def worker_count() -> int:
+    """How many workers run at the same time: one on each processor that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def expected_seconds(item: Any) -> float:
+    """CPU seconds of one run, by the engine's own formula or the task's."""
+    return LEAST + (estimated_cost(item) if isinstance(item, Cell) else float(getattr(item, "cost", 0.0)))
+
+
+def longest_first(items: Iterable[Item]) -> list[Item]:
+    """Cells of one scene together, since they share its exact motion; the scene that takes longest first, and so in it.
+
+    What begins last is then short, and no worker runs long after the others have ended.
+    """
+    groups: dict[Any, list[tuple[float, Item]]] = {}
+    for item in items:
+        scene = item.scene if isinstance(item, Cell) else item
+        groups.setdefault(scene, []).append((expected_seconds(item), item))
+    ordered = sorted(groups.values(), key=lambda group: -sum(seconds for seconds, _ in group))
+    return [item for group in ordered for _, item in sorted(group, key=lambda pair: -pair[0])]
 
 
 def run_items(
@@ -48,33 +67,26 @@ def run_items(
     supervised: Supervise = supervise,
     truths: Path | None = None,
 ) -> Iterator[tuple[Item, Any]]:
-    """Yield every cell with its Measurement and every task with its Answer as they are done, the dearest begun first.
+    """Yield every cell with its Measurement and every task with its Answer as they are done, the longest begun first.
 
     A lost one has its outcome and no numbers. `limit`: CPU seconds for one; `wall`: seconds for one that sleeps.
-    `workers`: `worker_count` if None. `timed`: whether a cell is run again for the least of several times; cells that
-    are timed have a core each, so where more workers are asked for, the others run afterwards. `supervised`: by whom.
-    `truths`: a folder of exact motions that workers share (`reports.model.truths`). Raises WorkersLost (`supervise`).
+    `workers`: `worker_count` if None. `timed`: whether a cell is run again for the least of several times.
+    `supervised`: by which function. `truths`: a folder of exact motions that workers share (`reports.model.truths`).
+    Raises WorkersLost (`supervise`).
     """
     items = tuple(items)
     for item in items:  # these travel with it: each new worker would read all sources for them, half a second long
         _ = item.key, isinstance(item, Cell) and item.truth
-    most = worker_count(timed=False) if workers is None else workers
-    clocked = {item for item in items if timed and isinstance(item, Cell) and item.purpose in TIMED}
-    own = min(most, worker_count(timed=True)) if clocked else most
-    rounds = [(items, own, bool(clocked))]
-    if own < most:
-        rounds = [(tuple(clocked), own, True), (tuple(item for item in items if item not in clocked), most, False)]
-    work = Working(timed, truths)
-    for some, count, alone in rounds:
-        for item, result, note in supervised(work, dearest_first(some), limit, count, watch, wall, alone):
-            yield item, _told(item, result, note, limit)
+    work, count = Working(timed, truths), workers or worker_count()
+    for item, result, note in supervised(work, longest_first(items), limit, count, watch, wall):
+        yield item, _result(item, result, note, limit)
 
 
-def _told(item: Cell | Task, result: Any, note: str, limit: float) -> Measurement | Answer:
-    """What is kept of what a worker answered, or of what became of it."""
+def _result(item: Cell | Task, result: Any, note: str, limit: float) -> Measurement | Answer:
+    """The row or answer to store, also of an item without a result."""
     if not isinstance(result, Loss):
-        told = f"the first try {note}, the second went through" if note else ""
-        return replace(result, sentence="; ".join(filter(None, (result.sentence, told))))
+        retried = f"the first try {note}, the second went through" if note else ""
+        return replace(result, sentence="; ".join(filter(None, (result.sentence, retried))))
     spent = limit if result.outcome == Outcome.TIMED_OUT else float("nan")
     if isinstance(item, Cell):
         return replace(blank(item, result.outcome, result.sentence), limit=spent)
@@ -90,21 +102,15 @@ def run_cells(cells: Iterable[Cell], **terms: Any) -> Iterator[Measurement]:
 def missing(items: Iterable[Item], store: Store, limit: float = TIME_LIMIT) -> tuple[Item, ...]:
     """The cells and tasks without an answer to a run with this limit [s]: not stored, or timed out within a smaller."""
     items = tuple(items)
-    known = {**store.get(_cells(items)), **store.answers(_tasks(items))}
+    cells = [item for item in items if isinstance(item, Cell)]
+    tasks = [item for item in items if isinstance(item, Task)]
+    known = {**store.get(cells), **store.answers(tasks)}
     return tuple(item for item in items if item not in known or not holds(known[item], limit))
 
 
 def holds(result: Measurement | Answer, limit: float) -> bool:
-    """Whether a run with this limit [s] would say the same as what is stored."""
+    """Whether a run with this limit [s] would give the stored result again."""
     return result.outcome != Outcome.LOST and (result.outcome != Outcome.TIMED_OUT or result.limit >= limit)
-
-
-def _cells(items: Iterable[Cell | Task]) -> tuple[Cell, ...]:
-    return tuple(item for item in items if isinstance(item, Cell))
-
-
-def _tasks(items: Iterable[Cell | Task]) -> tuple[Task, ...]:
-    return tuple(item for item in items if isinstance(item, Task))
 
 
 def run_into(
@@ -118,7 +124,7 @@ def run_into(
     timed: bool = True,
     supervised: Supervise = supervise,
 ) -> int:
-    """Run what is missing (everything if fresh), the dearest first; store each result as it arrives; how many were run.
+    """Run what is missing (everything if fresh), the longest first; store each result as it arrives; how many were run.
 
     An interruption passes through, with the results so far stored. What was killed from outside is not stored; when all
     others are done, WorkersLost is raised, with one line about it.
@@ -140,6 +146,17 @@ def run_into(
     return len(waiting)
 
 
+def run_grid(path: Path, items: Sequence[Cell | Task], **terms: Any) -> Mapping[Cell | Task, Measurement | Answer]:
+    """Run the cells and tasks that the store at `path` lacks; all their results. `terms`: those of `run_into`.
+
+    Raises FileTrouble where the store can't be used, WorkersLost where workers are killed.
+    """
+    with Store(path) as store:
+        run_into(store, items, **terms)
+        cells = store.get(item for item in items if isinstance(item, Cell))
+        return {**cells, **store.answers(item for item in items if isinstance(item, Task))}
+
+
 def support_of(cell: Cell) -> str:
     """Why an engine can't build a scene's mechanism, in its own words; empty if it can."""
     from engines import Unsupported
@@ -154,7 +171,7 @@ def support_of(cell: Cell) -> str:
 def support(cells: Sequence[Cell]) -> Mapping[Cell, str]:
     """Cell -> why it can't be built, in supervised processes; empty if it can. Raises WorkersLost."""
     reasons: dict[Cell, str] = {}
-    for cell, result, _ in supervise(support_of, cells, TIME_LIMIT, worker_count(timed=False)):
+    for cell, result, _ in supervise(support_of, cells, TIME_LIMIT, worker_count()):
         if isinstance(result, Loss) and result.outcome == Outcome.LOST:
             raise WorkersLost(f"{cell.label}: {result.sentence}")
         reasons[cell] = result.sentence if isinstance(result, Loss) else result

@@ -4,14 +4,13 @@ Own code, although well-kept libraries for this exist. pebble, loky and concurre
 queue with a lock that all workers share: a worker killed while it holds the lock stops the others, a worker killed
 while it starts breaks the pool, and then every item that waits is answered with an error that says nothing about it.
 Exceptions travel as objects there, which fails for those that can't be unpickled, and limits count wall time only.
-Here every worker has a connection of its own, which nobody else holds, and a job counts as run only once its answer
-is whole.
+Here every worker has a connection of its own, and a job counts as run only once its answer is whole.
 
 * A worker that ends while it starts costs no item anything; after several in a row `WorkersLost` is raised.
-* An item whose worker ended is tried once more, in a worker that has run nothing else before. What happens there is
-  its answer: if native code ends that process too, it is the item's own doing, and no damage that another item left.
+* An item whose worker ended is tried once more, in a worker that has run nothing else before, and the outcome of this
+  second try is its answer. So damage that another item left in a process does not count.
 * An item that uses up its CPU time is ended by this process, which reads the worker's clock, or, where the system does
-  not tell, by a thread in the worker. One that sleeps is ended after much more wall time, of which only what this
+  not have it, by a thread in the worker. One that sleeps is ended after much more wall time, of which only what this
   process was awake for is counted: neither a loaded machine nor a stopped terminal decides about a result.
 """
 
@@ -22,7 +21,6 @@ import pickle
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.connection import wait
 from pathlib import Path
@@ -31,7 +29,6 @@ from typing import Any
 from reports.model.ending import Broken, describe
 from reports.model.outcomes import Loss, Outcome, describe_exit, failure, from_outside, of_lost_process, out_of_time
 from reports.run.files import temporary_folder
-from reports.run.queue import Waiting, apart
 from reports.run.worker import (
     READY,
     SPENT,
@@ -47,7 +44,7 @@ from reports.run.worker import (
 
 TICK = 0.2  # s between two looks at the clock
 IMPORTS = 2.0  # s of CPU time for importing an engine, which a worker does when it gets its first job
-START_LIMIT = 120.0  # s of wall time until a worker says that it is there
+START_LIMIT = 120.0  # s of wall time until a worker is ready
 MOST_FAILED_STARTS = 5  # one after the other
 PAUSE = 0.1  # s after a failed start, and as much more after each further one
 MOST_WORKERS = 60  # Windows waits for 63 things at most
@@ -82,108 +79,90 @@ def supervise(
     workers: int,
     watch: Watch | None = None,
     wall: float | None = None,
-    alone: bool = False,
 ) -> Iterator[Answer]:
     """Yield (item, result or Loss, note) as they are done, in no order; note: how an earlier try of it aborted.
 
     `function` must be importable by its name. `limit`: CPU seconds for one item, all threads together; `wall`: seconds
-    for one that does not use its CPU time, `wall_limit` if None. `watch` is told a few times a second which items are
-    running. `alone`: each worker stays on a processor of its own (`reports.run.queue.apart`), as far as there are
-    so many. Items that are akin go to one worker (`reports.run.queue`). Raises WorkersLost when no worker can be
-    started. Leaving the iterator ends the workers.
+    for one that does not use its CPU time, `wall_limit` if None. `watch` is called a few times a second with the items
+    that are running. Raises WorkersLost when no worker can be started. Leaving the iterator ends the workers.
     """
-    with crew(limit, workers, wall, alone) as own:
-        own.give(function, items)
-        yield from own.answers(watch)
-
-
-@contextmanager
-def crew(limit: float, workers: int, wall: float | None = None, alone: bool = False) -> Iterator[Crew]:
-    """Workers for one function after another; see `supervise`. Leaving it ends them."""
     one_thread_each()
     with temporary_folder() as folder:
         wall = wall_limit(limit) if wall is None else wall
-        own = Crew(limit, wall, min(workers, MOST_WORKERS), folder, apart() if alone else ())
+        pool = Pool(function, items, (str(folder), limit, wall), min(workers, MOST_WORKERS))
         try:
-            yield own
+            yield from pool.results(watch)
         finally:
-            own.end()
+            pool.close()
             end_processes_of([folder])
 
 
-class Crew:
-    """Workers, and the jobs that they have not answered yet."""
+class Pool:
+    """Workers, and the jobs that they have not answered yet; `terms`: folder, CPU and wall seconds of a job."""
 
-    def __init__(self, limit: float, wall: float, most: int, folder: Path, processors: tuple[int, ...] = ()) -> None:
-        self._limit, self._wall, self._most, self._folder = limit, wall, most, folder
-        self._processors = processors  # one for each worker; more workers stay nowhere
-        self._function: Callable[[Any], Any] | None = None
-        self._waiting = Waiting()
-        self._again: deque[Job] = deque()  # each for a worker that has run nothing yet
+    def __init__(
+        self, function: Callable[[Any], Any], items: Iterable[Any], terms: tuple[str, float, float], most: int
+    ) -> None:
+        self._function, self._terms, self._most = function, terms, most
+        self._waiting = deque(Job(item) for item in items)
+        self._retries: deque[Job] = deque()  # each for a worker that has run nothing yet
         self._workers: list[Worker] = []
         self._failed_starts = 0
         self._context = start_method()
 
-    def give(self, function: Callable[[Any], Any], items: Iterable[Any]) -> None:
-        """What `answers` will answer; only when it has answered all that was given before."""
-        self._function = function
-        self._waiting.add(Job(item) for item in items)
-
-    def answers(self, watch: Watch | None) -> Iterator[Answer]:
-        """Every item's answer."""
+    def results(self, watch: Watch | None) -> Iterator[Answer]:
+        """The answer to every item."""
         before = time.monotonic()
-        while self._waiting or self._again or self._busy():
+        while self._waiting or self._retries or self._busy():
             self._start_workers()
             for worker in list(self._workers):
                 if worker.ready and worker.job is None:
-                    yield from self._employ(worker)
-            heard = wait([worker.connection for worker in self._workers], TICK)
+                    yield from self._assign_job(worker)
+            readable = wait([worker.connection for worker in self._workers], TICK)
             now = time.monotonic()
             awake, before = min(now - before, 5 * TICK), now
             for worker in list(self._workers):
-                if worker.connection in heard:
-                    yield from self._hear(worker)
+                if worker.connection in readable:
+                    yield from self._on_message(worker)
                 else:
                     worker.awake += awake
                     yield from self._end_overdue(worker)
             if watch is not None:
                 watch([worker.job.item for worker in self._busy() if worker.job])
 
-    def end(self) -> None:
+    def close(self) -> None:
+        """End all workers."""
         for worker in list(self._workers):
-            self._dismiss(worker)
+            self._terminate(worker)
 
     def _busy(self) -> list[Worker]:
         return [worker for worker in self._workers if worker.job is not None]
 
     def _start_workers(self) -> None:
         """As many as there is work for."""
-        wanted = min(self._most, len(self._waiting) + len(self._again) + len(self._busy()))
+        wanted = min(self._most, len(self._waiting) + len(self._retries) + len(self._busy()))
         while len(self._workers) < wanted:
             try:
-                free = [one for one in self._processors if one not in {other.processor for other in self._workers}]
-                terms = (str(self._folder), self._limit, self._wall, free[0] if free else None)
                 with process_start():
-                    self._workers.append(start_worker(self._context, *terms))
+                    self._workers.append(start_worker(self._context, *self._terms))
             except (OSError, EOFError) as error:  # the fork server was killed, or the system has no room for a process
-                self._start_failed(describe(error))
+                self._on_failed_start(describe(error))
 
-    def _start_failed(self, words: str) -> None:
+    def _on_failed_start(self, words: str) -> None:
         self._failed_starts += 1
         if self._failed_starts >= MOST_FAILED_STARTS:
             raise WorkersLost(f"{self._failed_starts} worker processes in a row ended while they started: {words}")
         # A fork server that was killed is replaced only when it is quite gone; a full system may have room again.
         time.sleep(PAUSE * self._failed_starts)
 
-    def _employ(self, worker: Worker) -> Iterator[Answer]:
+    def _assign_job(self, worker: Worker) -> Iterator[Answer]:
         """Give an idle worker a job, or end it if there is none that it may do."""
-        job = None
-        if self._again and not worker.used:
-            job = self._again.popleft()
+        if self._retries and not worker.used:
+            job = self._retries.popleft()
         elif self._waiting:
-            job, worker.kin = self._waiting.take(worker.kin, [other.kin for other in self._busy()])
-        if job is None:
-            self._dismiss(worker)
+            job = self._waiting.popleft()
+        else:
+            self._terminate(worker)
             return
         try:
             data = pickle.dumps((self._function, job.item))
@@ -192,15 +171,15 @@ class Crew:
             return
         worker.job, worker.used, worker.awake = job, True, 0.0
         worker.cpu = cpu_time(worker.process.pid or 0)
-        with contextlib.suppress(OSError):  # its end is heard next
+        with contextlib.suppress(OSError):  # its end is the next message
             worker.connection.send_bytes(data)
 
-    def _hear(self, worker: Worker) -> Iterator[Answer]:
+    def _on_message(self, worker: Worker) -> Iterator[Answer]:
         """A worker is ready, has an answer, or has ended."""
         try:
             message = worker.connection.recv_bytes()
         except (EOFError, OSError):
-            yield from self._bury(worker)
+            yield from self._on_exit(worker)
             return
         if message == READY:
             worker.ready, self._failed_starts = True, 0
@@ -209,40 +188,42 @@ class Crew:
         assert job is not None
         stays, answer = pickle.loads(message)
         if not stays:
-            self._dismiss(worker)
+            self._terminate(worker)
         try:
             result = pickle.loads(answer)
         except Exception as error:
             result = Loss(failure(error).outcome, f"its result can't be read: {describe(error)}")
         yield job.item, result, "" if job.earlier_outside else job.earlier
 
-    def _bury(self, worker: Worker) -> Iterator[Answer]:
+    def _on_exit(self, worker: Worker) -> Iterator[Answer]:
         """A worker has ended: its job is tried again, unless it was the second time or its CPU time was used up."""
         code, pid, job = worker.exit_code(), worker.process.pid, worker.job
-        self._dismiss(worker)
-        words = ": ".join(filter(None, (describe_exit(code), last_words(self._folder, pid))))
+        self._terminate(worker)
+        folder, limit, _ = self._terms
+        words = ": ".join(filter(None, (describe_exit(code), last_words(Path(folder), pid))))
         if not worker.ready:
-            self._start_failed(words)
+            self._on_failed_start(words)
         if job is None:
             return
         if code == SPENT:
-            yield job.item, out_of_time(self._limit), ""
+            yield job.item, out_of_time(limit), ""
         elif not job.earlier:
-            self._again.append(Job(job.item, words, from_outside(code)))
+            self._retries.append(Job(job.item, words, from_outside(code)))
         else:
             yield job.item, of_lost_process(code, words, job.earlier), ""
 
     def _end_overdue(self, worker: Worker) -> Iterator[Answer]:
+        _, limit, wall = self._terms
         if not worker.ready and worker.awake > START_LIMIT:
-            self._dismiss(worker)
-            self._start_failed(f"not ready after {START_LIMIT:g} s")
-        elif (job := worker.job) is not None and worker.used_cpu() > self._limit + IMPORTS:
-            self._dismiss(worker)
-            yield job.item, out_of_time(self._limit), ""
-        elif job is not None and worker.awake > self._wall:
-            self._dismiss(worker)
-            yield job.item, out_of_time(self._limit, self._wall), ""
+            self._terminate(worker)
+            self._on_failed_start(f"not ready after {START_LIMIT:g} s")
+        elif (job := worker.job) is not None and worker.used_cpu() > limit + IMPORTS:
+            self._terminate(worker)
+            yield job.item, out_of_time(limit), ""
+        elif job is not None and worker.awake > wall:
+            self._terminate(worker)
+            yield job.item, out_of_time(limit, wall), ""
 
-    def _dismiss(self, worker: Worker) -> None:
+    def _terminate(self, worker: Worker) -> None:
         self._workers.remove(worker)
         worker.stop()

@@ -16,7 +16,7 @@ import tempfile
 import threading
 import time
 import warnings
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib import import_module
@@ -28,7 +28,7 @@ from typing import Any
 
 from reports.model.ending import describe
 from reports.model.outcomes import Loss, Outcome, failure, out_of_time
-from reports.run.files import held_folders, lasting_folder
+from reports.run.files import socket_folder, temporary_folders
 
 # Rows depend on the files that this module imports, and on no engine but their own. So these, which look at all engines
 # and packages, are imported by their names.
@@ -64,7 +64,7 @@ def stop_all() -> None:
     """End every worker of this process; for a process that ends where it stands."""
     for child in multiprocessing.active_children():
         _kill(child)
-    end_processes_of(held_folders())
+    end_processes_of(temporary_folders())
 
 
 def end_processes_of(folders: Iterable[Path]) -> None:
@@ -98,8 +98,6 @@ class Worker:
     job: Any = None  # of `supervisor.Job`; None: it waits for one
     awake: float = 0.0  # s since it was started or given its job, as far as the parent was awake
     cpu: float | None = None  # s of CPU time when it was given its job; None where the system does not tell
-    kin: Hashable = None  # of its last job, see `reports.run.queue`
-    processor: int | None = None  # where it stays
 
     def used_cpu(self) -> float:
         """CPU seconds that its job has used so far; zero where the system does not tell."""
@@ -132,8 +130,8 @@ def start_method(*modules: str) -> Any:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    # Where the fork server's socket lies: it would be left behind by an interruption.
-    vars(multiprocessing.current_process())["_config"].setdefault("tempdir", str(lasting_folder()))
+    # The standard library's own folder would be left behind by an interruption.
+    vars(multiprocessing.current_process())["_config"].setdefault("tempdir", str(socket_folder()))
     context.set_forkserver_preload([*IMPORTED_ONCE, *modules])
     return context
 
@@ -157,10 +155,10 @@ def one_thread_each() -> None:
         os.environ.setdefault(name, "1")
 
 
-def start_worker(context: Any, folder: str, limit: float, wall: float, processor: int | None) -> Worker:
+def start_worker(context: Any, folder: str, limit: float, wall: float) -> Worker:
     """Start a process that runs `work` on these terms. Raises OSError or EOFError if none can be started."""
     ours, theirs = context.Pipe()
-    process = context.Process(target=work, args=(theirs, folder, limit, wall, processor), daemon=True)
+    process = context.Process(target=work, args=(theirs, folder, limit, wall), daemon=True)
     # About a resource tracker killed in this moment.
     with theirs, warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -170,7 +168,7 @@ def start_worker(context: Any, folder: str, limit: float, wall: float, processor
         except BaseException:
             ours.close()
             raise
-    return Worker(process, ours, processor=processor)
+    return Worker(process, ours)
 
 
 @contextmanager
@@ -178,39 +176,26 @@ def process_start() -> Iterator[None]:
     """Ctrl-C waits until a process has started: it would print a traceback there, and leave it without a parent here.
 
     Processes started meanwhile inherit this: a worker ignores Ctrl-C from then on, the fork server as long as it lives.
-    They are started by `python -c`, which would import files of the current folder in place of any module.
+    They are started by `python -c`, which would import files of the current folder in place of any module, so that
+    folder is kept off their path.
     """
-    with _safe_path(), _interrupts_held():
-        yield
-
-
-@contextmanager
-def _safe_path() -> Iterator[None]:
-    """Processes that start meanwhile have no current folder on their path."""
     is_set = SAFE_PATH in os.environ
     os.environ.setdefault(SAFE_PATH, OURS)
+    before = None
+    if hasattr(signal, "pthread_sigmask"):
+        # Starting the resource tracker ends the holding of Ctrl-C, so it comes first. The standard library warns when
+        # its tracker was killed, and starts another.
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            resource_tracker.ensure_running()
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
+        if before is not None:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
         if not is_set:
             os.environ.pop(SAFE_PATH, None)
-
-
-@contextmanager
-def _interrupts_held() -> Iterator[None]:
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    # The standard library warns when its resource tracker was killed, and starts another; nothing here needs it.
-    # Starting one ends the holding of Ctrl-C, so it comes first.
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        resource_tracker.ensure_running()
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def last_words(folder: Path, pid: int | None) -> str:
@@ -235,19 +220,18 @@ class Clock:
         self.end = float("inf")
 
 
-def work(connection: Connection, folder: str, limit: float, wall: float, processor: int | None = None) -> None:
+def work(connection: Connection, folder: str, limit: float, wall: float) -> None:
     """Answer jobs until the connection ends, or until a job leaves the process changed.
 
     A job is a pickled (function, item); its answer is a pickled (whether this worker takes another job, what the
     function gave or a Loss, pickled). `limit`: CPU seconds of one job, `wall`: seconds after which the parent
-    ends it; after twice as many it ends itself, should the parent be gone. `processor`: where it stays; None: anywhere.
+    ends it; after twice as many it ends itself, should the parent be gone.
     """
     _ignore_interrupts()
     if os.environ.get(SAFE_PATH) == OURS:
         del os.environ[SAFE_PATH]
     if hasattr(os, "setpgid"):
         os.setpgid(0, 0)  # with all that jobs start, so that it can be ended as one
-    stay_on(processor)
     _end_with_the_parent()
     try:
         _redirect(Path(folder))
@@ -374,10 +358,3 @@ def _traces() -> tuple[Any, ...]:
     blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ()) if hasattr(signal, "pthread_sigmask") else set()
     python_streams = (sys.stdout, sys.stderr, getattr(sys.stdout, "closed", True), getattr(sys.stderr, "closed", True))
     return folder, streams, handlers, blocked, python_streams, threading.active_count(), dict(os.environ)
-
-
-def stay_on(processor: int | None) -> None:
-    """Keep this process, and what it starts, on one processor; None, or a system that can't: where it was."""
-    if processor is not None and hasattr(os, "sched_setaffinity"):
-        with suppress(OSError):  # taken away meanwhile
-            os.sched_setaffinity(0, {processor})

@@ -1,4 +1,4 @@
-"""Engines and functions that treat their own process badly: they try the supervisor, not the reports."""
+"""Engines and functions that treat their own process badly: they test the supervisor, not the reports."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from reference.trajectory import Trajectory
+from reports.run.files import PREFIX
 from reports.run.worker import LARGEST
 from tests.toys import Toy
 
@@ -27,12 +28,6 @@ class NeedsTwo(Exception):
 
     def __init__(self, first: int, second: int) -> None:
         super().__init__(f"{first} and {second}")
-
-
-class HoldsALock(Exception):
-    def __init__(self) -> None:
-        super().__init__("it holds a lock")
-        self.lock = threading.Lock()
 
 
 class Unprintable(Exception):
@@ -45,23 +40,6 @@ class Unreadable:
 
     def __reduce__(self) -> tuple[object, ...]:
         return NeedsTwo, (1,)
-
-
-class Unsendable:
-    """Can't be pickled."""
-
-    def __reduce__(self) -> tuple[object, ...]:
-        raise TypeError("it stays here")
-
-
-def native_spin() -> None:
-    """Busy in native code that holds the interpreter: no other thread of the process runs."""
-    re.match(r"(a|a)*$", "a" * 60 + "b")
-
-
-def native_sleep() -> None:
-    """Asleep in native code that holds the interpreter."""
-    ctypes.PyDLL(None).sleep(1000)
 
 
 @dataclass(frozen=True)
@@ -100,23 +78,11 @@ def send(number: int) -> None:
     time.sleep(5)
 
 
-def print_much(toy: RoughToy) -> None:
-    for _ in range(1000):
-        print("x" * 100)
-    os.write(2, b"y" * 100_000)
-
-
 def close_streams(toy: RoughToy) -> None:
     sys.stdout.close()
-    sys.stderr.close()
     for number in (1, 2):
         with contextlib.suppress(OSError):  # closed with its stream
             os.close(number)
-
-
-def leave_threads(toy: RoughToy) -> None:
-    for daemon in (False, True):
-        threading.Thread(target=time.sleep, args=(1000,), daemon=daemon).start()
 
 
 def install_handlers(toy: RoughToy) -> None:
@@ -125,48 +91,42 @@ def install_handlers(toy: RoughToy) -> None:
     signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001)
 
 
-# What each does; those that end well are asked for numbers afterwards.
-ACTIONS = {
-    "well": lambda toy: None,
+ACTIONS: dict[str, Callable[[RoughToy], Any]] = {
     "segfault": lambda toy: ctypes.string_at(0),
     "abort": lambda toy: os.abort(),
     "exit 255": lambda toy: os._exit(255),
     "kill": lambda toy: send(signal.SIGKILL),
-    "terminate": lambda toy: send(signal.SIGTERM),
     "segfault once": lambda toy: send(signal.SIGSEGV) if toy.once() else None,
     "kill once": lambda toy: send(signal.SIGKILL) if toy.once() else None,
     "sleep": lambda toy: time.sleep(1000),
     "spin": lambda toy: [None for _ in iter(int, 1)],
-    "native spin": lambda toy: native_spin(),
-    "native sleep": lambda toy: native_sleep(),
+    # Both hold the interpreter: no other thread of the process runs.
+    "native spin": lambda toy: re.match(r"(a|a)*$", "a" * 60 + "b"),
+    "native sleep": lambda toy: ctypes.PyDLL(None).sleep(1000),
     "held sleep": lambda toy: toy.held("sleep"),
     "held native spin": lambda toy: toy.held("native spin"),
     "held native sleep": lambda toy: toy.held("native sleep"),
     "short sleep": lambda toy: time.sleep(0.05),
     "nap": lambda toy: time.sleep(1),
     "needs two": lambda toy: throw(NeedsTwo(1, 2)),
-    "holds a lock": lambda toy: throw(HoldsALock()),
     "unprintable": lambda toy: throw(Unprintable()),
     "long words": lambda toy: throw(RuntimeError("x" * 10_000_000)),
     "system exit": lambda toy: sys.exit(3),
     "interrupt": lambda toy: throw(KeyboardInterrupt()),
     "endless recursion": lambda toy: ACTIONS["endless recursion"](toy),
-    "prints": print_much,
     "closes streams": close_streams,
     "closes files": lambda toy: os.closerange(3, 1000),
     "changes folder": lambda toy: os.chdir("/"),
     "changes environment": lambda toy: os.environ.update(CROSSCHECK_TOY="was here"),
-    "leaves threads": leave_threads,
+    "leaves threads": lambda toy: threading.Thread(target=time.sleep, args=(1000,), daemon=True).start(),
     "installs handlers": install_handlers,
     "blocks signals": lambda toy: signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals()),
 }
-
-
 DAMAGE: list[str] = []
 
 
 def act(name: str) -> object:
-    """One of the actions without an engine, or a result of another kind."""
+    """The result of one of the actions without an engine, or a result of another kind."""
     match name:
         case "process":
             return os.getpid()
@@ -180,10 +140,6 @@ def act(name: str) -> object:
             return os.abort() if DAMAGE else "sound"
         case "unreadable":
             return Unreadable()
-        case "unsendable":
-            return Unsendable()
-        case "large":
-            return bytes(10**7)
         case "huge":
             return bytes(LARGEST)
     return ACTIONS[name](RoughToy())
@@ -198,28 +154,23 @@ def spoiled(name: str) -> list[str]:
 def is_log(number: int) -> bool:
     """Whether a file descriptor writes into a log in the working folder."""
     try:
-        found = os.fstat(number)
+        status = os.fstat(number)
     except OSError:
         return False
-    return any(os.path.samestat(log.stat(), found) for log in Path().glob("*.log"))
+    return any(os.path.samestat(log.stat(), status) for log in Path().glob("*.log"))
 
 
 def probe() -> list[str]:
     """What is not as it should be in the process of a worker."""
-    wrong = []
-    if not Path.cwd().name.startswith(".crosscheck-"):
-        wrong.append("folder")
-    if sys.stdout.closed or not all(map(is_log, (1, 2))):
-        wrong.append("streams")
-    if any(callable(handler) for handler in map(signal.getsignal, signal.valid_signals())):
-        wrong.append("handlers")
-    if signal.pthread_sigmask(signal.SIG_BLOCK, ()):
-        wrong.append("blocked signals")
-    if threading.active_count() != 2:  # this one, and that which looks after the parent
-        wrong.append("threads")
-    if "CROSSCHECK_TOY" in os.environ:
-        wrong.append("environment")
-    return wrong
+    wrong = {
+        "folder": not Path.cwd().name.startswith(PREFIX),
+        "streams": sys.stdout.closed or not all(map(is_log, (1, 2))),
+        "handlers": any(callable(handler) for handler in map(signal.getsignal, signal.valid_signals())),
+        "blocked signals": bool(signal.pthread_sigmask(signal.SIG_BLOCK, ())),
+        "threads": threading.active_count() != 2,  # this one, and that which looks after the parent
+        "environment": "CROSSCHECK_TOY" in os.environ,
+    }
+    return [name for name, value in wrong.items() if value]
 
 
 def dies(*_: object) -> None:
@@ -238,10 +189,10 @@ def is_free(file: Any) -> bool:
     return True
 
 
-def wait_until(true: Callable[[], bool]) -> None:
+def wait_until(is_true: Callable[[], bool]) -> None:
     """Raises AssertionError after far longer than a loaded machine takes for what is waited for."""
     end = time.monotonic() + 300.0
-    while not true():
+    while not is_true():
         assert time.monotonic() < end, "it did not come true"
         time.sleep(0.05)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, cast
@@ -12,17 +11,14 @@ import pytest
 from engines import Engine, Promise, mujoco, pymunk
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import DrivenFourBar
-from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.gate import grid_tests, walk
 from reports.gate.judge import _samples, integrate
 from reports.gate.prediction import prediction
 from reports.gate.theory import Case, checks, kinds
-from reports.gate.walk import JUDGE_LIMIT, Foretold, Judging
+from reports.gate.walk import JUDGE_LIMIT, PredictionJob, WithJobs
 from reports.model.cells import Cell
 from reports.model.checks import Check
 from reports.model.measure import measure
-from reports.model.outcomes import Outcome
-from reports.run.queue import kin_of
 from reports.run.running import run_cells
 from tests import ROOT
 from tests.reports.test_gate import row
@@ -162,48 +158,26 @@ class Unknown(Disc):
         raise ValueError("nobody knows where it is")
 
 
-def test_the_judge_beside_the_cells_changes_no_row_and_says_what_it_says_alone():
+def test_the_judge_beside_the_cells_changes_no_row_and_has_its_own_time(monkeypatch):
     cells = [Cell(Disc(), Toy(), 1), Cell(Disc(), Toy(), 2), Cell(Disc(), FailingToy("raise"), 1)]
-    judging = Judging((Foretold(Disc(), NO_KINDS),), {})
-    rows = {row.key: row for row in run_cells(cells, workers=2, timed=False, supervised=judging)}
+    job, results = PredictionJob(Disc(), NO_KINDS), {}
+    rows = {row.key: row for row in run_cells(cells, workers=2, timed=False, supervised=WithJobs((job,), results))}
     plain = {row.key: row for row in run_cells(cells, workers=2, timed=False)}
     assert rows.keys() == plain.keys() == {cell.key for cell in cells}
-    assert {key: (row.outcome, row.sentence) for key, row in rows.items()} == {
-        key: (row.outcome, row.sentence) for key, row in plain.items()
-    }
+    assert all((row.outcome, row.sentence) == (plain[key].outcome, plain[key].sentence) for key, row in rows.items())
     assert [rows[cell.key].angle for cell in cells[:2]] == [plain[cell.key].angle for cell in cells[:2]]
-    assert judging.found == {Disc(): prediction(Disc(), NO_KINDS)}
+    assert results == {job: prediction(Disc(), NO_KINDS)}
+    limits = []
+    monkeypatch.setattr(walk, "supervise", lambda work, items, limit, *terms: limits.append(limit) or iter(()))
+    for limit in (60.0, 2 * JUDGE_LIMIT):
+        assert list(WithJobs((job,), {})(str, cells, limit)) == []
+    assert limits == [JUDGE_LIMIT, 2 * JUDGE_LIMIT]
 
 
 def test_a_judge_that_fails_ends_the_gate_with_its_reason():
-    judging = Judging((Foretold(Unknown(), NO_KINDS),), {})
-    with pytest.raises(RuntimeError, match=r"no prediction for unknown disc: .*nobody knows where it is"):
-        list(run_cells([Cell(Disc(), Toy(), 1)], workers=1, timed=False, supervised=judging))
-    assert judging.found == {}
-
-
-def test_the_judge_follows_the_scenes_of_the_cells_before_any_of_them_and_has_its_own_time(monkeypatch):
-    given: list[tuple[list[Any], float, tuple[Any, ...]]] = []
-    foretold = object()
-
-    def supervise(function: Any, items: Any, limit: float, *terms: Any) -> Iterator[Any]:
-        given.append((list(items), limit, terms))
-        for item in given[0][0]:
-            yield item, foretold if isinstance(item, Foretold) else Outcome.FINISHED, "a note"
-
-    monkeypatch.setattr(walk, "supervise", supervise)
-    without, chain = LinkPendulum(links=1), LinkPendulum(links=5)  # no cell is of the first
-    asked = tuple(Foretold(scene, NO_KINDS) for scene in (without, Disc(), chain))
-    judging = Judging(asked, {})
-    cells = [Cell(chain, Toy(), 1), Cell(Disc(), Toy(), 1), Cell(chain, Toy(), 2)]
-    assert list(judging(str, cells, 60.0, 3, None)) == [(cell, Outcome.FINISHED, "a note") for cell in cells]
-    items, limit, terms = given[0]
-    assert items == [asked[2], asked[1], asked[0], *cells]
-    assert [kin_of(item) for item in items[:2]] == [chain, Disc()]  # each goes to the worker that has its cells
-    assert (limit, terms) == (JUDGE_LIMIT, (3, None))
-    assert judging.found == dict.fromkeys((without, Disc(), chain), foretold)
-    list(judging(str, [], 2 * JUDGE_LIMIT))
-    assert given[1][1] == 2 * JUDGE_LIMIT
+    work = WithJobs((PredictionJob(Unknown(), NO_KINDS),), {})
+    with pytest.raises(RuntimeError, match=r"the judge on unknown disc: .*nobody knows where it is"):
+        list(run_cells([Cell(Disc(), Toy(), 1)], workers=1, timed=False, supervised=work))
 
 
 SCENE = DrivenFourBar()

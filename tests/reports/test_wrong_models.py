@@ -19,7 +19,7 @@ from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reports.model.outcomes import Loss
-from reports.run.queue import usable
+from reports.run.running import worker_count
 from reports.run.supervisor import supervise
 from tests.wrong.mistakes import KINDS, Mistake, mistaken, mistakes
 from tests.wrong.noticing import Sighting, Trial, noticed
@@ -195,7 +195,7 @@ def found(trials: Iterable[Trial]) -> Findings:
     for trial in trials:
         by_scene.setdefault(trial.scene.name, []).append(trial)
     # s: two engines' hundred bodies in some forty runs each, on a loaded machine.
-    told = supervise(noticed, map(tuple, by_scene.values()), limit=600.0, workers=len(usable()))
+    told = supervise(noticed, map(tuple, by_scene.values()), limit=600.0, workers=worker_count())
     return {
         (trial.scene.name, trial.method): result if isinstance(result, Loss) else result[index]
         for own, result, _ in told
