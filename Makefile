@@ -23,7 +23,6 @@ publish: .venv/installed-mjx     ## for maintainers: all engines and releases, i
 	$(BIN)/crosscheck run --full
 	$(BIN)/crosscheck versions --all --publish
 	$(BIN)/crosscheck search --published
-	$(BIN)/python -m reports.pages.faults.scripts
 	$(BIN)/crosscheck report --publish
 
 slow: .venv/installed            ## the tests that take minutes each: all bad arguments, 200 kills, every wrong model

@@ -35,6 +35,10 @@ DIGITS = 1e-6  # rad: a hundredth of the error that is usually asked for
 FASTEST = 1e150  # m/s, rad/s
 
 
+class OpenStart(InvalidMechanism):
+    """A joint is open at the start."""
+
+
 class _AnyStart(Mechanism):
     """A mechanism whose start may break its rows."""
 
@@ -92,17 +96,17 @@ def with_consistent_start(
 ) -> tuple[Mechanism, tuple[Note, ...]]:
     """The mechanism of these elements, with velocities that satisfy its rows, and a note if these are not the bodies'.
 
-    Raises InvalidMechanism where a position is open, and where no velocities satisfy all rows.
+    Raises OpenStart where a position is open, and InvalidMechanism where no velocities satisfy all rows.
     """
     elements = tuple(joints), gravity, tuple(forces)
     _refuse_without_digits(bodies)
     own = _AnyStart(tuple(bodies), *elements)
     slip = own.slip(own.pose, own.twist) if joints else np.zeros(0)
     size = np.asarray(own.length_scale)
+    if joints and (gap := open_joint(own, own.gap(own.pose, 0.0), np.zeros_like(slip), own.pose, own.twist, size)):
+        raise OpenStart(f"mechanism: {gap}")
     if not joints or open_joint(own, np.zeros_like(slip), slip, own.pose, own.twist, size) is None:
         return Mechanism(tuple(bodies), *elements), ()
-    if gap := open_joint(own, own.gap(own.pose, 0.0), np.zeros_like(slip), own.pose, own.twist, size):
-        raise InvalidMechanism(f"mechanism: {gap}")
     twist = own.twist + _least_change(own, slip, own.pose)
     missed = own.slip(own.pose, twist)
     speed = np.where(own.turning, 1.0, own.length_scale) * float(

@@ -160,7 +160,7 @@ class ExtrapolatedRun(OneShot):
 
     def __init__(self, method: Extrapolated, mechanism: Mechanism, dt: float) -> None:
         self._method, self._mechanism, self._dt = method, mechanism, dt
-        self._scale = mechanism.pose_unit
+        self._unit = mechanism.pose_unit
         self._runs = tuple(self._build_at(level) for level in method.levels)
         self.size: Size = self._runs[0].size
 
@@ -195,7 +195,7 @@ class ExtrapolatedRun(OneShot):
             return False
         largest = float(self._largest(whole.estimate)[-1])
         if whole.unresolved_at is None and largest < low * CLAIM:
-            poses = np.stack([part.pose for part in parts]) / self._scale
+            poses = np.stack([part.pose for part in parts]) / self._unit
             sizes = [float(difference.max()) for difference in _differences(poses, levels, self._method.powers)]
             return len(sizes) > 2 and LEAST * sizes[-2] ** 2 > low * CLAIM * sizes[-3]
         return largest < high * CLAIM
@@ -277,7 +277,7 @@ class ExtrapolatedRun(OneShot):
         # example. If that run alone is off, the extrapolation is off by the whole last difference.
         least = np.full(poses.shape[1], LEAST)
         least[: 2 if steps < len(least) else 1] = 1.0
-        return _expected_error(poses / self._scale, levels, powers, least) * self._scale + self._rounding(pose, steps)
+        return _expected_error(poses / self._unit, levels, powers, least) * self._unit + self._rounding(pose, steps)
 
     def _rounding(self, pose: Array, steps: int) -> Array:
         """Each step rounds a pose, by half a unit at most, and the combination carries that with its weights."""
@@ -285,12 +285,12 @@ class ExtrapolatedRun(OneShot):
         carried = np.abs(extrapolation_weights(levels, powers)) @ levels * np.finfo(float).eps / 2 * steps
         elapsed = np.linspace(0.0, 1.0, len(pose))[:, None, None]
         with np.errstate(all="ignore"):
-            return carried * elapsed * np.maximum(np.abs(pose), self._scale)
+            return carried * elapsed * np.maximum(np.abs(pose), self._unit)
 
     def _largest(self, estimate: Array) -> Array:
         """(times,) the largest so far, of a radian or of the mechanism's length: an error may pass zero later."""
         with np.errstate(all="ignore"):
-            return np.fmax.accumulate((estimate / self._scale).max(axis=(1, 2)))
+            return np.fmax.accumulate((estimate / self._unit).max(axis=(1, 2)))
 
     def _has_no_expansion(self, poses: Array, largest: Array) -> NDArray[np.bool_]:
         """(times,) where the estimate exceeds the finest run's largest error so far. Two runs cannot show it."""

@@ -1,21 +1,28 @@
-"""What a reference names: `package.module:NAME`, `path/to/file.py`, or `path/to/file.py:NAME`.
+"""Values that a reference or an entry point names.
 
-NAME stands for one value, or for a tuple or list of them; a file without a name for all that stand at its top level. So
-the entry points of a distribution, the words of a command line and what a store remembers are read by one rule.
+A reference is `package.module:NAME`, `path/to/file.py`, or `path/to/file.py:NAME`. NAME is one value, or a tuple or
+list of them; a file without a name stands for all values at its top level. Entry points, words of a command
+line and stored references are read by this one rule.
+
+Our entry points stand in `pyproject.toml`. In a checkout that file itself is read: so a clone that was never installed
+has them, and one that was installed before the file changed has the present ones.
 """
 
 from __future__ import annotations
 
 import functools
 import sys
+import tomllib
 import traceback
-from collections.abc import Callable, Iterator
+import warnings
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from importlib import import_module
+from importlib import import_module, metadata
 from pathlib import Path
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 from typing import Any
 
+OURS = "planar-crosscheck"
 FORMS = "package.module:NAME, path/to/file.py or path/to/file.py:NAME"
 
 
@@ -44,7 +51,7 @@ def load(reference: str, kind: Kind, folder: Path | None = None) -> tuple[Any, .
     """
     place, name = _parts(reference)
     folder = Path.cwd() if folder is None else folder
-    module = _module_of_file(folder / place) if place.endswith(".py") else _module(place, folder)
+    module = _module_of_file(folder / place) if place.endswith(".py") else _imported(place, place, folder)
     try:
         values = _named(module, name) if name else tuple(_at_top(module, kind, reference))
     except AttributeError:
@@ -103,12 +110,6 @@ def _at_top(module: ModuleType, kind: Kind, reference: str) -> Iterator[Any]:
                 yield made
 
 
-def _module(name: str, folder: Path) -> ModuleType:
-    """A module by its name, in this folder too. Raises ValueError."""
-    _add_to_path(folder)
-    return _imported(name, name)
-
-
 def _module_of_file(path: Path) -> ModuleType:
     """A file as the module that it is to any other file: `path/to/package/file.py` is `package.file`. ValueError."""
     if not path.is_file():
@@ -117,8 +118,7 @@ def _module_of_file(path: Path) -> ModuleType:
     folder, name = path.parent, path.stem
     while (folder / "__init__.py").is_file():
         folder, name = folder.parent, f"{folder.name}.{name}"
-    _add_to_path(folder)
-    module = _imported(name, str(path))
+    module = _imported(name, str(path), folder)
     found = getattr(module, "__file__", None)
     if found is None or Path(found).resolve() != path:
         raise ValueError(
@@ -127,12 +127,10 @@ def _module_of_file(path: Path) -> ModuleType:
     return module
 
 
-def _add_to_path(folder: Path) -> None:
+def _imported(name: str, owner: str, folder: Path) -> ModuleType:
+    """A module by its name, in this folder too. Raises ValueError."""
     if str(folder) not in sys.path:
         sys.path.append(str(folder))  # at the end: it must not hide what is installed
-
-
-def _imported(name: str, owner: str) -> ModuleType:
     try:
         return import_module(name)
     except (Exception, SystemExit) as error:  # whatever somebody else's module does while it is imported
@@ -156,3 +154,97 @@ def describe(error: BaseException) -> str:
         if own:
             words = f"{own[-1].filename}:{own[-1].lineno}: {words}"
     return " ".join(words.split())
+
+
+@dataclass(frozen=True)
+class Registered:
+    """What a group holds, and a line about each entry point that can't be used; it names the distribution."""
+
+    values: tuple[Any, ...]
+    troubles: tuple[str, ...] = ()
+
+
+def registered(
+    group: str,
+    kind: Kind,
+    name: Callable[[Any], str],
+    known: Mapping[str, Any] = MappingProxyType({}),
+    extras: bool = False,
+) -> Registered:
+    """All values of a group, no two of one `name`; of two, ours stays, or that of the first distribution.
+
+    `known`: what is registered elsewhere already, by name: another value of such a name is left out too. `extras`:
+    those entry points alone that name an extra, as `engines.exudyn:VARIANTS [exudyn]` does; else those that name none.
+    """
+    values: dict[str, Any] = {}
+    owners = dict.fromkeys(known, "another group")
+    troubles: list[str] = []
+    for owner, key, whole in (*_ours(group), *_theirs(group)):
+        reference, extra, _ = whole.partition("[")
+        if bool(extra) != extras:
+            continue
+        about = f"{group}: {key!r} of the distribution {owner}"
+        try:
+            found = load(reference.strip(), kind)
+        except ValueError as reason:
+            troubles.append(f"{about} is left out: {reason}")
+            continue
+        for value in found:
+            word = name(value)
+            if word in owners and value != {**known, **values}[word]:
+                troubles.append(f"{about}: {word!r} is left out, since {owners[word]} has one of this name")
+            elif word not in values:
+                values[word], owners[word] = value, owner
+    return Registered(tuple(values.values()), tuple(troubles))
+
+
+def registered_by_key(group: str, kind: Kind) -> dict[str, Any]:
+    """The first value of each key of a group; one of a key that ours has is left out.
+
+    So is what can't be used: with a warning, unless a package is not installed that it needs.
+    """
+    found: dict[str, Any] = {}
+    for owner, key, reference in (*_ours(group), *_theirs(group)):
+        try:
+            value = load(reference, kind)[0]
+        except ValueError as reason:
+            if not _lacks_a_package(reason.__context__):
+                warnings.warn(f"{group}: {key!r} of the distribution {owner} is left out: {reason}", stacklevel=2)
+            continue
+        found.setdefault(key, value)
+    return found
+
+
+def _lacks_a_package(error: BaseException | None) -> bool:
+    """Whether an import failed since a package that is none of ours is not installed."""
+    lacking = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+    return lacking not in ("", "reference", "engines", "reports")
+
+
+@functools.cache
+def _checkout() -> dict[str, Any] | None:
+    """The project table of the pyproject.toml beside these packages; None where there is none, or another project's."""
+    file = Path(__file__).resolve().parents[1] / "pyproject.toml"
+    if not file.is_file():
+        return None
+    with file.open("rb") as stream:
+        project = tomllib.load(stream).get("project", {})
+    return project if project.get("name") == OURS else None
+
+
+def _ours(group: str) -> list[tuple[str, str, str]]:
+    """(distribution, key, reference) of what we register, by key: the order of a file is lost in an installation."""
+    project = _checkout()
+    if project is None:
+        return [point for point in _installed(group) if point[0] == OURS]
+    return sorted((OURS, key, value) for key, value in project.get("entry-points", {}).get(group, {}).items())
+
+
+def _theirs(group: str) -> list[tuple[str, str, str]]:
+    """(distribution, key, reference) of what others register, in an order that does not depend on the path."""
+    return [point for point in _installed(group) if point[0] != OURS]
+
+
+def _installed(group: str) -> list[tuple[str, str, str]]:
+    points = metadata.entry_points(group=group)
+    return sorted((point.dist.name if point.dist else "unknown", point.name, point.value) for point in points)

@@ -14,9 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from engines import Engine, method_name
-from engines.entry_points import registered
 from engines.imported_release import other_release
-from engines.loading import Kind
+from engines.loading import Kind, registered
 from engines.loading import load as load_values
 
 

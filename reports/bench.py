@@ -21,10 +21,9 @@ from typing import Any
 import numpy as np
 
 from engines import Engine, Unsupported, method_name
-from engines.entry_points import registered_by_key
 from engines.lagrange import Lagrange
 from engines.lagrange.machine import Machine
-from engines.loading import Kind
+from engines.loading import Kind, registered_by_key
 from reference.scene import Scene
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.many_links import LongPendulum

@@ -21,7 +21,7 @@ from engines.mujoco.joints.links import RodBy
 from engines.mujoco.joints.roll import RollBy, RollContact
 from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
 from engines.mujoco.joints.slot import SlotBy, resting_line
-from engines.mujoco.model import Coordinates, Model, Settings, build_model
+from engines.mujoco.model import Coordinates, Model, build_model
 from engines.mujoco.running import ORDER, MuJoCoRun
 from engines.mujoco.solver_check import choose_solver, ease
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
@@ -220,21 +220,7 @@ class MuJoCo(Engine, Valid):
             "iterations": self.iterations,
             "tolerance": self.tolerance,
         }
-        settings = Settings(
-            options,
-            self.islands,
-            self.stiffness,
-            self.coordinates,
-            self.drive,
-            self.armature,
-            self.servo_gain,
-            self.slots,
-            self.skates,
-            self.rolls,
-            self.rods,
-            unit,
-        )
-        model = build_model(mechanism, dt, settings)
+        model = build_model(mechanism, dt, self, options, unit)
         start = choose_solver(model, self.solvers)
         if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
             return replace(model, softening=ease(model, self.stiffness.softening, start))

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import mujoco
 import numpy as np
@@ -20,18 +20,20 @@ from engines.capability import Capability
 from engines.mujoco.construction import Building, Hooks
 from engines.mujoco.forces import add_forces
 from engines.mujoco.joints.drive import DriveBy, DrivenCoordinate, add_drives, add_geared_drives, driven_coordinates
-from engines.mujoco.joints.links import RodBy, add_gears, add_pins, add_rods, add_welds
-from engines.mujoco.joints.roll import RollBy, add_rolls
-from engines.mujoco.joints.skate import SkateBy, add_skates
-from engines.mujoco.joints.slot import SlotBy, add_slots
+from engines.mujoco.joints.links import add_gears, add_pins, add_rods, add_welds
+from engines.mujoco.joints.roll import add_rolls
+from engines.mujoco.joints.skate import add_skates
+from engines.mujoco.joints.slot import add_slots
 from engines.mujoco.releases import NO_ISLANDS
-from engines.mujoco.stiffness import Stiffness
 from engines.tree import Tree, spanning_tree
 from engines.units import counted_in, power_of_two
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
+
+if TYPE_CHECKING:
+    from engines.mujoco.engine import MuJoCo
 
 Coordinates = Literal["tree", "free"]
 CAPABILITY = Capability(
@@ -40,24 +42,6 @@ CAPABILITY = Capability(
     frozenset({Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}),
 )
 LIGHTEST = 1e13  # units of mass in which a body's own mass and inertia are still far above mjMINVAL
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What a model is built with; see `engines.mujoco.engine.MuJoCo` for what they mean."""
-
-    options: Mapping[str, Any]  # fields of MuJoCo's own options, by name
-    islands: bool
-    stiffness: Stiffness
-    coordinates: Coordinates
-    drive: DriveBy
-    armature: float
-    servo_gain: float
-    slots: SlotBy
-    skates: SkateBy
-    rolls: RollBy
-    rods: RodBy
-    unit: float | None = None  # kg: of mass, if not `unit_of_mass`
 
 
 @dataclass(frozen=True)
@@ -120,10 +104,16 @@ class Model:
         return data
 
 
-def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
-    """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
+def build_model(
+    mechanism: Mechanism, dt: float, settings: MuJoCo, options: Mapping[str, Any], unit: float | None = None
+) -> Model:
+    """Compile a mechanism for steps of dt [s].
+
+    `options`: fields of MuJoCo's own options, by name; `unit`: that of mass [kg], if not `unit_of_mass`. Raises
+    Unsupported for a joint with no counterpart here.
+    """
     CAPABILITY.require(mechanism)
-    whole, unit = mechanism, settings.unit or unit_of_mass(mechanism)
+    whole, unit = mechanism, unit or unit_of_mass(mechanism)
     mechanism = counted_in(mechanism, unit)
 
     def of(kind: type[Any]) -> list[Any]:
@@ -133,7 +123,7 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     single = [joint for joint in of(Drive) if joint not in (*tree.kept, *tree.geared)]
     driven = driven_coordinates(tree, single)
 
-    spec = _spec(tree, dt, settings)
+    spec = _spec(tree, dt, settings.islands, options)
     add_drives(spec, mechanism, driven, settings.drive, settings.armature, settings.servo_gain / unit)
     building = Building(spec, mechanism, tree, dt, settings.stiffness, tuple(one.column for one in driven))
     add_pins(building, [joint for joint in tree.loops if isinstance(joint, Pin)])
@@ -176,16 +166,16 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     )
 
 
-def _spec(tree: Tree, dt: float, settings: Settings) -> Any:
+def _spec(tree: Tree, dt: float, islands: bool, options: Mapping[str, Any]) -> Any:
     """A mujoco.MjSpec with the options and the bodies of the tree, and nothing else."""
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
     spec.option.timestep = dt
     spec.option.gravity = [*tree.mechanism.gravity, 0.0]
     spec.option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-    if not settings.islands:
+    if not islands:
         spec.option.disableflags |= NO_ISLANDS
-    for name, value in settings.options.items():
+    for name, value in options.items():
         setattr(spec.option, name, value)
     _add_bodies(spec, tree)
     return spec

@@ -48,20 +48,20 @@ RELEASED = 1.5
 class _Complaints:
     """What MuJoCo says while it runs, each sentence once, and when it first reset itself [s]."""
 
-    data: Any
+    data: Any = None
     said: dict[str, None] = field(default_factory=dict)
     reset_at: float | None = None
 
     def hear(self, message: str) -> None:
         # Called before the reset, so the time is still that of the step which failed.
-        text = message.split(" Time = ")[0]
+        text = " ".join(str(message).split(" Time = ")[0].split())
         self.said.setdefault(text)
-        if "value in Q" in text and self.reset_at is None:
+        if "value in Q" in text and self.reset_at is None and self.data is not None:
             self.reset_at = float(self.data.time)
 
 
 @contextmanager
-def _listening(data: Any) -> Iterator[_Complaints]:
+def listening(data: Any = None) -> Iterator[_Complaints]:
     """Hear MuJoCo's warnings, which it would otherwise write into a file in the working directory."""
     complaints = _Complaints(data)
     before = mujoco.get_mju_user_warning()
@@ -110,7 +110,7 @@ class MuJoCoRun:
         """The motion by the steps of the model, after so many of them; reactions are read after `read`, of these."""
         step = self._dt
         t = counts.astype(float) * step
-        with _listening(self.data) as complaints, self.model.hooked():
+        with listening(self.data) as complaints, self.model.hooked():
             position, velocity, clock, stepping = self._step(counts)
             # The clock falls behind when MuJoCo starts anew; the listener hears it, but only once per kind of trouble.
             behind = np.abs(clock - t) > step / 2
@@ -155,7 +155,7 @@ class MuJoCoRun:
         run = self.other(self._dt * ratio)
         for name in ("body_invweight0", "dof_invweight0", "tendon_invweight0"):
             getattr(run.model.compiled, name)[:] = ratio**ORDER * getattr(self.model.compiled, name)
-        with _listening(run.data) as complaints, run.model.hooked():
+        with listening(run.data) as complaints, run.model.hooked():
             position, velocity, clock, spent = run._step(counts)
         there, _, _ = run.model.tree.motion(*(run._ordered(x) for x in (position, velocity, velocity)))
         apart = there - pose

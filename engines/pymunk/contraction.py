@@ -1,38 +1,28 @@
-"""How many sweeps a mechanism's joints need, and how much of a gap they may close in a step: one rule for all.
+"""Convergence of Gauss-Seidel sweeps: how many a mechanism needs, and how much of a gap may be closed in a step.
 
-A Gauss-Seidel sweep over the joints solves A x = b, A = J M^-1 J^T, joint by joint; what is left of the slowest mode
-falls by a factor rho in a sweep, the spectral radius of 1 - L^-1 A with L the lower block triangle of A. It is near 1
-for long chains (N equal links: 1 - rho = pi^2/(4 N^2)) and for heavy bodies that hang on light ones (1 - rho = 1/100
-for a hundredfold mass).
+A sweep over the joints solves A x = b, A = J M^-1 J^T, joint by joint. The residual of the slowest mode falls by
+rho, the spectral radius of S = 1 - L^-1 A, with L the lower block triangle of A. rho is near 1 for long chains (N
+equal links: 1 - rho = pi^2/(4 N^2)) and for heavy bodies on light ones (1 - rho = 1/100 for a hundredfold mass).
 
-Impulses are kept for the next step, those that closed a gap too, and the next step's sweeps have to take these back.
-For one mode with gap g, velocity v and kept impulse l, of which k sweeps leave r = rho^k, a step of length 1 is
+Impulses are kept for the next step, with those that closed a gap. For one mode with gap g, velocity v and kept impulse
+l, of which k sweeps leave r = rho^k, a step of length 1 that closes gamma of a gap is
 
     v + l - (1 - r)(v + l + gamma g) -> v,   l - (1 - r)(v + l + gamma g) -> l,   g + v -> g,
 
-which is stable up to gamma = (1 - r)/r: all of the gap may be closed if r is below 1/2, and well beyond the limit a
-chain explodes. A pendulum of ten links, with 2, 5 and 10 sweeps, has the limits 0.05, 0.13 and 0.28 by this formula,
-and begins to grow between two and three times these within 2 s; with all of the gap closed it explodes.
+which is stable up to gamma = (1 - r)/r: the whole gap may be closed if r is below 1/2; beyond it a chain explodes.
 
-Sweeps over three joints or more that all feel each other have complex modes too: sigma = rho exp(i theta), of which k
-sweeps leave r = rho^k exp(i k theta). With all of the gap closed the map above has an eigenvalue mu where
+Sweeps over three joints or more have complex modes, of which k sweeps leave r = sigma^k, sigma complex. With the whole
+gap closed the map has an eigenvalue mu where r = mu^3 / (3 mu^2 - 3 mu + 1), so that mu = exp(i phi), phi from pi/3 to
+pi, is the rim of stability: from 1/2 at the angle 0 of r down to 1/7 at pi. With no gap closed it is r = mu^2 / (2 mu -
+1), from 1 down to 1/3. A complex mode counts as the real one that needs as many sweeps.
 
-    r = mu^3 / (3 mu^2 - 3 mu + 1),
-
-so that mu = exp(i phi), phi from pi/3 to pi, is the rim of what is stable: from 1/2 at the angle 0 of r down to 1/7 at
-pi. And with a gap that closes slowly, or with none to close, it is r = mu^2 / (2 mu - 1), from 1 down to 1/3: there an
-angle of 0.1 is too much if 0.82 is left. The kept impulses then grow in every step, however short it is.
-A complex mode counts here as the real one that needs as many sweeps, half of what is stable being left of either.
-
-All this is of joints that close their gaps alike. A motor knows no angle and a blade has no gap: where such rows feel
-others, gaps that are closed leave the modes of the sweeps, and up to twice as many were needed. With S = 1 - L^-1 A,
-R = S^k, and B a 1 for each row that closes gamma of its gap, a step makes of rows' velocities u, impulses l and gaps g
+If some rows close no gap (a motor knows no angle, a blade has no gap), the modes of the sweeps do not decouple. With
+R = S^k and B a 1 for each row that closes gamma of its gap, a step makes of velocities u, impulses l and gaps g of rows
 
     g' = g + u,   l' = R l - (1 - R) A^-1 (u + gamma B g'),   u' = u + A l',
 
-whose spectral radius is `growth`. It is a number of the pose and of k alone, as the rows change by a part of the step:
-in a shorter step impulses grow as much, and there are more steps. So there k rises until the map is stable with twice
-as much left, 2 R in place of R; where B is 1, that is the same as half of what is stable.
+whose spectral radius is `growth`. There k rises until the map is stable with 2 R in place of R; where B is 1, that is
+the same as half of the stable residual.
 """
 
 from __future__ import annotations
@@ -57,22 +47,30 @@ from reference.rows import RANK_TOLERANCE, ranks
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]  # what a sweep leaves of each
 
-LEFT = 0.25  # of the slowest mode after a step's sweeps: half of what is stable, because rho changes with the pose
-MARGIN = 0.8  # of the stable gain, where the sweeps don't reach that
-FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a smaller step brings
-DENSE = 100  # rows up to which all eigenvalues are found, and beyond if rows depend on others
-# The first steps of a run are few, so that they may take more work than the others.
-CONVERGED_WORK, ROUNDING = 1_000_000, 1e-16
-LARGEST = 1 - 1e-12  # rho
-GROWING = 1e-6  # of itself in a step: beyond, it is no rounding of a mode
-STAGES = 6  # more of them show less, but longer: what shows of these is over at the tenth step, often the first sample
-# The rim of what is stable of a complex mode, at angles from 0 to a half turn: by which power of e sweeps must shrink a
-# mode until half of that is left, and the angle over this power.
+# Residual of the slowest mode after a step's sweeps: half of what is stable, because rho changes with the pose.
+LEFT = 0.25
+# Share of the stable gain that is taken where the sweeps do not reach LEFT.
+MARGIN = 0.8
+# Beyond MOST sweeps a step of a hundred links costs more than a smaller step gains.
+FEWEST, MOST = 5, 300
+# Rows up to which all eigenvalues are computed, and beyond if rows are dependent.
+DENSE = 100
+# Sweeps times joints that one of the few start-up steps may take.
+CONVERGED_WORK = 1_000_000
+ROUNDING = 1e-16
+# The largest rho.
+LARGEST = 1 - 1e-12
+# Growth per step, less 1, that is above the rounding of a mode.
+GROWING = 1e-6
+# Stages of the start-up; the sixth ends at the tenth step, which is often the first sample.
+STAGES = 6
+# The rim of stability of a complex mode, at angles from 0 to a half turn: the power of e by which sweeps must shrink a
+# mode until half of the stable residual is left, and the angle over this power.
 _RIM = 1 / np.polyval([1, -3, 3, 0], np.exp(-1j * np.linspace(np.pi / 3, np.pi, 64)))
 _NEEDED = -np.log(np.abs(_RIM) * LEFT / 0.5)
 _TURNED = np.abs(np.angle(_RIM)) / _NEEDED
-# What the points of a contact, each with a row along its normal and one along its tangent, pass to each other is no
-# part of rho: five sweeps leave a disc on a plane without half of its force, ten leave nothing to be seen.
+# Sweeps at the start for a contact, whose points pass impulses to each other, which is no part of rho: five sweeps miss
+# half of a disc's force.
 CONTACT_CONVERGED = 1000
 
 Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
@@ -126,10 +124,10 @@ def closing(mechanism: Mechanism, touching: bool = False) -> Array:
 
 @validated
 def growth(mechanism: Mechanism, pose: Numbers, iterations: Count, closes: Numbers, spare: Positive = 1.0) -> float:
-    """By which factor the map of a step, see the module, makes its fastest mode larger; from 1 on, as gaps may stay.
+    """The spectral radius of a step's map, see the module; at least 1, since a gap may stay.
 
-    `closes` (rows,): which part of its gap each row closes in a step. `spare` times as much is left as sweeps leave.
-    Infinite where no number is left, as masses are too far apart.
+    `closes` (rows,): the part of its gap that each row closes in a step. `spare`: factor on the residual of the sweeps.
+    Infinite where masses are too far apart for numbers.
     """
     matrix, starts, rows, kept = _joint_matrix(mechanism, pose)
     count = int(ranks(rows, np.asarray(mechanism.length_scale)))
@@ -155,9 +153,9 @@ def growth(mechanism: Mechanism, pose: Numbers, iterations: Count, closes: Numbe
 
 @validated
 def steady(mechanism: Mechanism, poses: Numbers, rho: Contraction, touching: bool = False) -> float:
-    """rho as it counts where not all rows close gaps: of as many sweeps as make the step's map stable at all `poses`.
+    """The rho whose number of sweeps makes the step's map stable at all `poses`, where not all rows close gaps.
 
-    LARGEST where as many are more than any work allows.
+    LARGEST where that number exceeds any work.
     """
     closes, enough = closing(mechanism, touching), _enough(rho)
     if closes.all() or enough > CONVERGED_WORK:
@@ -183,10 +181,10 @@ def _spectral_radius(matrix: Array, starts: list[int], rows: Array, length: floa
 
 
 def _left(change: NDArray[np.floating[Any]], rows: Array, length: float) -> Modes:
-    """What a sweep leaves (..., rows) of each mode of L^-1 A (..., rows, rows), 0 of those of dependent rows.
+    """The factor of a sweep (..., rows) on each mode of L^-1 A (..., rows, rows), 0 for those of dependent rows.
 
-    These are none of the motion: there A is zero, and a sweep changes nothing. But where masses are far apart a sweep
-    may change as little of a mode that is one. So it is the rank of the rows that tells them apart.
+    There A is zero, and a sweep changes nothing. Where masses are far apart, a sweep changes as little of a mode of the
+    motion; so the rank of the rows decides.
     """
     changed = np.linalg.eigvals(change).astype(np.complex128)
     small = np.abs(changed)
@@ -247,10 +245,9 @@ def _smallest(matrix: Array, lower: Array) -> float:
 
 @dataclass(frozen=True)
 class Sweeping:
-    """How a model is swept: `iterations` in a step, the `gain` that they allow, and what of the slowest mode is `left`.
+    """`iterations` in a step, the `gain` that they allow, and the residual of the slowest mode that is `left`.
 
-    `converged` is the number of iterations that leaves nothing of it, as far as CONVERGED_WORK allows, and `unsettled`
-    what these leave.
+    `converged` iterations leave rounding, as far as CONVERGED_WORK allows; `unsettled` is their residual.
     """
 
     iterations: int
@@ -260,17 +257,16 @@ class Sweeping:
     unsettled: float = 0.0
 
     def settling(self, steps: int) -> list[int]:
-        """Iterations at the beginning of a run: as many as leave nothing, then in STAGES of so many steps ever fewer.
+        """Iterations of the start-up steps: converged, then in STAGES of so many steps each ever fewer.
 
-        What sweeps leave moves all poses by a series in the step, once some steps have passed. How it builds up is no
-        series, as that takes a number of steps and not a time. In many small stages it hardly shows; each ends at the
-        same time in all runs of an extrapolation.
+        The residual of the sweeps has an expansion in the step only after a number of steps, which is no fixed time. In
+        small stages this hardly shows, and each stage ends at the same time in all runs of an extrapolation.
         """
         first = [self.converged, *[ceil(self.converged / 2)] * (steps - 1)][:steps]
         if not 0 < self.left <= LEFT:
             return first
         more = [ceil(self.iterations * (1 + log(STAGES / stage) / -log(self.left))) for stage in range(1, STAGES)]
-        return first + [min(each, self.converged) for each in more for _ in range(steps)]
+        return first + [min(count, self.converged) for count in more for _ in range(steps)]
 
 
 @validated

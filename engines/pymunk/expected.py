@@ -1,8 +1,7 @@
-"""The poses that a motion is expected to pass: sweeps are counted for the worst of them, not for the start alone.
+"""Poses that a motion is expected to pass: the number of sweeps is that of the worst of them.
 
-They are those of a rough run of the engine itself, with soft joints and long steps, whose errors don't matter here: a
-mechanism that comes near a singular position is swept as that position needs it. Sixteen poses are looked at, as one of
-them costs as much as some hundred steps.
+They come from a pilot run of the engine with soft joints and long steps, whose errors do not matter here. Sixteen poses
+are taken, since one costs as much as some hundred steps.
 """
 
 from __future__ import annotations

@@ -16,7 +16,6 @@ from engines import Size, Unsupported
 from engines.capability import Capability
 from engines.pymunk.forces import applied, spring
 from engines.pymunk.joints.drive import crank_body, find_cranks, find_turned, motor, turned_body
-from engines.pymunk.joints.pin import gear, pin, rod, weld
 from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, extent_of, touching
 from engines.pymunk.joints.skate import SkateConstruction, blade
 from engines.pymunk.joints.slot import SlotConstruction, slide
@@ -181,6 +180,10 @@ class _Builder:
         x, y = self._origin(name)
         return (point[0] - x, point[1] - y)
 
+    def _anchors(self, joint: Pin | Rod | Weld | Slot) -> tuple[Vector, Vector]:
+        """Both points of a joint [m] from the engine's origins: two anchors, so that an open joint stays visible."""
+        return self._own(joint.first, joint.first_point), self._own(joint.second, joint.second_point)
+
     def _constraints(self, joint: Joint) -> list[Constraint]:
         """What stands for one joint: nothing, where a prescribed motion already contains it."""
         if any(joint in (crank.pin, crank.drive) for crank in self.cranks.values()) or joint in self.turned.values():
@@ -192,19 +195,22 @@ class _Builder:
         settings = self.settings
         match joint:
             case Pin():
-                return [pin(joint, first, second, self._own)]
+                return [PivotJoint(first, second, *self._anchors(joint))]
             case Drive():
                 return [motor(joint, first, second, settings.unit)]
             case Rod():
-                return [rod(joint, first, second, self._own)]
+                constraint = PinJoint(first, second, *self._anchors(joint))
+                constraint.distance = joint.length  # pymunk takes the distance at the start
+                return [constraint]
             case Gear():
-                return [gear(joint, first, second)]
+                # Chipmunk holds ratio angle_b - angle_a = phase (preStep in its cpGearJoint.c), so both are inverted.
+                return [GearJoint(first, second, joint.phase / joint.ratio, 1 / joint.ratio)]
             case Weld():
-                return weld(joint, first, second, self._own)
+                pivot = PivotJoint(first, second, *self._anchors(joint))
+                return [pivot, GearJoint(first, second, joint.angle, 1.0)]
             case Slot():
-                points = self._own(joint.first, joint.first_point), self._own(joint.second, joint.second_point)
                 scale = self.mechanism.length_scale
-                constraints, aims = slide(joint, settings.slot, first, second, *points, scale)
+                constraints, aims = slide(joint, settings.slot, first, second, *self._anchors(joint), scale)
                 self.aims += aims
                 return constraints
             case Skate():

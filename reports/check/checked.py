@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Unsupported
-from engines.entry_points import registered_by_key
 from engines.lagrange.loading import is_cold
-from engines.loading import Kind
+from engines.loading import Kind, registered_by_key
 from engines.reading import Change, Reader, Reading
 from reference.checks import InvalidMechanism
 from reference.trajectory import Trajectory

@@ -72,8 +72,7 @@ def view(
 
 def writers() -> dict[str, Any]:
     """What writes files, by the words of --to: the entry point group `crosscheck.writers`."""
-    from engines.entry_points import registered_by_key
-    from engines.loading import Kind
+    from engines.loading import Kind, registered_by_key
 
     lacking = f"it lacks {', '.join(MEMBERS)}"
     kind = Kind("writer", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
@@ -81,8 +80,7 @@ def writers() -> dict[str, Any]:
 
 
 def _viewers() -> dict[str, Any]:
-    from engines.entry_points import registered_by_key
-    from engines.loading import Kind
+    from engines.loading import Kind, registered_by_key
 
     return registered_by_key(
         "crosscheck.viewers", Kind("viewer", lambda value: "" if callable(value) else "it is none")

@@ -14,8 +14,7 @@ from dataclasses import MISSING, fields, is_dataclass, replace
 from typing import Any
 
 from engines import Engine, method_name, registry
-from engines.entry_points import registered
-from engines.loading import Kind
+from engines.loading import Kind, registered
 from reference.checks import InvalidMechanism, take
 from reference.scene import TIMES, Scene
 from reports.model.page import Page

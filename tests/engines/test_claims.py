@@ -1,22 +1,33 @@
-"""What methods claim of themselves near a singular position, where runs at all steps may be wrong alike."""
+"""The claims of methods with an estimate: near a singular position, where all runs may err alike, and on random
+mechanisms, at any sampling.
+
+`reports.search.mechanisms` draws trees and loops of up to six bodies, of all joints and force elements.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
-from engines import CLAIM, Engine
+from engines import CLAIM, Engine, Unpromised, Unsupported, bullet, exudyn, method_name, mujoco, pymunk
 from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts
 from engines.lagrange import TRUTH
-from engines.mujoco import EXTENDED as MUJOCO
-from engines.pymunk import EXTENDED as PYMUNK
+from engines.mujoco.running import MuJoCoRun
+from engines.mujoco.solver_check import _lost
+from engines.mujoco.stiffness import Hardened
 from reference.forces import Spring
-from reference.joints import Pin, Rod
+from reference.joints import Pin, Rod, Slot
 from reference.mechanism import Mechanism
-from reports.search.claims import CLAIMED, REPORTED, compared
+from reports.search.claims import CLAIMED, REACTIONS, REPORTED, compared, errors
+from reports.search.law import NotAsked
+from reports.search.mechanisms import mechanism
+from reports.search.parts import EVERY, LINKS
+from reports.search.parts import FORCES as ELEMENTS
 from reports.search.subjects import CLAIMS, Adapted
+from tests.engines.test_promised import QUICKLY, installed
 from tests.mechanisms import bar, pendulum
 from tests.present import present
 
@@ -39,7 +50,10 @@ def toggle(miss: float) -> Mechanism:
 
 @pytest.mark.parametrize(
     ("engine", "miss"),
-    [*((MUJOCO, miss) for miss in (3e-7, 1e-6, 2e-6, 5e-6, 1e-4, 1e-2)), *((PYMUNK, miss) for miss in (1e-6, 1e-2))],
+    [
+        *((mujoco.EXTENDED, miss) for miss in (3e-7, 1e-6, 2e-6, 5e-6, 1e-4, 1e-2)),
+        *((pymunk.EXTENDED, miss) for miss in (1e-6, 1e-2)),
+    ],
     ids=lambda value: getattr(value, "name", str(value)),
 )
 def test_a_held_bar_that_moves_by_more_than_is_claimed_is_reported_before(engine: Engine, miss: float):
@@ -48,7 +62,7 @@ def test_a_held_bar_that_moves_by_more_than_is_claimed_is_reported_before(engine
     moved = np.abs(run.pose[:, 0] - own.pose[0]).max(axis=1)
     claimed = run.t < (np.inf if run.unresolved_at is None else run.unresolved_at)
     assert moved[claimed].max(initial=0.0) <= CLAIM
-    if moved.max() <= CLAIM / 10 and engine is MUJOCO:
+    if moved.max() <= CLAIM / 10 and engine is mujoco.EXTENDED:
         assert run.unresolved_at is None
 
 
@@ -57,7 +71,7 @@ def test_reactions_that_a_displacement_changes_are_reported():
     # the first one changes by some percent.
     for miss, told in ((5e-6, True), (1e-3, False)):
         own = toggle(miss)
-        run, truth = MUJOCO.build(own, DT)(10, 1), TRUTH.build(own, DT)(10, 1)
+        run, truth = mujoco.EXTENDED.build(own, DT)(10, 1), TRUTH.build(own, DT)(10, 1)
         off = np.abs(run.reaction - truth.reaction)[1:].max() / np.abs(truth.reaction).max()
         assert np.abs(run.pose - truth.pose).max() < CLAIM
         assert (off > FORCES) == told
@@ -102,11 +116,11 @@ def test_the_search_counts_a_silent_error_as_a_fault_and_a_report_of_a_right_mot
 
 
 def test_claims_are_asked_of_methods_with_an_estimate_alone():
-    asked = Adapted(MUJOCO), Adapted(MUJOCO.within(pendulum()))
+    asked = Adapted(mujoco.EXTENDED), Adapted(mujoco.EXTENDED.within(pendulum()))
     case = asked[0].draw(5, 1, ("pin", "spring", "toggle", "fold"), 0)
     assert CLAIMED in asked[0].ask(case, 1, (CLAIMS,)).errors
-    assert "no estimate" in Adapted(replace(MUJOCO, estimates=False)).ask(case, 1, (CLAIMS,)).not_asked[0]
-    assert present(MUJOCO.build(pendulum(), DT)(STEPS, 1).estimate).max() < CLAIM
+    assert "no estimate" in Adapted(replace(mujoco.EXTENDED, estimates=False)).ask(case, 1, (CLAIMS,)).not_asked[0]
+    assert present(mujoco.EXTENDED.build(pendulum(), DT)(STEPS, 1).estimate).max() < CLAIM
 
 
 def test_an_error_of_a_force_is_counted_in_the_largest_force_and_not_in_that_of_a_stiff_spring_which_does_not_pull():
@@ -119,3 +133,199 @@ def test_an_error_of_a_force_is_counted_in_the_largest_force_and_not_in_that_of_
     assert heaviest > 1e4 * force.max()
     assert reaction_doubts(stiff, pose, twist, force, 0.01 * force)
     assert not reaction_doubts(stiff, pose, twist, force, FORCES / 2 * force)
+
+
+CLAIMING = pytest.mark.parametrize(
+    "engine",
+    [pymunk.EXTENDED, mujoco.EXTENDED, exudyn.EXTENDED, bullet.EXTENDED],
+    ids=["pymunk", "mujoco", "exudyn", "bullet"],
+)
+HELD = ("pin", "slot", "skate", "drive")
+STEP = 1e-3
+
+
+def claims(engine: Engine, seed: int, kinds: tuple[str, ...], count: int) -> list[dict[str, tuple[float, float]]]:
+    """Errors and claims of the first mechanisms that the engine builds and whose motion the judge knows."""
+    found: list[dict[str, tuple[float, float]]] = []
+    for number in range(10 * count):
+        if len(found) == count:
+            return found
+        try:
+            found.append(errors(installed(engine), mechanism(seed, number, kinds), number))
+        except (Unsupported, NotAsked):
+            continue
+    return found
+
+
+@CLAIMING
+def test_random_mechanisms_are_within_the_claim_or_unresolved(engine):
+    found = claims(engine, 31, tuple(kind for kind in EVERY if kind != "roll"), 9)
+    assert len(found) > 5
+    assert all(each[name][0] <= each[name][1] for each in found for name in (CLAIMED, REACTIONS) if name in each)
+
+
+@pytest.mark.slow
+@CLAIMING
+def test_a_thousand_mechanisms_are_so_and_at_most_two_in_a_hundred_right_ones_are_unresolved(engine):
+    found = claims(engine, 601, EVERY, 1000)
+    assert all(each[name][0] <= each[name][1] for each in found for name in (CLAIMED, REACTIONS) if name in each)
+    assert np.mean([each.get(REPORTED, (0.0, 1.0))[0] for each in found]) <= 0.02
+
+
+@dataclass(frozen=True)
+class Known:
+    """A random mechanism that was difficult: errors are below `error`, or estimated, up to `factor` times too large."""
+
+    engine: Engine
+    seed: int
+    number: int
+    kinds: tuple[str, ...] = HELD
+    step: float = STEP
+    error: float = CLAIM
+    unresolved: bool = False
+    factor: float = math.inf
+    lasts: float = 0.01  # s
+
+
+KNOWN = {
+    # The origin of a crank is its pin in pymunk, and not its centre of mass.
+    "a blade on a crank": Known(pymunk.EXTENDED, 22, 483, error=1e-10),
+    # A torsion spring with a time scale of 16 ms.
+    "a stiff spring": Known(mujoco.EXTENDED, 3, 134, EVERY, unresolved=True),
+    "the same, short steps": Known(mujoco.EXTENDED, 3, 134, EVERY, 2.5e-4),
+    # A damper stops a rod within three steps, so that double and half steps differ by 4 to 1, and not by 16 to 1.
+    "no order is seen": Known(mujoco.EXTENDED, 31, 49, EVERY, 1e-2, unresolved=True, factor=3),
+    # 1.05e-7 off after the first step, where the estimate was 6.7e-8, and 2e-9 after the next.
+    "the first step alone": Known(bullet.EXTENDED, 7001, 245, EVERY, 1e-2, unresolved=True),
+    # 5 kg slide in a body of 0.1 kg, and a drive spans both: rows as hard as usual lose 4e-4 rad.
+    "a light body carries a heavy one": Known(mujoco.EXTENDED, 1, 130, error=1e-9),
+    # A slot on a crank runs along a rod: 3 rad/s become 20 within 0.2 s. Rates rise fivefold within 10 ms.
+    "becomes fast in pymunk": Known(pymunk.EXTENDED, 22, 358, unresolved=True, lasts=0.2),
+    "becomes fast in MuJoCo": Known(mujoco.EXTENDED, 1, 479, unresolved=True, lasts=0.2),
+}
+
+
+@pytest.mark.parametrize("case", KNOWN.values(), ids=KNOWN.keys())
+def test_mechanisms_that_were_difficult_are_right_or_unresolved(case: Known) -> None:
+    own = mechanism(case.seed, case.number, case.kinds)
+    samples = max(1, round(case.lasts / case.step))
+    run = installed(case.engine).build(own, case.step)(samples, 1)
+    truth = TRUTH.build(own, case.step)(samples, 1)
+    size = own.pose_unit
+    error, estimate = (
+        float(np.max(values / size)) for values in (np.abs(run.pose - truth.pose), present(run.estimate))
+    )
+    assert (run.unresolved_at is not None) == case.unresolved
+    assert any("unresolved" in warning for warning in run.warnings) == case.unresolved
+    if case.unresolved:
+        assert error < estimate < case.factor * error
+    else:
+        assert error < case.error
+
+
+def test_rows_on_which_no_number_of_sweeps_converges_get_a_warning():
+    # Three slots, two pins and a skate on four bodies: a sweep leaves all but 6e-6 of the slowest mode.
+    own = mechanism(22, 263, HELD)
+    assert any("not converged" in warning for warning in pymunk.EXTENDED.build(own, STEP)(1, 10).warnings)
+
+
+def test_in_mujoco_every_run_that_decides_or_estimates_is_part_of_the_stepping(monkeypatch: pytest.MonkeyPatch) -> None:
+    # As many seconds as steps: 200 and, twice as long, 100; where these do not decide, 400 of half the length.
+    stepped = MuJoCoRun._step
+    monkeypatch.setattr(MuJoCoRun, "_step", lambda run, counts: (*stepped(run, counts)[:3], float(counts[-1])))
+    assert mujoco.EXTENDED.build(mechanism(11, 0, HELD), STEP)(2, 100).stepping == 300.0
+    assert mujoco.EXTENDED.build(mechanism(3, 134, EVERY), STEP)(2, 100).stepping == 700.0
+
+
+@pytest.mark.parametrize("number", [120, 134], ids=["usual", "unresolved"])
+def test_the_sampling_changes_neither_motion_nor_estimate_nor_outcome(number: int) -> None:
+    own = mechanism(3, number, EVERY)
+    often = mujoco.EXTENDED.build(own, STEP)(90, 1)
+    for every in (2, 3, 90):
+        seldom = mujoco.EXTENDED.build(own, STEP)(90 // every, every)
+        for name in ("pose", "twist", "reaction", "estimate"):
+            assert np.array_equal(getattr(seldom, name), getattr(often, name)[::every]), (name, every)
+        assert (seldom.warnings, seldom.unresolved_at) == (often.warnings, often.unresolved_at)
+    assert (often.unresolved_at is None) == (number == 120)
+    if number == 120:  # after one step no less than after two, but for rounding
+        estimate = present(often.estimate)
+        assert np.all(estimate[1] >= (1 - 1e-3) * estimate[2])
+
+
+def test_rows_that_rounding_would_spoil_are_softer_and_a_softness_that_is_asked_for_is_kept() -> None:
+    own = mechanism(1, 130, HELD)
+    model = mujoco.EXTENDED.model(own, STEP)
+    assert _lost(model.compiled, model.start()) < 0.1
+    asked, eased = (
+        replace(mujoco.EXTENDED, stiffness=Hardened(eased=eased)).model(own, STEP).compiled for eased in (False, True)
+    )
+    shipped = replace(mujoco.EXTENDED, stiffness=Hardened(softening=1.0)).model(own, STEP).compiled
+    assert np.allclose(asked.dof_invweight0, 1e-8 * shipped.dof_invweight0, rtol=1e-12, atol=0.0)
+    assert np.all(eased.dof_invweight0 > 9 * asked.dof_invweight0)
+
+
+def test_every_slot_is_built_by_public_settings_and_halving_the_step_quarters_its_error() -> None:
+    halved = 0
+    for number in range(40):
+        own = mechanism(14, number, ("pin", "slot"))
+        if not any(isinstance(joint, Slot) for joint in own.joints):
+            continue
+        mujoco.DEFAULT.build(own, STEP)
+        model = mujoco.TUNED.model(own, STEP)
+        halved += bool(model.halves)
+        assert np.allclose(model.loads()[0], own.inertias, rtol=1e-14, atol=0.0)
+        if model.halves and halved < 4:
+            truth = TRUTH.build(own, 0.1)(2, 1)
+            coarse, fine = (
+                np.abs(mujoco.TUNED.build(own, step)(2, round(0.1 / step)).pose - truth.pose).max()
+                for step in (STEP / 2, STEP / 4)
+            )
+            assert fine < coarse / 3 or fine < 1e-9
+    assert halved > 5
+
+
+def test_drives_between_any_two_bodies_are_built() -> None:
+    drawn = [mechanism(15, number, ("pin", "drive")) for number in range(40)]
+    for number, own in enumerate(drawn):
+        for engine in mujoco.VARIANTS:
+            try:
+                engine.build(own, STEP)
+            except Unsupported as reason:
+                pytest.fail(f"{number}: {reason}")
+    geared = next(own for own in drawn if mujoco.TUNED._tree(own).geared)
+    with pytest.raises(Unsupported, match="drives single ones, take 'inertia'"):
+        replace(mujoco.TUNED, drive="servo").build(geared, STEP)
+
+
+# Joints of which the extras build most draws.
+DRAWN = {
+    "exudyn": ("pin", "slot", "skate", "drive", *LINKS, *ELEMENTS),
+    "box2d": ("pin", "rod", "weld", *ELEMENTS),
+    "pinocchio": ("pin", "drive", "weld", *ELEMENTS),
+    "bullet": ("pin", "weld", *ELEMENTS),
+}
+# Of the way that bodies go in a fifth of the mechanism's time, in 180 steps: about the order's constant for order 1 and
+# 2; of Box2D's soft joints what was met over thirty draws, where a wrong lever or sign is off by the whole way.
+JUDGED = {1: 2e-2, 2: 1e-5, 4: 1e-9}
+SOFT = 0.3
+
+
+@pytest.mark.parametrize("engine", QUICKLY, ids=method_name)
+def test_random_mechanisms_move_in_extras_as_the_judge_moves_them(engine):
+    built = 0
+    for number in range(40):
+        own = mechanism(12, number, kinds=DRAWN[installed(engine).name])
+        spacing = 0.01 * own.time_scale
+        try:
+            run = engine.build(own, spacing / 9)(20, 9)
+        except Unsupported:
+            continue
+        truth = TRUTH.build(own, spacing)(20, 1)
+        way = np.abs(truth.pose - truth.pose[0]).max()
+        promise = engine.order(own)
+        bound = SOFT if isinstance(promise, Unpromised) else JUDGED.get(int(min(promise.order, 4)), 1e-9)
+        assert np.abs(run.pose - truth.pose).max() < bound * way, (engine, own)
+        built += 1
+        if built == 3:
+            return
+    pytest.fail("fewer than three were built")

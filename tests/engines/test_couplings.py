@@ -59,9 +59,7 @@ def held(terms=TERMS, *forces):
 PULL = CoupledForce("pull", TERMS[::-1], 1.5, 7.0, 0.0, 0.2)
 CASES = {
     "four bodies": held(),
-    "two terms on one body": held(TERMS[:2]),
     "one term": held(TERMS[2:3]),
-    "to the ground": held(TERMS[3:]),
     "with a spring": held(TERMS, PULL),
     "a damper alone": replace(held(TERMS, replace(PULL, damping=0.4)), joints=()),
 }
@@ -164,14 +162,6 @@ MODELS = {  # worldbody, equalities and the rest, the factors of each sum in MuJ
         '<equality><tendon tendon1="t"/></equality>',
         [(2.0, -0.7, 0.0, 0.3, 1.1)],
         (0.1, 0.2, 0.4, 1.0, (-0.2 + 0.14 - 0.3) / 1.1),
-    ),
-    "two tendons": (
-        FINGERS,
-        '<tendon><fixed name="t"><joint joint="wrist" coef="1"/></fixed><fixed name="u"><joint joint="one" coef=".5"/>'
-        '<joint joint="two" coef="1"/></fixed></tendon><equality><tendon tendon1="t" tendon2="u" '
-        'polycoef="0 2 0 0 0"/></equality>',
-        [(1.0, -1.0, -2.0)],
-        (0.4, 2.0, -0.8),
     ),
     "a servo on a tendon": (
         FINGERS,

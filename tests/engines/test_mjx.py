@@ -16,7 +16,7 @@ from engines.mjx import DEFAULT, NO_VELOCITY_TERM, TUNED, VARIANTS
 from reference.joints import Gear, Pin
 from reference.mechanism import Body, Mechanism
 from reports.model.catalogue import SCENES
-from reports.pages.engines.experiments import VelocityTerm, reactions_with, started_anew
+from reports.pages.engines.experiments import reactions_with, started_anew
 from tests.all_elements import ALONE
 from tests.present import present
 
@@ -69,20 +69,6 @@ def test_a_device_that_is_not_there_is_a_refusal_in_one_line():
     environment = {**os.environ, "JAX_PLATFORMS": "cuda"}
     run = subprocess.run([sys.executable, "-c", NO_DEVICE], capture_output=True, text=True, env=environment, check=True)
     assert run.stdout == "JAX finds no device to run on here: JAX_PLATFORMS is 'cuda'\n"
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("installed")
-def test_a_light_body_beside_a_heavy_one_feels_its_gear():
-    """Forces of 1e-4 N m stand beside 1e6 N; MJX's solver takes what is below 1e-8 in all for nothing."""
-    small, large = Body("small", 5e-4, 5e-10, (0.0, 0.0, 0.0)), Body("large", 1e5, 1e3, (1.0, 0.0, 0.0))
-    wheel = Body("wheel", 0.5, 5e-7, (1e-3, 0.0, 0.0))
-    pin = Pin("pin", None, "small", (-2e-3, 0.0), (-2e-3, 0.0))
-    mechanism = Mechanism((small, large, wheel), (pin, Gear("gear", "small", "wheel", 3.0, 0.0)), gravity=(0.0, -9.81))
-    engine = replace(DEFAULT, settings=replace(DEFAULT.settings, tolerance=1e-28))
-    model, held = engine.model(mechanism, 1e-3)
-    start = model.start()
-    assert engine.accelerations(model, held, start) == pytest.approx(start.qacc, rel=1e-9)
 
 
 def geared(arm: float, light: float, wheel: float, gravity: tuple[float, float]) -> Mechanism:
@@ -162,13 +148,6 @@ def test_forces_of_a_loop_are_those_of_its_declared_compliance_without_the_veloc
         bound = declared.max() * np.linalg.eigvalsh(held).max()
         assert bound < 1e-3
         assert np.abs(told - reactions_with(now, soft.rows, False)).max() < bound * largest
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("installed")
-def test_the_page_tells_the_two_laws_apart():
-    found = VelocityTerm(TUNED).run()
-    assert np.max(found["without"]) < 1e-3 * np.max(found["with"])
 
 
 # Of each kind of element that has a construction of its own in the model: tendons, actuators, equalities; and a tree.

@@ -18,18 +18,15 @@ from engines import Unsupported
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, Hardened, MuJoCo, Shipped, TiedToStep, bare_loop
 from engines.mujoco.releases import MARK, known_wrong
 from engines.mujoco.solver_check import unsolved
-from engines.tree import spanning_tree
 from reference.forces import Torque
 from reference.joints import Drive, Joint, Pin, Rod, Slot
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
-from reference.scenes.n_four_bar import NFourBar
 from reference.scenes.pendulum.scenes import HundredLinks
 from reference.scenes.slider_crank.scenes import FreeSliderCrank
 from reference.trajectory import energy
-from tests.all_elements import ALONE
 from tests.engines.test_matrix import FREE_COORDINATES, far_drive
-from tests.mechanisms import bar, four_bar, pendulum
+from tests.mechanisms import bar, four_bar
 
 FREE, DRIVEN = FreeFourBar(), DrivenFourBar()
 
@@ -98,19 +95,6 @@ def test_no_armature_lets_the_solver_end_before_it_has_begun() -> None:
     assert np.abs(model.start().qacc - exact).max() > 1e-3 * np.abs(exact).max()
 
 
-def test_who_listened_to_mujocos_warnings_before_a_run_does_so_afterwards() -> None:
-    def own(message: str) -> None:
-        """Hears nothing."""
-
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(own)
-    try:
-        DEFAULT.build(pendulum(), 1e-3)(2, 1)
-        assert mujoco.get_mju_user_warning() is own
-    finally:
-        mujoco.set_mju_user_warning(before)
-
-
 @pytest.mark.parametrize(
     ("engine", "own", "size"),
     [
@@ -155,12 +139,6 @@ def test_a_resting_line_at_any_angle_holds_the_centre_of_a_free_body() -> None:
     assert np.abs(motion.pose[:, 0, 2] - 3.0 * motion.t).max() < 1e-9
 
 
-def test_a_weld_is_no_coordinate_of_the_tree() -> None:
-    tree = spanning_tree(ALONE["weld"])
-    assert (tree.coordinates, tree.loops) == (2, ())
-    assert [joint.name for joint in spanning_tree(ALONE["weld in a loop"]).loops].count("closing") == 1
-
-
 def test_a_rod_of_mujocos_own_lacks_the_velocity_term_and_ours_has_it() -> None:
     # A rod that turns at 2 rad/s without gravity: its centripetal acceleration is nothing but -(dJ/dt) v.
     body = Body("b", 1.0, 1.0, (1.0, 0.0, 0.0), (0.0, 2.0, 0.0))
@@ -176,16 +154,6 @@ def test_a_hundred_links_keep_their_energy() -> None:
     total = energy(mechanism, EXTENDED.build(mechanism, 5e-4)(5, 200))
     # Of 5e4 J that could be turned: (m g L) times the sum of heights.
     assert np.abs(total - total[0]).max() < 2e-8
-
-
-def test_the_tree_of_a_mechanism_is_built_once_however_often_a_joint_is_asked_for() -> None:
-    mechanism = NFourBar(300).mechanism()
-    tree = TUNED._tree(mechanism)
-    assert all(TUNED.holder(joint, mechanism) == "engine" for joint in mechanism.joints)
-    assert TUNED._tree(mechanism) is tree
-    # Another mechanism of the same numbers, and the other coordinates, have trees of their own.
-    assert TUNED._tree(NFourBar(300).mechanism()) is not tree
-    assert FREE_COORDINATES._tree(mechanism).coordinates == 3 * len(mechanism.bodies)
 
 
 def test_a_body_that_no_pin_reaches_flies_freely_and_carries_its_own_tree() -> None:
@@ -290,12 +258,6 @@ def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
         assert (max(first, 2 * dt), second) == pytest.approx((2 / damper, 1.0), rel=1e-14)
 
 
-def test_the_shipped_stiffness_is_mujocos_own() -> None:
-    equality = mujoco.MjSpec().add_equality()
-    assert tuple(equality.solref) == Shipped().reference(FREE.mechanism(), 1e-3)
-    assert tuple(equality.solimp) == Shipped().impedance
-
-
 @pytest.mark.parametrize(("steps", "dt"), [(2.0, 1e-2), (5.0, 1e-4), (20.0, 1e-2)])
 def test_the_first_acceleration_of_a_loop_under_discrete_is_divided_by_what_its_spring_is_in_a_step(steps, dt):
     # From a closed start the exact loop has J a = -bias. Backward Euler's spring (stiffness k, damping b per inertia)
@@ -349,17 +311,6 @@ def test_a_reset_is_noticed_and_the_samples_after_it_are_not_numbers(tmp_path, m
     assert np.isnan(motion.reaction[1:]).all()
     assert any("QVEL" in warning for warning in motion.warnings)
     assert list(tmp_path.iterdir()) == []  # MuJoCo would write MUJOCO_LOG.TXT beside whatever it is run from
-
-
-def test_a_reset_in_the_middle_of_a_run_keeps_what_came_before() -> None:
-    # A spring that is faster than the step blows up: a direct time constant far below what the integrator can take.
-    engine = replace(TUNED, stiffness=Hardened(share=1e-6, steps=0.2))
-    motion = engine.build(four_bar(crank_rate=10.0), 1e-2)(100, 1)
-    assert motion.reset_at is not None
-    assert 0 < motion.reset_at < 1
-    before = motion.t <= motion.reset_at
-    assert np.isfinite(motion.pose[before]).all()
-    assert np.isnan(motion.pose[~before]).all()
 
 
 def test_two_drives_of_one_joint_are_unsupported() -> None:

@@ -93,14 +93,6 @@ def test_reactions_by_newtons_law_are_the_contacts_forces(engine: MuJoCo) -> Non
     assert abs(tangent) == pytest.approx(float(np.hypot(force[1], force[2])), abs=5e-3 * normal)
 
 
-def test_a_cylinder_rolls_as_a_sphere_does_with_twice_the_rows() -> None:
-    sphere = EULER
-    cylinder = replace(EULER, rolls=replace(EULER.rolls, round_shape="cylinder"))  # type: ignore[type-var]
-    assert cylinder.build(DISC.mechanism(), 1e-3).size.solver_rows == 6
-    one, two = (np.abs(np.subtract(*(each.pose for each in run(e, DISC, 1e-3)))).max() for e in (sphere, cylinder))
-    assert one == pytest.approx(two, rel=0.1)
-
-
 def test_a_model_has_the_rows_that_rolling_needs() -> None:
     rows = {"default": 4, "tuned": 3, "extended": 2, EULER.variant: 3}
     for engine in (DEFAULT, TUNED, EXTENDED, *ROLLS):
@@ -171,11 +163,6 @@ def test_what_a_construction_can_not_do_is_refused_with_a_sentence() -> None:
     disc = Body("disc", 1.0, 0.005, tuple(map(float, rolling.pose(rolling.theta))), (0.0, 0.0, 0.0))  # type: ignore[arg-type]
     with pytest.raises(Unsupported, match="planes are fixed to the ground"):
         DEFAULT.build(Mechanism((plank, disc), (Roll("contact", "plank", "disc", rolling),)), 1e-3)
-
-
-def test_settings_without_meaning_are_refused() -> None:
-    with pytest.raises(ValueError, match="elliptic cone only"):
-        RollContact(stick=True)
 
 
 # Skates and slots

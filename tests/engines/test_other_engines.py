@@ -1,6 +1,6 @@
 """Engines that are extras: what is particular to one of them, what they leave behind, what says that one is missing.
 
-Orders, elements and configurations of all are asked by `test_promised`, random mechanisms by `test_random`. A model of
+Orders, elements and configurations of all are asked by `test_promised`, random mechanisms by `test_claims`. A model of
 MJX takes tens of seconds to compile, so its tests are slow ones, in tests/engines/test_mjx.py.
 """
 
@@ -24,9 +24,7 @@ from reference.joints import Drive, Gear, Pin, Rod
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
 from reference.scenes.catalogue import scene
-from reports.cli.selection import choose_cells, choose_engines
-from reports.model.catalogue import PAGES
-from reports.model.cells import QUICK, beside_cells
+from reports.cli.selection import choose_engines
 from reports.model.ending import BadInput
 from reports.search import motions
 from reports.search.mechanisms import mechanism
@@ -236,36 +234,12 @@ def test_a_missing_engine_is_refused_by_name_in_one_line(monkeypatch):
         choose_engines("pymunkk", None, registry.ENGINES)
 
 
-def test_extras_stand_beside_the_grid_at_its_quick_steps_and_never_in_it():
-    scenes = (scene("free_four_bar"),)
-    cells = choose_cells(scenes, (*registry.ENGINES, *registry.INSTALLED), PAGES, full=True)
-    # What takes long to build is there only where a page asks for it.
-    own = [cell for cell in cells if cell.engine in QUICKLY and cell.scene in scenes]
-    assert {cell.purpose for cell in own} <= {"beside"}
-    assert {cell.every for cell in own} <= {*QUICK}
-    assert {cell.engine for cell in own} == {engine for engine in QUICKLY if not engine.missing}
-    assert not beside_cells(scenes, [engine for engine in registry.OTHERS if engine not in QUICKLY])
-
-
 def test_whole_turns_are_taken_back_by_what_rates_predict():
     t = np.arange(50) * 0.1
     angle = (3.0 * np.sin(2 * t) + 50 * t)[:, None]
     rate = (6.0 * np.cos(2 * t) + 50)[:, None]
     wrapped = np.arctan2(np.sin(angle), np.cos(angle))
     np.testing.assert_allclose(sampling.unwrapped(wrapped, rate, angle[0], 0.1), angle, atol=1e-12)
-
-
-def test_exudyns_explicit_integrators_take_no_joint():
-    """So that none of them is a variant; see engines/exudyn. If this fails, a release has changed it."""
-    from engines.exudyn import Exudyn
-
-    shipped("exudyn")
-    for name in ("RK44", "VelocityVerlet"):
-        explicit = Exudyn("explicit")
-        object.__setattr__(explicit, "integrator", name)  # no value of the field: see `Integrator`
-        run = explicit.build(scene("pendulum_1").mechanism(), 1e-3)(3, 1)
-        assert np.isnan(run.pose[1:]).all()
-        assert any("gave up" in each for each in run.warnings)
 
 
 def test_where_exudyn_gives_up_its_last_samples_are_no_numbers():
@@ -294,13 +268,6 @@ def test_where_exudyn_gives_up_its_last_samples_are_no_numbers():
     # The crank gets there after 0.927 rad, and the last sample that the engine wrote before is left out too.
     assert 30 < count < np.ceil(0.927 / rate / 1e-2)
     assert np.abs(own.gap(run.pose[:count], run.t[:count])).max() < 1e-6
-
-
-def test_pinocchios_euler_drifts_with_the_new_velocity():
-    # x'' = -x by hand: half a second of steps of 0.1 s keep an energy that the explicit method doubles.
-    model = SimpleNamespace(acceleration=lambda q, v: -q)
-    q, v = Model._euler(model, np.array([1.0]), np.array([0.0]), 0.1)  # type: ignore[arg-type]
-    assert (q[0], v[0]) == pytest.approx((0.99, -0.1))
 
 
 def test_pinocchio_tells_no_inertia_of_bodies_that_are_welded_together():

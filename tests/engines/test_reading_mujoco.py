@@ -369,15 +369,6 @@ def test_what_has_no_ideal_counterpart_is_named(name):
     assert sentence in str(reason.value)
 
 
-def test_a_spring_that_acts_out_of_its_reach_is_told():
-    model = model_of(f'<body name="a"><joint name="S" type="slide" axis="1 0 0" stiffness="1"/>{BOX}</body>')
-    reading = read(model)
-    t, far = np.array([0.0, 1.0]), np.tile(reading.mechanism.pose, (2, 1, 1))
-    far[1, 0, 0] = -1e4
-    (met,) = reading.model.obstacles(t, far, np.zeros_like(far))
-    assert (met.t, met.words) == (1.0, "joint 'S' slides further than the spring that stands for its own")
-
-
 @pytest.mark.parametrize(
     "name",
     ["a slide, then a hinge", "a hinge, then a slide", "two slides and a hinge", "a slide in a moving body"],

@@ -83,6 +83,10 @@ def geared(space, first, second):
     return GearJoint(first, second, 2.0 * second.angle - first.angle, 2.0)
 
 
+def held_by_a_gear(space, first, second):
+    return GearJoint(space.static_body, second, 2.0 * second.angle, 2.0)
+
+
 def driven(space, first, second):
     second.angular_velocity = first.angular_velocity - 1.5
     return SimpleMotor(first, second, 1.5)
@@ -128,7 +132,8 @@ def off_centre(space, first, second):
 
 
 MAKERS = {
-    make.__name__: make for make in (elbow, rod, geared, driven, spring, damper, torsion, kinematic, steady, off_centre)
+    make.__name__: make
+    for make in [elbow, rod, geared, held_by_a_gear, driven, spring, damper, torsion, kinematic, steady, off_centre]
 }
 
 
@@ -228,6 +233,18 @@ def test_limits_are_noted_and_named_when_they_are_reached():
         Obstacle(1.0, "RotaryLimitJoint 1 reaches its end", left_out("limit")),
         Obstacle(2.0, "SlideJoint 1 reaches its end", left_out("limit")),
     ]
+
+
+@pytest.mark.parametrize("x", [0.4, 1.6])
+def test_both_ends_of_a_groove_are_noticed(x):
+    def short(space, first, second):
+        return GrooveJoint(space.static_body, second, (0.5, second.position.y), (1.5, second.position.y), (0, 0))
+
+    reading = read(space_of(short, spin=0.0), 0.01)
+    pose = reading.mechanism.pose[None].copy()
+    pose[0, 1, 0] = x
+    (met,) = reading.model.obstacles(np.zeros(1), pose, np.zeros_like(pose))
+    assert met.words == "GrooveJoint 1 reaches its end"
 
 
 def test_the_users_own_space_is_run_and_never_changed():

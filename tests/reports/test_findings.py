@@ -15,8 +15,9 @@ import pytest
 from reports.model.catalogue import PAGES
 from reports.model.outcomes import SATURATED, TORN, Outcome
 from reports.model.page import Material
+from reports.model.tasks import Answer, Task
 from reports.pages import findings as module
-from reports.pages.faults.page import OFFSETS
+from reports.pages.faults.page import OFFSETS, SCRIPTS
 from reports.pages.findings import CPU, FINDINGS, LOOKS, STEP, TENTH, Known, Line, draw, finding, findings, of_rows
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import symptoms
@@ -33,12 +34,15 @@ from tests.rows import falling
 
 TAUGHT = tuple(page for page in PAGES if page.name in ("four_bar", "pendulum", "person", "skate", "rolling"))
 FAULTS, VERSIONS = (next(page for page in PAGES if page.name == name) for name in ("faults", "versions"))
-OF_RELEASES = {"faults", "releases", "trees"}  # from files of releases; the first is drawn from an answer
+OF_RELEASES = {"faults", "releases", "trees"}  # the first from answers, the others from the file of releases
 
 
 def changed(change):
     """The pages' material, each row as `change(row)` gives it; None leaves it out."""
-    pages = {FAULTS: Material({}, {OFFSETS: answer_to(OFFSETS)}), VERSIONS: Material({})}
+    pages = {
+        FAULTS: Material({}, {task: answer_to(task) for task in (OFFSETS, *SCRIPTS.values())}),
+        VERSIONS: Material({}),
+    }
     for page in TAUGHT:
         rows = {cell: change(row) for cell, row in page_rows(page).items()}
         pages[page] = Material({cell: row for cell, row in rows.items() if row is not None})
@@ -141,13 +145,12 @@ def test_findings_that_the_releases_contradict_are_dropped(monkeypatch):
     assert not finding("releases", Known(Rows())).is_sound
     entries(lambda entry: entry.quantity == ACCELERATION, error=1e-4)
     assert not finding("trees", Known(Rows())).is_sound
-    mended = [
-        replace(row, printed=f"expected {row.expected}, found {row.expected}")
-        for row in module.recorded()
-        if row.script in module.FAULTS
-    ]
-    monkeypatch.setattr(module, "recorded", lambda: mended)
-    assert not finding("faults", Known(Rows(), {OFFSETS: answer_to(OFFSETS)})).is_sound
+    answers: dict[Task, Answer] = {task: answer_to(task) for task in (OFFSETS, *SCRIPTS.values())}
+    assert finding("faults", Known(Rows(), answers)).is_sound
+    groove = SCRIPTS["pymunk_groove"]
+    values = {**answers[groove].values, "found": answers[groove].values["expected"]}
+    answers[groove] = replace(answers[groove], values=values)
+    assert not finding("faults", Known(Rows(), answers)).is_sound
     lost = Entry("toy", "0", "disc", "default", 1e-3, "angle", 0.5, Outcome.TORN, 1.0, "")
     known = replace(lost, version="1", outcome=Outcome.FINISHED)
     assert module.of_releases("disc", [lost, known]).points == (("1", 0.5),)

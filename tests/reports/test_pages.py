@@ -37,8 +37,7 @@ from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task
 from reports.pages.engines.experiments import ASKED, Capabilities, OpenWork, VelocityTerm
 from reports.pages.errata import experiments as referees
-from reports.pages.faults.experiments import Equalities, Grooves, Offsets
-from reports.pages.faults.page import Script
+from reports.pages.faults.page import Offsets, Script
 from reports.pages.findings import findings
 from reports.pages.index import render_index, render_readme
 from reports.pages.pendulum.page import Neighbours
@@ -271,8 +270,6 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"growth": np.ones(len(task.times))}
         case Offsets():
             values = {"across": np.full(len(task.offsets), -0.1)}
-        case Grooves() | Equalities():
-            values = {"off": np.full(task.models, 0.5), "missed": np.asarray(1e-9), "mended": np.asarray(1e-9)}
         case Script():
             values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
         case published.Newton():

@@ -197,13 +197,13 @@ def test_a_project_of_ones_own_has_the_fixture_and_keeps_an_option_of_the_grids_
 # as text: by then no engine is asked for.
 WITHOUT = """
 import sys
-from engines import entry_points
+from engines import loading
 from reports.plots.theme import FigureCanvasSVG
 
 FigureCanvasSVG.print_svg = lambda self, out, **settings: out.write("<svg/>")
 
-ours, hidden = entry_points._ours, sys.argv[1:]
-entry_points._ours = lambda group: [point for point in ours(group) if not any(word in point[1] for word in hidden)]
+ours, hidden = loading._ours, sys.argv[1:]
+loading._ours = lambda group: [point for point in ours(group) if not any(word in point[1] for word in hidden)]
 from engines.registry import ENGINES
 from reports.model.catalogue import PAGES, TROUBLES
 from reports.model.page import Material

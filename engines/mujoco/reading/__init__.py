@@ -14,14 +14,15 @@ from typing import Any, ClassVar
 import mujoco
 import numpy as np
 
-from engines.consistent_start import closed_positions, with_consistent_start
+from engines.consistent_start import OpenStart, closed_positions, with_consistent_start
 from engines.mujoco.reading.elements import EQUALITIES, JOINTS, Scene, drives, equalities, steady, tree_joints
 from engines.mujoco.reading.forces import FORCES, forces, off, turns
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, bodies_of, find_frame, find_groups, flattened, name_of
 from engines.mujoco.reading.obstacles import limited_forces, positions
-from engines.mujoco.reading.own_model import OwnMuJoCo, heard
+from engines.mujoco.reading.own_model import OwnMuJoCo, in_state
 from engines.mujoco.reading.rewriting import rewritten
 from engines.mujoco.reading.settings import switch_off
+from engines.mujoco.running import listening
 from engines.reading import Note, Reading, Source, left_out, refuse, refuse_at_start
 from reference.checks import InvalidMechanism
 from reference.forces import Force
@@ -42,9 +43,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: boo
     model = copy.copy(model)
     for element in without:
         switch_off(model, element)
-    started = mujoco.MjData(model)
-    for name in ("qpos", "qvel", "ctrl", "act", "qfrc_applied", "xfrc_applied", "eq_active", "mocap_pos", "mocap_quat"):
-        getattr(started, name)[:] = getattr(data, name)
+    started = in_state(model, data)
     if model.nv == 0:
         raise refuse("the model", "nothing in it can move")
     if model.opt.enableflags & int(getattr(mujoco.mjtEnableBit, "mjENBL_SLEEP", 0)):
@@ -79,9 +78,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: boo
         return replace(reading, notes=(closed[1], *reading.notes))
     try:
         mechanism, jumped = with_consistent_start(*elements)
-    except InvalidMechanism as reason:
-        if "is open by" not in str(reason):
-            raise
+    except OpenStart as reason:
         words = "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed"
         raise InvalidMechanism(f"{reason}: {words}") from None
     own = OwnMuJoCo(scene, mechanism, users, tilt if users is not model else 0.0)
@@ -185,7 +182,7 @@ class Reader:
             raise ValueError(f"{word}: it is a folder")
         if not path.is_file():
             raise ValueError(f"{word}: there is no such file")
-        with heard() as warnings:
+        with listening() as complaints:
             try:
                 if path.suffix.lower() == ".mjb":
                     model = mujoco.MjModel.from_binary_path(str(path))
@@ -193,27 +190,15 @@ class Reader:
                     model = mujoco.MjModel.from_xml_path(str(path))
             except ValueError as error:
                 raise ValueError(f"{word}: MuJoCo can't compile it: {' '.join(str(error).split())}") from None
-            return self._started(word, path, model, without, key, step, warnings)
-
-    def _started(
-        self,
-        word: str,
-        path: Path,
-        model: Any,
-        without: Sequence[str],
-        key: str,
-        step: float | None,
-        warnings: list[str],
-    ) -> Reading:
-        if step is not None:
-            model.opt.timestep = step
-        data = mujoco.MjData(model)
-        if model.nkey and key != "none":
-            mujoco.mj_resetDataKeyframe(model, data, _key(model, key))
-        elif key not in ("", "none"):
-            raise ValueError(f"--key is {key!r}; {word} has no keyframes")
-        reading = read(model, data, without)
-        notes = (*reading.notes, *(Note("a warning of MuJoCo's", words) for words in dict.fromkeys(warnings)))
+            if step is not None:
+                model.opt.timestep = step
+            data = mujoco.MjData(model)
+            if model.nkey and key != "none":
+                mujoco.mj_resetDataKeyframe(model, data, _key(model, key))
+            elif key not in ("", "none"):
+                raise ValueError(f"--key is {key!r}; {word} has no keyframes")
+            reading = read(model, data, without)
+        notes = (*reading.notes, *(Note("a warning of MuJoCo's", words) for words in complaints.said))
         source = Source(
             path,
             lambda change: rewritten(path.read_bytes(), change),

@@ -26,7 +26,6 @@ FORCES = {
     "motor at a site": "a force and a torque in the directions of a site of the ground",
     "qfrc_applied, xfrc_applied, gravcomp": "constant forces",
 }
-FAR = 30.0  # extents of the model: where the far end of a spring along a slide stands
 
 
 def forces(scene: Scene) -> list[ForceElement]:
@@ -68,8 +67,8 @@ def _of_joints(scene: Scene) -> list[ForceElement]:
         if model.jnt_type[joint] == FREE and (stiffness or damping):
             raise refuse(name_of(model, JOINT, joint), "stiffness or damping of a free joint has no counterpart here")
         if model.jnt_type[joint] in (HINGE, SLIDE):
-            out += sprung(scene, joint, plain_name(model, JOINT, joint), stiffness, float(model.qpos_spring[place]))
-            out += damped(scene, joint, plain_name(model, JOINT, joint), damping)
+            rest = float(model.qpos_spring[place])
+            out += along_joint(scene, joint, plain_name(model, JOINT, joint), 0.0, stiffness, damping, rest)
     return out
 
 
@@ -218,12 +217,8 @@ def _on_joint(
     model = scene.model
     if model.jnt_type[joint] not in (HINGE, SLIDE):
         raise refuse(element, "it acts on a joint that is neither a hinge nor a slide")
-    springs = sprung(scene, joint, name, -gear * gear * float(affine[1]), 0.0)
-    return [
-        *pushed(scene, joint, name, gear * push),
-        *springs,
-        *damped(scene, joint, name, -(gear**2) * float(affine[2])),
-    ]
+    stiffness, damping = -gear * gear * float(affine[1]), -(gear**2) * float(affine[2])
+    return along_joint(scene, joint, name, gear * push, stiffness, damping)
 
 
 def _at_site(scene: Scene, element: str, name: str, actuator: int, push: float) -> list[ForceElement]:
@@ -261,7 +256,7 @@ def _applied(scene: Scene) -> list[ForceElement]:
             raise refuse(
                 name_of(model, JOINT, joint), "a force applied to a free joint is not read; apply it to a body"
             )
-        out += pushed(scene, joint, f"{plain_name(model, JOINT, joint)} applied", float(data.qfrc_applied[dof]))
+        out += along_joint(scene, joint, f"{plain_name(model, JOINT, joint)} applied", float(data.qfrc_applied[dof]))
     gravity = np.zeros(3) if off(model, "GRAVITY") else model.opt.gravity
     for body in range(1, model.nbody):
         group = scene.group(body)
@@ -284,71 +279,36 @@ def off(model: Any, word: str) -> bool:
     return bool(model.opt.disableflags & int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{word}", 0)))
 
 
-def sprung(scene: Scene, joint: int, name: str, stiffness: float, rest: float) -> list[ForceElement]:
-    """A spring of a joint's coordinate, at ease at `rest` [m or rad]."""
-    if not stiffness:
-        return []
+def along_joint(
+    scene: Scene,
+    joint: int,
+    name: str,
+    push: float = 0.0,
+    stiffness: float = 0.0,
+    damping: float = 0.0,
+    rest: float = 0.0,
+) -> list[ForceElement]:
+    """A constant force, a spring at ease at `rest` [m or rad], and a damper, along the coordinate of a joint."""
+    model, element = scene.model, name_of(scene.model, JOINT, joint)
     if stiffness < 0:
-        raise refuse(name_of(scene.model, JOINT, joint), "a spring of negative stiffness has no counterpart here")
-    model, group, parent = scene.model, scene.group(int(scene.model.jnt_bodyid[joint])), scene.parent(joint)
-    way = rest - float(scene.data.qpos[int(model.jnt_qposadr[joint])])
-    label, ends = scene.names.new(f"{name} spring"), (scene.name(parent), scene.name(group))
-    if model.jnt_type[joint] == HINGE:
-        turned = scene.angle(group) - scene.angle(parent)
-        return [TorsionSpring(label, *ends, stiffness, turned + scene.sign(joint) * way)]
-    far, near, length = _along(scene, joint)
-    return [Spring(label, *ends, scene.own(parent, far), scene.own(group, near), stiffness, length + way)]
-
-
-def damped(scene: Scene, joint: int, name: str, damping: float) -> list[ForceElement]:
-    """A damper of a joint's coordinate."""
-    if not damping:
-        return []
+        raise refuse(element, "a spring of negative stiffness has no counterpart here")
     if damping < 0:
-        raise refuse(name_of(scene.model, JOINT, joint), "a negative damping has no counterpart here")
-    group, parent = scene.group(int(scene.model.jnt_bodyid[joint])), scene.parent(joint)
-    label, ends = scene.names.new(f"{name} damper"), (scene.name(parent), scene.name(group))
-    if scene.model.jnt_type[joint] == HINGE:
-        return [TorsionDamper(label, *ends, damping)]
-    far, near, _ = _along(scene, joint)
-    return [Damper(label, *ends, scene.own(parent, far), scene.own(group, near), damping)]
-
-
-def _along(scene: Scene, joint: int) -> tuple[Any, Any, float]:
-    """Ends in the world, far behind on the parent and on the body, between which the distance is that of the slide."""
-    model, data = scene.model, scene.data
-    own = list(scene.joints_of(scene.group(int(model.jnt_bodyid[joint]))))
-    others = [each for each in own if each != joint]
-    if any(model.jnt_type[each] == SLIDE for each in others) or any(each < joint for each in others):
-        reason = "a force along a slide needs a body that slides once, in a direction of its parent"
-        raise refuse(name_of(model, JOINT, joint), reason)
-    centre = scene.frame.both.T @ scene.bodies[scene.group(int(model.jnt_bodyid[joint]))].pose[:2]
-    near = data.xanchor[others[0]] if others else centre  # the point that the slide's slot holds
-    length = FAR * max(1.0, float(model.stat.extent))
-    return near - length * data.xaxis[joint], near, length
-
-
-def pushed(scene: Scene, joint: int, name: str, push: float) -> list[ForceElement]:
-    """A constant force or torque along a joint's coordinate."""
-    if not push:
-        return []
-    model, group, parent = scene.model, scene.group(int(scene.model.jnt_bodyid[joint])), scene.parent(joint)
-    label, second = scene.names.new(name), scene.name(group)
-    assert second is not None
-    if model.jnt_type[joint] == HINGE:
-        return [Torque(label, scene.name(parent), second, scene.sign(joint) * push)]
-    if turns(scene, parent):
-        raise refuse(name, "a force along a slide of a body that turns is not constant in the plane")
-    if any(each < joint and model.jnt_type[each] == HINGE for each in scene.joints_of(group)):
-        raise refuse(name, "a force along a slide that turns with its body is not constant in the plane")
-    along = push * scene.data.xaxis[joint]
-    at = scene.data.xipos[int(model.jnt_bodyid[joint])]
-    at = next((scene.data.xanchor[each] for each in scene.joints_of(group) if model.jnt_type[each] == HINGE), at)
-    out: list[ForceElement] = [Force(label, second, scene.own(group, at), scene.frame.in_plane(along))]
-    first = scene.name(parent)
-    if first is not None:
-        against = scene.names.new(f"{name}, on {first}")
-        out.append(Force(against, first, scene.own(parent, at), scene.frame.in_plane(-along)))
+        raise refuse(element, "a negative damping has no counterpart here")
+    way = rest - float(scene.data.qpos[int(model.jnt_qposadr[joint])])
+    if model.jnt_type[joint] != HINGE:
+        if not (push or stiffness or damping):
+            return []
+        terms, start = terms_of(scene, [(joint, 1.0)])
+        return [CoupledForce(scene.names.new(name), terms, push, stiffness, damping, start + way)]
+    group, parent, sign = scene.group(int(model.jnt_bodyid[joint])), scene.parent(joint), scene.sign(joint)
+    ends, out = (scene.name(parent), scene.name(group)), list[ForceElement]()
+    if push:
+        out.append(Torque(scene.names.new(name), *ends, sign * push))
+    if stiffness:
+        turned = scene.angle(group) - scene.angle(parent)
+        out.append(TorsionSpring(scene.names.new(f"{name} spring"), *ends, stiffness, turned + sign * way))
+    if damping:
+        out.append(TorsionDamper(scene.names.new(f"{name} damper"), *ends, damping))
     return out
 
 

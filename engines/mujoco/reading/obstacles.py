@@ -1,4 +1,4 @@
-"""What a motion of the judge's would meet in a user's model: limits, contacts, limits of forces, ends of springs."""
+"""What a motion of the judge's would meet in a user's model: limits, contacts, limits of forces."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.mujoco.reading.elements import Scene
-from engines.mujoco.reading.forces import FAR, limited_servos
+from engines.mujoco.reading.forces import limited_servos
 from engines.mujoco.reading.frame import FREE, HINGE, SLIDE, name_of
 from engines.reading import Obstacle, left_out
 from reference.plane import rotated
@@ -123,8 +123,7 @@ def obstacles(
     kinds = mujoco.mjtConstraint
     limits = {int(kinds.mjCNSTR_LIMIT_JOINT): JOINT, int(kinds.mjCNSTR_LIMIT_TENDON): TENDON}
     touching = range(int(kinds.mjCNSTR_CONTACT_FRICTIONLESS), int(kinds.mjCNSTR_CONTACT_ELLIPTIC) + 1)
-    places = positions(scene, pose)
-    for at, qpos, rates in zip(t, places, twist, strict=True):
+    for at, qpos, rates in zip(t, positions(scene, pose), twist, strict=True):
         data.qpos[:] = qpos
         mujoco.mj_fwdPosition(model, data)
         for kind, index in zip(data.efc_type, data.efc_id, strict=True):
@@ -137,19 +136,4 @@ def obstacles(
             data.qvel[:] = np.linalg.lstsq(directions(data), rates.reshape(-1), rcond=None)[0]
             for element in reached(model, free, data):
                 meets(at, f"{element} reaches the limit of its force", "forcelimit")
-    if beyond := beyond_springs(scene, t, places):
-        found[beyond.words] = beyond
     return sorted(found.values(), key=lambda each: each.t)
-
-
-def beyond_springs(scene: Scene, t: Any, places: Any) -> Obstacle | None:
-    """When a motion of positions (times, nq) comes near the far end of a spring or damper along a slide, if it does."""
-    model, length = scene.model, FAR * max(1.0, float(scene.model.stat.extent))
-    for joint in np.flatnonzero(model.jnt_type == SLIDE):
-        if model.jnt_stiffness[joint] or model.dof_damping[model.jnt_dofadr[joint]]:
-            way = places[:, model.jnt_qposadr[joint]] - scene.data.qpos[model.jnt_qposadr[joint]]
-            if np.any(way < -0.9 * length):
-                words = f"{name_of(model, JOINT, int(joint))} slides further than the spring that stands for its own"
-                at = float(t[int(np.argmax(way < -0.9 * length))])
-                return Obstacle(at, words, "no longer slide can be judged")
-    return None

@@ -6,8 +6,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -21,7 +20,7 @@ from engines.mujoco.reading.frame import angles_of, name_of
 from engines.mujoco.reading.obstacles import obstacles, positions
 from engines.mujoco.reading.settings import TIED_STEPS, changes, declared, switch_off
 from engines.mujoco.releases import marks, spelled
-from engines.mujoco.running import _listening
+from engines.mujoco.running import listening
 from engines.mujoco.stiffness import STIFFEST
 from engines.reading import Change, Give, Note, Obstacle
 from engines.sampling import sampled
@@ -30,6 +29,17 @@ from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
+
+
+STATE = ("qpos", "qvel", "ctrl", "act", "qfrc_applied", "xfrc_applied", "eq_active", "mocap_pos", "mocap_quat")
+
+
+def in_state(model: Any, state: Any) -> Any:
+    """A fresh mujoco.MjData with positions, velocities and inputs of another one."""
+    data = mujoco.MjData(model)
+    for name in STATE:
+        getattr(data, name)[:] = getattr(state, name)
+    return data
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +122,7 @@ class OwnMuJoCo:
         model = copy.copy(model)
         model.opt.tolerance, model.opt.iterations = 0.0, max(100, model.opt.iterations)
         data = self._started(model)
-        with heard():
+        with listening(data):
             mujoco.mj_forward(model, data)
         return self._motion(model, data)[1]
 
@@ -184,7 +194,7 @@ class OwnMuJoCo:
                 qpos[sample], qvel[sample] = now_qpos, now_qvel
             return has_restarted
 
-        with _listening(data) as complaints:
+        with listening(data) as complaints:
             stepping = sampled([steps] * samples, lambda count: mujoco.mj_step(model, data, nstep=count), record)
             reset = complaints.reset_at
             sound = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
@@ -219,11 +229,7 @@ class OwnMuJoCo:
 
     def _fresh(self, model: Any) -> Any:
         """A mujoco.MjData at the user's start."""
-        data, given = mujoco.MjData(model), self.scene.data
-        for name in ("qpos", "qvel", "ctrl", "act", "qfrc_applied", "xfrc_applied", "eq_active", "mocap_pos"):
-            getattr(data, name)[:] = getattr(given, name)
-        data.mocap_quat[:] = given.mocap_quat
-        return data
+        return in_state(model, self.scene.data)
 
     def _started(self, model: Any) -> Any:
         """The same at the velocities of the mechanism, which satisfy all joints."""
@@ -262,15 +268,3 @@ class OwnMuJoCo:
             mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
             out[index, :2], out[index, 2] = frame.both @ jac[0], frame.normal @ jac[1]
         return out.reshape(-1, model.nv)
-
-
-@contextmanager
-def heard() -> Iterator[list[str]]:
-    """MuJoCo's warnings, which it would otherwise write into a file in the user's folder."""
-    said: list[str] = []
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda words: said.append(" ".join(str(words).split())))
-    try:
-        yield said
-    finally:
-        mujoco.set_mju_user_warning(before)

@@ -48,7 +48,7 @@ class Contact(Valid):
     `friction` of each shape (the engine multiplies the two); `vertices` of a body that is not round, equally far apart
     along its rim; `thickness` of flat ground, a part of the mechanism's extent (`extent_of`), as the radius of a
     segment that lies this deep. On ground without thickness a polygon of some hundred corners is at times given a wrong
-    normal: it is thrown, or stops dead (`tests/engines/test_pymunk_joints.py` has it). Raises ValueError for other
+    normal: it is thrown, or stops dead (`tests/engines/test_pymunk.py` has it). Raises ValueError for other
     values: the engine would abort the process, or give NaN.
     """
 

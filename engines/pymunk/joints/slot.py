@@ -4,7 +4,7 @@
   body, or that body can't turn: then pushing along the normal moves the anchor along the normal. Else a `Link`.
 - "groove": a `GrooveJoint` wherever the point is, as a user would. Off the centre of mass of a body that turns, its
   impulse is not the one that stops the motion across the groove, at any step, unless the arm from the centre of mass to
-  the point lies along or across the groove; `tests/engines/test_pymunk_slots.py` measures it. It solves both
+  the point lies along or across the groove; `tests/engines/test_pymunk_sweeps.py` measures it. It solves both
   directions and keeps the part along the normal (applyImpulse and grooveConstrain in Chipmunk's cpGrooveJoint.c), which
   is the right impulse only if the normal is an eigenvector of the two bodies' 2 by 2 inverse mass at the anchor.
 

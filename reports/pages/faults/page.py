@@ -1,54 +1,164 @@
-"""The page of faults: for each the script, what it prints, the wrong formula, releases, and what to do instead."""
+"""Faults of released engines: page.md and upstream/NAME.md are documents written once, with the scripts that show them.
+
+The scripts stand in the documents alone. Those of SCRIPTS are tasks of the grid, so that a finding disappears with the
+release that mends its fault; a test runs every script and compares what it prints with what its document says.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import io
+import re
+import subprocess
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from engines import Engine, Unsupported
+from engines.mjx import DEFAULT
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reports.model.digest import digest
 from reports.model.page import Material, Page
-from reports.pages.faults.experiments import (
-    CASES,
-    KINDS,
-    WRONG,
-    Equalities,
-    Grooves,
-    Offsets,
-    across,
-    beside,
-    wrong,
-)
-from reports.pages.faults.scripts import (
-    FOLDER,
-    MATCHED,
-    MJX,
-    MUJOCO,
-    OWN_TESTS,
-    PATCHED,
-    PYMUNK,
-    Found,
-    Script,
-    recorded,
-    script,
-    source,
-)
+from reports.model.tasks import Task, Values
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
-from reports.write.tables import markdown, number
-from reports.write.templates import anchor, environment, headings
 
-NAME = "faults"
-LOOKED_UP = "2026-11-23"  # when threads were looked for
-SCRIPTS: Mapping[str, Script] = {name: script(name) for name in (*MUJOCO, *PYMUNK, *MJX)}
-GROOVES = tuple(map(Grooves, CASES))
-EQUALITIES = tuple(map(Equalities, KINDS))
+UPSTREAM = Path(__file__).parent / "upstream"  # a file to paste into a tracker, for each fault
+SCRIPT = re.compile(r"(?:## `|<summary>)(\w+)\.py(?:`|</summary>)\n\n```python\n(.*?)```", re.DOTALL)
+RESULT = re.compile(r"expected (\S+), found (\S+)$")  # the end of the line that a script of SCRIPTS prints
+
+
+@cache
+def scripts() -> Mapping[str, str]:
+    """The text of each script by its name."""
+    return {name: text for path in sorted(UPSTREAM.iterdir()) for name, text in SCRIPT.findall(path.read_text("utf-8"))}
+
+
+def printed_apart(name: str) -> str:
+    """What a script prints in a process of its own. Raises RuntimeError with its last line if it fails."""
+    run = subprocess.run([sys.executable, "-c", scripts()[name]], capture_output=True, text=True)
+    if run.returncode:
+        raise RuntimeError((run.stderr or run.stdout).strip().splitlines()[-1])
+    # MJX prints a line about Warp, which is not used.
+    return "\n".join(line for line in run.stdout.splitlines() if not line.startswith("Failed to import"))
+
+
+@dataclass(frozen=True)
+class Script(Task):
+    """A script with the engine that is installed; `digest` is that of its text, so that an edited one is run again."""
+
+    name: str
+    digest: str
+
+    @property
+    def cost(self) -> float:
+        return 6.0 if self.engine else 0.05  # measured: compiling a program, and a model
+
+    @property
+    def label(self) -> str:
+        return f"script {self.name}"
+
+    @property
+    def engine(self) -> Engine | None:
+        return DEFAULT if self.name.startswith("mjx") else None
+
+    def run(self) -> Values:
+        """`expected` and `found`, in the unit that the script says, and `version` of the engine's package.
+
+        Raises Unsupported where the script's package is an extra that is not installed.
+        """
+        if self.engine is not None:  # JAX takes its settings from whoever imports it first, so it is not imported here
+            DEFAULT.require()
+            try:
+                match = RESULT.search(printed_apart(self.name))
+            except RuntimeError as reason:
+                raise Unsupported(f"MJX does not run here: {reason}") from None
+            if match is None:
+                raise ValueError(f"{self.name} does not end in 'expected ..., found ...'")
+            return {**_values(*match.groups()), "version": version("mujoco-mjx")}
+        import mujoco
+
+        names: dict[str, Any] = {"__name__": "__main__"}
+        with contextlib.redirect_stdout(io.StringIO()):
+            exec(compile(scripts()[self.name], f"{self.name}.py", "exec"), names)
+        # pymunk.version is wrong in some releases (2.0.0 in 7.0.0), and MuJoCo's distribution has two names.
+        release = mujoco.__version__ if self.name.startswith("mujoco") else version("pymunk")
+        return {**_values(names["expected"], names["found"]), "version": release}
+
+
+def _values(expected: Any, found: Any) -> dict[str, np.ndarray]:
+    return {"expected": np.asarray(float(expected)), "found": np.asarray(float(found))}
+
+
+def is_right(expected: float, found: float) -> bool:
+    """Within what MuJoCo's softness costs at the stiffest setting, 1e-4."""
+    return abs(found - expected) <= 2e-4 * max(1.0, abs(expected))
+
+
+SCRIPTS: Mapping[str, Script] = {
+    name: Script(name, digest(scripts()[name]))
+    for name in (
+        *("mujoco_loop", "mujoco_sparse", "mujoco_joint_equality", "mujoco_tendon_equality"),
+        *("mujoco_site_near_origin", "pymunk_groove", "pymunk_groove_moving", "pymunk_kinetic_energy", "mjx_loop"),
+    )
+}
+
+
+@dataclass(frozen=True)
+class Offsets(Task):
+    """The velocity that pymunk's GrooveJoint makes across itself, with the anchor at several offsets [m].
+
+    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground; its anchor lies at the offset from the
+    centre of mass, half along and half across the groove.
+    """
+
+    offsets: tuple[float, ...]
+
+    @property
+    def cost(self) -> float:
+        return 2e-4 * len(self.offsets)
+
+    @property
+    def label(self) -> str:
+        return "grooves: anchor's offset"
+
+    def run(self) -> Values:
+        """`across` (offsets,) [m/s] after a step."""
+        return {"across": np.array(list(map(measured_across, self.offsets)))}
+
+
 OFFSETS = Offsets(tuple(np.geomspace(0.05, 5.0, 13).round(6).tolist()))
-# Beyond this an equality counts as wrong, of its accelerations: rows with 1e-4 of softness agree far better.
-OFF = 1e-4
+
+
+def measured_across(offset: float) -> float:
+    """The anchor's velocity across the groove [m/s] after one step of pymunk, which closes no gap."""
+    import pymunk
+    from pymunk.constraints import GrooveJoint
+
+    space, body, arm = pymunk.Space(), pymunk.Body(1, 1), float(offset / np.sqrt(2))
+    body.velocity = 1, 0
+    groove = GrooveJoint(space.static_body, body, (-100, arm), (100, arm), (arm, arm))
+    groove.error_bias = 1.0
+    space.add(body, groove)
+    space.step(1e-2)
+    return body.velocity.y + body.angular_velocity * arm
+
+
+def predicted_across(offset: Any) -> Any:
+    """The same by cpGrooveJoint's law, an impulse n (n.K^-1 v) along the normal n instead of n (n.v) / (n.K n).
+
+    K = J M^-1 J^T of the two anchors held together, v their relative velocity: here K = [[1 + q, -q], [-q, 1 + q]] with
+    q = offset^2 / 2, v = (1, 0) and n = (0, 1), so that the impulse is -q / (1 + 2 q).
+    """
+    square = offset**2 / 2
+    return -square / (1 + 2 * square) * (1 + square)
 
 
 def draw_offsets(measured: np.ndarray, theme: Theme = LIGHT) -> Figure:
@@ -56,9 +166,8 @@ def draw_offsets(measured: np.ndarray, theme: Theme = LIGHT) -> Figure:
     with settings():
         figure = new_figure(3.4, theme, 6.4)
         axes = figure.subplots()
-        fine = np.geomspace(OFFSETS.offsets[0], OFFSETS.offsets[-1], 200).tolist()
-        line = [-across(setup, setup.predicted(wrong)) for setup in map(beside, fine)]
-        axes.loglog(fine, line, color=theme.first, linewidth=2, label="the wrong formula")
+        fine = np.geomspace(OFFSETS.offsets[0], OFFSETS.offsets[-1], 200)
+        axes.loglog(fine, -predicted_across(fine), color=theme.first, linewidth=2, label="the wrong formula")
         axes.loglog(OFFSETS.offsets, -measured, "o", color=theme.ink, markersize=5, label="pymunk, measured")
         axes.set_xlabel("anchor's distance from the centre of mass [m]")
         axes.set_ylabel("velocity across the groove\nafter a step, should be 0 [m/s]")
@@ -70,190 +179,21 @@ def draw_offsets(measured: np.ndarray, theme: Theme = LIGHT) -> Figure:
 def figures(material: Material) -> dict[str, str]:
     """The groove's chart, if it was measured."""
     answer = material.finished(OFFSETS)
-    if answer is None:
-        return {}
     title = "Velocity that a groove creates across itself, against its anchor's offset"
-    return {"groove": svg(draw_offsets(answer.array("across")), title)}
-
-
-@dataclass(frozen=True)
-class Fault:
-    """One entry of the page, and a file to paste into a tracker; its words are the template entries/`name`.md.
-
-    `scripts` and `costs` show it, at one instant and over time, with the newest release or the last that has it,
-    `wrong`; `mended` adds the missing term from outside.
-    """
-
-    name: str
-    releases: str
-    scripts: tuple[str, ...]
-    costs: tuple[str, ...] = ()
-    mended: tuple[str, ...] = ()
-    patch: str = ""
-
-
-ALL = "all tried"
-FAULTS = (
-    Fault(
-        "pymunk_groove",
-        ALL,
-        ("pymunk_groove", "pymunk_groove_moving"),
-        ("pymunk_groove_cost",),
-        patch="pymunk_groove.patch",
-    ),
-    Fault(
-        "pymunk_kinetic_energy",
-        ALL,
-        ("pymunk_kinetic_energy",),
-        ("pymunk_kinetic_energy_cost",),
-        patch="pymunk_kinetic_energy.patch",
-    ),
-    Fault(
-        "mujoco_curved_equalities",
-        ALL,
-        ("mujoco_joint_equality", "mujoco_tendon_equality"),
-        ("mujoco_joint_equality_cost", "mujoco_tendon_equality_cost"),
-        ("mujoco_joint_equality_mended", "mujoco_tendon_equality_mended"),
-    ),
-    Fault("mujoco_site_near_origin", ALL, ("mujoco_site_near_origin",)),
-    Fault("mujoco_loop", "before 3.7.0", ("mujoco_loop",), ("mujoco_loop_cost",)),
-    Fault("mujoco_sparse", "4.0.0", ("mujoco_sparse",), ("mujoco_sparse_cost",)),
-    Fault("mjx_loop", f"{MATCHED}, known", ("mjx_loop",), ("mjx_loop_cost",)),
-)
-
-
-def _of(rows: tuple[Found, ...], name: str) -> list[Found]:
-    """What a script printed, by release, oldest first."""
-    return [row for row in rows if row.script == name]
-
-
-def found_line(rows: tuple[Found, ...], name: str) -> str:
-    """What the last release with the fault finds, then the first that is mended, or our build."""
-    own = _of(rows, name)
-    faulty = [row for row in own if not row.right][-1]
-    line = f"{faulty.package} {faulty.version}: expected **{faulty.expected!r}**, found **{faulty.found!r}**"
-    mended = next((row for row in own[own.index(faulty) :] if row.right), None)
-    if mended is None:
-        return f"{line}."
-    ours = mended.version.endswith(PATCHED)
-    return f"{line}. {'With our patch' if ours else f'Mended in {mended.version}'}: found **{mended.found!r}**."
-
-
-def told(fault: Fault, layout: str) -> str:
-    """The entry of a fault as a part of the page or as a file to paste."""
-    rows = recorded()
-    seen = [row for name in fault.scripts for row in _of(rows, name)]
-    wrong_in = list(dict.fromkeys(f"{row.package} {row.version}" for row in seen if not row.right))
-    right_in = list(dict.fromkeys(f"{row.package} {row.version}" for row in seen if row.right))
-    last = {name: [row for row in _of(rows, name) if not row.right][-1] for name in fault.scripts}
-    proof = [f"* `{name}.py`: {row.printed}." for name in fault.mended for row in _of(rows, name)]
-    if fault.patch and layout == "issue":
-        proof.append(own_tests(rows))
-    scripts = [(name, source(name), last[name].printed) for name in fault.scripts]
-    scripts += [(name, source(name), row.printed) for name in fault.mended for row in _of(rows, name)]
-    costs = {name: _of(rows, name) for name in fault.costs}
-    return (
-        environment()
-        .get_template(f"faults/entries/{fault.name}.md")
-        .render(
-            layout=f"faults/{layout}.md",
-            fault=fault,
-            looked_up=LOOKED_UP,
-            matched=MATCHED,
-            seen_line="  \n".join(found_line(rows, name) for name in fault.scripts),
-            costs="\n\n".join(cost_text(row) for own in costs.values() for row in own),
-            cost_scripts=[(name, source(name), [cost_text(row) for row in own]) for name, own in costs.items()],
-            scripts=scripts,
-            versions=f"Wrong: {', '.join(wrong_in)}. "
-            + (f"Right: {', '.join(right_in)}. " if right_in else "")
-            + f"{next(iter(last.values())).machine}.",
-            patches=[(FOLDER / fault.patch).read_text(encoding="utf-8")] if fault.patch else [],
-            proof="\n".join(proof),
-        )
-    )
-
-
-def own_tests(rows: tuple[Found, ...]) -> str:
-    """How pymunk's own tests end with the release and with our build."""
-    lines = (f"* {row.version}: {', '.join(row.printed.splitlines())}." for row in _of(rows, OWN_TESTS))
-    return "\n".join(lines)
-
-
-def cost_text(row: Found) -> str:
-    """What a script printed of the costs, with the build told where it is ours."""
-    first, _, rest = row.printed.partition("\n")
-    return f"{first}{PATCHED if row.version.endswith(PATCHED) else ''}\n{rest}"
-
-
-def further(material: Material) -> dict[str, str]:
-    """The files to paste, one for each fault."""
-    return {f"upstream/{fault.name}.md": told(fault, "issue") for fault in FAULTS}
-
-
-def words(material: Material) -> Mapping[str, Any]:
-    """The entries from what releases printed; what the random models said, absent where nothing was run."""
-    build = [row for row in _of(recorded(), "pymunk_groove_random") if row.version.endswith(PATCHED)]
-    ours = {line[:24].strip(): line.split()[-1] for row in build for line in row.printed.splitlines()}
-    grooves = [
-        [
-            task.case,
-            f"{int(np.sum(off > WRONG))} of {len(off)}",
-            number(float(np.median(off))),
-            number(float(off.max())),
-            number(answer.number("missed")),
-            ours.get(task.case, ""),
-        ]
-        for task in GROOVES
-        if (answer := material.finished(task))
-        for off in (answer.array("off"),)
-    ]
-    equalities = [
-        [
-            task.kind,
-            f"{int(np.sum(off > OFF))} of {len(off)}",
-            number(float(np.median(off))),
-            number(float(off.max())),
-            number(float(answer.array("missed").max())),
-            "" if task.kind == "connect" else number(float(answer.array("mended").max())),
-        ]
-        for task in EQUALITIES
-        if (answer := material.finished(task))
-        for off in (answer.array("off"),)
-    ]
-    entries = {fault.name: told(fault, "entry") for fault in FAULTS}
-    listed = [
-        [f"[{title}](#{anchor(title)})", fault.releases]
-        for fault in FAULTS
-        for title in headings(entries[fault.name])[:1]
-    ]
-    header = ["", "wrong", "median", "largest", "off the wrong formula, at most"]
-    mended = "off the right one with our patch"
-    return {
-        "entries": entries,
-        "own_tests": own_tests(recorded()),
-        "looked_up": LOOKED_UP,
-        "listed": markdown(["fault", "releases"], listed),
-        "grooves": markdown(["groove in, anchor at", *header[1:], mended], grooves) if grooves else "",
-        "equalities": markdown(["equality", *header[1:], "off the right one with the term added"], equalities)
-        if equalities
-        else "",
-        "unfinished": {
-            name: material.unfinished(task) for name, task in SCRIPTS.items() if not material.finished(task)
-        },
-        "wrong": WRONG,
-        "off": OFF,
-    }
+    return {"groove": svg(draw_offsets(answer.array("across")), title)} if answer else {}
 
 
 PAGE = Page(
-    name=NAME,
+    name="faults",
     title="Faults of released engines",
     lesson="Wrong in a release, not soft or coarse: the formula behind it, what it costs, what to send to its authors.",
     scenes=(),
     engines=(),
     companions=(DrivenFourBar(), FreeFourBar(), SpinningFourBar(), DrivenSliderCrank()),
     figures=figures,
-    words=words,
-    further=further,
-    tasks=(*SCRIPTS.values(), *GROOVES, *EQUALITIES, OFFSETS),
+    words=lambda material: {
+        "unfinished": [material.unfinished(task) for task in SCRIPTS.values() if not material.finished(task)]
+    },
+    further=lambda material: {f"upstream/{path.name}": path.read_text("utf-8") for path in sorted(UPSTREAM.iterdir())},
+    tasks=(*SCRIPTS.values(), OFFSETS),
 )
