@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -14,7 +14,8 @@ from reference.scene import Scene
 from reports.model.cells import Cell
 from reports.model.checks import Deviation
 from reports.model.outcomes import Outcome
-from reports.model.page import Failure, Material
+from reports.model.page import Failure, Material, Observation
+from reports.model.tasks import Answer, Task
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
@@ -77,6 +78,31 @@ def _with_text(failure: Failure, paragraphs: Iterable[str], values: Mapping[str,
         claims=tuple(claims),
         words=words if values else failure.words,
     )
+
+
+def refusals(attempts: Mapping[str, Callable[[], object]]) -> list[Observation]:
+    """The reference's sentences on settings that can't be, by setting; AssertionError where it goes along."""
+    lines = []
+    for setting, attempt in attempts.items():
+        try:
+            attempt()
+        except ValueError as sentence:
+            lines.append(Observation("the reference", setting, f"refuses: {sentence}"))
+        else:
+            raise AssertionError(f"the reference went along with {setting}")
+    return lines
+
+
+def read_answers(
+    material: Material, method: str, settings: Iterable[tuple[Task, str]], read: Callable[[Answer], str]
+) -> list[Observation]:
+    """A line for each task that was run: what `read` finds in its answer, or why it did not finish."""
+    answers = {setting: material.answers.get(task) for task, setting in settings}
+    return [
+        Observation(method, setting, read(answer) if answer.finished else answer.told)
+        for setting, answer in answers.items()
+        if answer is not None
+    ]
 
 
 Found = Mapping[str, Mapping[tuple[str, str], Mapping[str, float] | Outcome]]

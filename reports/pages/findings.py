@@ -25,7 +25,7 @@ from reports.model.usual_steps import is_step
 from reports.pages.faults.page import OFFSETS, SCRIPTS, is_right
 from reports.pages.versions.page import ratios, table
 from reports.plots.looks import colour
-from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
+from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.versions.catalogue import COST_ROSE_IN
 from reports.versions.table import ACCELERATION, Entry
 from reports.write.page_tables import COMPARED, advice
@@ -65,27 +65,26 @@ def of_releases(label: str, entries: Iterable[Entry]) -> Line:
     return Line(label, shown[0].engine if shown else "", tuple((entry.version, entry.error) for entry in shown))
 
 
-def draw(lines: Sequence[Line], x: str, y: str, theme: Theme = LIGHT) -> Figure:
+def draw(lines: Sequence[Line], x: str, y: str) -> Figure:
     """Lines against x, both axes logarithmic, but for releases, which stand side by side; an engine has its own colour.
 
     Raises ValueError for more lines than there are looks.
     """
     if len(lines) > len(LOOKS):
         raise ValueError(f"a finding's picture has {len(lines)} lines; it must have at most {len(LOOKS)}")
-    with settings():
-        figure = new_figure(HEIGHT, theme, WIDTH)
+    with drawing(HEIGHT, width=WIDTH) as figure:
         axes = figure.subplots()
         for line, (dashes, mark, filled) in zip(lines, LOOKS, strict=False):
             if not line.points:
                 continue
-            paint = colour(line.engine, theme)
+            paint = colour(line.engine)
             axes.plot(
                 *zip(*line.points, strict=True),
                 label=line.label,
                 color=paint,
                 linestyle=dashes,
                 marker=mark,
-                markerfacecolor=paint if filled else theme.paper,
+                markerfacecolor=paint if filled else LIGHT.paper,
                 markeredgecolor=paint,
                 markersize=5,
                 linewidth=1.6,
@@ -93,7 +92,7 @@ def draw(lines: Sequence[Line], x: str, y: str, theme: Theme = LIGHT) -> Figure:
         axes.set_yscale("log")
         axes.set_xlabel(x)
         axes.set_ylabel(y)
-        style_axes(axes, theme)
+        style_axes(axes)
         if x == RELEASE:
             axes.tick_params(axis="x", labelrotation=60, labelsize=7)
         else:

@@ -8,7 +8,7 @@ from typing import Any
 
 from engines import registry
 from reports.model.outcomes import Outcome
-from reports.plots.theme import SERIES, Theme
+from reports.plots.theme import LIGHT, SERIES, Theme
 
 # One more than there are colours: family by family both change, and no pair comes again before the 72nd.
 MARKS = ("o", "s", "^", "D", "P", "*", "p", "h", "<")
@@ -41,12 +41,12 @@ def mark(family: str, engines: Iterable[str] = ()) -> str:
     return MARKS[places([family, *engines])[family] % len(MARKS)]
 
 
-def colour(engine: str, theme: Theme, engines: Iterable[str] = ()) -> str:
+def colour(engine: str, theme: Theme = LIGHT, engines: Iterable[str] = ()) -> str:
     """The colour of an engine's family."""
     return getattr(theme, role(family_of(engine), engines))
 
 
-def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: Theme) -> dict[str, Any]:
+def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: Theme = LIGHT) -> dict[str, Any]:
     """Line and mark of one method among all that are shown, variants by engine: its family is colour and shape of the
     mark, its variant line and filling, so that a chart survives without colours.
     """

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.trajectory import body_points, ground_points
-from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
+from reports.plots.theme import LIGHT, drawing, style_axes
 
 Array = NDArray[np.float64]
 
@@ -33,10 +33,10 @@ def draw_pose(panel: Axes, mechanism: Mechanism, pose: Array, **line: Any) -> No
         panel.plot(points[:, 0], points[:, 1], solid_capstyle="round", **line)
 
 
-def draw_ground(panel: Axes, mechanism: Mechanism, theme: Theme) -> None:
+def draw_ground(panel: Axes, mechanism: Mechanism) -> None:
     points = ground_points(mechanism)
     if len(points):
-        panel.plot(points[:, 0], points[:, 1], linestyle="none", marker="^", markersize=7, color=theme.quiet, zorder=1)
+        panel.plot(points[:, 0], points[:, 1], linestyle="none", marker="^", markersize=7, color=LIGHT.quiet, zorder=1)
 
 
 def configurations(
@@ -44,7 +44,6 @@ def configurations(
     truth: Array,
     titles: Sequence[str],
     others: Mapping[str, tuple[Array, str, Any]] | None = None,
-    theme: Theme = LIGHT,
     columns: int = 3,
 ) -> Figure:
     """Small multiples of poses (pictures, bodies, 3) of the truth, with other methods' overlaid where the eye can tell.
@@ -61,29 +60,28 @@ def configurations(
     count = -(-len(truth) // columns)
     width = 9.2 / columns
     height = width * float((high - low + 2 * margin)[1] / (high - low + 2 * margin)[0])
-    with settings():
-        figure = new_figure(count * (height + 0.15) + 0.5, theme)
+    with drawing(count * (height + 0.15) + 0.5) as figure:
         panels = figure.subplots(count, columns, squeeze=False).ravel()
         for panel in panels:
             panel.set_axis_off()
         drawn: set[str] = set()
         for index, (panel, pose, title) in enumerate(zip(panels, truth, titles, strict=False)):
-            style_axes(panel, theme, grid=False)
+            style_axes(panel, grid=False)
             panel.set_aspect("equal")
             panel.set_xlim(low[0] - margin, high[0] + margin)
             panel.set_ylim(low[1] - margin, high[1] + margin)
-            panel.set_title(title, loc="left", fontsize=9, color=theme.ink)
-            draw_ground(panel, mechanism, theme)
+            panel.set_title(title, loc="left", fontsize=9, color=LIGHT.ink)
+            draw_ground(panel, mechanism)
             draw_pose(
                 panel,
                 mechanism,
                 pose,
-                color=theme.ink,
+                color=LIGHT.ink,
                 linewidth=2.2,
                 marker="o",
                 markersize=4.5,
-                markerfacecolor=theme.paper,
-                markeredgecolor=theme.ink,
+                markerfacecolor=LIGHT.paper,
+                markeredgecolor=LIGHT.ink,
                 zorder=2,
             )
             for name, (poses, colour, dashes) in others.items():
@@ -93,15 +91,15 @@ def configurations(
                         panel,
                         mechanism,
                         poses[index],
-                        color=getattr(theme, colour),
+                        color=getattr(LIGHT, colour),
                         linewidth=1.4,
                         linestyle=dashes,
                         zorder=3,
                     )
-        handles = [Line2D([], [], color=theme.ink, linewidth=2.2, label="truth")]
+        handles = [Line2D([], [], color=LIGHT.ink, linewidth=2.2, label="truth")]
         for name, (_, colour, dashes) in others.items():
             label = name if name in drawn else f"{name}: not visibly off"
-            handles.append(Line2D([], [], color=getattr(theme, colour), linewidth=1.4, linestyle=dashes, label=label))
+            handles.append(Line2D([], [], color=getattr(LIGHT, colour), linewidth=1.4, linestyle=dashes, label=label))
         figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 
@@ -172,7 +170,7 @@ def path(scene: Scene, body: str, point: tuple[float, float], t: Array) -> Array
     return pose[:, :2] + np.stack([cosine * point[0] - sine * point[1], sine * point[0] + cosine * point[1]], axis=-1)
 
 
-def stroboscope(strips: Sequence[Strip], columns: int = 2, theme: Theme = LIGHT) -> Figure:
+def stroboscope(strips: Sequence[Strip], columns: int = 2) -> Figure:
     """One panel a strip, all poses in it, the last in full ink."""
     drawn = [_poses(strip) for strip in strips]
     boxes = [_box(strip, poses) for strip, poses in zip(strips, drawn, strict=True)]
@@ -181,19 +179,18 @@ def stroboscope(strips: Sequence[Strip], columns: int = 2, theme: Theme = LIGHT)
     width = 9.2 / columns
     heights = [max(width * (boxes[i][3] - boxes[i][1]) / (boxes[i][2] - boxes[i][0]) for i in line) for line in lines]
     heights = [min(max(height, 1.0), 1.1 * width) for height in heights]
-    with settings():
-        figure = new_figure(sum(heights) + 0.35 * len(lines), theme)
+    with drawing(sum(heights) + 0.35 * len(lines)) as figure:
         panels = figure.subplots(len(lines), columns, squeeze=False, height_ratios=heights).ravel()
         for spare in panels[len(strips) :]:
             spare.set_visible(False)
         for panel, strip, poses, box in zip(panels, strips, drawn, boxes, strict=False):
-            style_axes(panel, theme, grid=False)
+            style_axes(panel, grid=False)
             panel.set_axis_off()
             panel.set_aspect("equal")
             panel.set_xlim(box[0], box[2])
             panel.set_ylim(box[1], box[3])
-            panel.set_title(strip.caption, loc="left", fontsize=9, color=theme.ink)
-            _draw(panel, strip, poses, max(box[2] - box[0], box[3] - box[1]), theme)
+            panel.set_title(strip.caption, loc="left", fontsize=9, color=LIGHT.ink)
+            _draw(panel, strip, poses, max(box[2] - box[0], box[3] - box[1]))
     return figure
 
 
@@ -216,18 +213,18 @@ def _box(strip: Strip, poses: list[dict[str, Array]]) -> tuple[float, float, flo
     return low[0] - margin, low[1] - margin, high[0] + margin, high[1] + margin
 
 
-def _draw(panel: Axes, strip: Strip, poses: list[dict[str, Array]], size: float, theme: Theme) -> None:
+def _draw(panel: Axes, strip: Strip, poses: list[dict[str, Array]], size: float) -> None:
     if strip.floor:
-        panel.axhline(0.0, color=theme.quiet, linewidth=1.0, zorder=1)
+        panel.axhline(0.0, color=LIGHT.quiet, linewidth=1.0, zorder=1)
     elif not strip.spread:
-        draw_ground(panel, strip.scene.mechanism(), theme)
+        draw_ground(panel, strip.scene.mechanism())
     if strip.trace is not None:
         t = strip.times()
         body, point = strip.trace
         line = path(strip.scene, body, point, np.linspace(t[0], t[-1], 40 * len(t)))
-        panel.plot(line[:, 0], line[:, 1], color=theme.second, linewidth=0.9, zorder=2)
+        panel.plot(line[:, 0], line[:, 1], color=LIGHT.second, linewidth=0.9, zorder=2)
     crowd = max(len(bodies) for bodies in poses)
-    dots = {"marker": "o", "markersize": 3.0, "markerfacecolor": theme.paper, "markeredgecolor": theme.ink}
+    dots = {"marker": "o", "markersize": 3.0, "markerfacecolor": LIGHT.paper, "markeredgecolor": LIGHT.ink}
     for index, bodies in enumerate(poses):
         film = bool(strip.spread)
         strength = 1.0 if film or len(poses) == 1 else PALEST + (1 - PALEST) * (index / (len(poses) - 1)) ** 1.5
@@ -237,12 +234,12 @@ def _draw(panel: Axes, strip: Strip, poses: list[dict[str, Array]], size: float,
             if len(np.unique(points.round(12), axis=0)) == 1:
                 corners = np.array([[-1, -0.6], [1, -0.6], [1, 0.6], [-1, 0.6], [-1, -0.6]])
                 block = points[0] + BLOCK * size / 2 * corners
-                panel.plot(*block.T, color=theme.ink, alpha=strength, linewidth=1.4, zorder=3)
+                panel.plot(*block.T, color=LIGHT.ink, alpha=strength, linewidth=1.4, zorder=3)
             else:
                 parts += [points, GAP]
         panel.plot(
             *np.concatenate(parts).T,
-            color=theme.ink,
+            color=LIGHT.ink,
             alpha=strength,
             linewidth=2.0 if crowd < 20 else 1.3,
             solid_capstyle="round",

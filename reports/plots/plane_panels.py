@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
-from reports.plots.theme import LIGHT, WIDTH, Theme, new_figure, settings, style_axes
+from reports.plots.theme import LIGHT, WIDTH, drawing, style_axes
 
 Array = NDArray[np.float64]
 
@@ -92,17 +92,16 @@ class Panel:
         return low - spread, high + spread
 
 
-def paths(panels: Sequence[Panel], columns: int = 3, height: float | None = None, theme: Theme = LIGHT) -> Figure:
+def paths(panels: Sequence[Panel], columns: int = 3, height: float | None = None) -> Figure:
     """The panels in rows, with one legend below. A row is as high [inches] as its pictures ask for, unless given."""
     columns = min(columns, len(panels))
     rows = [panels[i : i + columns] for i in range(0, len(panels), columns)]
     heights = [height or max(_height(panel, WIDTH / columns) for panel in row) for row in rows]
-    with settings():
-        figure = new_figure(sum(heights) + 0.35 * len(rows) + 0.5, theme)
+    with drawing(sum(heights) + 0.35 * len(rows) + 0.5) as figure:
         axes = figure.subplots(len(rows), columns, squeeze=False, gridspec_kw={"height_ratios": heights})
         handles: dict[str, Line2D] = {}
         for spot, panel in zip(axes.ravel(), panels, strict=False):
-            _draw(spot, panel, theme, handles)
+            _draw(spot, panel, handles)
         for spare in axes.ravel()[len(panels) :]:
             spare.set_visible(False)
         if handles:
@@ -118,11 +117,11 @@ def _height(panel: Panel, width: float) -> float:
     return float(np.clip(width * size[1] / size[0], LOWEST, HIGHEST))
 
 
-def _draw(spot: Axes, panel: Panel, theme: Theme, handles: dict[str, Line2D]) -> None:
-    style_axes(spot, theme)
-    spot.set_title(panel.title, loc="left", fontsize=9, color=theme.ink)
+def _draw(spot: Axes, panel: Panel, handles: dict[str, Line2D]) -> None:
+    style_axes(spot)
+    spot.set_title(panel.title, loc="left", fontsize=9, color=LIGHT.ink)
     for order, path in enumerate(panel.paths):
-        look = {"color": getattr(theme, path.colour), "linestyle": path.dashes, "linewidth": path.width}
+        look = {"color": getattr(LIGHT, path.colour), "linestyle": path.dashes, "linewidth": path.width}
         points = path.finite()
         spot.plot(points[:, 0], points[:, 1], zorder=3 + 0.01 * order, **look)
         if path.dot and len(points):
@@ -130,7 +129,7 @@ def _draw(spot: Axes, panel: Panel, theme: Theme, handles: dict[str, Line2D]) ->
         if path.label:
             handles.setdefault(path.label, Line2D([], [], label=path.label, **look))
     for blades in panel.blades:
-        look = {"color": getattr(theme, blades.colour), "linewidth": blades.width}
+        look = {"color": getattr(LIGHT, blades.colour), "linewidth": blades.width}
         for stroke in blades.strokes():
             spot.plot(stroke[:, 0], stroke[:, 1], solid_capstyle="round", zorder=2.5, **look)
         if blades.label:
@@ -142,9 +141,9 @@ def _draw(spot: Axes, panel: Panel, theme: Theme, handles: dict[str, Line2D]) ->
             ha=note.align,
             va="center",
             fontsize=8,
-            color=theme.ink,
+            color=LIGHT.ink,
             zorder=5,
-            bbox={"facecolor": theme.paper, "edgecolor": "none", "pad": 1.0},
+            bbox={"facecolor": LIGHT.paper, "edgecolor": "none", "pad": 1.0},
         )
     spot.set_xlabel(panel.across or ("x [m]" if panel.plane else ""))
     spot.set_ylabel(panel.up or ("y [m]" if panel.plane else ""))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import re
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -13,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatterSciNotation
+from numpy.typing import ArrayLike
 
 WIDTH = 9.2  # inches: GitHub shows about this much of a page without scaling
 
@@ -118,9 +120,21 @@ def settings() -> AbstractContextManager[None]:
     return matplotlib.rc_context(plain)
 
 
-def new_figure(height: float, theme: Theme, width: float = WIDTH) -> Figure:
+def new_figure(height: float, theme: Theme = LIGHT, width: float = WIDTH) -> Figure:
     """An empty figure [inches] on the theme's paper."""
     return Figure(figsize=(width, height), facecolor=theme.paper, layout="constrained")
+
+
+@contextmanager
+def drawing(height: float, width: float = WIDTH) -> Iterator[Figure]:
+    """A figure that is drawn within `settings`."""
+    with settings():
+        yield new_figure(height, LIGHT, width)
+
+
+def note(panel: Axes, words: str, place: ArrayLike, offset: tuple[float, float], color: str, **more: Any) -> None:
+    """Words at an offset [points] from a place."""
+    panel.annotate(words, place, xytext=offset, textcoords="offset points", color=color, **more)  # type: ignore[arg-type]
 
 
 TIMES = "\N{MULTIPLICATION SIGN}"
@@ -146,7 +160,7 @@ def _in_powers(figure: Figure) -> None:
             axis.set_minor_formatter(PowersOfTen(labelOnlyBase=False))
 
 
-def style_axes(axes: Axes, theme: Theme, grid: bool = True) -> None:
+def style_axes(axes: Axes, theme: Theme = LIGHT, grid: bool = True) -> None:
     """Quiet frame, quiet ticks, a grid behind the data."""
     axes.set_facecolor(theme.paper)
     for side in ("top", "right"):

@@ -20,7 +20,7 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.plots.looks import look
-from reports.plots.theme import LIGHT, PowersOfTen, Theme, new_figure, settings, style_axes
+from reports.plots.theme import LIGHT, PowersOfTen, new_figure, note, settings, style_axes
 
 COLUMNS = 2
 LONG_NAME = 30  # letters: beyond, four names don't fit side by side
@@ -74,18 +74,18 @@ def _with_lines(rows: Sequence[Measurement]) -> list[str]:
     return [scene for scene in scenes if scene in lined] or scenes
 
 
-def _panels(scenes: Sequence[str], theme: Theme, height: float) -> tuple[Figure, list[Axes]]:
+def _panels(scenes: Sequence[str], height: float) -> tuple[Figure, list[Axes]]:
     columns = min(COLUMNS, len(scenes)) or 1
     count = -(-len(scenes) // columns) or 1
-    figure = new_figure(height * count + 0.9, theme)
+    figure = new_figure(height * count + 0.9)
     axes = figure.subplots(count, columns, squeeze=False, sharey=True).ravel()
     for spare in axes[len(scenes) :]:
         spare.set_visible(False)
     for panel, scene in zip(axes, scenes, strict=False):
-        panel.set_title(scene.replace("_", " "), loc="left", fontweight="bold", color=theme.ink)
+        panel.set_title(scene.replace("_", " "), loc="left", fontweight="bold", color=LIGHT.ink)
         panel.set_xscale("log")
         panel.set_yscale("log")
-        style_axes(panel, theme)
+        style_axes(panel)
     return figure, list(axes[: len(scenes)])
 
 
@@ -99,23 +99,21 @@ def _finish(panel: Axes) -> None:
     panel.minorticks_off()
 
 
-def _legend(figure: Figure, handles: Sequence[Line2D], theme: Theme) -> None:
+def _legend(figure: Figure, handles: Sequence[Line2D]) -> None:
     longest = max((len(str(handle.get_label())) for handle in handles), default=0)
     columns = 4 if longest <= LONG_NAME else 3
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, handlelength=3.2)
 
 
-def _handles(variants: dict[str, list[str]], theme: Theme) -> list[Line2D]:
+def _handles(variants: dict[str, list[str]]) -> list[Line2D]:
     return [
-        Line2D([], [], label=f"{engine} {variant}", **look(engine, variant, variants, theme))
+        Line2D([], [], label=f"{engine} {variant}", **look(engine, variant, variants))
         for engine, shown in variants.items()
         for variant in shown
     ]
 
 
-def work_precision(
-    rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle", theme: Theme = LIGHT
-) -> Figure:
+def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle") -> Figure:
     """Error against CPU time, one panel a scene, one series a method; the front that nothing beats is underlaid.
 
     The front is that of all rows, also of those that are not featured as series: those stand as small grey dots.
@@ -126,59 +124,59 @@ def work_precision(
     scenes = _with_lines(shown or rows)
     variants = _shown_variants(shown)
     with settings():
-        figure, panels = _panels(scenes, theme, 3.6)
+        figure, panels = _panels(scenes, 3.6)
         for panel, scene in zip(panels, scenes, strict=True):
             here = [row for row in rows if row.scene == scene]
             front = pareto((1e3 * row.cpu, getattr(row, field)) for row in here)
-            panel.plot(*zip(*front, strict=True), color=theme.grid, linewidth=7, drawstyle="steps-post", zorder=1)
+            panel.plot(*zip(*front, strict=True), color=LIGHT.grid, linewidth=7, drawstyle="steps-post", zorder=1)
             others = [(1e3 * row.cpu, getattr(row, field)) for row in here if not featured(row)]
             if others:
-                panel.plot(*zip(*others, strict=True), ".", color=theme.quiet, markersize=3, zorder=2)
+                panel.plot(*zip(*others, strict=True), ".", color=LIGHT.quiet, markersize=3, zorder=2)
             for (_, engine, variant), members in groups(row for row in here if featured(row)).items():
                 series = [(1e3 * row.cpu, getattr(row, field)) for row in forwards(members)]
-                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants, theme))
+                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants))
             panel.set_xlabel("CPU time per simulated second [ms]")
             if panels.index(panel) % COLUMNS == 0:
                 panel.set_ylabel(f"largest {quantity(field).axis}")
             _finish(panel)
-        handles = _handles(variants, theme)
-        handles.append(Line2D([], [], color=theme.grid, linewidth=8, label="nothing is better and cheaper"))
+        handles = _handles(variants)
+        handles.append(Line2D([], [], color=LIGHT.grid, linewidth=8, label="nothing is better and cheaper"))
         if len(shown) < len(rows):
-            handles.append(Line2D([], [], color=theme.quiet, marker=".", linestyle="none", label="other methods"))
-        _legend(figure, handles, theme)
+            handles.append(Line2D([], [], color=LIGHT.quiet, marker=".", linestyle="none", label="other methods"))
+        _legend(figure, handles)
     return figure
 
 
 def error_against_step(
-    rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle", theme: Theme = LIGHT
+    rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle"
 ) -> Figure:
     """Error against step, one panel a scene, with slopes 1, 2 and 4 as guides. A flat end is a plateau: the model."""
     rows = [row for row in drawable(rows, field) if featured(row)]
     scenes = _with_lines(rows)
     variants = _shown_variants(rows)
     with settings():
-        figure, panels = _panels(scenes, theme, 3.6)
+        figure, panels = _panels(scenes, 3.6)
         for panel, scene in zip(panels, scenes, strict=True):
             here = [row for row in rows if row.scene == scene]
             for (_, engine, variant), members in groups(here).items():
                 series = [(1e3 * row.step, getattr(row, field)) for row in members]
-                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants, theme))
-            panel.axhspan(1e-16, quantity(field).rounding, color=theme.grid, alpha=0.45, linewidth=0, zorder=0)
+                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants))
+            panel.axhspan(1e-16, quantity(field).rounding, color=LIGHT.grid, alpha=0.45, linewidth=0, zorder=0)
             panel.set_xlabel("step [ms]")
             if panels.index(panel) % COLUMNS == 0:
                 panel.set_ylabel(f"largest {quantity(field).axis}")
         for panel in panels:
             panel.set_ylim(bottom=min(getattr(row, field) for row in rows) / 3)
         for panel in panels:
-            _guides(panel, theme)
+            _guides(panel)
             _finish(panel)
-        handles = _handles(variants, theme)
-        handles.append(Line2D([], [], color=theme.grid, linewidth=8, alpha=0.6, label="rounding"))
-        _legend(figure, handles, theme)
+        handles = _handles(variants)
+        handles.append(Line2D([], [], color=LIGHT.grid, linewidth=8, alpha=0.6, label="rounding"))
+        _legend(figure, handles)
     return figure
 
 
-def _guides(panel: Axes, theme: Theme) -> None:
+def _guides(panel: Axes) -> None:
     """A fan of slopes where it is farthest from the lines of the panel, whose limits it leaves as they are."""
     low, high = np.log10([panel.get_xlim(), panel.get_ylim()]).T
     size = high - low  # decades
@@ -197,7 +195,6 @@ def _guides(panel: Axes, theme: Theme) -> None:
     left, bottom = low + corners[distances.argmax(), 0] * size
     for slope, place in zip(SLOPES, ("top", "center", "bottom"), strict=True):  # apart in a panel of many decades too
         end = bottom + slope * width
-        panel.plot(10 ** np.array([left, left + width]), 10 ** np.array([bottom, end]), color=theme.quiet,
+        panel.plot(10 ** np.array([left, left + width]), 10 ** np.array([bottom, end]), color=LIGHT.quiet,
                    linewidth=0.8, zorder=2, scalex=False, scaley=False)  # fmt: skip
-        panel.annotate(str(slope), (10 ** (left + width), 10**end), xytext=(3, 0), textcoords="offset points",
-                       color=theme.quiet, fontsize=8, va=place)  # fmt: skip
+        note(panel, str(slope), (10 ** (left + width), 10**end), (3, 0), LIGHT.quiet, fontsize=8, va=place)

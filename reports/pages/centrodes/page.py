@@ -26,7 +26,7 @@ from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion
 from reports.plots.mechanisms import draw_ground, draw_pose
-from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
+from reports.plots.theme import LIGHT, drawing, note, style_axes, svg
 from reports.write.tables import markdown, number
 
 CHECKED = 101  # places looked at: enough to meet the largest error of smooth curves, few enough to wait for
@@ -48,14 +48,11 @@ def returned(curves: Centrodes) -> tuple[float, float]:
     return float(distance.max()), float(np.ptp(pose[:, 2]))
 
 
-def draw_centrodes(
-    mechanism: Mechanism, poses: Array, curves: Centrodes, indices: Sequence[int], body: int, theme: Theme = LIGHT
-) -> Figure:
+def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indices: Sequence[int], body: int) -> Figure:
     """A panel for each index into the samples (of poses (samples, bodies, 3) and of the curves, in one order)."""
-    with settings():
-        figure = new_figure(4.4, theme)
+    with drawing(4.4) as figure:
         for panel, index in zip(figure.subplots(1, len(indices), sharex=True, sharey=True), indices, strict=True):
-            style_axes(panel, theme, grid=False)
+            style_axes(panel, grid=False)
             panel.set_axis_off()
             panel.set_aspect("equal")
             pose, centre = poses[index], curves.space[index]
@@ -64,25 +61,25 @@ def draw_centrodes(
                 # The lines of crank and rocker, produced to the centre.
                 if isinstance(joint, Pin) and joint.first is None and joint.second != joints:
                     line = np.stack([np.asarray(joint.first_point), centre])
-                    panel.plot(*line.T, color=theme.grid, linewidth=1.2, zorder=0)
-            panel.plot(*curves.space.T, color=theme.first, linewidth=2, zorder=1)
+                    panel.plot(*line.T, color=LIGHT.grid, linewidth=1.2, zorder=0)
+            panel.plot(*curves.space.T, color=LIGHT.first, linewidth=2, zorder=1)
             moved = rotated(np.asarray(pose[body, 2]), curves.body) + pose[body, :2]
-            panel.plot(*moved.T, color=theme.second, linewidth=2, linestyle="--", zorder=2)
-            draw_ground(panel, mechanism, theme)
-            draw_pose(panel, mechanism, pose, color=theme.ink, linewidth=2, marker="o", markersize=4.5,
-                      markerfacecolor=theme.paper, markeredgecolor=theme.ink, zorder=3)  # fmt: skip
-            panel.plot(*centre, "o", color=theme.fourth, markersize=6, zorder=4)
-            _letters(panel, mechanism, pose, theme)
+            panel.plot(*moved.T, color=LIGHT.second, linewidth=2, linestyle="--", zorder=2)
+            draw_ground(panel, mechanism)
+            draw_pose(panel, mechanism, pose, color=LIGHT.ink, linewidth=2, marker="o", markersize=4.5,
+                      markerfacecolor=LIGHT.paper, markeredgecolor=LIGHT.ink, zorder=3)  # fmt: skip
+            panel.plot(*centre, "o", color=LIGHT.fourth, markersize=6, zorder=4)
+            _letters(panel, mechanism, pose)
         handles = [
-            Line2D([], [], color=theme.first, linewidth=2, label="fixed centrode"),
-            Line2D([], [], color=theme.second, linewidth=2, linestyle="--", label="moving centrode"),
-            Line2D([], [], color=theme.fourth, marker="o", linestyle="none", label="instant centre"),
+            Line2D([], [], color=LIGHT.first, linewidth=2, label="fixed centrode"),
+            Line2D([], [], color=LIGHT.second, linewidth=2, linestyle="--", label="moving centrode"),
+            Line2D([], [], color=LIGHT.fourth, marker="o", linestyle="none", label="instant centre"),
         ]
         figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 
 
-def _letters(panel: Axes, mechanism: Mechanism, pose: Array, theme: Theme) -> None:
+def _letters(panel: Axes, mechanism: Mechanism, pose: Array) -> None:
     """The pins' names: beyond the end of a bar on the ground, of the others away from the middle of all pins."""
     places, bars = {}, {}
     for joint in mechanism.joints:
@@ -93,23 +90,22 @@ def _letters(panel: Axes, mechanism: Mechanism, pose: Array, theme: Theme) -> No
     for joint, place in places.items():
         away = place - (middle if joint.first is not None else bars[joint])
         away = away if np.any(away) else np.array([0.0, 1.0])
-        panel.annotate(joint.name, place, xytext=tuple(11 * away / np.linalg.norm(away)), textcoords="offset points",
-                       ha="center", va="center", color=theme.ink, zorder=5,
-                       bbox={"facecolor": theme.paper, "edgecolor": "none", "pad": 0.0})  # fmt: skip
+        x, y = 11 * away / np.linalg.norm(away)
+        box = {"facecolor": LIGHT.paper, "edgecolor": "none", "pad": 0.0}
+        note(panel, joint.name, place, (x, y), LIGHT.ink, ha="center", va="center", zorder=5, bbox=box)
 
 
-def draw_rate(curves: Centrodes, theme: Theme = LIGHT) -> Figure:
+def draw_rate(curves: Centrodes) -> Figure:
     """ds/dtheta from the way of the centre and from the curvatures, with their relative difference below."""
     total = 1 / (curves.space_curvature + curves.body_curvature)
     degrees = np.degrees(curves.theta)
-    with settings():
-        figure = new_figure(4.0, theme)
+    with drawing(4.0) as figure:
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
-        above.plot(degrees, curves.rate, color=theme.first, linewidth=4, alpha=0.5, label="ds/dθ, way of the centre")
-        above.plot(degrees, total, color=theme.ink, linewidth=1.2, label="1/($\\kappa_A+\\kappa_B$), both curvatures")
-        below.semilogy(degrees, np.maximum(np.abs(total / curves.rate - 1), 1e-17), color=theme.ink, linewidth=1)
+        above.plot(degrees, curves.rate, color=LIGHT.first, linewidth=4, alpha=0.5, label="ds/dθ, way of the centre")
+        above.plot(degrees, total, color=LIGHT.ink, linewidth=1.2, label="1/($\\kappa_A+\\kappa_B$), both curvatures")
+        below.semilogy(degrees, np.maximum(np.abs(total / curves.rate - 1), 1e-17), color=LIGHT.ink, linewidth=1)
         for panel, up in ((above, "m/rad"), (below, "relative\ndifference")):
-            style_axes(panel, theme)
+            style_axes(panel)
             panel.set_ylabel(up)
         above.legend()
         below.set_xlabel("angle of the coupler [degrees]")

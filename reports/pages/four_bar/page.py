@@ -21,8 +21,8 @@ from reference.scenes.four_bar.scenes import (
 )
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation, Page
-from reports.model.tasks import Motion, Task, Values
-from reports.pages.common import ALL, cells, described, deviations
+from reports.model.tasks import Answer, Motion, Task, Values
+from reports.pages.common import ALL, cells, described, deviations, read_answers, refusals
 from reports.pages.versions.page import table
 from reports.plots import mechanisms as drawings
 from reports.plots.theme import svg
@@ -77,29 +77,20 @@ DRIFTS = tuple(
 
 def rates_drift(material: Material) -> list[Observation]:
     """The chapter's pseudocode at several tolerances over 1 and 100 revolutions, against the closed form."""
-    found = []
-    for task in DRIFTS:
-        if (answer := material.answers.get(task)) is None:
-            continue
-        told = answer.told
-        if answer.finished:
-            stopped = f", {answer.values['stopped']}" if answer.values["stopped"] else ""
-            told = (
-                rf"$\beta$ off by {number(answer.number('error'))} rad after {answer.number('evaluations'):.0f} "
-                f"evaluations{stopped}"
-            )
-        turns = "one revolution" if task.revolutions == 1 else f"{task.revolutions} revolutions"
-        found.append(Observation("RK45 on the printed rates", f"{turns}, rtol {number(task.tolerance, 1)}", told))
-    return found
+
+    def read(answer: Answer) -> str:
+        error, count, stopped = number(answer.number("error")), answer.number("evaluations"), answer.values["stopped"]
+        return rf"$\beta$ off by {error} rad after {count:.0f} evaluations{f', {stopped}' if stopped else ''}"
+
+    turns = {1: "one revolution", 100: "100 revolutions"}
+    settings = [(task, f"{turns[task.revolutions]}, rtol {number(task.tolerance, 1)}") for task in DRIFTS]
+    return read_answers(material, "RK45 on the printed rates", settings, read)
 
 
-def _refusal(material: Material) -> list[Observation]:
+def refusal(material: Material) -> list[Observation]:
+    """The reference's sentence on a crank that is driven beyond its limit."""
     scene = OverdrivenFourBar()
-    try:
-        scene.motion([scene.duration])
-    except ValueError as sentence:
-        return [Observation("the reference", f"{scene.duration:.3g} s", f"refuses: {sentence}")]
-    raise AssertionError("a crank was driven beyond its limit and the reference went along")
+    return refusals({f"{scene.duration:.3g} s": lambda: scene.motion([scene.duration])})
 
 
 SWEEPS = tuple(
@@ -117,7 +108,7 @@ FAILURES = described(
         "A parallelogram through its change points",
         cells=cells(Parallelogram(), EVERY[:-1], (1, 10, 100)) + cells(Parallelogram(), EVERY[-1:], (1, 10)),
     ),
-    Failure("A crank driven into its limit", cells=cells(OverdrivenFourBar(), EVERY, (1, 10)), observations=_refusal),
+    Failure("A crank driven into its limit", cells=cells(OverdrivenFourBar(), EVERY, (1, 10)), observations=refusal),
     Failure(
         "Five ways to drive a crank",
         cells=cells(DrivenFourBar(), (mujoco.TUNED, *mujoco.DRIVES, pymunk.TUNED, OVERWRITTEN), (1, 10, 100)),

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from engines import Promise, pymunk
 from engines.registry import VARIANTS
-from reference.checks import InvalidMechanism
 from reference.scenes.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
 from reports.model.page import Failure, Material, Observation, Page
-from reports.pages.common import ALL, cells, described, deviations, sweeps
+from reports.pages.common import ALL, cells, described, deviations, refusals, sweeps
 from reports.plots.mechanisms import Points, Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.rows import lookups
@@ -31,16 +31,12 @@ def growth(material: Material) -> list[Observation]:
     return found
 
 
-def refusals(material: Material) -> list[Observation]:
-    """What the reference says to stances that can't be."""
-    found = []
-    for wrong in ({"stance": 2.0}, {"hip_y": 0.95}, {"knees": 0}, {"height": 0.0}):
-        try:
-            replace(TwoFeet(), **wrong)
-        except InvalidMechanism as sentence:
-            setting = ", ".join(f"{name} = {value!r}" for name, value in wrong.items())
-            found.append(Observation("the reference", setting, f"refuses: {sentence}"))
-    return found
+WRONG: dict[str, float] = {"stance": 2.0, "hip_y": 0.95, "knees": 0, "height": 0.0}
+
+
+def impossible(material: Material) -> list[Observation]:
+    """The reference's sentences on stances that can't be."""
+    return refusals({f"{name} = {n!r}": partial(replace, TwoFeet(), **{name: n}) for name, n in WRONG.items()})
 
 
 FAILURES = described(
@@ -51,7 +47,7 @@ FAILURES = described(
         cells=cells(OneFoot(), (pymunk.DEFAULT,), (1, 10))
         + cells(OneFoot(), map(sweeps, (5, 10, 20, 100)), (1, 3, 10, 30, 100)),
     ),
-    Failure("Stances that can't be", observations=refusals),
+    Failure("Stances that can't be", observations=impossible),
     swayed=SwayingOnOneFoot().duration,
 )
 

@@ -17,7 +17,8 @@ from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import Catenary, Parabola
 from reference.rolling.roll import Roll
 from reference.scenes.rolling.elliptic_gears import EllipticGears
-from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
+from reference.scenes.rolling.scenes import RollingScene
+from reports.plots.theme import LIGHT, drawing, note, style_axes
 
 POINTS = 241
 
@@ -39,26 +40,17 @@ def roulettes() -> tuple[Roulette, ...]:
     """Six that the chapter or its classics know by name."""
     ellipse, twin = Ellipse(0.5, 0.3), Placed(Ellipse(0.5, 0.3), turn=math.pi / 2)
     focus = (0.4, 0.0)
-    disc = Circle(0.4)
+    turned = (-2 * math.pi, -4.2, -2.1, 0.0)
     square = Rolling.at_arcs(Side(1.0), Placed(Catenary(0.5), turn=math.pi))
     # Its material is above it; turned over it rolls on the line along its outside.
     parabola = Rolling.at_arcs(Parabola(0.3), Line())
     return (
-        Roulette(
-            "a point of a rim on a line: cycloid",
-            Rolling.at_angle(disc, Line()),
-            (0.0, -0.4),
-            (-2 * math.pi, 0.0),
-            (-2 * math.pi, -4.2, -2.1, 0.0),
-            (-2.9, 0.4),
-        ),
-        Roulette(
-            "focus of an ellipse on a line",
-            Rolling.at_angle(ellipse, Line()),
-            focus,
-            (-2 * math.pi, 0.0),
-            (-2 * math.pi, -4.2, -2.1, 0.0),
-            (-2.9, 0.4),
+        *(
+            Roulette(title, Rolling.at_angle(body, Line()), point, (-2 * math.pi, 0.0), turned, (-2.9, 0.4))
+            for title, body, point in (
+                ("a point of a rim on a line: cycloid", Circle(0.4), (0.0, -0.4)),
+                ("focus of an ellipse on a line", ellipse, focus),
+            )
         ),
         Roulette(
             "focus of an ellipse on its twin: a circle",
@@ -110,28 +102,27 @@ def placed(points: Array, pose: Array) -> Array:
     return rotated(np.asarray(pose[2]), points) + pose[:2]
 
 
-def draw_roulettes(chosen: Sequence[Roulette], theme: Theme = LIGHT, columns: int = 2) -> Figure:
+def draw_roulettes(chosen: Sequence[Roulette], columns: int = 2) -> Figure:
     """A panel each."""
     rows = -(-len(chosen) // columns)
-    with settings():
-        figure = new_figure(2.75 * rows, theme)
+    with drawing(2.75 * rows) as figure:
         for panel, one in zip(figure.subplots(rows, columns, squeeze=False).ravel(), chosen, strict=False):
-            _blank(panel, one.title, theme)
+            _blank(panel, one.title)
             ground = outline(one.rolling.ground, one.ground)
-            panel.plot(*ground.T, color=theme.ink, linewidth=1.8)
+            panel.plot(*ground.T, color=LIGHT.ink, linewidth=1.8)
             body = outline(one.rolling.body, one.body)
             for theta in one.shown:
                 pose = one.rolling.pose(theta)
-                panel.plot(*placed(body, pose).T, color=theme.quiet, linewidth=1.0)
+                panel.plot(*placed(body, pose).T, color=LIGHT.quiet, linewidth=1.0)
                 arm = one.rolling.position(theta, one.point)
-                panel.plot(*np.stack([one.rolling.contact(theta).point, arm]).T, color=theme.quiet, linewidth=0.8)
-                panel.plot(*arm, "o", color=theme.first, markersize=4.5, zorder=4)
+                panel.plot(*np.stack([one.rolling.contact(theta).point, arm]).T, color=LIGHT.quiet, linewidth=0.8)
+                panel.plot(*arm, "o", color=LIGHT.first, markersize=4.5, zorder=4)
             path = one.rolling.position(np.linspace(*one.path, 2 * POINTS), one.point)
-            panel.plot(*path.T, color=theme.first, linewidth=2.0, zorder=3)
+            panel.plot(*path.T, color=LIGHT.first, linewidth=2.0, zorder=3)
     return figure
 
 
-def draw_contact(theme: Theme = LIGHT) -> Figure:
+def draw_contact() -> Figure:
     """A body on a hill, on flat ground and in a hole: the contact C, e_t, e_n, and the circles of curvature."""
     body = Ellipse(0.5, 0.3)
     hill, hole = Placed(Circle(0.8), turn=math.pi / 2), Placed(Ring(1.1), turn=-math.pi / 2)
@@ -140,8 +131,7 @@ def draw_contact(theme: Theme = LIGHT) -> Figure:
         ("on flat ground", Line(), 0.35),
         ("in a hole", hole, 0.35),
     )
-    with settings():
-        figure = new_figure(3.5, theme)
+    with drawing(3.5) as figure:
         for panel, (title, ground, theta) in zip(figure.subplots(1, 3), grounds, strict=True):
             rolling = Rolling.at_angle(body, ground, theta)
             contact = rolling.contact(theta)
@@ -149,15 +139,15 @@ def draw_contact(theme: Theme = LIGHT) -> Figure:
             title = (
                 f"{title}: $\\kappa_A$ = {a:.2f}, $\\kappa_B$ = {b:.2f} 1/m\n$ds/d\\theta$ = {contact.rate:.3f} m/rad"
             )
-            _blank(panel, title, theme)
+            _blank(panel, title)
             near = np.linspace(-0.75, 0.75, POINTS) + float(contact.ground_arc)
-            panel.plot(*ground.point(near).T, color=theme.ink, linewidth=2.0)
-            panel.plot(*placed(outline(body), rolling.pose(theta)).T, color=theme.quiet, linewidth=1.6)
+            panel.plot(*ground.point(near).T, color=LIGHT.ink, linewidth=2.0)
+            panel.plot(*placed(outline(body), rolling.pose(theta)).T, color=LIGHT.quiet, linewidth=1.6)
             point, tangent, normal = contact.point, contact.tangent, contact.normal
             turn = np.linspace(0, 2 * math.pi, POINTS)
             circle = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-            panel.plot(*(point + normal / b + circle / b).T, color=theme.fourth, linewidth=1.2, linestyle=":")
-            for vector, name, colour in ((tangent, "$e_t$", theme.first), (normal, "$e_n$", theme.second)):
+            panel.plot(*(point + normal / b + circle / b).T, color=LIGHT.fourth, linewidth=1.2, linestyle=":")
+            for vector, name, colour in ((tangent, "$e_t$", LIGHT.first), (normal, "$e_n$", LIGHT.second)):
                 tip = point + 0.45 * vector
                 panel.annotate(
                     "", tip, point, arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.8}, zorder=5
@@ -165,57 +155,123 @@ def draw_contact(theme: Theme = LIGHT) -> Figure:
                 # Beside the arrow's tip: above it, but below it in a hole, whose ground rises towards the tip.
                 above = (0.09 if a >= 0 else -0.09) * normal if vector is tangent else 0.0
                 panel.annotate(name, point + 0.53 * vector + above, color=colour, ha="center", va="center", fontsize=11)
-            panel.plot(*point, "o", color=theme.ink, markersize=4, zorder=6)
-            panel.annotate("C", point - 0.09 * normal, color=theme.ink, ha="center", va="center")
-            panel.annotate("A", point - 0.3 * normal, color=theme.ink, ha="center", va="center")
+            panel.plot(*point, "o", color=LIGHT.ink, markersize=4, zorder=6)
+            panel.annotate("C", point - 0.09 * normal, color=LIGHT.ink, ha="center", va="center")
+            panel.annotate("A", point - 0.3 * normal, color=LIGHT.ink, ha="center", va="center")
             middle = rolling.pose(theta)[:2]
-            panel.annotate("B", middle + 0.08 * tangent, color=theme.quiet, ha="center", va="center")
+            panel.annotate("B", middle + 0.08 * tangent, color=LIGHT.quiet, ha="center", va="center")
             centre = np.array([point[0], point[1] + 0.3])
             panel.set_xlim(centre[0] - 0.85, centre[0] + 0.85)
             panel.set_ylim(centre[1] - 0.62, centre[1] + 0.72)
     return figure
 
 
-def draw_gears(scene: EllipticGears, theme: Theme = LIGHT) -> Figure:
+def draw_gears(scene: EllipticGears) -> Figure:
     """The gears at four instants, and how fast the second turns."""
     turn = 2 * math.pi / scene.turning_rate
     times = (0.15 + np.arange(4)) * turn / 4
-    with settings():
-        figure = new_figure(4.6, theme)
+    with drawing(4.6) as figure:
         grid = figure.add_gridspec(2, 4, height_ratios=[1.0, 1.1])
         truth = scene.motion(times)
         [roll] = [joint for joint in scene.mechanism().joints if isinstance(joint, Roll)]
         rim = outline(roll.rolling.body)
         for index in range(4):
             panel = figure.add_subplot(grid[0, index])
-            _blank(panel, f"t = {times[index]:.2f} s", theme)
-            for gear, colour in ((0, theme.first), (1, theme.second)):
+            _blank(panel, f"t = {times[index]:.2f} s")
+            for gear, colour in ((0, LIGHT.first), (1, LIGHT.second)):
                 pose = truth.pose[index, gear]
                 panel.plot(*placed(rim, pose).T, color=colour, linewidth=1.8)
-                panel.plot(2 * scene.major * gear, 0.0, "^", color=theme.ink, markersize=6)
+                panel.plot(2 * scene.major * gear, 0.0, "^", color=LIGHT.ink, markersize=6)
                 spoke = np.stack([[2 * scene.major * gear, 0.0], pose[:2]])
                 panel.plot(*spoke.T, color=colour, linewidth=1.0)
             reach = 1.06 * scene.major * (1 + scene.eccentricity)
             panel.set_xlim(-reach, 2 * scene.major + reach)
             panel.set_ylim(-reach, reach)
         panel = figure.add_subplot(grid[1, :])
-        style_axes(panel, theme)
+        style_axes(panel)
         t = np.linspace(0, 2 * turn, 400)
         rates = scene.motion(t).twist[:, :, 2]
-        panel.plot(t, rates[:, 0], color=theme.first, linewidth=1.8)
-        panel.plot(t, rates[:, 1], color=theme.second, linewidth=1.8)
-        panel.annotate("first gear", (t[-1], rates[-1, 0]), xytext=(-4, 5), textcoords="offset points", ha="right",
-                       color=theme.first)  # fmt: skip
+        panel.plot(t, rates[:, 0], color=LIGHT.first, linewidth=1.8)
+        panel.plot(t, rates[:, 1], color=LIGHT.second, linewidth=1.8)
+        note(panel, "first gear", (t[-1], rates[-1, 0]), (-4, 5), LIGHT.first, ha="right")
         low = int(np.argmin(rates[:, 1]))
-        panel.annotate("second gear", (t[low], rates[low, 1]), xytext=(28, 4), textcoords="offset points",
-                       color=theme.second)  # fmt: skip
+        note(panel, "second gear", (t[low], rates[low, 1]), (28, 4), LIGHT.second)
         panel.set_xlabel("time [s]")
         panel.set_ylabel("rate [rad/s]")
     return figure
 
 
-def _blank(panel: Axes, title: str, theme: Theme) -> None:
-    panel.set_facecolor(theme.paper)
+def _blank(panel: Axes, title: str) -> None:
+    panel.set_facecolor(LIGHT.paper)
     panel.set_axis_off()
     panel.set_aspect("equal")
-    panel.set_title(title, loc="left", fontsize=9, color=theme.ink)
+    panel.set_title(title, loc="left", fontsize=9, color=LIGHT.ink)
+
+
+COEFFICIENTS = (0.2, 0.5, 1.0)
+
+
+def draw_acceleration() -> Figure:
+    """The rolling term beside that of a body pinned at C: over an ellipse's turn, and against how well curves fit."""
+    with drawing(3.6) as figure:
+        left, right = figure.subplots(1, 2)
+        rolling = Rolling.at_angle(Ellipse(0.5, 0.3), Line())
+        theta = np.linspace(0, math.pi, 400)
+        pinned = np.linalg.norm(rolling.pinned_acceleration(theta, 1.0, 0.0), axis=-1)
+        term = np.linalg.norm(rolling.rolling_acceleration(theta, 1.0), axis=-1)
+        for values, name, colour, place in (
+            (pinned, "pinned at C: $\\omega^2 r$", LIGHT.second, 200),
+            (term, "rolling: $\\omega^2/(\\kappa_A+\\kappa_B)$", LIGHT.first, 30),
+        ):
+            left.plot(np.degrees(theta), values, color=colour, linewidth=2)
+            note(left, name, (np.degrees(theta[place]), values[place]), (4, 6), colour)
+        _axes(left, "an ellipse on flat ground, its centre", "rotation [degrees]", "acceleration at 1 rad/s [m/s$^2$]")
+        left.set_xticks([0, 45, 90, 135, 180])
+        fit = np.geomspace(1e-3, 30, 200)  # (kappa_A + kappa_B) / kappa_B of a disc
+        right.plot(fit, 1 / fit, color=LIGHT.first, linewidth=2)
+        right.axhline(1.0, color=LIGHT.second, linewidth=2)
+        note(right, "as if pinned at C", (1.3e-2, 1.0), (0, -12), LIGHT.second)
+        note(right, "what rolling adds", (2e-3, 500), (12, 2), LIGHT.first)
+        for place, word, height in ((1.0, "flat", 0.025), (10.0, "sharp", 4.0), (0.01, "hole 1 %\nlarger", 0.025)):
+            right.axvline(place, color=LIGHT.quiet, linewidth=0.8, linestyle=":")
+            note(right, word, (place, height), (3, 0), LIGHT.quiet, va="bottom")
+        right.set_xscale("log")
+        right.set_yscale("log")
+        right.set_ylim(0.02, 2e3)
+        across, up = "$(\\kappa_A+\\kappa_B)/\\kappa_B$", "parts of $\\omega^2 r$"
+        _axes(right, "a disc's centre, against how well the curves fit", across, up)
+    return figure
+
+
+def draw_friction(scenes: Sequence[RollingScene]) -> Figure:
+    """|T|/N over time, the coefficients that would do, and the instants at which a real contact slips or hops."""
+    with drawing(3.6) as figure:
+        for index, (panel, scene) in enumerate(zip(figure.subplots(1, len(scenes), sharey=True), scenes, strict=True)):
+            law, end = scene.motion_law, scene.hop or scene.duration
+            t = np.linspace(0, end * (1 - 1e-9), 800)
+            panel.plot(t, law.required_friction(t), color=LIGHT.ink, linewidth=1.8)
+            for friction in COEFFICIENTS:
+                panel.axhline(friction, color=LIGHT.second, linewidth=1.0, linestyle="--")
+                # Beside the panel: within it, the curve crosses these lines anywhere.
+                beside = {"xycoords": ("axes fraction", "data"), "va": "center", "annotation_clip": False}
+                note(panel, f"$\\mu$ = {friction:g}", (1.0, friction), (3, 0), LIGHT.second, fontsize=8, **beside)
+                if (slip := law.slip(friction, scene.duration)) is not None:
+                    panel.plot(slip, friction, "o", color=LIGHT.first, markersize=6, zorder=4)
+                    offset, side = ((7, -11), "left") if slip < 0.3 * scene.duration else ((-7, 4), "right")
+                    note(panel, f"slips {slip:.3f} s", (slip, friction), offset, LIGHT.first, fontsize=8, ha=side)
+            if scene.hop is not None:
+                panel.axvline(scene.hop, color=LIGHT.first, linewidth=1.4)
+                words = f"hops {scene.hop:.3f} s"
+                note(panel, words, (scene.hop, 1.45), (-14, 0), LIGHT.first, fontsize=8, ha="right")
+            panel.set_ylim(0, 1.6)
+            panel.set_xlim(0, scene.duration)
+            up = "friction demanded, |T| / N" if index == 0 else ""
+            _axes(panel, scene.name.replace("_", " "), "time [s]", up)
+    return figure
+
+
+def _axes(panel: Axes, title: str, across: str, up: str) -> None:
+    style_axes(panel)
+    panel.set_title(title, loc="left", fontsize=9.5, color=LIGHT.ink)
+    panel.set_xlabel(across)
+    panel.set_ylabel(up)

@@ -26,7 +26,7 @@ from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
-from reports.pages.common import PUBLIC, cells, described
+from reports.pages.common import PUBLIC, cells, described, refusals
 from reports.write.experiments import observe
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
@@ -160,21 +160,9 @@ def least_opening(material: Material) -> dict[str, Any]:
 
 
 def refused(scene: RollingScene, setting: str) -> Callable[[Material], list[Observation]]:
-    """What the reference says of a motion that can't be."""
-
-    def refusal(material: Material) -> list[Observation]:
-        return [Observation("the reference", setting, f"refuses: {_refusal(scene)}")]
-
-    return refusal
-
-
-@cache
-def _refusal(scene: RollingScene) -> str:
-    try:
-        scene.motion([scene.duration])
-    except ValueError as sentence:
-        return str(sentence)
-    raise AssertionError(f"the reference went along with {scene}")
+    """The reference's sentence on a motion that can't be."""
+    refusal = cache(lambda: refusals({setting: lambda: scene.motion([scene.duration])}))
+    return lambda material: refusal()
 
 
 FAILURES = described(

@@ -23,7 +23,7 @@ from reports.model.page import Material, Page
 from reports.pages.pendulum import page as pendulum
 from reports.pages.scaling.experiments import BandedChain, Series, TruthError, cost_exponent, series_of
 from reports.plots.looks import look
-from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
+from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.tables import NOTHING, markdown, number
 from reports.write.unmeasured import UNMEASURED
 
@@ -31,23 +31,22 @@ TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 FURTHER = ("X", "v")
 
 
-def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
+def scaling_chart(found: Sequence[Series]) -> Figure:
     """Two panels side by side: CPU time of a step [µs], and the largest angle error after the whole run [rad]."""
     variants: dict[str, list[str]] = {}
     for series in found:
         variants.setdefault(series.engine, []).append(series.variant)
-    looks = {s.method: _look(s, variants, theme) for s in found}
-    with settings():
-        figure = new_figure(5.6, theme)
+    looks = {s.method: _look(s, variants) for s in found}
+    with drawing(5.6) as figure:
         cost, error = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.25, 1]})
         for panel, title, what in (
             (cost, "Cost of a step", "CPU time of a step [µs]"),
             (error, "Error at a fixed step", "largest angle error [rad]"),
         ):
-            panel.set_title(title, loc="left", fontweight="bold", color=theme.ink)
+            panel.set_title(title, loc="left", fontweight="bold", color=LIGHT.ink)
             panel.set_xscale("log")
             panel.set_yscale("log")
-            style_axes(panel, theme)
+            style_axes(panel)
             panel.set_xlabel("links")
             panel.set_ylabel(what)
         for series in found:
@@ -60,9 +59,9 @@ def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
     return figure
 
 
-def _look(series: Series, variants: Mapping[str, Sequence[str]], theme: Theme) -> dict[str, Any]:
+def _look(series: Series, variants: Mapping[str, Sequence[str]]) -> dict[str, Any]:
     """As in all charts; a fourth and fifth method of an engine, whose half-filled marks are too alike, get others."""
-    own = look(series.engine, series.variant, variants, theme)
+    own = look(series.engine, series.variant, variants)
     index = variants[series.engine].index(series.variant)
     return own | ({"marker": FURTHER[index - 3], "fillstyle": "full"} if index in (3, 4) else {})
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,13 +14,12 @@ from engines import pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco.methods import SLOTS
 from engines.registry import VARIANTS
-from reference.checks import InvalidMechanism
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank, RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation, Page
 from reports.model.tasks import Task, Values
-from reports.pages.common import ALL, cells, described, deviations
+from reports.pages.common import ALL, cells, described, deviations, read_answers, refusals
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.rows import lookups
@@ -75,24 +75,16 @@ def delay(material: Material) -> dict[str, Any]:
 
 def leaving(material: Material) -> list[Observation]:
     """When the truth has left the dead centre by a radian, for starts nearer and nearer to it."""
-    found = []
-    for task in LEAVING:
-        if (answer := material.answers.get(task)) is not None:
-            told = f"a radian away after {answer.number('when'):.3f} s" if answer.finished else answer.told
-            found.append(Observation("the reference", f"{number(task.angle)} rad aside", told))
-    return found
+    settings = [(task, f"{number(task.angle)} rad aside") for task in LEAVING]
+    say = "a radian away after {:.3f} s".format
+    return read_answers(material, "the reference", settings, lambda answer: say(answer.number("when")))
 
 
-def refusals(material: Material) -> list[Observation]:
-    """What the reference says to slots that can't be reached."""
-    found = []
-    shape = DrivenSliderCrank()
-    for offset in (shape.rod - shape.crank, 1.0):
-        try:
-            replace(shape, offset=offset)
-        except InvalidMechanism as sentence:
-            found.append(Observation("the reference", f"offset {offset:.3g} m", f"refuses: {sentence}"))
-    return found
+def out_of_reach(material: Material) -> list[Observation]:
+    """The reference's sentences on slots that can't be reached."""
+    shape = DrivenSliderCrank().shape
+    offsets = (shape.rod - shape.crank, 1.0)
+    return refusals({f"offset {offset:.3g} m": partial(replace, shape, offset=offset) for offset in offsets})
 
 
 FAILURES = described(
@@ -107,7 +99,7 @@ FAILURES = described(
         observations=leaving,
     ),
     Failure("A slider in its dead centre", cells=cells(SliderAtDeadCentre(angle=0.0), ALL, (1, 10))),
-    Failure("A slot out of reach", observations=refusals),
+    Failure("A slot out of reach", observations=out_of_reach),
 )
 
 
