@@ -16,8 +16,7 @@ import numpy as np
 
 from engines import EXACT, Engine, Holder, Promise, Size, Softness, Unpromised, Unsupported
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.mujoco.joints.drive import DriveBy
-from engines.mujoco.joints.links import RodBy
+from engines.mujoco.joints.links import DriveBy, RodBy
 from engines.mujoco.joints.roll import RollBy, RollContact
 from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
 from engines.mujoco.joints.slot import SlotBy, resting_line
@@ -48,10 +47,10 @@ class MuJoCo(Engine, Valid):
 
     `coordinates`: "tree" hinges bodies on one another and closes only the loops, "free" gives every body three
     coordinates and makes every pin a constraint. `drive`: a driven joint turns steadily because nothing can accelerate
-    it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature); or by
-    a velocity servo of `servo_gain` [N m s/rad]; or because its state is overwritten after every step, which the solver
-    is not told ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at the start in this
-    order, and the first that solves it is taken. `tolerance`: MuJoCo's, relative to the inertia of what is not driven.
+    it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature); or
+    its state is overwritten after every step, which the solver does not know ("overwrite"; see
+    `engines.mujoco.joints.links`). `solvers` are tried at the start in this order, and the first that solves it is
+    taken. `tolerance`: MuJoCo's, relative to the inertia of what is not driven.
     `slots`, `skates`, `rolls`, `rods`: what holds them, see `engines.mujoco.joints`; skates whose rows change once a
     step are stepped by Euler, since four stages of the same stale row cost more and gain nothing. `estimates`: a run of
     steps twice as long, and where that leaves it open one of half steps, tell the error, if it falls with the fourth
@@ -70,7 +69,6 @@ class MuJoCo(Engine, Valid):
     coordinates: Coordinates = "tree"
     drive: DriveBy = "inertia"
     armature: Positive = 1e8
-    servo_gain: Positive = 10.0
     solvers: tuple[Solver, ...] = ("Newton",)
     iterations: Count = 100
     tolerance: NonNegative = 1e-8
@@ -98,11 +96,7 @@ class MuJoCo(Engine, Valid):
         skating, rolling = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Skate, Roll))
         driven = any(isinstance(joint, Drive) and joint not in tree.kept for joint in mechanism.joints)
         if driven and self.drive != "inertia":
-            return Unpromised(
-                "a servo's gain misses the rate at any step"
-                if self.drive == "servo"
-                else "a state that is overwritten between steps obeys no equation of which an order is known"
-            )
+            return Unpromised("a state that is overwritten between steps obeys no equation of which an order is known")
         order = ORDER if self.integrator == "RK4" else 1
         # A contact's row knows the velocity and not how it changes: first order at best, whatever integrates it.
         if rolling and isinstance(self.rolls, RollContact):
@@ -128,7 +122,7 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
-        """Coordinates of the tree, connects, fixed tendons, contacts and servos are MuJoCo's; rows that callbacks or
+        """Coordinates of the tree, connects, fixed tendons and contacts are MuJoCo's; rows that callbacks or
         hooks write are shared; a state that is worked out beside MuJoCo is ours.
         """
         tree = self._tree(mechanism)

@@ -55,11 +55,8 @@ METHODS = (
     replace(TUNED, variant="RK4 alone", stiffness=Shipped(), rolls=RollContact()),
     replace(EXTENDED, variant="extended, free coordinates", coordinates="free"),
 )
-# Other ways to prescribe a rate; where nothing is driven they are no methods of their own.
-DRIVES = (
-    replace(TUNED, variant="tuned, servo", drive="servo"),
-    replace(DEFAULT, variant="default, overwritten crank", drive="overwrite"),
-)
+# Another way to prescribe a rate; where nothing is driven it is no method of its own.
+DRIVES = (replace(DEFAULT, variant="default, overwritten crank", drive="overwrite"),)
 
 # A skate beside the variants': the blade of DEFAULT as fast as the step allows, and by the integrator that suits it.
 SKATES = (replace(TUNED, variant="friction blade", skates="blade", integrator="Euler"),)

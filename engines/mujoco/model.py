@@ -19,8 +19,17 @@ from engines import Unsupported
 from engines.capability import Capability
 from engines.mujoco.construction import Building, Hooks
 from engines.mujoco.forces import add_forces
-from engines.mujoco.joints.drive import DriveBy, DrivenCoordinate, add_drives, add_geared_drives, driven_coordinates
-from engines.mujoco.joints.links import add_gears, add_pins, add_rods, add_welds
+from engines.mujoco.joints.links import (
+    DriveBy,
+    DrivenCoordinate,
+    add_geared_drives,
+    add_gears,
+    add_pins,
+    add_rods,
+    add_welds,
+    driven_coordinates,
+    inertia_scale,
+)
 from engines.mujoco.joints.roll import add_rolls
 from engines.mujoco.joints.skate import add_skates
 from engines.mujoco.joints.slot import add_slots
@@ -93,8 +102,6 @@ class Model:
         data.qvel[self.address] = self.tree.start_rates()
         for driven in self.driven:
             data.qvel[self.address[driven.column]] = driven.rate
-        if self.drive == "servo":
-            data.ctrl[: len(self.driven)] = [driven.rate for driven in self.driven]
         for place, rate in self.start_rates:
             data.qvel[place] = rate
         with self.hooked():
@@ -124,7 +131,9 @@ def build_model(
     driven = driven_coordinates(tree, single)
 
     spec = _spec(tree, dt, settings.islands, options)
-    add_drives(spec, mechanism, driven, settings.drive, settings.armature, settings.servo_gain / unit)
+    if settings.drive == "inertia":
+        for coordinate in driven:
+            spec.joint(f"coordinate {coordinate.column}").armature = settings.armature * inertia_scale(mechanism)
     building = Building(spec, mechanism, tree, dt, settings.stiffness, tuple(one.column for one in driven))
     add_pins(building, [joint for joint in tree.loops if isinstance(joint, Pin)])
     add_slots(building, [joint for joint in tree.loops if isinstance(joint, Slot)], settings.slots)

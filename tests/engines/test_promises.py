@@ -112,9 +112,9 @@ def test_an_extrapolation_of_powers_that_the_error_has_not_promises_nothing():
     wrong = Extrapolated(pymunk.TUNED, "wrong", (1, 2, 3), (2, 3)).order(MOVING)
     assert isinstance(wrong, Unpromised)
     assert "order 1" in wrong.reason
-    inside = Extrapolated(replace(mujoco.TUNED, drive="servo"), "servo", (1, 2), (4,)).order(DRIVEN)
+    inside = Extrapolated(replace(mujoco.TUNED, drive="overwrite"), "overwritten", (1, 2), (4,)).order(DRIVEN)
     assert isinstance(inside, Unpromised)
-    assert "servo" in inside.reason
+    assert "overwritten" in inside.reason
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,6 @@ from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
 Cone = Literal["pyramidal", "elliptic"]
-RoundShape = Literal["sphere", "cylinder"]
 # A pair that just touches must collide whatever its distance is rounded to: this part of the mechanism's length.
 TOUCH = 1e-12
 # Of the largest reaction: a contact that is absent leaves nothing but rounding.
@@ -48,14 +47,13 @@ class RollContact(Valid):
     `friction`: the coefficient. `steps`: the contact's time constant in steps (clamped as `engines.mujoco.stiffness`
     says) with its impedance at the limit; None for the shipped 0.02 s. `stick`: slip dies as fast as the integrator
     allows, at the rate 1/dt, and 2/dt for Runge-Kutta's; MuJoCo reads `solreffriction` with the elliptic cone only (a
-    test in `tests/engines/test_mujoco_joints.py` asks it). `round_shape`: what a circle is.
+    test in `tests/engines/test_mujoco_joints.py` asks it).
     """
 
     friction: Positive = 1.0
     steps: Positive | None = None
     stick: bool = False
     cone: Cone = "pyramidal"
-    round_shape: RoundShape = "sphere"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -87,8 +85,8 @@ def _add_contacts(building: Building, rolls: Sequence[Roll], by: RollContact) ->
         reference, impedance = (by.steps * building.dt, 1.0), STIFFEST
     for roll in rolls:
         pair = spec.add_pair(
-            geomname1=_add_shape(building, roll, roll.first, roll.rolling.ground, by.round_shape),
-            geomname2=_add_shape(building, roll, roll.second, roll.rolling.body, by.round_shape),
+            geomname1=_add_shape(building, roll, roll.first, roll.rolling.ground),
+            geomname2=_add_shape(building, roll, roll.second, roll.rolling.body),
             condim=3,
             friction=[by.friction, by.friction, 0.005, 0.0001, 0.0001],  # the last three are none of three rows
             solref=list(reference),
@@ -103,8 +101,8 @@ def _add_contacts(building: Building, rolls: Sequence[Roll], by: RollContact) ->
     spec.option.cone = getattr(mujoco.mjtCone, f"mjCONE_{by.cone.upper()}")
 
 
-def _add_shape(building: Building, roll: Roll, owner: str | None, curve: Curve, round_shape: RoundShape) -> str:
-    """A plane, a sphere, a cylinder or an ellipsoid for a body's curve; the name of the geom.
+def _add_shape(building: Building, roll: Roll, owner: str | None, curve: Curve) -> str:
+    """A plane, a sphere or an ellipsoid for a body's curve; the name of the geom.
 
     Each body's frame is parallel to the world's at t = 0 (see `engines.tree`), so a shape is turned by the body's start
     angle. In the plane a sphere is a circle, and it touches in one point where a cylinder touches in two.
@@ -135,9 +133,6 @@ def _add_shape(building: Building, roll: Roll, owner: str | None, curve: Curve, 
                 "adapter builds no box"
             )
         case Circle():
-            if round_shape == "cylinder":
-                size = [curve.radius, curve.radius / 2, 0.0]
-                return add(mujoco.mjtGeom.mjGEOM_CYLINDER, complex(*curve.centre), turned, size)
             return add(mujoco.mjtGeom.mjGEOM_SPHERE, complex(*curve.centre), turned, [curve.radius, 0.0, 0.0])
         case Ellipse():
             depth = min(curve.along_x, curve.along_y)
