@@ -142,7 +142,7 @@ ELEMENTS = {
         f'<body><joint name="S" type="slide" axis="1 0 2"/>{BOX}</body>',
         '<actuator><motor joint="S" gear="2"/></actuator>',
     ),
-    "a position servo": (PENDULUM, '<actuator><position joint="B" kp="5"/></actuator>'),
+    "a position servo": (PENDULUM, '<actuator><position joint="B" kp="5" gear="2"/></actuator>'),
     "a velocity servo": (PENDULUM, '<actuator><velocity joint="B" kv="3" gear="2"/></actuator>'),
     "a force at a site": (
         PENDULUM,
