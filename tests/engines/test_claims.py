@@ -294,7 +294,7 @@ def test_drives_between_any_two_bodies_are_built() -> None:
                 pytest.fail(f"{number}: {reason}")
     geared = next(own for own in drawn if mujoco.TUNED._tree(own).geared)
     with pytest.raises(Unsupported, match="drives single ones, take 'inertia'"):
-        replace(mujoco.TUNED, drive="servo").build(geared, STEP)
+        replace(mujoco.TUNED, drive="overwrite").build(geared, STEP)
 
 
 # Joints of which the extras build most draws.
