@@ -1,4 +1,4 @@
-"""What every engine has to pass, ours and anybody's: named checks in small mechanisms whose motions are known."""
+"""The requirements of an engine as named checks, in small mechanisms whose motions are known in closed form."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CHECKS: tuple[Check, ...] = (
 
 
 def cases(*engines: Engine) -> Iterator[Case]:
-    """Every check of every engine, in every mechanism that it is asked in."""
+    """Every check of every engine, in each of its mechanisms."""
     for engine in engines:
         subject = Subject(engine)
         for check in CHECKS:
@@ -30,10 +30,10 @@ def cases(*engines: Engine) -> Iterator[Case]:
 
 
 def conform(engine: Engine, expected_failures: Mapping[str, str] | None = None) -> tuple[tuple[Case, Result], ...]:
-    """Ask an engine everything; every case and what came of it.
+    """Run all checks of an engine; returns every case with its result.
 
-    expected_failures: by a check's name, or by `check: mechanism`, why it fails. Raises AssertionError, with a line for
-    each check that fails and was not expected to, for each that was and does not, and for each name that no check has;
+    expected_failures: the reason of each expected failure, by the check's name or `check: mechanism`. Raises
+    AssertionError, with a line for each unexpected failure, each expected failure that holds, and each unknown name;
     ValueError where the engine's code is of another release than its metadata say.
     """
     if sentence := other_release([engine]):

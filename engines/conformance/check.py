@@ -1,4 +1,4 @@
-"""What a check is: a named question to an engine, asked of it alone or of it in one small mechanism."""
+"""A check: a named function that tests an engine alone, or in one small mechanism."""
 
 from __future__ import annotations
 
@@ -17,37 +17,36 @@ from reference.trajectory import Trajectory
 
 Status = Literal["holds", "fails", "not supported", "not asked"]
 
-STEP = 0.01  # s, of the runs that most checks look at: a sixth of a radian of the fastest motion
+STEP = 0.01  # s, the step of most runs: a sixth of a radian of the fastest motion
 SAMPLES = 8
-FEWEST_WORDS = 4  # of a sentence that says what can't be and why
+FEWEST_WORDS = 4  # in a reason
 
 
 class Fails(AssertionError):
-    """What was found, what was expected, and what it usually means that they differ."""
+    """The engine breaks the contract: the finding, the expectation, and the usual cause of the difference."""
 
     def __init__(self, found: str, expected: str, means: str) -> None:
         super().__init__(f"found {found}; expected {expected}. Usually: {means}")
 
 
 class NotAsked(Exception):
-    """The check has nothing to hold the engine to here; the message says why."""
+    """The check does not apply to this case; the message says why."""
 
 
 class Subject:
-    """An engine that is being checked; what it has run once is kept."""
+    """An engine that is being checked, with the runs that it has made."""
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
-        self._kept: dict[tuple[Any, ...], Trajectory] = {}
+        self._runs: dict[tuple[Any, ...], Trajectory] = {}
 
     def __str__(self) -> str:
         return method_name(self.engine)
 
     def build(self, mechanism: Mechanism, dt: float = STEP) -> Run:
         """Raises Unsupported if the engine does, Fails for any other exception."""
-        own = copy.deepcopy(mechanism)  # an engine that writes into it spoils this check alone
         try:
-            return self.engine.build(own, dt)
+            return self.engine.build(copy.deepcopy(mechanism), dt)  # an engine may write into it
         except Unsupported:
             raise
         except Exception as error:
@@ -58,19 +57,19 @@ class Subject:
             ) from error
 
     def fresh(self, mechanism: Mechanism, dt: float = STEP, samples: int = SAMPLES, every: int = 1) -> Trajectory:
-        """Built anew and run."""
+        """A run of a new model."""
         return stepped(self.build(mechanism, dt), samples, every)
 
     def run(self, mechanism: Mechanism, dt: float = STEP, samples: int = SAMPLES, every: int = 1) -> Trajectory:
-        """The same numbers, run the first time that they are asked for."""
+        """The run of these numbers, made once."""
         key = (mechanism, dt, samples, every)
-        if key not in self._kept:
-            self._kept[key] = self.fresh(mechanism, dt, samples, every)
-        return self._kept[key]
+        if key not in self._runs:
+            self._runs[key] = self.fresh(mechanism, dt, samples, every)
+        return self._runs[key]
 
 
 def stepped(run: Run, samples: int, every: int) -> Trajectory:
-    """A run called; Fails for any exception."""
+    """The trajectory of a run; raises Fails for any exception."""
     try:
         return run(samples, every)
     except Exception as error:
@@ -82,7 +81,7 @@ def stepped(run: Run, samples: int, every: int) -> Trajectory:
 
 
 def require_a_sentence(text: str, what: str) -> None:
-    """Fails unless it is one line of some words."""
+    """Raises Fails unless the text is one line of FEWEST_WORDS words."""
     if len(text.split()) < FEWEST_WORDS or not text.isprintable():
         raise Fails(
             f"{text!r} for {what}",
@@ -92,7 +91,7 @@ def require_a_sentence(text: str, what: str) -> None:
 
 
 def finite(run: Trajectory) -> Trajectory:
-    """The run, which Fails if a pose or a twist in it is no number."""
+    """The same trajectory; raises Fails if a pose or a twist in it is no number."""
     for name, values in (("pose", run.pose), ("twist", run.twist)):
         if not np.all(np.isfinite(values)):
             where = int(np.argwhere(~np.isfinite(values))[0, 0])
@@ -102,7 +101,7 @@ def finite(run: Trajectory) -> Trajectory:
 
 @dataclass(frozen=True)
 class Check:
-    """A question with a name; its first line says what is asked. `worlds`: what it is asked of, () for none."""
+    """A function whose docstring begins with the requirement. `worlds`: its mechanisms, () for none."""
 
     function: Callable[..., None]
     worlds: tuple[World, ...] = ()
@@ -119,7 +118,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Result:
-    """What came of a case, and the sentence that says why where it does not hold."""
+    """The status of a case, and the reason where it does not hold."""
 
     status: Status
     sentence: str = ""
@@ -138,7 +137,7 @@ class Case:
         return ": ".join(parts)
 
     def result(self) -> Result:
-        """Asked now. Never raises: what goes wrong within a check is a failure of it."""
+        """Run the check. Never raises: an exception within a check is its failure."""
         try:
             if self.world is None:
                 self.check.function(self.subject)

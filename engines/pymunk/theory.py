@@ -1,4 +1,4 @@
-"""What theory promises of pymunk's impulses, and which of its joints are its own: by settings and mechanism alone."""
+"""The convergence orders of pymunk's impulses, and who enforces its joints, by settings and mechanism alone."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from reference.mechanism import Mechanism
 if TYPE_CHECKING:
     from engines.pymunk.engine import Pymunk
 
-# Impulses at the ends of steps, read as they stand: everything of first order.
+# Velocities read at the ends of steps: everything is of first order.
 STEPPED = Promise(1, differences=1)
-# All of a gap is closed in every step, so that only what one drift opens is left: second order.
+# A step closes the whole gap, so that only the gap of one drift remains: second order.
 CLOSING = Promise(1, gap=2, differences=1)
-# The row of the pose after the drift, found in one solve: no slip is left of it, and there is no gap to close.
+# One row, at the pose after the drift, solved exactly: no slip remains, and it has no gap.
 HELD = Promise(1, gap=2, slip=EXACT, differences=1)
-# From rest the missing half kick is a delay, which the kick in the last step makes up for in the velocities.
+# From rest the missing half kick is a delay, which the last step's kick compensates in the velocities.
 FROM_REST = Promise(1, rate=2, gap=2, slip=1, differences=1)
-# A prescribed motion has no kick to miss: what is left of a pose is its gap.
+# A prescribed motion needs no kick: the error of a pose is its gap.
 PRESCRIBED = Promise(2, rate=1, slip=1, energy=1, reaction=1, differences=1)
-# Nothing but the pin pulls at a body that turns steadily: its kick is across the way, and keeps the energy.
+# Only the pin acts on a body that turns steadily: its kick is perpendicular to the path and keeps the energy.
 STEADY = Promise(2, rate=1, slip=1, reaction=1, differences=1)
 # Half a kick ahead: every step is symmetric in time.
 LEAPFROG = Promise(2, differences=1)
 
 
 def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
-    """See `Promise`; of what a user gets wrong in a joint's construction no order can be promised."""
+    """The orders; Unpromised for joint constructions whose error does not vanish with the step."""
     skating, rolling = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Skate, Roll))
     if engine.slot == "groove" and any(_is_rewritten(joint, mechanism) for joint in mechanism.joints):
         return Unpromised(
@@ -72,9 +72,9 @@ def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
 
 
 def _grows(engine: Pymunk, mechanism: Mechanism, iterations: int) -> bool:
-    """Whether kept impulses grow from step to step, however short it is; not told for more than DENSE rows.
+    """Whether kept impulses grow from step to step at any step; False for more than DENSE rows.
 
-    A step that is short enough closes no gap, unless all of it.
+    A short step closes either the whole gap or nearly nothing of it.
     """
     if mechanism.row_count > DENSE:
         return False
@@ -83,7 +83,7 @@ def _grows(engine: Pymunk, mechanism: Mechanism, iterations: int) -> bool:
 
 
 def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Holder:
-    """Pivots, grooves, motors, bodies of known motion and contacts are pymunk's; what is aimed every step is shared."""
+    """Pivots, grooves, motors, prescribed bodies and contacts are pymunk's; joints placed in every step are shared."""
     match joint:
         case Slot() if engine.slot == "exact" and _is_rewritten(joint, mechanism):
             return "engine, our rows"
