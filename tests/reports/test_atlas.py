@@ -15,32 +15,28 @@ from matplotlib.patches import PathPatch
 from engines import Softness, method_name
 from engines.registry import VARIANTS
 from reference.scenes.pendulum.scenes import LinkPendulum
-from reports.model.cells import Cell
 from reports.model.ending import FINE, REFUSED
-from reports.model.measure import measure
 from reports.model.outcomes import TORN, Outcome
 from reports.model.page import Material
-from reports.model.tasks import Answer
 from reports.pages.atlas import page
-from reports.pages.atlas.column import Column, bisected, gives_from, left_by_sweeps, line_of
-from reports.pages.atlas.page import atlas_map, edges
-from reports.pages.atlas.subjects import SUBJECTS, Subject, rocking, rod_rate, stiffest_hanging
-from reports.pages.atlas.table import (
-    CELLS,
-    COSTS,
-    LIKE_THE_LAST,
-    Cost,
-    Costs,
+from reports.pages.atlas.columns import (
+    FILE,
+    NOT_RUN,
+    Column,
     Line,
     as_csv,
-    costs_as_csv,
+    gives_from,
+    left_by_sweeps,
+    line_of,
     read,
-    read_costs,
+    run_columns,
 )
+from reports.pages.atlas.page import atlas_map, edges
+from reports.pages.atlas.subjects import SUBJECTS, Subject, rocking, rod_rate, stiffest_hanging
 from reports.pages.rendering import render_page
 from reports.plots.looks import SHADE_NAMES, SHADES, outcome_colour, shade
 from reports.plots.theme import LIGHT
-from reports.run.store import Store
+from reports.run.running import run_items
 from tests import RESULTS
 from tests.reports.test_command_line import call, one_line
 from tests.toys import Disc, FailingToy, Toy
@@ -105,78 +101,51 @@ def test_softness_gives_where_the_gap_of_the_weight_is_a_twentieth_of_the_length
     scene, mechanism = Disc(), Disc().mechanism()
     limit = TORN * mechanism.length_scale
     soft, hard = Soft(10 * 0.1 / limit * 0.99, 0.1), Soft(10 * 0.1 / limit * 1.01, 0.1)
-    assert gives_from(scene, mechanism, (soft, hard), 1e-3, 1e-1) == [0.0, math.inf]  # type: ignore[arg-type]
+    found = [gives_from(scene, mechanism, engine, 1e-3, 1e-1) for engine in (soft, hard)]  # type: ignore[arg-type]
+    assert found == [0.0, math.inf]
     tied = Soft(10 * 0.1 / limit * 1e-4, 0.1)  # gives at a step of 1e-2 s
     tied.tied = True
-    [found] = gives_from(scene, mechanism, (tied,), 1e-3, 1e-1)  # type: ignore[arg-type]
-    assert found == pytest.approx(1e-2, rel=0.07)  # looked for at 81 steps over two decades
+    assert gives_from(scene, mechanism, tied, 1e-3, 1e-1) == pytest.approx(1e-2, rel=0.07)  # type: ignore[arg-type]  # looked for at 81 steps over two decades
     # The pin stays where it is, so that an engine without the term of velocities loses nothing.
     lacking = Soft(1.0, 0.0, complete=False)
-    assert gives_from(scene, mechanism, (lacking,), 1e-3, 1e-1) == [math.inf]  # type: ignore[arg-type]
+    assert gives_from(scene, mechanism, lacking, 1e-3, 1e-1) == math.inf  # type: ignore[arg-type]
 
 
-def test_a_column_tells_what_its_cells_do_and_an_abort_costs_one_cell():
-    steps = ((10, 1), (10, 4))
-    column = Column(Disc(), (Toy(), Toy("other", factor=1e6)), steps)
-    answer = dict(column.run())
-    cells = [Cell(Disc(), engine, every, "map", samples) for engine in column.engines for samples, every in steps]
-    rows = [measure(cell, repeat=False) for cell in cells]
-    assert str(answer["outcomes"]).split(",") == [str(row.outcome) for row in rows]
-    np.testing.assert_array_equal(np.ravel(answer["errors"]), [row.angle for row in rows])
-    assert [len(single.cells(single.engines[0])) for single in column.singles] == [1] * 4
-    assert [single.engines for single in column.singles] == [(Toy(),)] * 2 + [(column.engines[1],)] * 2
-
-
-def found_of(told: str, stride: int) -> tuple[str, str]:
-    """(letters as a column with these outcomes would keep them, the letters that are drawn)."""
-    by_letter: Any = {place: SimpleNamespace(outcome=letter) for place, letter in enumerate(told)}
-    rows = bisected(by_letter.__getitem__, len(told), stride)
-    kept = "".join(told[place] if place in rows else LIKE_THE_LAST for place in range(len(told)))
-    drawn = "".join(one.letter for one in line(1.0, kept).told)
+def drawn_of(outcomes: str, stride: int) -> tuple[str, str]:
+    """(letters as a column with these outcomes is kept, the letters that are drawn)."""
+    column = Column(TOYS, 1.0, Disc(), Toy(), tuple((10, every) for every in range(1, len(outcomes) + 1)))
+    run = lambda cells: {cell: SimpleNamespace(outcome=outcomes[cell.every - 1]) for cell in cells}  # noqa: E731
+    rows: Any = run_columns([column], run, stride)[0]  # type: ignore[arg-type]
+    kept = "".join(rows[place].outcome if place in rows else NOT_RUN for place in range(len(outcomes)))
     assert line(1.0, kept).run == len(rows)
-    return kept, drawn
+    return kept, "".join(outcome.letter for outcome in line(1.0, kept).told)
 
 
 def test_borders_are_as_sharp_as_if_every_point_had_been_run():
     for border in range(1, 21):
-        told = "T" * border + "S" * 7 + "·" * (27 - border)
-        kept, drawn = found_of(told, 4)
-        assert drawn == told
-        assert LIKE_THE_LAST in kept
-        assert found_of(told, 1) == (told, told)
+        outcomes = "T" * border + "S" * 7 + "·" * (27 - border)
+        kept, drawn = drawn_of(outcomes, 4)
+        assert drawn == outcomes
+        assert NOT_RUN in kept
+        assert drawn_of(outcomes, 1) == (outcomes, outcomes)
 
 
 def test_what_is_narrower_than_the_stride_may_be_missed_and_nothing_else():
-    assert found_of("····S····", 4) == ("·=··S··=·", "····S····")  # one that is run
-    assert found_of("··S······", 4) == ("·===·===·", "·········")  # one between two that are alike
-    assert found_of("SS", 4) == ("SS", "SS")
-    assert found_of("S", 4) == ("S", "S")
+    assert drawn_of("····S····", 4) == ("·=··S··=·", "····S····")  # one that is run
+    assert drawn_of("··S······", 4) == ("·===·===·", "·········")  # one between two that are alike
+    assert drawn_of("SS", 4) == ("SS", "SS")
+    assert drawn_of("S", 4) == ("S", "S")
 
 
-def test_a_column_leaves_out_what_lies_between_points_that_end_alike():
-    steps = tuple((10, every) for every in range(1, 10))
-    column = Column(Disc(), (Toy(), FailingToy("refuse")), steps, 4)
-    answer = Answer(Outcome.FINISHED, values=column.run())
-    lines = [line_of(TOYS, 2.0, column, engine, {column: answer})[0] for engine in column.engines]
-    assert [one.outcomes for one in lines] == ["·===·===·", "r===r===r"]
-    assert [math.isnan(error) for error in lines[0].errors] == [letter == LIKE_THE_LAST for letter in lines[0].outcomes]
-    assert {single.stride for single in column.singles} == {1}
-
-
-def test_a_column_whose_process_ends_is_asked_cell_by_cell(tmp_path):
-    from reports.cli.atlas import run_columns, whole
-    from reports.cli.terminal import Terminal
-    from reports.run.cluster import pool
-
-    column = Column(Disc(), (Toy(), FailingToy("abort")), ((10, 1), (10, 2)))
-    with Store(tmp_path / "cells.sqlite") as store:
-        assert run_columns(Terminal(80), store, [column], pool(1)) == 1
-        answers = whole(store, [column])[column]
-        assert run_columns(Terminal(80), store, [column], pool(1)) == 0
-    assert len(answers) == 4
-    told = [line_of(TOYS, 2.0, column, engine, answers)[0] for engine in column.engines]
-    assert [one.outcomes for one in told] == ["··", "AA"]
-    assert all(math.isnan(error) for error in told[1].errors)
+def test_a_column_keeps_errors_of_answers_and_an_abort_costs_its_own_cells():
+    steps = tuple((10, every) for every in range(1, 6))
+    columns = [Column(TOYS, 2.0, Disc(), engine, steps) for engine in (Toy(), FailingToy("abort"))]
+    rows = run_columns(columns, lambda cells: dict(run_items(cells, workers=1)), 4)
+    lines = [line_of(column, some) for column, some in zip(columns, rows, strict=True)]
+    assert [one.outcomes for one in lines] == ["·===·", "A===A"]
+    assert [math.isnan(error) for error in lines[0].errors] == [letter == NOT_RUN for letter in lines[0].outcomes]
+    assert lines[0].errors[0] == pytest.approx(math.log10(rows[0][0].angle), abs=0.05)
+    assert all(math.isnan(error) for error in lines[1].errors)
 
 
 LINES = (
@@ -186,19 +155,13 @@ LINES = (
 )
 
 
-def test_the_files_are_read_as_they_were_written(tmp_path):
-    (tmp_path / CELLS).write_text(as_csv(LINES), encoding="utf-8")
-    assert sorted(map(str, read(tmp_path / CELLS))) == sorted(map(str, LINES))
+def test_the_file_is_read_as_it_was_written(tmp_path):
+    (tmp_path / FILE).write_text(as_csv(LINES), encoding="utf-8")
+    assert sorted(map(str, read(tmp_path / FILE))) == sorted(map(str, LINES))
     assert read(tmp_path / "none.csv") == ()
     (tmp_path / "wrong.csv").write_text("a,b\n1,2\n")
     with pytest.raises(ValueError, match=r"wrong\.csv: it is no atlas"):
         read(tmp_path / "wrong.csv")
-    costs = Costs("x86_64; Python 3", 12.5, 2, math.nan, 100.0, (Cost("toys", "toy default", 8, 0.25),))
-    (tmp_path / COSTS).write_text(costs_as_csv(costs))
-    assert str(read_costs(tmp_path / COSTS)) == str(costs)
-    assert read_costs(tmp_path / "none.csv") is None
-    with pytest.raises(ValueError, match="no list of an atlas's costs"):
-        read_costs(tmp_path / "wrong.csv")
 
 
 def test_regions_lie_where_the_cells_of_their_outcome_are():
@@ -238,21 +201,18 @@ def test_the_page_is_written_without_any_part_and_with_each(monkeypatch):
 
     shown: set[str] = set()
     monkeypatch.setattr(page, "lines", lambda: ())
-    monkeypatch.setattr(page, "costs", lambda: None)
     assert "Nothing was run yet" in text()
     shown = {"coupler"}
     monkeypatch.setattr(page, "lines", lambda: (replace(LINES[0], subject="coupler", outcomes="·==·"),))
-    monkeypatch.setattr(page, "costs", lambda: Costs("here", 1.0, 2, math.nan, 1000.0, (Cost("a", "b", 10, 1.0),)))
     for words in (
         "Not run yet: A four-bar driven fast;",
-        "was not measured with this run",
         "2 of 4 points were run",
     ):
         assert words in text()
 
 
 def test_what_is_published_is_whole_and_small():
-    published = RESULTS / CELLS
+    published = RESULTS / FILE
     if not published.is_file():
         pytest.skip("no atlas is published")
     assert published.stat().st_size < 1_000_000
@@ -265,15 +225,12 @@ def test_the_command_maps_writes_and_goes_on(monkeypatch, tmp_path, capsys, at_h
     words = ("atlas", "--scenes", "length", "--points", "3", "--workers", "1")
     assert call(*words) == FINE
     folder = tmp_path / "crosscheck-results" / "atlas"
-    found = read(folder / CELLS)
+    found = read(folder / FILE)
     assert {each.method for each in found} == {method_name(engine) for engine in SHOWN}
     assert all(len(each.outcomes) == 3 for each in found)
-    assert "3 of 3 columns run" in capsys.readouterr().out
+    assert f"{3 * 3 * len(SHOWN)} of {3 * 3 * len(SHOWN)} cells were run" in capsys.readouterr().out
     assert call(*words) == FINE
-    assert "0 of 3 columns run" in capsys.readouterr().out
-    costs = read_costs(folder / COSTS)
-    assert costs
-    assert costs.cells == 3 * 3 * len(SHOWN)
+    assert f"0 of {3 * 3 * len(SHOWN)} cells were run" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("words", [("--scenes", "lenght"), ("--scenes", ",")])
@@ -311,12 +268,3 @@ def test_sweeps_are_told_of_engines_that_sweep_by_a_number_alone():
     for engine, value in left.items():
         assert math.isnan(value) == (engine.iterations_of(mechanism) is None)
         assert math.isnan(value) or 0 < value < 1
-
-
-def test_scaling_is_bounded_by_what_one_client_gets_through():
-    lines = (Cost("toys", "toy default", 1000, 30.0),)
-    told = page.scaling(Costs("here", 0.0, 2, math.nan, 1000.0, lines))
-    assert told["stops"] == pytest.approx(30.0)  # 30 ms a cell, 1000 of them stored in a second
-    assert "| 64 | 7.81 min | 16.7 min | the client |" in told["table"]
-    fast = page.scaling(Costs("here", 0.0, 2, 10.0, 1e9, lines))
-    assert fast["stops"] == pytest.approx(3.0)  # 10 chunks of 0.3 s in a second

@@ -21,7 +21,7 @@ STEPS = ("--every", "1", "--every", "3", "--every", "10")
 METHODS = ("impulses default", "impulses closed")
 PACKAGES = ("engines", "reference", "reports")
 # The gate's baseline, and what the pages of versions and of the atlas are written from.
-SHIPPED = ("errors", "timings", "versions", "atlas", "atlas_timings")
+SHIPPED = ("errors", "timings", "versions", "atlas")
 MODULES = ("planar_crosscheck.py", "planar_crosscheck_pytest.py")
 # As anybody starts it, with every warning an error.
 PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "-W", "error")

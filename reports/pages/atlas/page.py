@@ -1,4 +1,4 @@
-"""The failure atlas: everything on it is read from two files that `crosscheck atlas` writes.
+"""The failure atlas: everything on it is read from the file that `crosscheck atlas` writes.
 
 A map has a panel a method, regions by what became of the runs, and lines that explain where they end.
 """
@@ -24,17 +24,14 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
+from reports.pages.atlas.columns import FILE, Line, read
 from reports.pages.atlas.subjects import SUBJECTS, Subject
-from reports.pages.atlas.table import CELLS, COSTS, Costs, Line, read, read_costs
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
-from reports.run.cluster import CHUNK
 from reports.write.holders import told_variant
 from reports.write.tables import markdown, number, step_words
 
 FOLDER = Path(__file__).parents[2] / "results"
-MANY = 1_000_000  # cells whose cost is told
-CORES = (1, 64, 1024)
 BOUNDS = (math.inf, 1e-2, 1e-4)  # rad: what a step may miss at most, at all values of a map
 HALF = 0.5  # of the slowest mode: from here on, what sweeps leave grows from step to step
 WIDE = 2.2  # decades
@@ -43,15 +40,9 @@ ROLES = {"fastest": "second", "gives": "first", "left": "fourth"}
 
 
 @cache
-def lines(path: Path = FOLDER / CELLS) -> tuple[Line, ...]:
+def lines(path: Path = FOLDER / FILE) -> tuple[Line, ...]:
     """What was kept of all maps."""
     return read(path)
-
-
-@cache
-def costs(path: Path = FOLDER / COSTS) -> Costs | None:
-    """What they took; None where nothing was kept."""
-    return read_costs(path)
 
 
 def of(subject: Subject) -> list[Line]:
@@ -126,43 +117,6 @@ def agreement(own: Sequence[Line]) -> tuple[int, int]:
     return near, count
 
 
-def scaling(found: Costs) -> dict[str, Any]:
-    """What MANY cells take on so many cores, and where it stops scaling: by the numbers of one measured atlas.
-
-    A cell takes `each` CPU seconds. The client stores an answer after the other, and a cluster's scheduler passes one
-    chunk after the other on: the slower of the two is the floor, whatever the number of cores.
-    """
-    each = found.seconds / found.cells
-    puts = MANY / found.puts
-    chunks = MANY * each / CHUNK / found.chunks if found.chunks > 0 else math.nan
-    floor = max(puts, 0.0 if math.isnan(chunks) else chunks)
-    free = [(cores, MANY * each / cores) for cores in CORES]
-    body = [
-        [f"{cores}", _time(t), _time(max(t, floor)), "the cores" if t > floor else "the client"] for cores, t in free
-    ]
-    return {
-        "each": each,
-        "table": markdown(["cores", "CPU time over cores", "at least", "limited by"], body, left=0),
-        "puts": found.puts,
-        "chunks": found.chunks,
-        "stops": MANY * each / floor,
-        "floor": _time(floor),
-        "told": not math.isnan(found.chunks),
-        "cells": found.cells,
-        "seconds": found.seconds,
-        "wall": found.wall,
-        "workers": found.workers,
-        "made_with": found.made_with,
-    }
-
-
-def _time(seconds: float) -> str:
-    for unit, length in (("h", 3600.0), ("min", 60.0)):
-        if seconds >= 2 * length:
-            return f"{seconds / length:.3g} {unit}"
-    return f"{seconds:.3g} s"
-
-
 def words(material: Material) -> Mapping[str, Any]:
     """A dictionary a map that was run; nothing else on the page has numbers."""
     told = []
@@ -184,7 +138,6 @@ def words(material: Material) -> Mapping[str, Any]:
                     "points": sum(len(line.counts) for line in own),
                 }
             )
-    found = costs()
     missing = [subject.title for subject in SUBJECTS if not of(subject)]
     near, tearing = (sum(each[name] for each in told) for name in ("near", "tearing"))
     return {
@@ -192,7 +145,6 @@ def words(material: Material) -> Mapping[str, Any]:
         "tearing": tearing,
         "subjects": told,
         "missing": missing,
-        "scaling": scaling(found) if found and found.lines else None,
     }
 
 
