@@ -119,16 +119,12 @@ def test_a_point_of_a_series_is_its_own_cell():
 
 def test_a_crossing_is_where_the_first_becomes_the_dearer():
     def line(*costs):
-        return Series(
-            "e", "v", tuple(Point(n, c, math.nan, "finished") for n, c in zip((1, 10, 100), costs, strict=True))
-        )
+        return Series("e", "v", tuple(Point(10**n, cost, math.nan, "finished") for n, cost in enumerate(costs)))
 
-    assert crossing(line(1, 2, 9), line(3, 3, 3)) == (10, 100)
-    assert crossing(line(1, 4, 9), line(3, 3, 3)) == (1, 10)
-    assert crossing(line(9, 2, 1), line(3, 3, 3)) is None
-    assert crossing(line(1, 1, 1), line(3, 3, 3)) is None
-    assert crossing(line(9, 9, 9), line(3, 3, 3)) is None
-    assert crossing(None, line(1, 1, 1)) is None
+    flat = line(3, 3, 3)
+    found = [crossing(line(*costs), flat) for costs in ((1, 2, 9), (1, 4, 9), (9, 2, 1), (1, 1, 1), (9, 9, 9))]
+    assert found == [(10, 100), (1, 10), None, None, None]
+    assert crossing(None, flat) is None
 
 
 class Clock:
