@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import ceil, log, pi, sqrt
@@ -21,7 +21,7 @@ from reference.scenes.many_links import LongPendulum
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.pages.pendulum import page as pendulum
-from reports.pages.scaling.experiments import BandedChain, Series, TruthError, cost_exponent, series_of
+from reports.pages.scaling.experiments import BandedChain, Point, Series, TruthError, cost_exponent, series_of
 from reports.plots.looks import look
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.tables import NOTHING, markdown, number
@@ -107,20 +107,12 @@ SPARSE = replace(
 SWEPT = replace(PLAIN, variant="extended, free, PGS sweeps, no estimate", solvers=("PGS",))
 EULER, RUNGE_KUTTA = Lagrange("euler", "projection"), Lagrange("rk4", "projection")
 
-# Method -> the largest chain that it is given: what takes seconds for a step is left out.
-LARGEST: dict[Engine, int] = {
-    pymunk.DEFAULT: 1000,
-    pymunk.TUNED: 1000,
-    pymunk.EXTENDED: 300,
-    mujoco.DEFAULT: 1000,
-    mujoco.TUNED: 1000,
-    FREE: 1000,
-    SPARSE: 1000,
-    SWEPT: 300,
-    EULER: 300,
-    RUNGE_KUTTA: 300,
-    BandedChain(): 1000,
-}
+METHODS: tuple[Engine, ...] = (
+    *(pymunk.DEFAULT, pymunk.TUNED, pymunk.EXTENDED, mujoco.DEFAULT, mujoco.TUNED),
+    *(FREE, SPARSE, SWEPT, EULER, RUNGE_KUTTA, BandedChain()),
+)
+# They take seconds for a step of a longer chain.
+AT_MOST_300 = (pymunk.EXTENDED, SWEPT, EULER, RUNGE_KUTTA)
 CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE, SPARSE, BandedChain())
 
 # Equal links: a sweep leaves 1 - pi^2/(4 N^2) of the slowest mode, and the sweeps of a step shall leave LEFT of it.
@@ -131,33 +123,13 @@ CAPPED = ceil(sqrt(MOST / SWEEPS_OVER_SQUARE))
 # sizes, where the first steps, which are swept longer, are a large part of a few steps.
 ALIKE: Mapping[str, tuple[float, float]] = {"pymunk tuned": (CAPPED, max(LARGE)), "pymunk extended": (0, max(LARGE))}
 
-LAWS = {
-    "pymunk default": "10 sweeps over $N$ joints in every step: $O(N)$; too few above some number of links",
-    "pymunk tuned": (
-        rf"${number(SWEEPS_OVER_SQUARE)} \, N^2$ sweeps over $N$ joints: $O(N^3)$; from {CAPPED} links on there are "
-        f"{MOST} sweeps: $O(N)$"
-    ),
-    "pymunk extended": "23 steps for one, each swept until the joints agree: $O(N^3)$",
-    "mujoco default": r"reduced coordinates, a dense $N \times N$ mass matrix: $O(N^2)$ to fill, $O(N^3)$ to factorise",
-    "mujoco tuned": "the same four times a step",
-    f"mujoco {FREE.variant}": "$3 N$ coordinates and $3 N$ rows, each of two bodies: banded, sparse Newton is $O(N)$",
-    f"mujoco {SPARSE.variant}": "the same, four times a step, refined",
-    f"mujoco {SWEPT.variant}": r"at most 100 sweeps over the dense $3 N \times 3 N$ matrix of the rows: $O(N^2)$",
-    "lagrange euler projection": (
-        "exact multipliers: $J M^{-1} J^T$ of $2 N$ rows is factorised in its narrow band, $O(N)$; without numba "
-        "it is dense, $O(N^3)$"
-    ),
-    "lagrange rk4 projection": "the same four times a step",
-    "reference banded rk4": "the same multipliers, block-tridiagonal: $O(N)$; below 100 links numpy's calls cost most",
-}
-
 
 def cells() -> tuple[Cell, ...]:
     """Every method at every size; the purpose "growth" runs always, "large" in a full run only."""
     found = []
-    for engine, largest in LARGEST.items():
+    for engine in METHODS:
         for links in (*SMALL, *LARGE, *COSTLY):
-            if links > largest:
+            if links > 300 and engine in AT_MOST_300:
                 continue
             if links in COSTLY:
                 steps = MORE if engine in CHEAP else FEW
@@ -198,26 +170,25 @@ def _told(value: float, outcome: str) -> str:
 def cost_table(found: tuple[Series, ...]) -> str:
     """CPU time of a step [µs] by method and links."""
     sizes = sorted({point.size for series in found for point in series.points})
-    body = []
-    for series in found:
-        points = [series.at(size) for size in sizes]
-        numbers = [_told(1e6 * point.step, point.outcome) if point else "" for point in points]
-        body.append([series.method, *numbers])
-    return markdown(["method", *map(str, sizes)], body)
+    return _table(found, sizes, lambda series, point: _told(1e6 * point.step, point.outcome))
 
 
 def error_table(found: tuple[Series, ...]) -> str:
     """The largest angle error [rad] by method and links."""
     whole = LongPendulum().duration
     run = {(method_name(c.engine), c.scene.links) for c in CELLS if c.scene.duration == whole}  # type: ignore[attr-defined]
-    sizes = sorted({size for _, size in run})
-    body = []
-    for series in found:
-        numbers = [
-            _told(point.error, point.outcome) if point and (series.method, size) in run else ""
-            for size, point in ((size, series.at(size)) for size in sizes)
-        ]
-        body.append([series.method, *numbers])
+
+    def cell(series: Series, point: Point) -> str:
+        return _told(point.error, point.outcome) if (series.method, point.size) in run else ""
+
+    return _table(found, sorted({size for _, size in run}), cell)
+
+
+def _table(found: tuple[Series, ...], sizes: Sequence[int], cell: Callable[[Series, Point], str]) -> str:
+    body = [
+        [series.method, *(cell(series, point) if (point := series.at(size)) else "" for size in sizes)]
+        for series in found
+    ]
     return markdown(["method", *map(str, sizes)], body)
 
 
@@ -234,11 +205,8 @@ def words(material: Material) -> Mapping[str, Any]:
         "missing": not found,
         "costs": cost_table(found),
         "errors": error_table(found),
-        "laws": markdown(
-            ["method", "measured", "what the algorithm lets expect"],
-            [[s.method, _law(fitted(s)), LAWS[s.method]] for s in found],
-            left=3,
-        ),
+        "laws": {series.method: _law(fitted(series)) for series in found},
+        "sweeps": {"over_square": SWEEPS_OVER_SQUARE, "capped": CAPPED, "most": MOST},
         "crossing": crossing(by_method.get("mujoco tuned"), by_method.get(f"mujoco {SPARSE.variant}")) or UNMEASURED,
         "tree": {n: at(mujoco.TUNED, n) for n in (100, 1000)},
         "sparse": {n: at(SPARSE, n) for n in (100, 1000)},

@@ -31,19 +31,9 @@ CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_methods.SKATES, *mujoco_methods.SKA
 _KNOWN = {method_name(engine): engine for engine in (*VARIANTS, *CONSTRUCTIONS)}
 
 
-def method(name: str) -> Engine:
-    """The engine called "pymunk groove"; raises KeyError for an unknown name."""
-    return _KNOWN[name]
-
-
 def known(names: Iterable[str]) -> dict[str, Engine]:
     """The engines of these names; a name that is not registered here is left out."""
     return {name: _KNOWN[name] for name in names if name in _KNOWN}
-
-
-def limited(limit: float) -> tuple[Engine, ...]:
-    """Skates that slip when they would have to give more than this side force [N]."""
-    return limited_groove(limit), limited_tendon(limit)
 
 
 # What a user would take, and the best of each kind.
@@ -67,11 +57,6 @@ def growth_of(t: np.ndarray, rate: np.ndarray) -> float:
     return float(np.polyfit(t[chosen], np.log(size[chosen]), 1)[0])
 
 
-def turned_at(t: np.ndarray, rate: np.ndarray) -> float:
-    """When it turns fastest [s], which is when the exact sleigh slides neither way."""
-    return float(t[int(np.argmax(np.abs(rate)))])
-
-
 BACKWARDS = SleighBackwards()
 
 
@@ -93,10 +78,11 @@ def backwards(material: Material) -> list[Observation]:
 
 
 def _grown(t: np.ndarray, rate: np.ndarray) -> str:
-    grows = growth_of(t, rate)
+    grows, fastest = growth_of(t, rate), float(np.abs(rate).max())
     if np.isnan(grows):
-        return f"does not turn round: at most {number(float(np.abs(rate).max()))} rad/s"
-    return f"{grows:.4f} per second; fastest, {np.abs(rate).max():.3f} rad/s, at {turned_at(t, rate):.2f} s"
+        return f"does not turn round: at most {number(fastest)} rad/s"
+    # It turns fastest when the exact sleigh slides neither way.
+    return f"{grows:.4f} per second; fastest, {fastest:.3f} rad/s, at {t[np.argmax(np.abs(rate))]:.2f} s"
 
 
 def first_beyond(scene: ChaplyginSleigh, limit: float) -> float | None:
@@ -150,7 +136,10 @@ PEAK = float(np.abs(BACKWARDS.lateral_force(np.linspace(0, BACKWARDS.duration, 1
 
 
 # A friction's limit [N] -> runs with it.
-LIMITED = {limit: tuple(Cell(BACKWARDS, engine, 10) for engine in limited(limit)) for limit in (0.1, 0.3, 0.5, 0.7)}
+LIMITED = {
+    limit: tuple(Cell(BACKWARDS, engine(limit), 10) for engine in (limited_groove, limited_tendon))
+    for limit in (0.1, 0.3, 0.5, 0.7)
+}
 
 
 SLIPS = 2e-3  # m/s: above what either method lets pass at this step while it holds
@@ -198,7 +187,7 @@ Columns = tuple[str, ...]
 MOTION: Columns = ("position", "angle", "slip", "energy")
 
 
-NAIVE = tuple(method(f"pymunk skate: {name}") for name in ("centre's velocity zeroed", "point's velocity zeroed"))
+ZEROED = tuple(_KNOWN[f"pymunk skate: {name}"] for name in ("centre's velocity zeroed", "point's velocity zeroed"))
 LONG = 1000.0  # s
 CIRCLING = ChaplyginSleigh(offset=0.0, duration=LONG, horizon=LONG)
 COASTING = ChaplyginSleigh(duration=LONG, horizon=LONG)
@@ -210,7 +199,7 @@ FAILURES = described(
     Failure(
         "No slip at all, and a wholly wrong motion",
         cells=cells_to_rounding(
-            ChaplyginSleigh(), (*NAIVE, method("pymunk skate: impulse at the blade")), (1, 10, 100)
+            ChaplyginSleigh(), (*ZEROED, _KNOWN["pymunk skate: impulse at the blade"]), (1, 10, 100)
         ),
         columns=MOTION,
     ),

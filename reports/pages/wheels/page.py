@@ -83,17 +83,14 @@ def folding(material: Material) -> list[Observation]:
     """When the reversing trailer is bent beyond a right angle: closed form, kinematics, and methods that coast."""
     bent = float(Tow(BACKING.length, BACKING.bend).relative_angle(-FOLDS * abs(BACKING.speed)))
     found = [Observation("closed form, at an even speed", "", f"{FOLDS:.4f} s")]
-    pushed = Observation("the drawbar pushed along by that way", "", f"bent by {bent:.4f} rad")
-    driven, coasting = "the reference, driven at an even speed", "the reference, coasting"
-    answer = material.answers.get(REFERENCE)
-    if answer is None:
-        found.append(pushed)
-    elif answer.finished:
-        found.append(Observation(driven, "", f"{answer.number('jackknifed'):.4f} s"))
-        found.append(pushed)
-        found.append(Observation(coasting, "", _folded(answer.array("t"), answer.array("pose"))))
-    else:
-        found += [pushed, Observation(coasting, "", answer.told)]
+    reference = material.finished(REFERENCE)
+    if reference:
+        driven = f"{reference.number('jackknifed'):.4f} s"
+        found.append(Observation("the reference, driven at an even speed", "", driven))
+    found.append(Observation("the drawbar pushed along by that way", "", f"bent by {bent:.4f} rad"))
+    if answer := material.answers.get(REFERENCE):
+        coasting = _folded(answer.array("t"), answer.array("pose")) if reference else answer.told
+        found.append(Observation("the reference, coasting", "", coasting))
     for cell in RUNS:
         found += observe(material, cell, f"step {number(cell.step)} s", lambda run: _folded(run.t, run.pose))
     return found
