@@ -35,9 +35,6 @@ speed over the step, can't be told. Its own functions between angles and rotatio
 and no threads are started unless a pool is given.
 """
 
-# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
-# (the package is an extra, and its bindings are compiled.)
-
 from __future__ import annotations
 
 import math

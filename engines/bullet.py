@@ -21,9 +21,6 @@ feels no force (btMultiBody.cpp); it goes on as it began, which a warning tells.
 moves more than 1 / SIMD_EPSILON = 4.5e15, to which it does nothing (btMultiBodyConstraint.cpp).
 """
 
-# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
-# (the package is an extra, and its bindings are compiled.)
-
 from __future__ import annotations
 
 import tempfile

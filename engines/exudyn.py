@@ -30,9 +30,6 @@ in the mechanism's own length. An iteration's move d of a pose changes its rate 
 is a tolerance of: it stays for the rest of the motion.
 """
 
-# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
-# (the package is an extra, and its bindings are compiled.)
-
 from __future__ import annotations
 
 import math

@@ -25,9 +25,6 @@ The package mujoco-mjx requires the package mujoco, whose files overwrite those 
 the extra installs what it needs, and it has to be installed by itself: pip install --no-deps mujoco-mjx.
 """
 
-# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
-# (the package is an extra, and MuJoCo's bindings are compiled.)
-
 from __future__ import annotations
 
 import math

@@ -25,9 +25,6 @@ them. The free four-bar at a step of 1e-3 s: 5.6e-9 rad (rk4) and 0.070 rad (eul
 gains 100 and 20 (c = 10). Which pin is taken as the loop changes none of these.
 """
 
-# pyright: reportMissingImports=false, reportAttributeAccessIssue=false, reportCallIssue=false
-# (the package is an extra, its bindings are compiled, and its name is that of this file.)
-
 from __future__ import annotations
 
 from dataclasses import dataclass

@@ -1,8 +1,5 @@
 """What a joint that MuJoCo lacks is built from: parts added to the model, and hooks that run while it is stepped."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence

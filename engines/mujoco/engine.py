@@ -1,8 +1,5 @@
 """The MuJoCo engine as a value: its settings, what they may be, and the variants and methods that the report shows."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import itertools

@@ -5,9 +5,6 @@ constant torque is an actuator on such a sum, a constant force one at a site, me
 its direction stays; both push by their bias alone, whatever the control.
 """
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 from typing import Any

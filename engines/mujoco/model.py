@@ -1,8 +1,5 @@
 """MuJoCo's model of a mechanism: a tree of planar joints, and for every other joint what its own file makes of it."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping

@@ -3,9 +3,6 @@
 They run like all others, so that they can be compared; every motion of one that is known to be wrong says so.
 """
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import re

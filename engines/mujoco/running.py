@@ -1,8 +1,5 @@
 """Stepping a model and recording its states in the timed loop; accelerations, reactions and warnings are read later."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator

@@ -1,8 +1,5 @@
 """Whether MuJoCo's iterative solver has solved what it was given, and which of its solvers does."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import math

@@ -11,9 +11,6 @@ to the coordinates. It is plain arithmetic on MuJoCo's own arrays: numba compile
 what it has compiled; else Python does the same on lists. Only where rolling puts a body is looked up before, in Python.
 """
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import math

@@ -4,9 +4,6 @@ MJCF is what `mujoco.MjSpec` writes, with all digits instead of six. Bodies have
 keyframe, and bars and points let the mechanism be seen: nothing touches these, and they have no mass.
 """
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import os

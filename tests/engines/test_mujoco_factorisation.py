@@ -4,8 +4,6 @@ Release 4.0.0's Newton solver had others, without a warning, for some trees that
 factor was wrong (changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767).
 """
 
-# pyright: reportAttributeAccessIssue=false
-# MuJoCo's module has no list of its names.
 from __future__ import annotations
 
 import copy

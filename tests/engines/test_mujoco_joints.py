@@ -3,8 +3,6 @@
 Which order and error each construction reaches stands in `test_matrix`.
 """
 
-# pyright: reportAttributeAccessIssue=false
-# MuJoCo's module has no list of its names.
 from __future__ import annotations
 
 import math

@@ -1,7 +1,5 @@
 """Arms of a tenth of a micrometre, wheels as large as a town, and bodies of no weight, in MuJoCo extended."""
 
-# pyright: reportAttributeAccessIssue=false
-# MuJoCo's module has no list of its names.
 from __future__ import annotations
 
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """MuJoCo models become mechanisms: the same accelerations, element by element, or a sentence that names what can't."""
 
-# pyright: reportAttributeAccessIssue=false
-
 from __future__ import annotations
 
 from dataclasses import replace

@@ -1,8 +1,5 @@
 """Models whose file was rounded to some digits: the motion is that of the exact plane, and the effect is told."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import re

@@ -23,9 +23,6 @@ of its own that turns at the rate and that nothing can accelerate. An equality h
 drive is as soft as a loop is. The sum's coefficients are constant, so that no velocity term is missing.
 """
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence

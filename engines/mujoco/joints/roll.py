@@ -5,9 +5,6 @@ then lags by about a time constant times the missing acceleration, and converges
 best.
 """
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import math

@@ -10,9 +10,6 @@ Bodies here can't move out of the plane, so nothing weighs on a contact: a blade
 softness of the contact carries the mechanism's weight.
 """
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import math

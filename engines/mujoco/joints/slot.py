@@ -11,9 +11,6 @@ plane) and a fifth of a step's time. By the settings of TUNED and steps of about
 rad with its row and 6.2e-7 with halves, an arm and a block in free coordinates 4.4e-6 and 1.4e-6.
 """
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import math

@@ -1,8 +1,5 @@
 """A user's MuJoCo model (MJCF or URDF) as a mechanism of the plane: `read`."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import copy

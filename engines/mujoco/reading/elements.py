@@ -1,8 +1,5 @@
 """A model while it is read, and what holds its bodies: joints, steady hinges and equalities as ideal joints."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 from dataclasses import dataclass, field

@@ -1,8 +1,5 @@
 """MuJoCo's springs, dampers, actuators, tendons and applied forces as force elements of the plane."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 from typing import Any

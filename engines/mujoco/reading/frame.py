@@ -4,9 +4,6 @@ Bodies without joints are one with their parents: their masses are merged. What 
 the motion: joints hold it, and products of inertia only load them.
 """
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import copy

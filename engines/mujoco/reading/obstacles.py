@@ -1,8 +1,5 @@
 """What a motion of the judge's would meet in a user's model: limits, contacts, limits of forces."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import copy

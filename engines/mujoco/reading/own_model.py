@@ -1,8 +1,5 @@
 """A user's MuJoCo model as it is: run from its start, with its own settings or with others that MuJoCo documents."""
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 import copy

@@ -4,9 +4,6 @@ A row obeys a + b v + k d r = -R f. R is (1 - d) / d times a diagonal for the in
 with the gap ("Computation: Constraint model" and "Modeling: Solver parameters" in MuJoCo's documentation).
 """
 
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 from __future__ import annotations
 
 from collections.abc import Callable
