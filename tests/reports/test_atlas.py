@@ -26,7 +26,6 @@ from reports.pages.atlas.columns import (
     Line,
     as_csv,
     gives_from,
-    left_by_sweeps,
     line_of,
     read,
     run_columns,
@@ -37,7 +36,6 @@ from reports.pages.rendering import render_page
 from reports.plots.looks import SHADE_NAMES, SHADES, outcome_colour, shade
 from reports.plots.theme import LIGHT
 from reports.run.running import run_items
-from tests import RESULTS
 from tests.reports.test_command_line import call, one_line
 from tests.toys import Disc, FailingToy, Toy
 
@@ -51,10 +49,6 @@ def line(value: float, outcomes: str, engine: str = "toy", gives: float = math.n
     counts = tuple(10 * 2**place for place in range(len(outcomes)))
     errors = tuple(-1.5 if letter == "·" else math.nan for letter in outcomes)
     return Line("toys", engine, "default", value, 0.1, counts, outcomes, errors, gives, left)
-
-
-def test_the_first_step_of_a_line_is_its_longest_and_the_others_follow_by_their_counts():
-    assert line(1.0, "···").steps == pytest.approx((0.1, 0.05, 0.025))
 
 
 @pytest.mark.parametrize("subject", SUBJECTS, ids=lambda subject: subject.name)
@@ -211,15 +205,6 @@ def test_the_page_is_written_without_any_part_and_with_each(monkeypatch):
         assert words in text()
 
 
-def test_what_is_published_is_whole_and_small():
-    published = RESULTS / FILE
-    if not published.is_file():
-        pytest.skip("no atlas is published")
-    assert published.stat().st_size < 1_000_000
-    found = {(each.subject, each.method) for each in read(published)}
-    assert found == {(s.name, method_name(e)) for s in SUBJECTS for e in SHOWN}
-
-
 def test_the_command_maps_writes_and_goes_on(monkeypatch, tmp_path, capsys, at_home):
     monkeypatch.chdir(tmp_path)
     words = ("atlas", "--scenes", "length", "--points", "3", "--workers", "1")
@@ -240,13 +225,6 @@ def test_unknown_maps_are_refused_in_a_line(words, monkeypatch, tmp_path, capsys
     assert "length" in one_line(capsys.readouterr().err)
 
 
-def test_no_two_failures_look_and_read_alike():
-    failed = [outcome for outcome in Outcome if not outcome.comparable]
-    assert len({outcome.letter for outcome in failed}) == len(failed)
-    hatches = [outcome.hatch for outcome in Outcome if outcome.hatch]
-    assert len(set(hatches)) == len(hatches)
-
-
 def test_an_error_has_the_shade_of_its_bound_and_no_failure_is_friendlier_than_a_large_error():
     for bound, role in SHADES[:-1]:
         assert [shade(0.99 * bound), shade(bound) == role] == [role, False]
@@ -260,11 +238,3 @@ def test_an_error_has_the_shade_of_its_bound_and_no_failure_is_friendlier_than_a
     assert shades == sorted(shades, reverse=True)
     lost = (outcome for outcome in Outcome if outcome.hatch and outcome is not Outcome.UNRESOLVED)
     assert all(brightness(outcome_colour(outcome, LIGHT)) < shades[-1] for outcome in lost)
-
-
-def test_sweeps_are_told_of_engines_that_sweep_by_a_number_alone():
-    mechanism = LinkPendulum(links=10).mechanism()
-    left = {engine: left_by_sweeps(mechanism, engine) for engine in SHOWN}
-    for engine, value in left.items():
-        assert math.isnan(value) == (engine.iterations_of(mechanism) is None)
-        assert math.isnan(value) or 0 < value < 1

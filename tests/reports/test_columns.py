@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import pytest
 
 from engines import Holder, mujoco, pymunk
-from engines.lagrange import Lagrange
 from engines.pymunk.methods import SKATE_POINT
 from reference.joints import Joint
 from reference.mechanism import Mechanism
@@ -29,7 +28,6 @@ from reports.write.columns import (
     lines,
     means,
     reached,
-    runs_of,
 )
 from reports.write.holders import Column, column_of, told_rows, told_variant
 from tests.rows import falling, row_of, table
@@ -117,14 +115,6 @@ def test_steps_are_told_where_they_were_run_and_no_other_step_stands_for_them():
     assert cell_of(rows, steps={"usual": 1e-2}).startswith("1e-4; ")
 
 
-def test_the_quantity_of_the_page_is_told_and_its_unit_beside_the_scene():
-    rows = falling("mujoco tuned", (1e-3, 1e-5), "position", angle=7.0)
-    assert cell_of(rows, quantity="position") == "1e-3, 1e-5, -; order 2.0"
-    for quantity, unit in (("position", "m"), ("angle", "rad")):
-        (text,) = equal_step([(page_of(quantity=quantity), rows)], folder="there/").values()
-        assert table(text)[1][0] == f"[disc](there/base.md), {unit}"
-
-
 def test_each_engine_has_its_table_each_column_its_own_method_and_each_line_its_own_scene():
     methods = [f"{engine} {variant}" for engine in ("pymunk", "mujoco") for variant in VARIANTS]
     # Another error for each of twelve cells.
@@ -157,14 +147,6 @@ def test_each_engine_has_its_table_each_column_its_own_method_and_each_line_its_
 )
 def test_who_holds_the_joints_decides_in_which_column_a_method_stands(variant, by, column):
     assert column_of(Disc(), Held(variant, by=by)) is column
-
-
-def test_of_our_engines_neither_holds_a_skate_by_settings_and_pymunk_none_as_shipped():
-    asked = (pymunk.DEFAULT, pymunk.TUNED, pymunk.EXTENDED, mujoco.DEFAULT, mujoco.TUNED, mujoco.EXTENDED)
-    on = {scene: [column_of(scene, engine) for engine in asked] for scene in (FREE, SLEIGH)}
-    usual = [Column.SHIPPED, Column.SETTINGS, Column.CODE]
-    assert on[FREE] == usual * 2
-    assert on[SLEIGH] == [Column.NAIVE, Column.CODE, Column.CODE, Column.SHIPPED, Column.CODE, Column.CODE]
 
 
 def test_a_users_trick_does_not_bear_the_usual_name_of_an_engine_on_any_page():
@@ -227,12 +209,6 @@ def test_the_cost_of_an_error_is_that_of_the_cheapest_method_of_its_column():
     head, line = table(equal_error([(page_of(*methods), rows)])["toy"])
     assert head == ["scene", "toy as shipped", "toy with our code"]
     assert line[1:] == ["-", "1, 10, 50, 50"]
-
-
-def test_the_runs_of_a_method_and_the_finest_step_among_them_are_told():
-    assert runs_of(pymunk.EXTENDED, FREE, 1e-3) == "5 runs, finest 0.125 ms"
-    assert runs_of(mujoco.EXTENDED, FREE, 1e-3) == "2 runs, finest 1 ms"
-    assert {runs_of(engine, FREE, 1e-3) for engine in (pymunk.TUNED, mujoco.TUNED, Lagrange("rk4"))} == {""}
 
 
 def test_every_engine_that_has_rows_of_the_compared_scenes_has_a_line_whichever_page_they_stand_on():

@@ -13,15 +13,14 @@ from importlib import metadata
 import pytest
 
 from engines.lagrange import loading
-from reports.model.convergence import Sweep, Verdict, sweeps
+from reports.model.convergence import Sweep, Verdict
 from reports.model.measure import TIMINGS, Measurement
 from reports.model.outcomes import Outcome
-from reports.model.quantities import QUANTITIES, quantity
+from reports.model.quantities import quantity
 from reports.pages.index import foot
 from reports.write import csv_files, provenance, tables
 from reports.write.provenance import machine, still_installed, versions
 from tests.rows import falling, row, row_of, table
-from tests.toys import Toy
 
 NAN = math.nan
 
@@ -93,19 +92,6 @@ def test_a_sweep_is_told_in_words(found, words):
     assert lost.endswith("at the finest step **torn**") if math.isfinite(found.best) else lost == words
 
 
-def test_orders_stand_under_each_quantity_of_each_method():
-    # Orders 1 to 8 in the eight quantities, other errors in another method.
-    rows = []
-    for method, factor in (("toy default", 1.0), ("toy tuned", 10.0)):
-        for step in (1e-1, 1e-2, 1e-3):
-            errors = {q.name: q.rounding * factor * (step / 1e-4) ** (i + 1) for i, q in enumerate(QUANTITIES)}
-            rows.append(row_of(method, step=step, **errors))
-    names = [q.name for q in QUANTITIES]
-    for first, line in zip(("toy default", "toy tuned"), tables.order_rows(sweeps(rows), names), strict=True):
-        assert line[0] == first
-        assert [cell.split()[0] for cell in line[1:]] == [f"{i}.00" for i in range(1, 9)]
-
-
 def test_an_outcome_grid_has_every_step_and_each_cell_under_its_own():
     rows = [
         row_of("a x", step=1e-3, angle=1.3e-5),
@@ -164,19 +150,6 @@ def test_each_column_of_the_errors_is_its_field_and_none_is_missing():
     assert found["settings"] == hashlib.sha256(b"Toy(order=2.0)").hexdigest()[:8]
 
 
-def test_timings_are_the_costs_alone_under_their_header():
-    text = csv_files.as_csv([row()], timings=True, header="one\ntwo")
-    assert text.splitlines()[:2] == ["# one", "# two"]
-    [found] = read(text)
-    assert set(TIMINGS) == {"cpu", "runs", "build"}
-    identity = ["scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step"]
-    assert list(found) == [*identity, "cpu", "runs", "build"]
-    assert [found[name] for name in identity if name not in csv_files.DESCRIPTIONS] == [
-        "disc", "toy", "default", "sweep", "103", "101", "0.011",
-    ]  # fmt: skip
-    assert (found["cpu"], found["runs"], found["build"]) == ("0.067", "163", "0.071")
-
-
 def test_rows_stand_in_the_same_order_in_both_files_whatever_order_they_came_in():
     rows = [row_of(f"{engine} x", scene=scene, every=every) for engine in "ba" for scene in "dc" for every in (3, 1)]
     for timings in (False, True):
@@ -195,23 +168,6 @@ def test_descriptions_have_each_digest_once_with_its_text_and_what_it_is_of():
         ("settings", "Toy(order=4.0)"),
     ]
     assert all(line["digest"] == csv_files.digest(line["description"], csv_files.SHORT) for line in found)
-
-
-def test_each_quantity_has_its_unit_and_the_error_below_which_it_tells_nothing():
-    assert [(q.name, q.label, q.unit, q.rounding) for q in QUANTITIES] == [
-        ("position", "position", "m", 1e-11),
-        ("angle", "angle", "rad", 1e-11),
-        ("velocity", "velocity", "m/s", 1e-10),
-        ("rate", "rate", "rad/s", 1e-10),
-        ("gap", "gap", "m", 1e-12),
-        ("slip", "slip", "m/s", 1e-11),
-        ("energy", "energy", "relative", 1e-11),
-        ("reaction", "reaction", "relative", 1e-9),
-    ]
-    for q in QUANTITIES:
-        assert quantity(q.name) is q
-    with pytest.raises(KeyError):
-        quantity("flips")
 
 
 @pytest.fixture
@@ -239,23 +195,6 @@ def test_the_versions_are_those_of_the_packages_they_stand_beside(other_versions
     assert not still_installed("Python 3.99, scipy 2.3")
     assert not still_installed("Python 3.99, scipy 2.2, another 1.0")
     assert foot("a command") == f"Made by `a command` with {versions()}; timings on {machine()}."
-
-
-def test_the_packages_of_an_engine_that_is_not_registered_are_printed_where_it_is_compared():
-    assert foot("a command", [Toy(), Elsewhere()]).startswith(
-        f"Made by `a command` with {versions()}, another-engine not installed; timings on "
-    )
-    assert "another-engine" not in foot("a command", [Toy()])
-    assert still_installed(f"{versions()}, another-engine not installed, rich {metadata.version('rich')}")
-    assert not still_installed(f"{versions()}, rich 0.1")
-
-
-class Elsewhere(Toy):
-    """Depends on a package that is not here."""
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ("another-engine", "numpy")
 
 
 def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):

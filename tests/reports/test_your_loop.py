@@ -35,9 +35,7 @@ from reports.pages.your_loop.page import (
     PASTED,
     PYMUNK,
     SLIDER,
-    aimed,
     cell,
-    words,
 )
 from reports.pages.your_model.experiments import MODELS
 from reports.write.tables import number
@@ -118,13 +116,6 @@ def test_the_lines_of_xml_give_the_same_on_joints_that_set_nothing_themselves():
     assert in_mujoco(LOOP, shipped) > 0.005
     pasted = shipped.replace("</mujoco>", f"{lines('options')}</mujoco>")
     assert in_mujoco(LOOP, pasted) == pytest.approx(row(case, case.after), rel=0.02)
-
-
-def test_the_lines_of_xml_are_taken_at_the_end_of_a_model_that_has_options_and_defaults_of_its_own():
-    text = (MODELS / "four_bar.xml").read_text(encoding="utf-8").replace("</mujoco>", f"{lines('options')}</mujoco>")
-    model = mujoco.MjModel.from_xml_string(text)
-    assert model.eq_solref.tolist() == [[0.005, 1.0]]
-    assert (model.opt.timestep, model.opt.integrator) == (1e-3, mujoco.mjtIntegrator.mjINT_RK4)
 
 
 def test_the_pair_of_a_rolling_disc_gives_the_error_of_the_page():
@@ -235,17 +226,6 @@ def test_before_and_after_compares_gaps_and_angles_of_a_linkage_without_contact(
     gap, angle = np.asarray(values["gap"]), np.asarray(values["angle"])
     assert gap[1] < gap[0] / 10
     assert angle[1] < angle[0] / 10
-
-
-def test_what_is_done_before_each_step_of_a_skate_is_what_its_program_does():
-    for engine, stepped in (("mujoco", "mujoco.mj_step(model, data)"), ("pymunk", "space.step(dt)")):
-        assert aimed(engine).endswith(f"    aim()\n    {stepped}")
-
-
-def test_without_rows_there_are_lines_and_no_tables():
-    told = words(Material({}))
-    assert (told["mujoco"], told["pymunk"]) == ("", "")
-    assert set(told["lines"]) == {"options", "compiled", "rolling", "close", "choose"}
 
 
 PLAIN = (MODELS / "four_bar.xml").read_text(encoding="utf-8")
