@@ -221,7 +221,7 @@ def wrenches(tree: Tree, pose: Any, twist: Any, reaction: Any) -> Any:
 
 PULLING = (Spring, Damper, TorsionSpring, TorsionDamper)
 SAMPLES, SPAN, EVERY_STEP = 2, 0.4, 40  # and parts of the mechanism's own time scale
-CASES = range(12)
+CASES = (0, 2, 4, 5, 6, 7, 8, 9, 10, 13)  # every kind of joint and force, trees and cut loops
 
 
 @pytest.mark.parametrize("number", CASES)
