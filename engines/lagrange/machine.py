@@ -11,37 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Softness
-from engines.lagrange.arrays import (
-    ACCELERATION,
-    CELL,
-    COLUMNS,
-    COMPLIANCE,
-    CONTROL,
-    DAMPING,
-    DEPENDENT,
-    FORCE_KINDS,
-    KINDS,
-    LACKING,
-    MARCH,
-    NOT_TABULATED,
-    REACT,
-    ROUNDED,
-    ROWS,
-    SOFT,
-    START_POSE,
-    START_TWIST,
-    STATUS,
-    STEPS,
-    STIFF,
-    STIFFNESS,
-    STOPPED,
-    TABLE,
-    UNCLOSED,
-    WANTED_ANGLE,
-    WANTED_ROLL,
-    Arrays,
-    arrays_of,
-)
+from engines.lagrange import arrays as ix
+from engines.lagrange.arrays import Arrays, arrays_of
 from engines.lagrange.dynamics import ADAPTIVE_DOP853, NONE, PROJECTION_ITERATIONS, Tableau
 from engines.lagrange.loading import compiled
 from engines.rolling_table import BLOCK, FARTHEST, Table, rolled
@@ -68,10 +39,10 @@ class Windows:
     def __init__(self, rolls: Sequence[Rolling], records: NDArray[np.int64]) -> None:
         self._tables = [rolled(rolling) for rolling in rolls]
         self._records = records  # (rolls, ROLL_RECORD); written to
-        self._parts = [np.zeros((0, CELL), dtype=complex) for _ in rolls]
-        self.cells = np.zeros((0, CELL), dtype=complex)
+        self._parts = [np.zeros((0, ix.CELL), dtype=complex) for _ in rolls]
+        self.cells = np.zeros((0, ix.CELL), dtype=complex)
         for which, rolling in enumerate(rolls):
-            if records[which, 0] == TABLE:
+            if records[which, 0] == ix.TABLE:
                 self.move(which, rolling.theta)
 
     def move(self, which: int, theta: float) -> bool:
@@ -135,67 +106,69 @@ class Machine:
         """None where numpy has to evaluate the reference's own laws: for a pair of curves that no table holds, and for
         a kind of joint or force that machine code does not know.
         """
-        if not {*map(type, mechanism.joints)} <= {*KINDS} or not {*map(type, mechanism.forces)} <= {*FORCE_KINDS}:
+        if not {*map(type, mechanism.joints)} <= {*ix.KINDS} or not {*map(type, mechanism.forces)} <= {*ix.FORCE_KINDS}:
             return None
         arrays = arrays_of(mechanism)
         rolls = [joint.rolling for joint in mechanism.joints if isinstance(joint, Roll)]
         records = arrays.rolls
-        if np.any(records[:, 0] == NOT_TABULATED):
+        if np.any(records[:, 0] == ix.NOT_TABULATED):
             return None
         return cls(mechanism, arrays, Windows(rolls, records))
 
     def soften(self, softness: Softness, gives: NDArray[np.bool_]) -> None:
         """Let the rows that `gives` (rows,) names give way by springs, dampers and a compliance."""
         whole, real, place = self.arrays.whole, self.arrays.real, self.arrays.rows[gives]
-        whole[SOFT] = 2 if softness.compliance > 0 else 1
-        real[whole[STIFFNESS] + place], real[whole[DAMPING] + place] = softness.stiffness, softness.damping
-        real[whole[COMPLIANCE] + place], real[whole[LACKING] + place] = softness.compliance, not softness.complete
+        whole[ix.SOFT] = 2 if softness.compliance > 0 else 1
+        real[whole[ix.STIFFNESS] + place], real[whole[ix.DAMPING] + place] = softness.stiffness, softness.damping
+        real[whole[ix.COMPLIANCE] + place], real[whole[ix.LACKING] + place] = softness.compliance, not softness.complete
 
     @property
     def dependent(self) -> bool:
         """Whether some rows follow from others at the start."""
-        return bool(self.arrays.whole[DEPENDENT])
+        return bool(self.arrays.whole[ix.DEPENDENT])
 
     @property
     def left_to_numpy(self) -> bool:
         """Whether the last call ended at a contact that no table holds."""
-        return self.status(WANTED_ROLL) >= 0
+        return self.status(ix.WANTED_ROLL) >= 0
 
     def warnings(self, tolerance: float | None) -> tuple[str, ...]:
         """What projections and the control of steps have to say after a run."""
-        found = [] if np.isnan(self.status(UNCLOSED)) else [left_open(self.status(UNCLOSED))]
+        found = [] if np.isnan(self.status(ix.UNCLOSED)) else [left_open(self.status(ix.UNCLOSED))]
         if tolerance is None:
             return tuple(found)
-        if not np.isnan(self.status(STOPPED)):
-            found.append(not_held(tolerance, self.status(STOPPED)))
-        if not np.isnan(self.status(STIFF)):
+        if not np.isnan(self.status(ix.STOPPED)):
+            found.append(not_held(tolerance, self.status(ix.STOPPED)))
+        if not np.isnan(self.status(ix.STIFF)):
             found.append(
-                f"lagrange: stiff from {self.status(STIFF):.6g} s on: stability and not accuracy sets the steps"
+                f"lagrange: stiff from {self.status(ix.STIFF):.6g} s on: stability and not accuracy sets the steps"
             )
-        if self.status(ROUNDED) > 10 * tolerance:
+        if self.status(ix.ROUNDED) > 10 * tolerance:
             found.append(
                 "lagrange: rows are so nearly dependent that rounding alone changes speeds by "
-                f"{self.status(ROUNDED):.1g} of the mechanism's own, more than the tolerance {tolerance:g}"
+                f"{self.status(ix.ROUNDED):.1g} of the mechanism's own, more than the tolerance {tolerance:g}"
             )
         return tuple(found)
 
     def status(self, what: int) -> float:
         """One of the numbers that compiled code leaves behind."""
-        return float(self.arrays.real[self.arrays.whole[STATUS] + what])
+        return float(self.arrays.real[self.arrays.whole[ix.STATUS] + what])
 
     def empty(self, samples: int) -> tuple[Array, Array]:
         """Poses and twists (samples + 1, columns), the first as at the start, the others NaN."""
-        whole, real, columns = self.arrays.whole, self.arrays.real, int(self.arrays.whole[COLUMNS])
+        whole, real, columns = self.arrays.whole, self.arrays.real, int(self.arrays.whole[ix.COLUMNS])
         poses, twists = np.full((2, samples + 1, columns), np.nan)
-        poses[0] = real[whole[START_POSE] : whole[START_POSE] + columns]
-        twists[0] = real[whole[START_TWIST] : whole[START_TWIST] + columns]
+        poses[0] = real[whole[ix.START_POSE] : whole[ix.START_POSE] + columns]
+        twists[0] = real[whole[ix.START_TWIST] : whole[ix.START_TWIST] + columns]
         return poses, twists
 
     def march(
         self, tableau: Tableau, project: int, dt: float, every: int, begin: int, poses: Array, twists: Array
     ) -> int:
         """Steps of dt [s] from a sample on; the last sample that is done, before one that only numpy can do."""
-        return self._repeated(lambda at: self._call(MARCH, tableau, project, 0.0, dt, every, at, poses, twists), begin)
+        return self._repeated(
+            lambda at: self._call(ix.MARCH, tableau, project, 0.0, dt, every, at, poses, twists), begin
+        )
 
     def control(self, tolerance: float, spacing: float, begin: int, poses: Array, twists: Array) -> int:
         """Steps of their own size between samples `spacing` [s] apart; as `march`.
@@ -203,10 +176,10 @@ class Machine:
         A step is allowed a tenth of the tolerance, since errors add up: so the result about holds it.
         """
         tolerance = max(STEP_SHARE * tolerance, LEAST_TOLERANCE)
-        self.arrays.real[self.arrays.whole[STATUS] + STEPS] = 0.0
+        self.arrays.real[self.arrays.whole[ix.STATUS] + ix.STEPS] = 0.0
         return self._repeated(
             lambda at: self._call(
-                CONTROL, ADAPTIVE_DOP853, PROJECTION_ITERATIONS, tolerance, spacing, 1, at, poses, twists
+                ix.CONTROL, ADAPTIVE_DOP853, PROJECTION_ITERATIONS, tolerance, spacing, 1, at, poses, twists
             ),
             begin,
         )
@@ -214,26 +187,26 @@ class Machine:
     def reactions(self, dt: float, poses: Array, twists: Array) -> tuple[Array, Array]:
         """Reactions (samples, rows) and accelerations (samples, bodies, 3) of states dt apart; NaN where not known."""
         whole = self.arrays.whole
-        out = np.full((len(poses), whole[ROWS] + whole[COLUMNS]), np.nan)
+        out = np.full((len(poses), whole[ix.ROWS] + whole[ix.COLUMNS]), np.nan)
 
         def call(at: int) -> int:
-            return self._call(REACT, NONE, 0, 0.0, dt, 1, at, poses, twists, out)
+            return self._call(ix.REACT, NONE, 0, 0.0, dt, 1, at, poses, twists, out)
 
         if len(poses):
             self._repeated(call, 0)
-        return out[:, self.arrays.rows], out[:, whole[ROWS] : -3].reshape(len(poses), -1, 3)
+        return out[:, self.arrays.rows], out[:, whole[ix.ROWS] : -3].reshape(len(poses), -1, 3)
 
     def _repeated(self, call: Callable[[int], int], begin: int) -> int:
         """Call, and again after each move of a window, for as long as that helps."""
         whole, real = self.arrays.whole, self.arrays.real
         done, moves = begin, 0
         while True:
-            real[whole[STATUS] + WANTED_ROLL] = -1.0
+            real[whole[ix.STATUS] + ix.WANTED_ROLL] = -1.0
             before, done = done, call(done)
             moves = moves + 1 if done == before else 0
-            wanted = int(self.status(WANTED_ROLL))
+            wanted = int(self.status(ix.WANTED_ROLL))
             # A body that turns through more than a window between two samples has lost its way.
-            if wanted < 0 or moves > MOST_MOVES or not self.windows.move(wanted, self.status(WANTED_ANGLE)):
+            if wanted < 0 or moves > MOST_MOVES or not self.windows.move(wanted, self.status(ix.WANTED_ANGLE)):
                 return done
 
     def _call(
@@ -251,7 +224,7 @@ class Machine:
     ) -> int:
         estimates, whole, real = ADAPTIVE_DOP853, self.arrays.whole, self.arrays.real
         # Nothing of a run that was lost: NaN times the ground's mobility, zero, would stay in its acceleration.
-        real[whole[ACCELERATION] : whole[STATUS]] = 0.0
+        real[whole[ix.ACCELERATION] : whole[ix.STATUS]] = 0.0
         return self.run(
             *(task, whole, real, self.windows.cells),
             *(tableau.stages, tableau.weights, tableau.nodes, estimates.third, estimates.fifth, estimates.dense),

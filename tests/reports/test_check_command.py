@@ -287,9 +287,7 @@ def test_who_waits_for_the_first_compilation_knows_it(tmp_path, monkeypatch):
     (tmp_path / "swing.py").write_text(PENDULUM)
     check(read("swing.py:make", tmp_path), "swing", 0.05, 1e-4, told.append, Plan(0.0))
     assert any("compiling the judge's machine code" in words for words in told) is loading.installed()
-    folder = loading._folder()
-    assert folder is not None
-    (folder / loading.READY).touch()
+    (loading._folder() / loading.READY).touch()
     assert not loading.is_cold()
 
 

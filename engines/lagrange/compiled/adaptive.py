@@ -8,27 +8,7 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.arrays import (
-    ACCELERATION,
-    COLUMNS,
-    NEW_POSE,
-    NEW_TWIST,
-    POSE,
-    POSE_UNIT,
-    ROUNDED,
-    SMALLEST,
-    STAGE_POSE,
-    STAGE_TWIST,
-    STATUS,
-    STEPS,
-    STIFF,
-    STOPPED,
-    TWIST,
-    TWIST_UNIT,
-    VELOCITY,
-    WANTED_ANGLE,
-    WANTED_ROLL,
-)
+from engines.lagrange import arrays as ix
 from engines.lagrange.compiled.inner import inner
 from engines.lagrange.compiled.rows import rotation
 from engines.lagrange.compiled.steps import accelerations, add_stages, evaluate_stage, project_onto_joints
@@ -46,8 +26,9 @@ def adaptive_steps(
     whole, real, cells, stages, weights, nodes, third, fifth, dense, project, tolerance, spacing, begin, poses, twists
 ):
     """From the sample `begin` on, samples `spacing` apart into rows of poses and twists; gives the last one done."""
-    columns, pose, twist, new, fast = whole[COLUMNS], whole[POSE], whole[TWIST], whole[NEW_POSE], whole[NEW_TWIST]
-    velocity, acceleration, status = whole[VELOCITY], whole[ACCELERATION], whole[STATUS]
+    columns, pose, twist = whole[ix.COLUMNS], whole[ix.POSE], whole[ix.TWIST]
+    new, fast = whole[ix.NEW_POSE], whole[ix.NEW_TWIST]
+    velocity, acceleration, status = whole[ix.VELOCITY], whole[ix.ACCELERATION], whole[ix.STATUS]
     end = spacing * (len(poses) - 1)
     for k in range(columns):
         real[pose + k], real[twist + k] = poses[begin, k], twists[begin, k]
@@ -57,18 +38,18 @@ def adaptive_steps(
             step = _first_step(whole, real, cells, t, tolerance, min(spacing * 10, end - t))
         least = 16 * ROUNDING * max(abs(t), spacing)
         tries += 1
-        if not step > least or tries > MOST_STEPS or real[status + STEPS] > MOST_STEPS + EACH_SAMPLE * sample:
-            real[status + STOPPED] = t
+        if not step > least or tries > MOST_STEPS or real[status + ix.STEPS] > MOST_STEPS + EACH_SAMPLE * sample:
+            real[status + ix.STOPPED] = t
             return sample
         # Steps about as long as samples are apart end there, longer ones where the run does; a crumb is shared out.
         target = spacing * (sample + 1) if step < 2 * spacing else end
         rest = target - t
         dt = rest if 1.01 * step >= rest else (0.5 * rest if 2 * step > rest else step)
         goal = target if dt == rest else t + dt
-        real[status + SMALLEST] = 1.0
+        real[status + ix.SMALLEST] = 1.0
         for stage in range(1, 12):
             evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
-            if real[status + WANTED_ROLL] >= 0:
+            if real[status + ix.WANTED_ROLL] >= 0:
                 break
         if _went_astray(whole, real, pose):
             step, rejected = LEAST_FACTOR * dt, True
@@ -77,7 +58,7 @@ def adaptive_steps(
             real[new + k], real[fast + k] = real[pose + k], real[twist + k]
         add_stages(whole, real, weights, dt, new, fast)
         error = dt * _error(whole, real, third, fifth, tolerance)
-        if real[status + WANTED_ROLL] >= 0:
+        if real[status + ix.WANTED_ROLL] >= 0:
             return sample
         if not error < 1:
             step = dt * (max(LEAST_FACTOR, SAFETY * error**-0.125) if error < 1e300 else LEAST_FACTOR)
@@ -86,51 +67,24 @@ def adaptive_steps(
         factor = LARGEST_FACTOR if error == 0 else min(LARGEST_FACTOR, SAFETY * error**-0.125)
         step = dt * (min(1.0, factor) if rejected else factor)
         rejected = False
-        moved = 0.0
-        for k in range(columns):
-            moved = max(moved, abs(real[fast + k] - real[twist + k]) / real[whole[TWIST_UNIT] + k])
-        real[status + ROUNDED] += moved * ROUNDING / math.sqrt(max(real[status + SMALLEST], ROUNDING))
+        real[status + ix.ROUNDED] += _rounding(whole, real)
         project_onto_joints(whole, real, cells, new, fast, goal, project)
-        last, ahead = 12 * columns, 11 * columns
+        last = 12 * columns
         for k in range(columns):
             real[velocity + last + k] = real[fast + k]
         accelerations(whole, real, cells, new, fast, goal, acceleration + last)
-        if real[status + WANTED_ROLL] >= 0:
+        if real[status + ix.WANTED_ROLL] >= 0:
             return sample
-        rates = states = 0.0
-        for k in range(columns):
-            unit = real[whole[POSE_UNIT] + k]
-            faster = real[whole[TWIST_UNIT] + k]
-            rates += _square((real[velocity + last + k] - real[velocity + ahead + k]) / unit)
-            rates += _square((real[acceleration + last + k] - real[acceleration + ahead + k]) / faster)
-            states += _square((real[new + k] - real[whole[STAGE_POSE] + k]) / unit)
-            states += _square((real[fast + k] - real[velocity + ahead + k]) / faster)
-        stiff = stiff + 1 if dt * dt * rates > STIFF_PRODUCT * STIFF_PRODUCT * states and states > 0 else 0
-        if stiff >= STIFF_STEPS and math.isnan(real[status + STIFF]):
-            real[status + STIFF] = t
-        real[status + STEPS] += 1
-        ready = False
-        while sample < len(poses) - 1 and goal >= spacing * (sample + 1):
-            if spacing * (sample + 1) == goal:
-                for k in range(columns):
-                    poses[sample + 1, k], twists[sample + 1, k] = real[new + k], real[fast + k]
-            else:
-                if not ready:
-                    for stage in range(13, 16):
-                        evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
-                    ready = True
-                _between(whole, real, dense, dt, (spacing * (sample + 1) - t) / dt)
-                at, fast_at = whole[STAGE_POSE], whole[STAGE_TWIST]
-                project_onto_joints(whole, real, cells, at, fast_at, spacing * (sample + 1), project)
-                for k in range(columns):
-                    poses[sample + 1, k], twists[sample + 1, k] = real[at + k], real[fast_at + k]
-            sample += 1
-            tries = 0
-            if real[status + WANTED_ROLL] >= 0:
-                return sample - 1
-            for k in range(columns):
-                if not math.isfinite(poses[sample, k]):
-                    return sample - 1
+        stiff = stiff + 1 if _is_stiff(whole, real, dt) else 0
+        if stiff >= STIFF_STEPS and math.isnan(real[status + ix.STIFF]):
+            real[status + ix.STIFF] = t
+        real[status + ix.STEPS] += 1
+        done = _fill_samples(
+            whole, real, cells, stages, nodes, dense, project, t, dt, goal, spacing, sample, poses, twists
+        )
+        tries, sample = (0 if done > sample else tries), done
+        if sample < len(poses) - 1 and goal >= spacing * (sample + 1):  # one that is due is lost
+            return sample
         t = goal
         for k in range(columns):
             real[pose + k], real[twist + k] = real[new + k], real[fast + k]
@@ -139,13 +93,65 @@ def adaptive_steps(
 
 
 @inner
+def _rounding(whole, real):
+    """How much rounding alone may have changed speeds in a step, in parts of the mechanism's own."""
+    moved = 0.0
+    for k in range(whole[ix.COLUMNS]):
+        change = abs(real[whole[ix.NEW_TWIST] + k] - real[whole[ix.TWIST] + k])
+        moved = max(moved, change / real[whole[ix.TWIST_UNIT] + k])
+    return moved * ROUNDING / math.sqrt(max(real[whole[ix.STATUS] + ix.SMALLEST], ROUNDING))
+
+
+@inner
+def _is_stiff(whole, real, dt):
+    """Whether step times largest eigenvalue, from the last two stages, is at the border of stability."""
+    columns, velocity, acceleration = whole[ix.COLUMNS], whole[ix.VELOCITY], whole[ix.ACCELERATION]
+    last, ahead, rates, states = 12 * columns, 11 * columns, 0.0, 0.0
+    for k in range(columns):
+        unit, faster = real[whole[ix.POSE_UNIT] + k], real[whole[ix.TWIST_UNIT] + k]
+        rates += _square((real[velocity + last + k] - real[velocity + ahead + k]) / unit)
+        rates += _square((real[acceleration + last + k] - real[acceleration + ahead + k]) / faster)
+        states += _square((real[whole[ix.NEW_POSE] + k] - real[whole[ix.STAGE_POSE] + k]) / unit)
+        states += _square((real[whole[ix.NEW_TWIST] + k] - real[velocity + ahead + k]) / faster)
+    return dt * dt * rates > STIFF_PRODUCT * STIFF_PRODUCT * states and states > 0
+
+
+@inner
+def _fill_samples(whole, real, cells, stages, nodes, dense, project, t, dt, goal, spacing, sample, poses, twists):
+    """Fill the samples after `sample` that a step from t to `goal` passes; gives the last one that is done."""
+    ready, at, fast = False, whole[ix.STAGE_POSE], whole[ix.STAGE_TWIST]
+    while sample < len(poses) - 1 and goal >= spacing * (sample + 1):
+        instant = spacing * (sample + 1)
+        if instant == goal:
+            for k in range(whole[ix.COLUMNS]):
+                poses[sample + 1, k] = real[whole[ix.NEW_POSE] + k]
+                twists[sample + 1, k] = real[whole[ix.NEW_TWIST] + k]
+        else:
+            if not ready:
+                for stage in range(13, 16):
+                    evaluate_stage(whole, real, cells, stages, nodes, stage, whole[ix.POSE], whole[ix.TWIST], t, dt)
+                ready = True
+            _between(whole, real, dense, dt, (instant - t) / dt)
+            project_onto_joints(whole, real, cells, at, fast, instant, project)
+            for k in range(whole[ix.COLUMNS]):
+                poses[sample + 1, k], twists[sample + 1, k] = real[at + k], real[fast + k]
+        if real[whole[ix.STATUS] + ix.WANTED_ROLL] >= 0:
+            return sample
+        for k in range(whole[ix.COLUMNS]):
+            if not math.isfinite(poses[sample + 1, k]):
+                return sample
+        sample += 1
+    return sample
+
+
+@inner
 def _went_astray(whole, real, pose):
     """Whether a stage asked for a contact so far from that in a pose that it is no part of the motion; no table is."""
-    status = whole[STATUS]
-    wanted = real[status + WANTED_ROLL]
-    if wanted < 0 or abs(real[status + WANTED_ANGLE] - rotation(whole, real, wanted, pose)) <= FARTHEST_STAGE:
+    status = whole[ix.STATUS]
+    wanted = real[status + ix.WANTED_ROLL]
+    if wanted < 0 or abs(real[status + ix.WANTED_ANGLE] - rotation(whole, real, wanted, pose)) <= FARTHEST_STAGE:
         return False
-    real[status + WANTED_ROLL] = -1.0
+    real[status + ix.WANTED_ROLL] = -1.0
     return True
 
 
@@ -158,18 +164,19 @@ def _square(value):
 def _size(whole, real, pose, twist, state, fast, tolerance):
     """The mean square of a pair of vectors, in parts of the error allowed at a state."""
     total = 0.0
-    for k in range(whole[COLUMNS] - 3):
-        unit = tolerance * (real[whole[POSE_UNIT] + k] + abs(real[state + k]))
-        faster = tolerance * (real[whole[TWIST_UNIT] + k] + abs(real[fast + k]))
+    for k in range(whole[ix.COLUMNS] - 3):
+        unit = tolerance * (real[whole[ix.POSE_UNIT] + k] + abs(real[state + k]))
+        faster = tolerance * (real[whole[ix.TWIST_UNIT] + k] + abs(real[fast + k]))
         total += _square(real[pose + k] / unit) + _square(real[twist + k] / faster)
-    return math.sqrt(total / (2 * (whole[COLUMNS] - 3)))
+    return math.sqrt(total / (2 * (whole[ix.COLUMNS] - 3)))
 
 
 @inner
 def _first_step(whole, real, cells, t, tolerance, longest):
     """Hairer, Norsett and Wanner's guess, and the stage at the start."""
-    columns, pose, twist, new, fast = whole[COLUMNS], whole[POSE], whole[TWIST], whole[NEW_POSE], whole[NEW_TWIST]
-    velocity, acceleration = whole[VELOCITY], whole[ACCELERATION]
+    columns, pose, twist = whole[ix.COLUMNS], whole[ix.POSE], whole[ix.TWIST]
+    new, fast = whole[ix.NEW_POSE], whole[ix.NEW_TWIST]
+    velocity, acceleration = whole[ix.VELOCITY], whole[ix.ACCELERATION]
     for k in range(columns):
         real[velocity + k] = real[twist + k]
     accelerations(whole, real, cells, pose, twist, t, acceleration)
@@ -194,10 +201,12 @@ def _first_step(whole, real, cells, t, tolerance, longest):
 @inner
 def _error(whole, real, third, fifth, tolerance):
     """The estimate of a step's error in parts of what is allowed, for a step of one second."""
-    columns, threes, fives = whole[COLUMNS], 0.0, 0.0
+    columns, threes, fives = whole[ix.COLUMNS], 0.0, 0.0
     for part in range(2):
-        stage, old = (whole[VELOCITY], whole[POSE]) if part == 0 else (whole[ACCELERATION], whole[TWIST])
-        new, unit = (whole[NEW_POSE], whole[POSE_UNIT]) if part == 0 else (whole[NEW_TWIST], whole[TWIST_UNIT])
+        stage, old = (whole[ix.VELOCITY], whole[ix.POSE]) if part == 0 else (whole[ix.ACCELERATION], whole[ix.TWIST])
+        new, unit = (
+            (whole[ix.NEW_POSE], whole[ix.POSE_UNIT]) if part == 0 else (whole[ix.NEW_TWIST], whole[ix.TWIST_UNIT])
+        )
         for k in range(columns - 3):
             three = five = 0.0
             for i in range(12):
@@ -213,11 +222,11 @@ def _error(whole, real, third, fifth, tolerance):
 @inner
 def _between(whole, real, dense, dt, part):
     """Dense output at a part of the step, to where a stage's pose and twist stand."""
-    columns = whole[COLUMNS]
+    columns = whole[ix.COLUMNS]
     rest = 1 - part
     for second in range(2):
-        stage, old = (whole[ACCELERATION], whole[TWIST]) if second else (whole[VELOCITY], whole[POSE])
-        new = whole[NEW_TWIST] if second else whole[NEW_POSE]
+        stage, old = (whole[ix.ACCELERATION], whole[ix.TWIST]) if second else (whole[ix.VELOCITY], whole[ix.POSE])
+        new = whole[ix.NEW_TWIST] if second else whole[ix.NEW_POSE]
         for k in range(columns):
             change, start = real[new + k] - real[old + k], dt * real[stage + k]
             end = dt * real[stage + 12 * columns + k]
@@ -229,4 +238,4 @@ def _between(whole, real, dense, dt, part):
                 high = (high + dt * value) * (part if power % 2 == 1 else rest)
             # F[3] at power 0: factors alternate, 1 - part where scipy's index counted from the top is odd.
             value = ((high + 2 * change - (end + start)) * part + start - change) * rest + change
-            real[(whole[STAGE_TWIST] if second else whole[STAGE_POSE]) + k] = real[old + k] + value * part
+            real[(whole[ix.STAGE_TWIST] if second else whole[ix.STAGE_POSE]) + k] = real[old + k] + value * part

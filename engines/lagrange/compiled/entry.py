@@ -7,18 +7,7 @@ from __future__ import annotations
 
 from numba import njit, types
 
-from engines.lagrange.arrays import (
-    ACCELERATION,
-    COLUMNS,
-    CONTROL,
-    MARCH,
-    POSE,
-    REACTION,
-    ROWS,
-    STATUS,
-    TWIST,
-    WANTED_ROLL,
-)
+from engines.lagrange import arrays as ix
 from engines.lagrange.compiled.adaptive import adaptive_steps
 from engines.lagrange.compiled.inner import straight
 from engines.lagrange.compiled.steps import accelerations, fixed_steps
@@ -35,12 +24,12 @@ def run(
     task, whole, real, cells, stages, weights, nodes, third, fifth, dense,
     project, tolerance, dt, every, begin, poses, twists, out,
 ):  # fmt: skip
-    """MARCH: `fixed_steps`. CONTROL: `adaptive_steps`, `dt` between samples. REACT: fill `out` (samples, rows) and
+    """MARCH: `fixed_steps`. ix.CONTROL: `adaptive_steps`, `dt` between samples. REACT: fill `out` (samples, rows) and
     `out`'s last columns with the reactions and accelerations at samples `dt` apart."""
     whole, real = straight(whole), straight(real)
-    if task == MARCH:
+    if task == ix.MARCH:
         return fixed_steps(whole, real, cells, stages, weights, nodes, project, dt, every, begin, poses, twists)
-    if task == CONTROL:
+    if task == ix.CONTROL:
         return adaptive_steps(
             whole,
             real,
@@ -59,16 +48,16 @@ def run(
             twists,
         )
     columns, rows, pose, twist, acceleration = (
-        whole[COLUMNS], whole[ROWS], whole[POSE], whole[TWIST], whole[ACCELERATION]
+        whole[ix.COLUMNS], whole[ix.ROWS], whole[ix.POSE], whole[ix.TWIST], whole[ix.ACCELERATION]
     )  # fmt: skip
     for sample in range(begin, len(poses)):
         for k in range(columns):
             real[pose + k], real[twist + k] = poses[sample, k], twists[sample, k]
         accelerations(whole, real, cells, pose, twist, sample * dt, acceleration)
-        if real[whole[STATUS] + WANTED_ROLL] >= 0:
+        if real[whole[ix.STATUS] + ix.WANTED_ROLL] >= 0:
             return sample
         for row in range(rows):
-            out[sample, row] = real[whole[REACTION] + row]
+            out[sample, row] = real[whole[ix.REACTION] + row]
         for k in range(columns):
             out[sample, rows + k] = real[acceleration + k]
     return len(poses) - 1

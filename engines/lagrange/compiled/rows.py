@@ -8,83 +8,37 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.arrays import (
-    BIAS,
-    COLUMNS,
-    CONSTANTS,
-    COUPLED,
-    COUPLING,
-    DAMPER,
-    DRIVE,
-    ENDS,
-    FORCE,
-    FORCE_AT,
-    FORCE_NUMBERS,
-    FORCE_PARAMETERS,
-    FORCED,
-    FORCES,
-    GAP,
-    GEAR,
-    GRAVITY,
-    JOINT,
-    JOINT_AT,
-    JOINTS,
-    MOBILITY,
-    ON_LINE,
-    ON_ROUND,
-    PARAMETER_AT,
-    PARAMETERS,
-    PIN,
-    ROD,
-    ROLL,
-    ROLL_AT,
-    ROLL_NUMBERS,
-    ROLL_RECORD,
-    SLOT,
-    SPRING,
-    STATUS,
-    SUMMAND,
-    SUMMAND_AT,
-    SUMMAND_NUMBERS,
-    SUMMAND_PARAMETERS,
-    SUMMANDS,
-    TORQUE,
-    TORSION_SPRING,
-    TURNED,
-    WANTED_ANGLE,
-    WANTED_ROLL,
-    WELD,
-)
+from engines.lagrange import arrays as ix
 from engines.lagrange.compiled.inner import inner
 
 
 @inner
 def rows(whole, real, cells, pose, twist, t):
     """Fill ends, gaps and biases at the pose and the twist that stand at these places; no gap where nothing is held."""
-    turned, all_ends, gaps, biases = whole[TURNED], whole[ENDS], whole[GAP], whole[BIAS]
-    for body in range(0, whole[COLUMNS] - 3, 3):
+    turned, all_ends, gaps, biases = whole[ix.TURNED], whole[ix.ENDS], whole[ix.GAP], whole[ix.BIAS]
+    for body in range(0, whole[ix.COLUMNS] - 3, 3):
         angle = real[pose + body + 2]
         real[turned + 2 * (body // 3)] = math.cos(angle)
         real[turned + 2 * (body // 3) + 1] = math.sin(angle)
-    for joint in range(whole[JOINTS]):
-        record, number = whole[JOINT_AT] + JOINT * joint, whole[PARAMETER_AT] + PARAMETERS * joint
+    for joint in range(whole[ix.JOINTS]):
+        record, number = whole[ix.JOINT_AT] + ix.JOINT * joint, whole[ix.PARAMETER_AT] + ix.PARAMETERS * joint
         kind, first, second, row = whole[record], whole[record + 1], whole[record + 2], whole[record + 3]
-        if kind == COUPLING:
+        if kind == ix.COUPLING:
             continue  # see `coupled_rows`
         e, gap, bias = all_ends + 6 * row, gaps + row, biases + row
         omega, spin = real[twist + first + 2], real[twist + second + 2]
-        if kind == DRIVE:
+        if kind == ix.DRIVE:
             real[e + 2], real[e + 5] = -1.0, 1.0
             real[gap] = real[pose + second + 2] - real[pose + first + 2] - (real[number + 6] + real[number + 5] * t)
             real[bias] = 0.0
             continue
-        if kind == GEAR:
+        if kind == ix.GEAR:
             ratio = real[number + 5]
             real[e + 2], real[e + 5] = -ratio, 1.0
             real[gap] = real[pose + second + 2] - ratio * real[pose + first + 2] - real[number + 6]
             real[bias] = 0.0
             continue
-        if kind == ROLL:
+        if kind == ix.ROLL:
             roll_rows(whole, real, cells, record, pose, twist)
             continue
         c, d = real[turned + 2 * (first // 3)], real[turned + 2 * (first // 3) + 1]
@@ -93,18 +47,18 @@ def rows(whole, real, cells, pose, twist, t):
         bx, by = g * real[number + 2] - h * real[number + 3], h * real[number + 2] + g * real[number + 3]
         arm_x = real[pose + second] + bx - real[pose + first]
         arm_y = real[pose + second + 1] + by - real[pose + first + 1]
-        if kind in (PIN, WELD):
+        if kind in (ix.PIN, ix.WELD):
             real[e], real[e + 2], real[e + 3], real[e + 5] = -1.0, ay, 1.0, -by
             real[e + 7], real[e + 8], real[e + 10], real[e + 11] = -1.0, -ax, 1.0, bx
             real[gap], real[gap + 1] = arm_x - ax, arm_y - ay
             real[bias] = spin * spin * bx - omega * omega * ax
             real[bias + 1] = spin * spin * by - omega * omega * ay
-            if kind == WELD:
+            if kind == ix.WELD:
                 real[e + 14], real[e + 17] = -1.0, 1.0
                 real[gap + 2] = real[pose + second + 2] - real[pose + first + 2] - real[number + 4]
                 real[bias + 2] = 0.0
             continue
-        if kind == ROD:
+        if kind == ix.ROD:
             x, y = arm_x - ax, arm_y - ay
             length = math.sqrt(x * x + y * y)
             x, y = x / length, y / length
@@ -118,7 +72,7 @@ def rows(whole, real, cells, pose, twist, t):
             real[bias] = inward - across * across / length
             continue
         # A slot's line turns with the first body, a blade with the second: its direction (x, y), its normal (-y, x).
-        angle = real[number + 4] + (real[pose + first + 2] if kind == SLOT else real[pose + second + 2])
+        angle = real[number + 4] + (real[pose + first + 2] if kind == ix.SLOT else real[pose + second + 2])
         x, y = math.cos(angle), math.sin(angle)
         fast_x = real[twist + second] - spin * by - real[twist + first]
         fast_y = real[twist + second + 1] + spin * bx - real[twist + first + 1]
@@ -127,27 +81,27 @@ def rows(whole, real, cells, pose, twist, t):
         along = x * fast_x + y * fast_y
         over_material = x * (fast_x + omega * arm_y) + y * (fast_y - omega * arm_x)
         inward = spin * spin * (x * by - y * bx)
-        if kind == SLOT:
+        if kind == ix.SLOT:
             real[gap] = x * (arm_y - ay) - y * (arm_x - ax)
             real[bias] = inward + omega * (along + over_material)
         else:
             real[gap] = 0.0
             real[bias] = inward + omega * along + spin * over_material
-    if whole[SUMMANDS] > 0:
+    if whole[ix.SUMMANDS] > 0:
         coupled_rows(whole, real, pose, twist)
 
 
 @inner
 def coupled_rows(whole, real, pose, twist):
     """The rows of couplings: sums, whose ends are first emptied."""
-    records, ends = whole[SUMMAND_AT], whole[ENDS]
-    last = records + SUMMAND * whole[SUMMANDS]
-    for record in range(records, last, SUMMAND):
-        real[whole[GAP] + whole[record]] = real[whole[BIAS] + whole[record]] = 0.0
+    records, ends = whole[ix.SUMMAND_AT], whole[ix.ENDS]
+    last = records + ix.SUMMAND * whole[ix.SUMMANDS]
+    for record in range(records, last, ix.SUMMAND):
+        real[whole[ix.GAP] + whole[record]] = real[whole[ix.BIAS] + whole[record]] = 0.0
         for k in range(3):
             real[ends + whole[record + 3] + k] = real[ends + whole[record + 4] + k] = 0.0
-    number = whole[SUMMAND_NUMBERS]
-    for record in range(records, last, SUMMAND):
+    number = whole[ix.SUMMAND_NUMBERS]
+    for record in range(records, last, ix.SUMMAND):
         row, first, second = whole[record], whole[record + 1], whole[record + 2]
         value, x, y, turn, other = summand(whole, real, record, number, pose)
         e, f = ends + whole[record + 3], ends + whole[record + 4]
@@ -157,7 +111,7 @@ def coupled_rows(whole, real, pose, twist):
         real[f] += x
         real[f + 1] += y
         real[f + 2] += other
-        real[whole[GAP] + row] += value - real[number + 6]
+        real[whole[ix.GAP] + row] += value - real[number + 6]
         if whole[record + 5] != 0:
             omega, spin = real[twist + first + 2], real[twist + second + 2]
             g, h = math.cos(real[pose + second + 2]), math.sin(real[pose + second + 2])
@@ -167,8 +121,8 @@ def coupled_rows(whole, real, pose, twist):
             fast_x = real[twist + second] - spin * by - real[twist + first]
             fast_y = real[twist + second + 1] + spin * bx - real[twist + first + 1]
             bias = spin * spin * (x * bx + y * by) + omega * omega * (x * arm_x + y * arm_y)
-            real[whole[BIAS] + row] += bias - 2 * omega * (x * fast_y - y * fast_x)
-        number += SUMMAND_PARAMETERS
+            real[whole[ix.BIAS] + row] += bias - 2 * omega * (x * fast_y - y * fast_x)
+        number += ix.SUMMAND_PARAMETERS
 
 
 @inner
@@ -196,20 +150,20 @@ def coupled_force(whole, real, number, begin, count, pose, twist, out):
     """Add what a coupled force does: its strength follows from the whole sum and its rate."""
     strength, at = (
         real[number] + real[number + 1] * real[number + 3],
-        whole[SUMMAND_NUMBERS] + SUMMAND_PARAMETERS * begin,
+        whole[ix.SUMMAND_NUMBERS] + ix.SUMMAND_PARAMETERS * begin,
     )
-    record = whole[SUMMAND_AT] + SUMMAND * begin
+    record = whole[ix.SUMMAND_AT] + ix.SUMMAND * begin
     for k in range(count):
-        first, second = whole[record + SUMMAND * k + 1], whole[record + SUMMAND * k + 2]
-        value, x, y, turn, other = summand(whole, real, record + SUMMAND * k, at + SUMMAND_PARAMETERS * k, pose)
+        first, second = whole[record + ix.SUMMAND * k + 1], whole[record + ix.SUMMAND * k + 2]
+        value, x, y, turn, other = summand(whole, real, record + ix.SUMMAND * k, at + ix.SUMMAND_PARAMETERS * k, pose)
         rate = x * (real[twist + second] - real[twist + first]) + y * (
             real[twist + second + 1] - real[twist + first + 1]
         )
         rate += turn * real[twist + first + 2] + other * real[twist + second + 2]
         strength -= real[number + 1] * value + real[number + 2] * rate
     for k in range(count):
-        first, second = whole[record + SUMMAND * k + 1], whole[record + SUMMAND * k + 2]
-        value, x, y, turn, other = summand(whole, real, record + SUMMAND * k, at + SUMMAND_PARAMETERS * k, pose)
+        first, second = whole[record + ix.SUMMAND * k + 1], whole[record + ix.SUMMAND * k + 2]
+        value, x, y, turn, other = summand(whole, real, record + ix.SUMMAND * k, at + ix.SUMMAND_PARAMETERS * k, pose)
         push(whole, real, out, first, -x * strength, -y * strength, turn * strength)
         push(whole, real, out, second, x * strength, y * strength, other * strength)
 
@@ -236,7 +190,7 @@ def roll_rows(whole, real, cells, record, pose, twist):
     forced += 1j * (omega + relative * turning) * slip  # e_t turns too
     at_first = once - 1j * place
     for k in range(2):
-        e, gap, bias = whole[ENDS] + 6 * (row + k), whole[GAP] + row + k, whole[BIAS] + row + k
+        e, gap, bias = whole[ix.ENDS] + 6 * (row + k), whole[ix.GAP] + row + k, whole[ix.BIAS] + row + k
         x, y = tangent.real, tangent.imag
         real[e], real[e + 1], real[e + 2] = -x, -y, x * at_first.real + y * at_first.imag
         real[e + 3], real[e + 4], real[e + 5] = x, y, -x * once.real - y * once.imag
@@ -248,9 +202,9 @@ def roll_rows(whole, real, cells, record, pose, twist):
 @inner
 def rotation(whole, real, which, pose):
     """The angle of a roll's second body against the first in a pose."""
-    for joint in range(whole[JOINTS]):
-        record = whole[JOINT_AT] + JOINT * joint
-        if whole[record] == ROLL and whole[record + 4] == which:
+    for joint in range(whole[ix.JOINTS]):
+        record = whole[ix.JOINT_AT] + ix.JOINT * joint
+        if whole[record] == ix.ROLL and whole[record + 4] == which:
             return real[pose + whole[record + 2] + 2] - real[pose + whole[record + 1] + 2]
     return math.nan
 
@@ -261,13 +215,13 @@ def contact(whole, real, cells, which, theta):
 
     The constants of closed forms are told in `rolling_table`; in a table P'' is s' e_n - a, and the arm a is -i P'.
     """
-    record, c = whole[ROLL_AT] + ROLL_RECORD * which, whole[ROLL_NUMBERS] + 2 * CONSTANTS * which
+    record, c = whole[ix.ROLL_AT] + ix.ROLL_RECORD * which, whole[ix.ROLL_NUMBERS] + 2 * ix.CONSTANTS * which
     turn = complex(math.cos(theta), math.sin(theta))
-    if whole[record] == ON_LINE:
+    if whole[record] == ix.ON_LINE:
         along, out = complex(real[c + 2], real[c + 3]), turn * complex(real[c + 4], real[c + 5])
         place = complex(real[c], real[c + 1]) + along * (theta - real[c + 6]) - out
         return place, along - 1j * out, out, along * (1 / abs(along)), 0.0
-    if whole[record] == ON_ROUND:
+    if whole[record] == ix.ON_ROUND:
         turning = real[c + 12]
         angle = real[c + 10] + turning * (theta - real[c + 8])
         tangent = complex(math.cos(angle), math.sin(angle))
@@ -278,7 +232,7 @@ def contact(whole, real, cells, which, theta):
     index = math.floor(position) - whole[record + 1] if abs(position) < 1e15 else -1
     if index < 0 or index >= whole[record + 2] or math.isnan(cells[whole[record + 3] + index, 0].real):
         if not math.isnan(theta):
-            real[whole[STATUS] + WANTED_ROLL], real[whole[STATUS] + WANTED_ANGLE] = which, theta
+            real[whole[ix.STATUS] + ix.WANTED_ROLL], real[whole[ix.STATUS] + ix.WANTED_ANGLE] = which, theta
         lost = complex(math.nan, math.nan)
         return lost, lost, lost, lost, math.nan
     c = whole[record + 3] + index
@@ -302,28 +256,28 @@ def contact(whole, real, cells, which, theta):
 @inner
 def applied_accelerations(whole, real, pose, twist, out):
     """Accelerations of all forces but those of joints, to `out`."""
-    for body in range(out, out + whole[COLUMNS] - 3, 3):
-        real[body], real[body + 1], real[body + 2] = real[whole[GRAVITY]], real[whole[GRAVITY] + 1], 0.0
-    for force in range(whole[FORCES]):
-        record, number = whole[FORCE_AT] + FORCED * force, whole[FORCE_NUMBERS] + FORCE_PARAMETERS * force
+    for body in range(out, out + whole[ix.COLUMNS] - 3, 3):
+        real[body], real[body + 1], real[body + 2] = real[whole[ix.GRAVITY]], real[whole[ix.GRAVITY] + 1], 0.0
+    for force in range(whole[ix.FORCES]):
+        record, number = whole[ix.FORCE_AT] + ix.FORCED * force, whole[ix.FORCE_NUMBERS] + ix.FORCE_PARAMETERS * force
         kind, first, second = whole[record], whole[record + 1], whole[record + 2]
-        if kind == COUPLED:
+        if kind == ix.COUPLED:
             coupled_force(whole, real, number, first, second, pose, twist, out)
             continue
         size, other = real[number + 4], real[number + 5]
-        if kind in (SPRING, DAMPER, FORCE):
+        if kind in (ix.SPRING, ix.DAMPER, ix.FORCE):
             angle = real[pose + first + 2]
             c, d = math.cos(angle), math.sin(angle)
             angle = real[pose + second + 2]
             g, h = math.cos(angle), math.sin(angle)
             ax, ay = c * real[number] - d * real[number + 1], d * real[number] + c * real[number + 1]
             bx, by = g * real[number + 2] - h * real[number + 3], h * real[number + 2] + g * real[number + 3]
-            if kind == FORCE:
+            if kind == ix.FORCE:
                 push(whole, real, out, second, size, other, bx * other - by * size)
                 continue
             x = real[pose + second] + bx - real[pose + first] - ax
             y = real[pose + second + 1] + by - real[pose + first + 1] - ay
-            if kind == SPRING:
+            if kind == ix.SPRING:
                 pull = size
                 if other != 0:
                     pull -= size * other / math.sqrt(x * x + y * y)
@@ -337,9 +291,9 @@ def applied_accelerations(whole, real, pose, twist, out):
             push(whole, real, out, second, x, y, bx * y - by * x)
             push(whole, real, out, first, -x, -y, ay * x - ax * y)
             continue
-        if kind == TORQUE:
+        if kind == ix.TORQUE:
             torque = size
-        elif kind == TORSION_SPRING:
+        elif kind == ix.TORSION_SPRING:
             torque = -size * (real[pose + second + 2] - real[pose + first + 2] - other)
         else:
             torque = -size * (real[twist + second + 2] - real[twist + first + 2])
@@ -350,7 +304,7 @@ def applied_accelerations(whole, real, pose, twist, out):
 @inner
 def push(whole, real, out, body, x, y, torque):
     """What a force and a torque at the centre of mass add to a body's accelerations; the ground has no mobility."""
-    mobility = whole[MOBILITY] + body
+    mobility = whole[ix.MOBILITY] + body
     real[out + body] += real[mobility] * x
     real[out + body + 1] += real[mobility + 1] * y
     real[out + body + 2] += real[mobility + 2] * torque

@@ -11,34 +11,7 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.arrays import (
-    CHANGE,
-    COLUMNS,
-    COMPLIANCE,
-    DEPENDENT,
-    ENDS,
-    EXTRA,
-    EXTRA_AT,
-    EXTRAS,
-    FELT,
-    LEFT,
-    MATRIX,
-    MOBILITY,
-    PIVOT,
-    PIVOTED,
-    REACTION,
-    RIGHT,
-    ROW,
-    ROW_AT,
-    ROWS,
-    SMALLEST,
-    SOFT,
-    STATUS,
-    TERM,
-    TERM_AT,
-    TERMS,
-    WHICH,
-)
+from engines.lagrange import arrays as ix
 from engines.lagrange.compiled.inner import inner
 
 # Pivots below which a row follows from others. Where rows are independent at the start: the rounding of the product,
@@ -58,20 +31,20 @@ ALL, HOLONOMIC, RIGID = range(3)
 @inner
 def left_out(whole, real, row):
     """Whether a row is not one of those that are asked for."""
-    which = whole[WHICH]
+    which = whole[ix.WHICH]
     if which == HOLONOMIC:
-        return whole[whole[ROW_AT] + ROW * row + 2] == 0
-    return which == RIGID and real[whole[COMPLIANCE] + row] > 0
+        return whole[whole[ix.ROW_AT] + ix.ROW * row + 2] == 0
+    return which == RIGID and real[whole[ix.COMPLIANCE] + row] > 0
 
 
 @inner
 def assemble(whole, real):
     """Fill the envelope with J M^-1 J^T."""
-    ends, mobility, matrix = whole[ENDS], whole[MOBILITY], whole[MATRIX]
-    for entry in range(matrix, whole[CHANGE]):
+    ends, mobility, matrix = whole[ix.ENDS], whole[ix.MOBILITY], whole[ix.MATRIX]
+    for entry in range(matrix, whole[ix.CHANGE]):
         real[entry] = 0.0
     before, x, y, turn = -1, 0.0, 0.0, 0.0
-    for term in range(whole[TERM_AT], whole[TERM_AT] + TERM * whole[TERMS], TERM):
+    for term in range(whole[ix.TERM_AT], whole[ix.TERM_AT] + ix.TERM * whole[ix.TERMS], ix.TERM):
         one, other = ends + whole[term + 1], ends + whole[term + 2]
         if one != before:  # terms of one end stand together
             body, before = mobility + whole[term + 3], one
@@ -82,13 +55,13 @@ def assemble(whole, real):
 @inner
 def factorise(whole, real):
     """Make the factor of what is assembled; the smallest pivot that is used, as a part of its row's diagonal."""
-    matrix, pivots, records = whole[MATRIX], whole[PIVOT], whole[ROW_AT]
-    limit = BLURRED if whole[DEPENDENT] > 0 else ROUNDING
+    matrix, pivots, records = whole[ix.MATRIX], whole[ix.PIVOT], whole[ix.ROW_AT]
+    limit = BLURRED if whole[ix.DEPENDENT] > 0 else ROUNDING
     smallest, record = 1.0, records
-    for row in range(whole[ROWS]):
+    for row in range(whole[ix.ROWS]):
         first = whole[record + 3]
         own = matrix + whole[record + 4] - first
-        if whole[WHICH] != ALL:
+        if whole[ix.WHICH] != ALL:
             out = left_out(whole, real, row)
             for column in range(first, row):
                 if out or left_out(whole, real, column):
@@ -97,8 +70,8 @@ def factorise(whole, real):
                 real[own + row] = 1.0
         rest = diagonal = real[own + row]
         for column in range(first, row):
-            begin = whole[records + ROW * column + 3]
-            other = matrix + whole[records + ROW * column + 4] - begin
+            begin = whole[records + ix.ROW * column + 3]
+            other = matrix + whole[records + ix.ROW * column + 4] - begin
             value = real[own + column]
             for k in range(max(first, begin), column):
                 value -= real[own + k] * real[other + k]
@@ -112,7 +85,7 @@ def factorise(whole, real):
             real[pivots + row] = 1.0 / rest
         else:
             real[pivots + row] = 0.0 if rest <= limit * diagonal else math.nan
-        record += ROW
+        record += ix.ROW
     return smallest
 
 
@@ -122,7 +95,7 @@ def substitute(whole, real, right):
 
     What one row hands to the next stays in a register: through memory it would take half of the time.
     """
-    rows, record, pivots, matrix = whole[ROWS], whole[ROW_AT], whole[PIVOT], whole[MATRIX]
+    rows, record, pivots, matrix = whole[ix.ROWS], whole[ix.ROW_AT], whole[ix.PIVOT], whole[ix.MATRIX]
     before = 0.0
     for row in range(rows):
         first, value = whole[record + 3], real[right + row]
@@ -132,12 +105,12 @@ def substitute(whole, real, right):
         if first < row:
             value -= real[own + row - 1] * before
         real[right + row] = before = value
-        record += ROW
+        record += ix.ROW
     for row in range(rows):
         real[right + row] *= real[pivots + row]
     value = real[right + rows - 1]
     for row in range(rows - 1, 0, -1):
-        record -= ROW
+        record -= ix.ROW
         first, before = whole[record + 3], real[right + row - 1]
         own = matrix + whole[record + 4] - first
         if first < row:
@@ -150,32 +123,32 @@ def substitute(whole, real, right):
 @inner
 def apply_reactions(whole, real):
     """Fill the change with M^-1 J^T reaction."""
-    change, end, record = whole[CHANGE], whole[ENDS], whole[ROW_AT]
-    for k in range(whole[COLUMNS]):
+    change, end, record = whole[ix.CHANGE], whole[ix.ENDS], whole[ix.ROW_AT]
+    for k in range(whole[ix.COLUMNS]):
         real[change + k] = 0.0
-    for row in range(whole[ROWS]):
-        value = real[whole[REACTION] + row]
+    for row in range(whole[ix.ROWS]):
+        value = real[whole[ix.REACTION] + row]
         for side in range(2):
             body = change + whole[record + side]
             real[body] += real[end] * value
             real[body + 1] += real[end + 1] * value
             real[body + 2] += real[end + 2] * value
             end += 3
-        record += ROW
-    for extra in range(whole[EXTRA_AT], whole[EXTRA_AT] + EXTRA * whole[EXTRAS], EXTRA):
-        value = real[whole[REACTION] + whole[extra]]
-        body, end = change + whole[extra + 1], whole[ENDS] + whole[extra + 2]
+        record += ix.ROW
+    for extra in range(whole[ix.EXTRA_AT], whole[ix.EXTRA_AT] + ix.EXTRA * whole[ix.EXTRAS], ix.EXTRA):
+        value = real[whole[ix.REACTION] + whole[extra]]
+        body, end = change + whole[extra + 1], whole[ix.ENDS] + whole[extra + 2]
         real[body] += real[end] * value
         real[body + 1] += real[end + 1] * value
         real[body + 2] += real[end + 2] * value
-    for k in range(whole[COLUMNS]):
-        real[change + k] *= real[whole[MOBILITY] + k]
+    for k in range(whole[ix.COLUMNS]):
+        real[change + k] *= real[whole[ix.MOBILITY] + k]
 
 
 @inner
 def row_times(whole, real, vector, row):
     """J of one row times the vector of columns that stands at `vector`."""
-    end, record = whole[ENDS] + 6 * row, whole[ROW_AT] + ROW * row
+    end, record = whole[ix.ENDS] + 6 * row, whole[ix.ROW_AT] + ix.ROW * row
     one, other = vector + whole[record], vector + whole[record + 1]
     value = (
         real[end] * real[one]
@@ -185,9 +158,9 @@ def row_times(whole, real, vector, row):
         + real[end + 4] * real[other + 1]
         + real[end + 5] * real[other + 2]
     )
-    for extra in range(whole[EXTRA_AT], whole[EXTRA_AT] + EXTRA * whole[EXTRAS], EXTRA):
+    for extra in range(whole[ix.EXTRA_AT], whole[ix.EXTRA_AT] + ix.EXTRA * whole[ix.EXTRAS], ix.EXTRA):
         if whole[extra] == row:
-            body, end = vector + whole[extra + 1], whole[ENDS] + whole[extra + 2]
+            body, end = vector + whole[extra + 1], whole[ix.ENDS] + whole[extra + 2]
             value += real[end] * real[body] + real[end + 1] * real[body + 1] + real[end + 2] * real[body + 2]
     return value
 
@@ -195,7 +168,7 @@ def row_times(whole, real, vector, row):
 @inner
 def residual(whole, real, vector, right, out):
     """Fill `out` with what J times the vector of columns lacks of the right side."""
-    for row in range(whole[ROWS]):
+    for row in range(whole[ix.ROWS]):
         real[out + row] = real[right + row] - row_times(whole, real, vector, row)
 
 
@@ -206,18 +179,18 @@ def solve(whole, real, small, kept):
     `small`: of a change that is itself a correction, so that a long chain's digits need none. `kept`: with the factor
     of the call before, for rows that have hardly turned since: one correction makes up for it.
     """
-    rows, reaction, left, status = whole[ROWS], whole[REACTION], whole[LEFT], whole[STATUS]
-    right, pivots, some = whole[RIGHT], whole[PIVOT], whole[WHICH] != ALL
-    soft_rows = whole[SOFT] > 1 and not some
-    pivot = real[status + PIVOTED]
+    rows, reaction, left, status = whole[ix.ROWS], whole[ix.REACTION], whole[ix.LEFT], whole[ix.STATUS]
+    right, pivots, some = whole[ix.RIGHT], whole[ix.PIVOT], whole[ix.WHICH] != ALL
+    soft_rows = whole[ix.SOFT] > 1 and not some
+    pivot = real[status + ix.PIVOTED]
     if not kept or pivot < EASY:
         if soft_rows:
             assemble_soft(whole, real)
         else:
             assemble(whole, real)
         pivot = factorise(whole, real)
-        real[status + PIVOTED] = pivot
-    real[status + SMALLEST] = min(real[status + SMALLEST], pivot)
+        real[status + ix.PIVOTED] = pivot
+    real[status + ix.SMALLEST] = min(real[status + ix.SMALLEST], pivot)
     for row in range(rows):
         real[reaction + row] = 0.0 if some and left_out(whole, real, row) else real[right + row]
     substitute(whole, real, reaction)
@@ -227,7 +200,7 @@ def solve(whole, real, small, kept):
     before = math.inf
     for _ in range(MOST_CORRECTIONS if pivot < EASY else 1):
         largest = 0.0
-        residual(whole, real, whole[CHANGE], right, left)
+        residual(whole, real, whole[ix.CHANGE], right, left)
         for row in range(rows):
             if some and left_out(whole, real, row):
                 real[left + row] = 0.0
@@ -249,26 +222,26 @@ def assemble_soft(whole, real):
     That is its inverse inertia while the rigid rows hold: the diagonal of the Schur complement. Of a row that others
     hold already LEAST_FELT is left, since engines take an estimate that knows no others.
     """
-    rows, reaction, left = whole[ROWS], whole[REACTION], whole[LEFT]
+    rows, reaction, left = whole[ix.ROWS], whole[ix.REACTION], whole[ix.LEFT]
     assemble(whole, real)
-    whole[WHICH] = RIGID
+    whole[ix.WHICH] = RIGID
     factorise(whole, real)
     for soft in range(rows):
         if left_out(whole, real, soft):
             for row in range(rows):
                 real[reaction + row] = 1.0 if row == soft else 0.0
             apply_reactions(whole, real)
-            felt = own = row_times(whole, real, whole[CHANGE], soft)
+            felt = own = row_times(whole, real, whole[ix.CHANGE], soft)
             for row in range(rows):
                 rigid = not left_out(whole, real, row)
-                real[left + row] = row_times(whole, real, whole[CHANGE], row) if rigid else 0.0
+                real[left + row] = row_times(whole, real, whole[ix.CHANGE], row) if rigid else 0.0
             substitute(whole, real, left)
             for row in range(rows):
-                felt -= real[left + row] * row_times(whole, real, whole[CHANGE], row)
-            real[whole[FELT] + soft] = max(felt, LEAST_FELT * own)
-    whole[WHICH] = ALL
+                felt -= real[left + row] * row_times(whole, real, whole[ix.CHANGE], row)
+            real[whole[ix.FELT] + soft] = max(felt, LEAST_FELT * own)
+    whole[ix.WHICH] = ALL
     assemble(whole, real)
     for row in range(rows):
-        record = whole[ROW_AT] + ROW * row
-        diagonal = whole[MATRIX] + whole[record + 4] + row - whole[record + 3]
-        real[diagonal] += real[whole[COMPLIANCE] + row] * real[whole[FELT] + row]
+        record = whole[ix.ROW_AT] + ix.ROW * row
+        diagonal = whole[ix.MATRIX] + whole[record + 4] + row - whole[record + 3]
+        real[diagonal] += real[whole[ix.COMPLIANCE] + row] * real[whole[ix.FELT] + row]

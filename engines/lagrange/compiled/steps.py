@@ -4,30 +4,7 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.arrays import (
-    ACCELERATION,
-    BIAS,
-    CHANGE,
-    COLUMNS,
-    DAMPING,
-    GAP,
-    HOLONOMIC_ROWS,
-    LACKING,
-    POSE,
-    POSE_UNIT,
-    RATE,
-    RIGHT,
-    ROWS,
-    SOFT,
-    STAGE_POSE,
-    STATUS,
-    STIFFNESS,
-    TWIST,
-    UNCLOSED,
-    VELOCITY,
-    WANTED_ROLL,
-    WHICH,
-)
+from engines.lagrange import arrays as ix
 from engines.lagrange.compiled.inner import inner
 from engines.lagrange.compiled.rows import applied_accelerations, rows
 from engines.lagrange.compiled.schur import ALL, HOLONOMIC, residual, row_times, solve
@@ -41,18 +18,18 @@ CLOSED = 1e-9
 def accelerations(whole, real, cells, pose, twist, t, out):
     """Accelerations under all forces and the joints' reactions, to `out`; the rows and reactions there stay too."""
     applied_accelerations(whole, real, pose, twist, out)
-    if whole[ROWS] == 0:
+    if whole[ix.ROWS] == 0:
         return
     rows(whole, real, cells, pose, twist, t)
-    residual(whole, real, out, whole[BIAS], whole[RIGHT])
-    if whole[SOFT] > 0:
-        for row in range(whole[ROWS]):
-            slip = row_times(whole, real, twist, row) - real[whole[RATE] + row]
-            value = real[whole[DAMPING] + row] * slip + real[whole[STIFFNESS] + row] * real[whole[GAP] + row]
-            real[whole[RIGHT] + row] -= value + real[whole[LACKING] + row] * real[whole[BIAS] + row]
-    whole[WHICH] = ALL
+    residual(whole, real, out, whole[ix.BIAS], whole[ix.RIGHT])
+    if whole[ix.SOFT] > 0:
+        for row in range(whole[ix.ROWS]):
+            slip = row_times(whole, real, twist, row) - real[whole[ix.RATE] + row]
+            value = real[whole[ix.DAMPING] + row] * slip + real[whole[ix.STIFFNESS] + row] * real[whole[ix.GAP] + row]
+            real[whole[ix.RIGHT] + row] -= value + real[whole[ix.LACKING] + row] * real[whole[ix.BIAS] + row]
+    whole[ix.WHICH] = ALL
     solve(whole, real, False, False)
-    change, ground = whole[CHANGE], whole[COLUMNS] - 3
+    change, ground = whole[ix.CHANGE], whole[ix.COLUMNS] - 3
     for k in range(ground):
         real[out + k] += real[change + k]
     for k in range(ground, ground + 3):  # zero times a stage that was lost would stay there, and in all that follow
@@ -63,23 +40,23 @@ def accelerations(whole, real, cells, pose, twist, t, out):
 def project_onto_joints(whole, real, cells, pose, twist, t, most):
     """Move a pose and a twist to the nearest, by mass, that the joints allow: Newton's method, `most` times at most.
 
-    UNCLOSED tells when that was not enough: a step ended too far from any pose of the joints, or in a singular one.
+    ix.UNCLOSED tells when that was not enough: a step ended too far from any pose of the joints, or in a singular one.
     """
-    if whole[ROWS] == 0:
+    if whole[ix.ROWS] == 0:
         return
-    holonomic = most if whole[HOLONOMIC_ROWS] > 0 else 0
-    which = HOLONOMIC if whole[HOLONOMIC_ROWS] < whole[ROWS] else ALL
-    kept, columns, right, gaps = False, whole[COLUMNS], whole[RIGHT], whole[GAP]
-    change, units = whole[CHANGE], whole[POSE_UNIT]
+    holonomic = most if whole[ix.HOLONOMIC_ROWS] > 0 else 0
+    which = HOLONOMIC if whole[ix.HOLONOMIC_ROWS] < whole[ix.ROWS] else ALL
+    kept, columns, right, gaps = False, whole[ix.COLUMNS], whole[ix.RIGHT], whole[ix.GAP]
+    change, units = whole[ix.CHANGE], whole[ix.POSE_UNIT]
     for iteration in range(holonomic + 1):  # the last one for the twist
         last, largest = iteration == holonomic, 0.0
         rows(whole, real, cells, pose, twist, t)
         if last:
-            residual(whole, real, twist, whole[RATE], right)
+            residual(whole, real, twist, whole[ix.RATE], right)
         else:
-            for row in range(whole[ROWS]):
+            for row in range(whole[ix.ROWS]):
                 real[right + row] = -real[gaps + row]
-        whole[WHICH] = ALL if last else which
+        whole[ix.WHICH] = ALL if last else which
         solve(whole, real, True, last and kept)
         if last:
             for k in range(columns):
@@ -90,22 +67,22 @@ def project_onto_joints(whole, real, cells, pose, twist, t, most):
             largest = max(largest, abs(real[change + k]) / real[units + k])
         if not largest > CLOSED:
             holonomic, kept = iteration + 1, which == ALL
-        elif iteration + 1 == holonomic and math.isnan(real[whole[STATUS] + UNCLOSED]):
-            real[whole[STATUS] + UNCLOSED] = t
+        elif iteration + 1 == holonomic and math.isnan(real[whole[ix.STATUS] + ix.UNCLOSED]):
+            real[whole[ix.STATUS] + ix.UNCLOSED] = t
 
 
 @inner
 def evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt):
     """One stage of a tableau, from the state at these places: its velocity and its acceleration."""
-    columns = whole[COLUMNS]
-    velocity, acceleration = whole[VELOCITY] + stage * columns, whole[ACCELERATION] + stage * columns
-    place = whole[STAGE_POSE]
+    columns = whole[ix.COLUMNS]
+    velocity, acceleration = whole[ix.VELOCITY] + stage * columns, whole[ix.ACCELERATION] + stage * columns
+    place = whole[ix.STAGE_POSE]
     for k in range(columns):
         real[velocity + k], real[place + k] = real[twist + k], real[pose + k]
     for earlier in range(stage):
         share = stages[stage, earlier] * dt
         if share != 0:
-            gain, rate = whole[ACCELERATION] + earlier * columns, whole[VELOCITY] + earlier * columns
+            gain, rate = whole[ix.ACCELERATION] + earlier * columns, whole[ix.VELOCITY] + earlier * columns
             for k in range(columns):
                 real[velocity + k] += share * real[gain + k]
                 real[place + k] += share * real[rate + k]
@@ -116,12 +93,12 @@ def evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
 @inner
 def add_stages(whole, real, weights, dt, pose, twist):
     """Add to a state the weighted velocities and accelerations of the stages: their sum, which rounds a place once."""
-    columns = whole[COLUMNS]
+    columns = whole[ix.COLUMNS]
     for k in range(columns):
         moved = gained = 0.0
         for stage in range(len(weights)):
-            moved += weights[stage] * real[whole[VELOCITY] + stage * columns + k]
-            gained += weights[stage] * real[whole[ACCELERATION] + stage * columns + k]
+            moved += weights[stage] * real[whole[ix.VELOCITY] + stage * columns + k]
+            gained += weights[stage] * real[whole[ix.ACCELERATION] + stage * columns + k]
         real[pose + k] += dt * moved
         real[twist + k] += dt * gained
 
@@ -134,7 +111,7 @@ def fixed_steps(whole, real, cells, stages, weights, nodes, project, dt, every, 
     no projection. Gives the last sample that is done: all of them, that before a pose that is not finite, or that
     before a contact that a table has no cell for (`WANTED_ROLL`).
     """
-    columns, pose, twist, acceleration = whole[COLUMNS], whole[POSE], whole[TWIST], whole[ACCELERATION]
+    columns, pose, twist, acceleration = whole[ix.COLUMNS], whole[ix.POSE], whole[ix.TWIST], whole[ix.ACCELERATION]
     for k in range(columns):
         real[pose + k], real[twist + k] = poses[begin, k], twists[begin, k]
     for sample in range(begin, len(poses) - 1):
@@ -151,7 +128,7 @@ def fixed_steps(whole, real, cells, stages, weights, nodes, project, dt, every, 
                 add_stages(whole, real, weights, dt, pose, twist)
             if project > 0:
                 project_onto_joints(whole, real, cells, pose, twist, t + dt, project)
-            if real[whole[STATUS] + WANTED_ROLL] >= 0:
+            if real[whole[ix.STATUS] + ix.WANTED_ROLL] >= 0:
                 return sample
         for k in range(columns):
             if not math.isfinite(real[pose + k]):
