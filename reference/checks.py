@@ -1,11 +1,10 @@
-"""What a value may be is said by its annotation, once, and checked where the value enters.
+"""Runtime validation of fields and arguments from their annotations.
 
 A frozen dataclass that inherits from `Valid` has its fields checked when it is made, a function with `validated` its
 arguments when it is called. Either raises InvalidMechanism, a ValueError, in a sentence that says which value, why, and
-what would be valid. What is taken is made plain: numpy's numbers become Python's, lists and arrays become tuples where
-a tuple is declared and arrays of floats where an array is; so equal settings have equal reprs. Relations between values
-(lengths that assemble) are checked by hand afterwards. How annotations are read is in `reference.kinds`. What is worked
-out once and handed to everybody can't be written (`fixed`), and arrays that can't fit are refused before they are made.
+what would be valid. Values become plain ones: numpy's numbers become Python's, lists and arrays become tuples where a
+tuple is declared and arrays of floats where an array is; so equal settings have equal reprs. Relations between values
+(lengths that assemble) are checked by hand afterwards. `reference.kinds` has the validators.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ import math
 import typing
 from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass
-from functools import cached_property, wraps
+from functools import cache, cached_property, wraps
 from typing import Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
@@ -62,25 +61,17 @@ def shown(value: Any) -> str:
 
 
 def refusal(owner: str, name: str, value: Any, words: str) -> InvalidMechanism:
-    """The error for a value that isn't what the words say."""
-    error = InvalidMechanism if _is_finite(value) else NotFinite
+    """The error for a value that isn't what the words say; NotFinite for numbers with an infinity or NaN."""
+    plain = isinstance(value, float | complex | np.ndarray | np.generic) and np.asarray(value).dtype.kind in "fc"
+    error = NotFinite if plain and not np.isfinite(value).all() else InvalidMechanism
     return error(f"{owner}: {name} is {shown(value)}; it must be {words}")
 
 
-def _is_finite(value: Any) -> bool:
-    """False for a number or an array with an infinity or NaN; True for everything else, iterators without end too."""
-    plain = isinstance(value, float | complex | np.ndarray | np.generic)
-    return not plain or np.asarray(value).dtype.kind not in "fc" or bool(np.isfinite(value).all())
-
-
-_plans: dict[Any, tuple[tuple[str, Callable[[Any], Any], Kind], ...]] = {}
-
-
-def _plan(cls: type) -> tuple[tuple[str, Callable[[Any], Any], Kind], ...]:
-    """Of every field its name and what it may be; annotations are read once a class."""
+@cache
+def _kinds_of_fields(cls: type) -> dict[str, Kind]:
+    """The validator of every field, by name."""
     hints = typing.get_type_hints(cls, include_extras=True)
-    kinds = [(each.name, kind_of(hints[each.name])) for each in fields(cls)]
-    return tuple((name, kind.take, kind) for name, kind in kinds)
+    return {field.name: kind_of(hints[field.name]) for field in fields(cls)}
 
 
 class Valid:
@@ -93,20 +84,16 @@ class Valid:
     _copies: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        cls = type(self)
-        plan = _plans.get(cls)
-        if plan is None:
-            plan = _plans[cls] = _plan(cls)
-        own = self.__dict__
-        for name, take, kind in plan:
-            value = own[name]
-            taken = take(value)
+        values = self.__dict__
+        for name, kind in _kinds_of_fields(type(self)).items():
+            value = values[name]
+            taken = kind.take(value)
             if taken is NOT_TAKEN:
                 raise refusal(self._owner(), name, value, kind.words)
-            if cls._copies and isinstance(taken, np.ndarray) and taken.flags.writeable:
+            if self._copies and isinstance(taken, np.ndarray) and taken.flags.writeable:
                 taken = fixed(taken.copy())
             if taken is not value:
-                own[name] = taken
+                values[name] = taken
 
     def _owner(self) -> str:
         """Who it is in a message: its class, and its name if that is a field."""
@@ -122,27 +109,25 @@ def validated(function: Function) -> Function:
 
     For what users call. A loop that calls a function at every step has an unchecked one inside.
     """
-    names = list(inspect.signature(function).parameters)
-    found: list[dict[str, Kind]] = []
+    parameters = inspect.signature(function).parameters.values()
+    names = [each.name for each in parameters if each.kind not in (each.VAR_KEYWORD, each.VAR_POSITIONAL)]
 
+    @cache
     def kinds() -> dict[str, Kind]:
         hints = typing.get_type_hints(function, include_extras=True)
-        parameters = inspect.signature(function).parameters.values()
-        named = [each.name for each in parameters if each.kind not in (each.VAR_KEYWORD, each.VAR_POSITIONAL)]
-        return {name: kind_of(hints[name]) for name in named if name in hints}
+        return {name: kind_of(hints[name]) for name in names if name in hints}
+
+    def take_argument(name: str, value: Any) -> Any:
+        kind = kinds().get(name)
+        taken = value if kind is None else kind.take(value)
+        if taken is NOT_TAKEN and kind is not None:
+            raise refusal(function.__qualname__, name, value, kind.words)
+        return taken
 
     @wraps(function)
     def checked(*given: Any, **named: Any) -> Any:
-        if not found:
-            found.append(kinds())
-        known = found[0]
-        plain = list(given)
-        for index, value in enumerate(given[: len(names)]):
-            if names[index] in known:
-                plain[index] = _taken(function, names[index], value, known)
-        for name, value in named.items():
-            if name in known:
-                named[name] = _taken(function, name, value, known)
+        plain = [*(take_argument(*pair) for pair in zip(names, given, strict=False)), *given[len(names) :]]
+        named = {name: take_argument(name, value) for name, value in named.items()}
         try:
             return function(*plain, **named)
         except ArithmeticError as reason:  # a division by zero, a number too large, a root that is not found
@@ -154,13 +139,6 @@ def validated(function: Function) -> Function:
 
     checked.__validated__ = True  # type: ignore[attr-defined]
     return checked  # type: ignore[return-value]
-
-
-def _taken(function: Any, name: str, value: Any, known: dict[str, Kind]) -> Any:
-    taken = known[name].take(value)
-    if taken is NOT_TAKEN:
-        raise refusal(function.__qualname__, name, value, known[name].words)
-    return taken
 
 
 def index_of(owner: str, name: str, value: int, count: int) -> int:

@@ -1,18 +1,17 @@
-"""What an annotation allows: each as a check, with the words that say what is valid.
+"""Validators of annotations: what a value has to be, and the words that say it.
 
 `float` is a finite number, `int` a whole one (a bool is neither), `ArrayLike` numbers in any shape, `NDArray` the same
-made an array of floats; Literal, tuple, unions and classes say what they mean; `Annotated` adds a Rule, or allows what
-is NOT_FINITE or COMPLEX; what is `Any` is not looked at. See `reference.checks`, where these are used.
+made an array of floats; Literal, tuple, unions and classes mean what they say; `Annotated` adds a Rule, or allows
+NOT_FINITE or COMPLEX numbers; `Any` is not checked. `reference.checks` applies them to fields and arguments.
 """
 
 from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, is_dataclass
 from functools import lru_cache
-from itertools import islice
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -28,7 +27,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Rule:
-    """One more condition on a value of the right kind, and the words that say it after those of the kind."""
+    """One more condition on a value of the right kind, and the words that follow those of the kind."""
 
     holds: Callable[[Any], Any]
     words: str
@@ -39,10 +38,10 @@ def of_shape(*shape: int | str) -> Rule:
     sizes = shape[1:] if shape[:1] == ("...",) else shape
 
     def holds(value: Any) -> bool:
-        found = np.shape(value)
-        if len(found) < len(sizes) or (len(found) > len(sizes) and sizes is shape):
+        given = np.shape(value)
+        if len(given) < len(sizes) or (len(given) > len(sizes) and sizes is shape):
             return False
-        return all(isinstance(b, str) or a == b for a, b in zip(found[len(found) - len(sizes) :], sizes, strict=True))
+        return all(isinstance(b, str) or a == b for a, b in zip(given[len(given) - len(sizes) :], sizes, strict=True))
 
     return Rule(holds, f"of shape ({', '.join(map(str, shape))}{',' * (len(shape) == 1)})")
 
@@ -54,45 +53,18 @@ def from_to(low: float, high: float) -> Rule:
 
 @dataclass(frozen=True)
 class Kind:
-    """What an annotation allows: `take` gives the value made plain, or NOT_TAKEN; `words` say what would be taken."""
+    """A validator: `take` returns the value as a plain one, or NOT_TAKEN; `words` say which values are valid."""
 
     words: str
     take: Callable[[Any], Any]
 
 
-MOST_FROM_ITERATOR = 2**20  # numbers: one that never ends must not be waited for
-MOST_DIMENSIONS = 16
-
-
 def _scalar(value: Any) -> Any:
-    """What an array without dimensions holds."""
+    """The member of an array without dimensions; any other value as it is."""
     return value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
 
 
-def _listed(value: Any) -> Any:
-    """A list of the members of what has an order; anything else as it is."""
-    if isinstance(value, memoryview):
-        return value.tolist()
-    if isinstance(value, Iterator):
-        members = list(islice(value, MOST_FROM_ITERATOR + 1))
-        return members if len(members) <= MOST_FROM_ITERATOR else NOT_TAKEN
-    if isinstance(value, Sequence) and not isinstance(value, list | tuple | str | bytes | bytearray):
-        return list(value)
-    return value
-
-
-def _ends(value: Any, within: tuple[Any, ...] = ()) -> bool:
-    """Whether lists in lists come to an end: numpy would take one that holds itself apart until memory is full."""
-    if not isinstance(value, Sequence) or isinstance(value, str | bytes | bytearray):
-        return True
-    if len(within) >= MOST_DIMENSIONS or any(value is each for each in within):
-        return False
-    return all(_ends(each, (*within, value)) for each in value if type(each) is not float)
-
-
 def _number(value: Any) -> Any:
-    if type(value) is float:
-        return value
     value = _scalar(value)
     if isinstance(value, bool | np.timedelta64) or not isinstance(value, numbers.Real):
         return NOT_TAKEN
@@ -103,15 +75,11 @@ def _number(value: Any) -> Any:
 
 
 def _finite(value: Any) -> Any:
-    if type(value) is float:  # nearly always: thousands of bodies are made at a time
-        return value if -math.inf < value < math.inf else NOT_TAKEN
-    value = _number(value)
-    return value if value is NOT_TAKEN or math.isfinite(value) else NOT_TAKEN
+    value = value if type(value) is float else _number(value)
+    return value if value is not NOT_TAKEN and -math.inf < value < math.inf else NOT_TAKEN
 
 
 def _whole(value: Any) -> Any:
-    if type(value) is int:
-        return value
     value = _scalar(value)
     whole = isinstance(value, numbers.Integral) and not isinstance(value, bool | np.timedelta64)
     return int(value) if whole else NOT_TAKEN
@@ -128,22 +96,12 @@ def _text(value: Any) -> Any:
 
 
 def _array(value: Any) -> Any:
-    """Real numbers in one shape as an array of floats; neither bools nor text, not even one among numbers."""
-    if type(value) is np.ndarray and value.dtype == np.float64:
-        return value
-    value = _listed(value)
+    """Real numbers in one shape as an array of floats."""
     try:
-        if not isinstance(value, np.ndarray | float):
-            if not _ends(value):
-                return NOT_TAKEN
-            each = np.array(value, dtype=object)
-            if any(_number(item) is NOT_TAKEN for item in each.flat):
-                return NOT_TAKEN
-            return each.astype(float)
         array = np.asarray(value)
-        return array.astype(float) if array.dtype.kind in "iuf" else NOT_TAKEN
-    except (TypeError, ValueError, OverflowError):  # ragged, or an object that numpy can't take apart
+    except (TypeError, ValueError):  # ragged, or an object that numpy can't convert
         return NOT_TAKEN
+    return array.astype(float, copy=False) if array.dtype.kind in "iuf" else NOT_TAKEN
 
 
 def _finite_array(value: Any) -> Any:
@@ -151,26 +109,21 @@ def _finite_array(value: Any) -> Any:
     return array if array is NOT_TAKEN or np.isfinite(array).all() else NOT_TAKEN
 
 
-def _kept(value: Any) -> Any:
-    """Functions of numbers and of arrays give numbers and arrays, so the value stays what it is."""
-    if type(value) is float:
-        return value if math.isfinite(value) else NOT_TAKEN
-    value = _listed(value)
+def _numbers(value: Any) -> Any:
+    """Functions of numbers and of arrays return numbers and arrays, so the value keeps its type."""
     return value if _finite_array(value) is not NOT_TAKEN else NOT_TAKEN
 
 
-def _analytic(value: Any) -> Any:
-    """Numbers, real or complex: a complex step passes through what takes these."""
-    taken = _any_analytic(value)
-    return taken if taken is NOT_TAKEN or np.isfinite(taken).all() else NOT_TAKEN
-
-
 def _any_analytic(value: Any) -> Any:
+    """Numbers, real or complex: a complex step passes through functions that take these."""
     if isinstance(value, np.ndarray | np.number):
         return value if value.dtype.kind in "iufc" else NOT_TAKEN
-    if isinstance(value, complex) or _number(value) is not NOT_TAKEN:
-        return value
-    return _array(value)
+    return value if isinstance(value, complex) or _number(value) is not NOT_TAKEN else _array(value)
+
+
+def _analytic(value: Any) -> Any:
+    taken = _any_analytic(value)
+    return taken if taken is NOT_TAKEN or np.isfinite(taken).all() else NOT_TAKEN
 
 
 _PLAIN = {
@@ -192,10 +145,10 @@ _UNBOUNDED = {
 
 @lru_cache(maxsize=1024)
 def kind_of(annotation: Any) -> Kind:
-    """What an annotation allows."""
+    """The validator of an annotation; raises TypeError where none is known."""
     origin, arguments = get_origin(annotation), get_args(annotation)
     if annotation == ArrayLike:
-        return Kind("finite numbers", _kept)
+        return Kind("finite numbers", _numbers)
     if annotation in _PLAIN:
         return _PLAIN[annotation]
     if origin is Annotated:
@@ -208,7 +161,7 @@ def kind_of(annotation: Any) -> Kind:
     if origin is tuple:
         return _sequence(arguments)
     if origin in (Union, UnionType):
-        return _either([kind_of(each) for each in arguments])
+        return _either([kind_of(member) for member in arguments])
     if origin is Callable or annotation is Callable:
         return Kind("a function", lambda value: value if callable(value) else NOT_TAKEN)
     if isinstance(annotation, type):
@@ -217,17 +170,11 @@ def kind_of(annotation: Any) -> Kind:
 
 
 def _ruled(kind: Kind, rules: Sequence[Rule]) -> Kind:
-    take, tests = kind.take, tuple(rule.holds for rule in rules)
+    def take(value: Any) -> Any:
+        value = kind.take(value)
+        return value if value is NOT_TAKEN or all(rule.holds(value) for rule in rules) else NOT_TAKEN
 
-    def ruled(value: Any) -> Any:
-        value = take(value)
-        if value is not NOT_TAKEN:
-            for holds in tests:
-                if not holds(value):
-                    return NOT_TAKEN
-        return value
-
-    return Kind(" ".join([kind.words, *(rule.words for rule in rules)]), ruled)
+    return Kind(" ".join([kind.words, *(rule.words for rule in rules)]), take)
 
 
 def _choice(choices: Sequence[Any]) -> Kind:
@@ -241,44 +188,30 @@ def _choice(choices: Sequence[Any]) -> Kind:
 def _sequence(arguments: Sequence[Any]) -> Kind:
     """A tuple of one kind in any number, or of as many kinds as it has members."""
     endless = arguments[-1] is Ellipsis
-    kinds = [kind_of(each) for each in arguments if each is not Ellipsis]
+    kinds = [kind_of(member) for member in arguments if member is not Ellipsis]
     takes, count = [kind.take for kind in kinds], len(kinds)
 
     def take(value: Any) -> Any:
-        if type(value) is not tuple:
-            value = value.tolist() if isinstance(value, np.ndarray) and value.ndim else _listed(value)
-            if not isinstance(value, tuple | list):
-                return NOT_TAKEN
-        if not endless and len(value) != count:
+        value = value.tolist() if isinstance(value, np.ndarray) else value
+        if not isinstance(value, tuple | list) or (not endless and len(value) != count):
             return NOT_TAKEN
         wanted = takes * len(value) if endless else takes
-        members = tuple([each(member) for each, member in zip(wanted, value, strict=True)])
-        for member in members:
-            if member is NOT_TAKEN:
-                return NOT_TAKEN
-        return members
+        members = tuple([take_one(member) for take_one, member in zip(wanted, value, strict=True)])
+        return NOT_TAKEN if any(member is NOT_TAKEN for member in members) else members
 
-    each = kinds[0].words if len({kind.words for kind in kinds}) == 1 else " and ".join(kind.words for kind in kinds)
-    return Kind(f"a tuple of {'values' if endless else f'{count} values'}, each {each}", take)
+    words = kinds[0].words if len({kind.words for kind in kinds}) == 1 else " and ".join(kind.words for kind in kinds)
+    return Kind(f"a tuple of {'values' if endless else f'{count} values'}, each {words}", take)
 
 
 def _either(kinds: Sequence[Kind]) -> Kind:
-    takes = [kind.take for kind in kinds]
-
     def take(value: Any) -> Any:
-        value = _listed(value)  # an iterator gives its members once
-        for each in takes:
-            taken = each(value)
-            if taken is not NOT_TAKEN:
-                return taken
-        return NOT_TAKEN
+        return next((taken for kind in kinds if (taken := kind.take(value)) is not NOT_TAKEN), NOT_TAKEN)
 
     return Kind(" or ".join(kind.words for kind in kinds), take)
 
 
 def _instance(annotation: type) -> Kind:
-    # Dataclasses of which one object fits: all do, since they have the same members. To ask a protocol of twenty
-    # members takes 50 us, and thousands of cells have an engine.
+    # Dataclasses of which one object fits: all do. To ask a protocol of twenty members takes 50 us.
     fitting: set[type] = set()
 
     def take(value: Any) -> Any:
