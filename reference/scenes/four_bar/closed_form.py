@@ -1,4 +1,4 @@
-"""The closed form of a four-bar for many crank angles: angles, rates and accelerations, block by block in the cache.
+"""The closed form of a four-bar for many crank angles: angles, rates and accelerations.
 
 The diagonal B D, of length s, cuts the loop into the triangles A B D and B C D. In the frame whose x axis points from A
 to D, with d = |AD| and theta' = theta - arg(D), and as exact differences that keep their relative accuracy,
@@ -36,8 +36,6 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Interval = tuple[float, float]
 
-# All arrays of one block together fit a core's second-level cache; below about 1000 numpy's call overhead shows.
-BLOCK = 8192
 # A crank angle is a rounded number: one that misses the reachable range by this many roundings is taken as its end.
 ROUNDINGS = 16
 
@@ -125,59 +123,48 @@ class Triangles(NamedTuple):
 
 
 def closed_form(
-    constants: Constants, theta: Array, theta_dot: Array, theta_ddot: Array, branch: Array, order: int
+    c: Constants, theta: Array, theta_dot: Array, theta_ddot: Array, branch: Array, order: int
 ) -> tuple[Array, ...]:
-    """The first 2 (order + 1) fields of Kinematics, flat, for flat theta (n,) and others of n or 1 elements.
+    """The first 2 (order + 1) fields of Kinematics for arrays of one shape.
 
     Raises OutOfReach. At the ends of the reachable range rates and accelerations are not finite.
     """
-    out = tuple(np.empty(theta.size) for _ in range(2 * (order + 1)))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        for start in range(0, theta.size, BLOCK):
-            piece = slice(start, min(start + BLOCK, theta.size))
-            others = (value if value.size == 1 else value[piece] for value in (theta_dot, theta_ddot, branch))
-            try:
-                _fill([column[piece] for column in out], constants, theta[piece], *others)
-            except OutOfReach as refusal:
-                raise OutOfReach(start + refusal.index, refusal.undetermined) from None
-    return out
-
-
-def _fill(out: list[Array], c: Constants, theta: Array, theta_dot: Array, theta_ddot: Array, branch: Array) -> None:
-    """One block of `closed_form`, into as many columns as are given."""
-    triangles = _triangles(c, theta)
-    _fill_angles(out, c, triangles, theta, branch)
-    if len(out) == 2:
-        return
-    square, m, n, h, p, _, area = triangles
-    q, half = area if _all_one(branch) else branch * area, 0.5 / square
-    y = h / q
-    beta_1 = (m - y * p) * half
-    phi_1 = beta_1 + y
-    np.multiply(beta_1, theta_dot, out=out[2])
-    np.multiply(phi_1, theta_dot, out=out[3])
-    if len(out) == 4:
-        return
-    # 2 l1 d cos(theta'), from the shorter of the two bars: the square of the other would swamp it.
-    turned = 2 * c.l1**2 - m if c.l1 < c.d else 2 * c.d**2 - n
-    y_1 = (turned - y * y * (c.l2**2 + c.l3**2 - square)) / q
-    beta_2 = (h * (1 - (beta_1 + phi_1)) - y_1 * p) * half
-    phi_2 = beta_2 + y_1
-    np.multiply(beta_2, theta_dot**2, out=out[4])
-    np.multiply(phi_2, theta_dot**2, out=out[5])
-    if np.any(theta_ddot):
-        out[4] += beta_1 * theta_ddot
-        out[5] += phi_1 * theta_ddot
+        triangles = _triangles(c, theta)
+        out = _angles(c, triangles, theta, branch)
+        if order == 0:
+            return out
+        square, m, n, h, p, _, area = triangles
+        q, half = branch * area, 0.5 / square
+        y = h / q
+        beta_1 = (m - y * p) * half
+        phi_1 = beta_1 + y
+        out += beta_1 * theta_dot, phi_1 * theta_dot
+        if order == 1:
+            return out
+        # 2 l1 d cos(theta'), from the shorter of the two bars: the square of the other would swamp it.
+        turned = 2 * c.l1**2 - m if c.l1 < c.d else 2 * c.d**2 - n
+        y_1 = (turned - y * y * (c.l2**2 + c.l3**2 - square)) / q
+        beta_2 = (h * (1 - (beta_1 + phi_1)) - y_1 * p) * half
+        phi_2 = beta_2 + y_1
+        beta_ddot, phi_ddot = beta_2 * theta_dot**2, phi_2 * theta_dot**2
+        if np.any(theta_ddot):
+            beta_ddot, phi_ddot = beta_ddot + beta_1 * theta_ddot, phi_ddot + phi_1 * theta_ddot
+        return (*out, beta_ddot, phi_ddot)
 
 
 def _triangles(c: Constants, theta: Array) -> Triangles:
     """Raises OutOfReach where B C D doesn't close."""
-    sine, cosine, product = _half_angle(theta, c.heading)
+    # sin^2, cos^2 and their product of theta'/2 from one tangent.
+    half, turn_x, turn_y = np.tan(0.5 * theta), math.cos(c.heading / 2), math.sin(c.heading / 2)
+    sine, cosine = half * turn_x - turn_y, half * turn_y + turn_x  # both over cos(theta/2)
+    product, sine, cosine = sine * cosine, sine * sine, cosine * cosine
+    scale = 1 / (cosine + sine)
     fourfold = 4 * c.l1 * c.d
-    along = fourfold * sine
+    along = fourfold * (sine * scale)
     # From the end of the range where U, or W, is smaller: there it may vanish, and its digits must not cancel.
     near_u, near_w = abs(c.outer_near) < abs(c.outer_far), abs(c.inner_near) < abs(c.inner_far)
-    across: Any = 0.0 if near_u and near_w else fourfold * cosine
+    across = fourfold * (cosine * scale)
     u = c.outer_near - along if near_u else c.outer_far + across
     w = c.inner_near + along if near_w else c.inner_far - across
     square = along + (c.l1 - c.d) ** 2
@@ -187,61 +174,40 @@ def _triangles(c: Constants, theta: Array) -> Triangles:
         square=square,
         m=along + 2 * c.l1 * (c.l1 - c.d),
         n=along + 2 * c.d * (c.d - c.l1),
-        h=fourfold * product,
+        h=fourfold * (product * scale),
         p=square + excess,
         r=square - excess,
         area=np.sqrt(u * w),
     )
 
 
-def _half_angle(theta: Array, heading: float) -> tuple[Array, Array, Array]:
-    """sin^2 and cos^2 of theta'/2, theta' = theta - heading, and their sine times their cosine; from one tangent."""
-    half = np.tan(0.5 * theta)
-    if heading == 0:
-        square = half * half
-        scale = 1 / (square + 1)
-        return square * scale, scale, half * scale
-    turn_x, turn_y = math.cos(heading / 2), math.sin(heading / 2)
-    sine, cosine = half * turn_x - turn_y, half * turn_y + turn_x  # both over cos(theta/2)
-    product, sine, cosine = sine * cosine, sine * sine, cosine * cosine
-    scale = 1 / (cosine + sine)
-    return sine * scale, cosine * scale, product * scale
-
-
-def _fill_angles(out: list[Array], c: Constants, triangles: Triangles, theta: Array, branch: Array) -> None:
-    """beta and phi (n,) [rad], continuous in theta, into the first two columns."""
+def _angles(c: Constants, triangles: Triangles, theta: Array, branch: Array) -> tuple[Array, Array]:
+    """beta and phi [rad], continuous in theta."""
     _, m, n, h, p, r, area = triangles
     # v is B - D, scaled, seen from the direction that it never turns away from by a right angle: D -> A, or A -> B if
     # that is longer.
     winding = c.l1 > c.d
     vx, vy = (m, h) if winding else (n, -h)
     # That turn and the triangle's angle add up to less than a whole turn: one arctangent, a quarter turn off its cut.
-    if not _all_one(branch):
-        p, r = branch * p, branch * r
+    p, r = branch * p, branch * r
     wide_x, wide_y = vx * area, vy * area
-    beta = np.arctan2(wide_y - vx * r, vy * r + wide_x, out=out[0])
-    phi = np.arctan2(vx * p + wide_y, wide_x - vy * p, out=out[1])
+    beta = np.arctan2(wide_y - vx * r, vy * r + wide_x)
+    phi = np.arctan2(vx * p + wide_y, wide_x - vy * p)
     quarter = branch * (math.pi / 2)
-    beta += quarter - math.pi if winding else quarter + c.heading
-    phi += -quarter if winding else math.pi - quarter + c.heading
-    if winding:
-        beta += theta
-        phi += theta
-
-
-def _all_one(branch: Array) -> bool:
-    return branch.size == 1 and branch.flat[0] == 1
+    beta = beta + (quarter - math.pi if winding else quarter + c.heading)
+    phi = phi + (-quarter if winding else math.pi - quarter + c.heading)
+    return (beta + theta, phi + theta) if winding else (beta, phi)
 
 
 def _within_reach(c: Constants, u: Array, w: Array, square: Array) -> tuple[Array, Array]:
     """U and W, misses by rounding made exact zeros; raises OutOfReach unless every triangle closes."""
-    if not min(float(np.min(u)), float(np.min(w))) >= 0:  # a NaN fails too
+    if u.size and not min(float(np.min(u)), float(np.min(w))) >= 0:  # a NaN fails too
         allowed = -ROUNDINGS * np.finfo(float).eps * (c.l1 + c.d) ** 2
         bad = ~(np.minimum(u, w) >= allowed)
         if np.any(bad):
             raise OutOfReach(int(np.argmax(bad)))
         u, w = np.maximum(u, 0), np.maximum(w, 0)
-    if c.l1 == c.d and float(np.min(square)) == 0:
+    if c.l1 == c.d and np.any(square == 0):
         raise OutOfReach(int(np.argmin(square)), undetermined=True)
     return u, w
 

@@ -108,20 +108,15 @@ class FourBar(Valid):
     ) -> tuple[Any, ...]:
         arguments = [np.asarray(value, dtype=float) for value in (theta, theta_dot, theta_ddot, branch)]
         try:
-            shape = np.broadcast_shapes(*(value.shape for value in arguments))
+            angle, *others = np.broadcast_arrays(*arguments)
         except ValueError:
             shapes = ", ".join(str(value.shape) for value in arguments)
             raise InvalidMechanism(f"four-bar: arguments of the shapes {shapes} don't go together") from None
-        angle = np.broadcast_to(arguments[0], shape).ravel()
-        # Single numbers stay single: a block then multiplies by a scalar.
-        others = [
-            value.ravel() if value.size == 1 else np.broadcast_to(value, shape).ravel() for value in arguments[1:]
-        ]
         try:
             columns = closed_form(self._constants, angle, *others, order=order)
         except OutOfReach as refusal:
-            raise self._refusal(float(angle[refusal.index]), refusal.undetermined) from None
-        return tuple(column.reshape(shape)[()] for column in columns)
+            raise self._refusal(float(angle.flat[refusal.index]), refusal.undetermined) from None
+        return tuple(column[()] for column in columns)
 
     def _refusal(self, theta: float, undetermined: bool) -> Unreachable:
         if undetermined:
