@@ -55,7 +55,7 @@ def closed_positions(
         return None
     mechanism = _AnyStart(tuple(bodies), tuple(joints), gravity, tuple(forces))
     row_unit = np.where(mechanism.turning, 1.0, mechanism.length_scale)
-    still, size = np.zeros(mechanism.row_count), np.asarray(mechanism.length_scale)
+    still, size = np.zeros(mechanism.row_count), mechanism.length_scale
 
     def gap_at(pose: Array) -> Array:
         return np.nan_to_num(mechanism.gap(pose, 0.0))
@@ -102,7 +102,7 @@ def with_consistent_start(
     _refuse_without_digits(bodies)
     own = _AnyStart(tuple(bodies), *elements)
     slip = own.slip(own.pose, own.twist) if joints else np.zeros(0)
-    size = np.asarray(own.length_scale)
+    size = own.length_scale
     if joints and (gap := open_joint(own, own.gap(own.pose, 0.0), np.zeros_like(slip), own.pose, own.twist, size)):
         raise OpenStart(f"mechanism: {gap}")
     if not joints or open_joint(own, np.zeros_like(slip), slip, own.pose, own.twist, size) is None:

@@ -280,7 +280,11 @@ def refuse_a_bad_start(mechanism: Mechanism) -> None:
                 f"body {body.name!r}: its kinetic energy at t = 0 is {energy} J, which is not finite: its twist is "
                 f"{body.twist}, its mass {body.mass:g} kg and its inertia {body.inertia:g} kg m^2"
             )
-    _refuse_open_joints(mechanism)
+    if mechanism.joints:
+        start = mechanism.pose, mechanism.twist
+        gap, slip = mechanism.gap(mechanism.pose, 0.0), mechanism.slip(*start)
+        if sentence := open_joint(mechanism, gap, slip, *start, mechanism.length_scale):
+            raise InvalidMechanism(f"mechanism: {sentence}")
     for element in mechanism.forces:
         if isinstance(element, CoupledForce):  # a sum of coordinates, which has a direction everywhere
             continue
@@ -295,39 +299,24 @@ def refuse_a_bad_start(mechanism: Mechanism) -> None:
             )
 
 
-def _refuse_open_joints(mechanism: Mechanism) -> None:
-    if not mechanism.joints:
-        return
-    gap, slip = mechanism.gap(mechanism.pose, 0.0), mechanism.slip(mechanism.pose, mechanism.twist)
-    size = np.asarray(mechanism.length_scale)
-    sentence = open_joint(mechanism, gap, slip, mechanism.pose, mechanism.twist, size)
-    if sentence is not None:
-        raise InvalidMechanism(f"mechanism: {sentence}")
+def open_joint(mechanism: Mechanism, gap: Array, slip: Array, pose: Array, twist: Array, size: float) -> str | None:
+    """The sentence about the row that misses the start most; None if all satisfy it.
 
-
-def open_joint(
-    mechanism: Mechanism, gap: Array, slip: Array, pose: Array, twist: Array, size: Array, begin: int = 0
-) -> str | None:
-    """What is wrong with the start of one mechanism, or of the worst of many of its shape; None if nothing is.
-
-    gap, slip (..., rows); pose, twist (..., bodies, 3); size (...) [m], of many in one line; `begin`: the number of the
-    first of many.
+    gap, slip (rows,); pose, twist (bodies, 3); size [m].
     """
-    place, turn = np.abs(pose[..., :2]).max(axis=(-2, -1)), np.abs(pose[..., 2]).max(axis=-1)
-    speed = np.abs(twist[..., :2]).max(axis=(-2, -1)) + size * np.abs(twist[..., 2]).max(axis=-1)
+    speed = np.abs(twist[:, :2]).max() + size * np.abs(twist[:, 2]).max()
     # Relative to the mechanism's own size and speed, and above the rounding of a place far from the origin.
-    far = ROUNDINGS * np.finfo(float).eps
-    for missed, (length, angle), (unit, angular), what in (
-        (gap, (START_TOLERANCE * size + far * place, START_TOLERANCE + far * turn), ("m", "rad"), "open by"),
+    far = ROUNDINGS * np.finfo(float).eps * np.abs(pose).max(axis=0)
+    allowed_gap = START_TOLERANCE * size + max(far[:2]), START_TOLERANCE + far[2]
+    for missed, (length, angle), (unit, angular), words in (
+        (gap, allowed_gap, ("m", "rad"), "open by"),
         (slip, (START_TOLERANCE * speed, START_TOLERANCE * speed / size), ("m/s", "rad/s"), "moving apart at"),
     ):
-        value = np.nan_to_num(np.abs(missed))
-        allowed = np.where(mechanism.turning, angle[..., None], length[..., None])
-        worst = np.unravel_index(np.argmax(value - allowed), value.shape)
-        if value[worst] > allowed[worst]:
-            row, which = worst[-1], "".join(f" of mechanism {begin + number}" for number in worst[:-1])
+        value, allowed = np.nan_to_num(np.abs(missed)), np.where(mechanism.turning, angle, length)
+        row = int(np.argmax(value - allowed))
+        if value[row] > allowed[row]:
             return (
-                f"at t = 0 row {mechanism.row_names[row]!r}{which} is {what} {value[worst]:.3g} "
-                f"{angular if mechanism.turning[row] else unit}; the start must satisfy it to {allowed[worst]:.1g}"
+                f"at t = 0 row {mechanism.row_names[row]!r} is {words} {value[row]:.3g} "
+                f"{angular if mechanism.turning[row] else unit}; the start must satisfy it to {allowed[row]:.1g}"
             )
     return None

@@ -10,13 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, fields
-from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dpbsv, dpbtrs  # pyright: ignore[reportAttributeAccessIssue] (missing in the stubs)
-from scipy.sparse import coo_array
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from reference.checks import InvalidMechanism, require_room
@@ -138,6 +137,12 @@ class JointGroup:
         """Velocity rows (..., joints, size, 6) at poses of bodies and ground (..., bodies + 1, 3)."""
         return self.joint.rows(everything[..., self.first, :], everything[..., self.second, :])
 
+    def places(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Rows and columns (joints, size, 6) of the entries of `blocks`; the ground's columns are the last three."""
+        ends = 3 * np.stack([self.first, self.second], axis=-1)[..., None] + np.arange(3)  # (joints, 2, 3)
+        columns = np.broadcast_to(ends.reshape(-1, 1, 6), (*self.rows.shape, 6))
+        return np.broadcast_to(self.rows[..., None], columns.shape), columns
+
 
 @dataclass(frozen=True)
 class JointRows:
@@ -239,64 +244,33 @@ def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias:
     """Reactions (times, rows) [N, N m] at poses (times, bodies, 3); NaN where rows are dependent.
 
     `excess` (times, bodies, 3) are the accelerations without those of free fall, `inertias` (bodies, 3) the diagonal of
-    the mass matrix M. J M^-1 J^T times the reactions is J excess: built from the joints' blocks, in an order that makes
-    its band narrow, and factorised by Cholesky: O(bodies) for a chain, where the dense system costs O(bodies^3).
+    the mass matrix M. J M^-1 J^T times the reactions is J excess: a sparse product in an order that makes its band
+    narrow, factorised by Cholesky: O(bodies) for a chain, where the dense system costs O(bodies^3).
     """
-    everything = joint_rows.with_ground(pose)
-    times, count = len(pose), joint_rows.bodies
-    mobility = np.concatenate([1 / inertias, np.zeros((1, 3))])  # the ground's, last, moves for no force
-    excess = np.concatenate([excess, np.zeros((times, 1, 3))], axis=1)
-    right = np.zeros((times, joint_rows.count))
-    ends: dict[int, list[tuple[NDArray[np.intp], Array]]] = {}  # of each body, the rows on it and their blocks
-    for group in joint_rows.groups:
-        block = group.blocks(everything)
-        for bodies, columns in ((group.first, slice(0, 3)), (group.second, slice(3, 6))):
-            right[:, group.rows] += np.einsum("tjrc,tjc->tjr", block[..., columns], excess[:, bodies])
-            for joint, body in enumerate(bodies.tolist()):
-                if body < count:
-                    ends.setdefault(body, []).append((group.rows[joint], block[:, joint, :, columns]))
-    pairs: dict[tuple[int, int], Array] = {}
-    for body, own in ends.items():
-        for (rows, block), (others, other) in combinations_with_replacement(own, 2):
-            product = np.einsum("trc,c,tsc->trs", block, mobility[body], other)
-            same = rows is others or rows[0] == others[0]
-            if same and block is not other:  # two terms of a coupling on one body: the square of a sum
-                product = 2 * product
-            for i, row in enumerate(rows.tolist()):
-                for j, column in enumerate(others.tolist()):
-                    if same and block is other and column < row:
-                        continue
-                    key = (min(row, column), max(row, column))
-                    pairs[key] = pairs.get(key, 0) + product[:, i, j]
-    order, band = _narrow(joint_rows.count, list(pairs))
-    place = np.argsort(order)
-    matrix = np.zeros((times, band + 1, joint_rows.count))
-    for (row, column), values in pairs.items():
-        low, high = sorted((place[row], place[column]))
-        matrix[:, high - low, low] = values  # LAPACK's lower band storage
-    out = np.full_like(right, np.nan)
-    factors: dict[int, Array] = {}
-    for time in range(times):
-        factor, solution, failed = dpbsv(matrix[time], right[time, order], lower=1)
-        if not failed and factor[0].min() ** 2 > SMALLEST_PIVOT * factor[0].max() ** 2:
-            out[time, order] = solution
-            factors[time] = factor
-    # Once more with what the forces leave of the accelerations: the product J M^-1 J^T has squared the condition of J,
-    # and this gives the digits back (Bjorck 1987, corrected seminormal equations).
-    missing = np.zeros_like(right)
-    for body, own in ends.items():
-        left = excess[:, body] - mobility[body] * sum(np.einsum("trc,tr->tc", b, out[:, rows]) for rows, b in own)
-        for rows, block in own:
-            missing[:, rows] += np.einsum("trc,tc->tr", block, left)
-    for time, factor in factors.items():
-        out[time, order] += dpbtrs(factor, missing[time, order], lower=1)[0]
+    everything, count = joint_rows.with_ground(pose), joint_rows.count
+    blocks = [group.blocks(everything) for group in joint_rows.groups]  # (times, joints, size, 6) each
+    places = [group.places() for group in joint_rows.groups]
+    row, column = (np.concatenate([pair[k].ravel() for pair in places]) for k in (0, 1))
+    values = np.concatenate([block.reshape(len(pose), -1) for block in blocks], axis=1)
+    moving = column < 3 * joint_rows.bodies  # not the ground's
+    row, column, values = row[moving], column[moving], values[:, moving]
+    shape, mobility = (count, 3 * joint_rows.bodies), 1 / inertias.reshape(-1)
+    pattern = csr_array((np.ones(len(row)), (row, column)), shape=shape)
+    order = reverse_cuthill_mckee((pattern @ pattern.T).tocsr(), symmetric_mode=True).astype(np.intp)
+    rank_of = np.argsort(order)
+    out = np.full((len(pose), count), np.nan)
+    for time, target in enumerate(excess.reshape(len(pose), -1)):
+        rows = csr_array((values[time], (rank_of[row], column)), shape=shape)
+        product = ((rows * mobility) @ rows.T).tocoo()
+        lower = product.row >= product.col
+        below, at = (product.row - product.col)[lower], product.col[lower]
+        band = np.zeros((int(below.max()) + 1, count))
+        band[below, at] = product.data[lower]  # LAPACK's lower band storage
+        factor, solution, failed = dpbsv(band, rows @ target, lower=1)
+        if failed or not factor[0].min() ** 2 > SMALLEST_PIVOT * factor[0].max() ** 2:
+            continue
+        # Once more with what the forces leave of the accelerations: the product J M^-1 J^T has squared the condition of
+        # J, and this gives the digits back (Bjorck 1987, corrected seminormal equations).
+        missing = rows @ (target - mobility * (rows.T @ solution))
+        out[time, order] = solution + dpbtrs(factor, missing, lower=1)[0]
     return out
-
-
-def _narrow(rows: int, pairs: list[tuple[int, int]]) -> tuple[NDArray[np.intp], int]:
-    """An order of the rows, and the width of the band that it leaves below the diagonal."""
-    row, column = np.array(pairs).T
-    graph = coo_array((np.ones(len(row)), (row, column)), shape=(rows, rows)).tocsr()
-    order = reverse_cuthill_mckee((graph + graph.T).tocsr(), symmetric_mode=True).astype(np.intp)
-    place = np.argsort(order)
-    return order, int(np.abs(place[row] - place[column]).max())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import combinations
 from typing import assert_never
 
 from reference.couplings import Coupling
@@ -151,38 +152,5 @@ def _to_world(name: str | None, point: Vector, bodies: Mapping[str, Body]) -> Ve
 
 
 def diameter(points: Iterable[Vector]) -> float:
-    """The largest distance between two points, in O(n log n): only opposite corners of the convex hull are compared.
-
-    The opposite corner moves on as one goes round the hull (rotating calipers, Shamos 1978). Its neighbour is compared
-    too: where sides are parallel up to rounding, either of the two may be found to be the opposite one.
-    """
-    hull = convex_hull(points)
-    count, opposite, largest = len(hull), 1 % len(hull), 0.0
-    for index in range(count):
-        corner, following = hull[index], hull[(index + 1) % count]
-        while _area(corner, following, hull[(opposite + 1) % count]) > _area(corner, following, hull[opposite]):
-            opposite = (opposite + 1) % count
-        for other in (hull[opposite], hull[(opposite + 1) % count]):
-            largest = max(largest, math.dist(corner, other), math.dist(following, other))
-    return largest
-
-
-def convex_hull(points: Iterable[Vector]) -> list[Vector]:
-    """The corners of the convex hull of one point or more, counter-clockwise, none on a side between two others."""
-    ordered = sorted(set(points))
-    if len(ordered) == 1:
-        return ordered
-    hull: list[Vector] = []
-    for way in (ordered, ordered[::-1]):  # the lower side, then the upper one (Andrew 1979)
-        side: list[Vector] = []
-        for point in way:
-            while len(side) > 1 and _area(side[-2], side[-1], point) <= 0:
-                side.pop()
-            side.append(point)
-        hull += side[:-1]
-    return hull
-
-
-def _area(first: Vector, second: Vector, third: Vector) -> float:
-    """Twice the area of a triangle, positive if it is counter-clockwise."""
-    return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
+    """The largest distance between two points [m]; 0 for one."""
+    return max((math.dist(first, second) for first, second in combinations(points, 2)), default=0.0)

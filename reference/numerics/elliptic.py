@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import elliprf
+from scipy.special import ellipkm1, elliprf
 
 Array = NDArray[np.float64]
 
@@ -21,12 +21,7 @@ HALF_PRECISION = 1e-9
 
 def quarter_period(complement: float) -> float:
     """K [1], the complete integral of the first kind, for 0 <= n <= 1; infinite at n = 0."""
-    if complement == 0:
-        return math.inf
-    mean, geometric = 1.0, math.sqrt(complement)
-    while abs(mean - geometric) > HALF_PRECISION * mean:
-        mean, geometric = (mean + geometric) / 2, math.sqrt(mean * geometric)
-    return math.pi / (mean + geometric)
+    return float(ellipkm1(complement))
 
 
 def incomplete(sine: ArrayLike, cosine: ArrayLike, complement: float) -> Array:

@@ -19,6 +19,7 @@ from reference.checks import InvalidMechanism, Positive, validated
 from reference.joints import Joint, Pin, Skate, Triple, bodies_of
 from reference.mechanism import Mechanism
 from reference.numerics.calculus import Antiderivative
+from reference.numerics.roots import solve_increasing
 from reference.plane import COMPLEX_STEP
 from reference.scene import Scene
 from reference.scenes.wheels.tractrix import Tow
@@ -26,9 +27,6 @@ from reference.scenes.wheels.trailers import towed
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-
-# Newton doubles the digits at every step once near; a bracket that is halved needs at most the mantissa's bits.
-MOST_STEPS = 80
 
 
 @dataclass(frozen=True)
@@ -125,23 +123,13 @@ class CarAndTrailer(Scene):
         return self._way(self.times(t))
 
     def _way(self, times: Array) -> Array:
-        """Newton's method, held between two places by halving."""
+        sign, first = math.copysign(1.0, self.speed), float(self.apparent_mass(0.0))
         goal = abs(self.speed) * times
-        first = float(self.apparent_mass(0.0))
-        low, high = np.zeros_like(goal), goal.copy()
-        while np.any(short := self._stretch(high) < goal):
-            high = np.where(short, 2 * high + 1e-300, high)
-        guess = np.clip(goal, low, high)
-        for _ in range(MOST_STEPS):
-            miss = self._stretch(guess) - goal
-            low, high = np.where(miss <= 0, guess, low), np.where(miss >= 0, guess, high)
-            slope = np.sqrt(self.apparent_mass(math.copysign(1.0, self.speed) * guess) / first)
-            better = guess - miss / slope
-            better = np.where((better < low) | (better > high), 0.5 * (low + high), better)
-            moved, guess = np.abs(better - guess), better
-            if np.all(moved <= 2e-16 * (1 + goal)):
-                break
-        return math.copysign(1.0, self.speed) * guess
+
+        def stretch(way: Array) -> tuple[Array, Array]:
+            return self._stretch(way), np.sqrt(self.apparent_mass(sign * way) / first)
+
+        return sign * solve_increasing(stretch, goal, goal, 1.0, (0.0, math.inf))
 
     def mechanism(self) -> Mechanism:
         start = self._moving(np.zeros(1), np.array([self.speed]))
