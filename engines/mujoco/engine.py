@@ -92,25 +92,26 @@ class MuJoCo(Engine, Valid):
         tree = self._tree(mechanism)
         skating, rolling = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Skate, Roll))
         driven = any(isinstance(joint, Drive) and joint not in tree.kept for joint in mechanism.joints)
-        if driven and self.drive != "inertia":
-            return Unpromised("a state that is overwritten between steps obeys no equation of which an order is known")
-        order = ORDER if self.integrator == "RK4" else 1
-        # A contact's row knows the velocity and not how it changes: first order at best, whatever integrates it.
-        if rolling and isinstance(self.rolls, RollContact):
-            return Promise(1)
-        gap = None if tree.closed or rolling else EXACT
-        if skating and self.skates != "rows":
-            # A row that is held at the ends of steps; one at the pose that the velocity leads to has less slip.
-            return Promise(1, gap=gap, slip=2 if self.skates == "predicted tendon" else None)
-        if tree.closed and isinstance(self.stiffness, TiedToStep):
-            if order > 1:
-                return Promise(2, rate=1, slip=1, energy=1, reaction=1, integrator=order)
-            return SPRUNG_PRESCRIBED if is_prescribed(mechanism) else SPRUNG
-        if tree.closed or rolling or skating:
-            return Promise(order, gap=gap)
-        if turns_steadily(mechanism):
-            return Promise(EXACT)  # its coordinates turn at a constant rate, which any integrator adds up
-        return Promise(order, gap=EXACT, slip=EXACT)
+        tied = tree.closed and isinstance(self.stiffness, TiedToStep)
+        order, gap = ORDER if self.integrator == "RK4" else 1, None if tree.closed or rolling else EXACT
+        # The slip of a row that is held at the ends of steps is of first order, at the predicted pose of second.
+        slip = 2 if self.skates == "predicted tendon" else None
+        overwritten = "a state that is overwritten between steps obeys no equation of which an order is known"
+        # The first row whose condition holds.
+        table: tuple[tuple[bool, Promise | Unpromised], ...] = (
+            (driven and self.drive == "overwrite", Unpromised(overwritten)),
+            # A contact's row has the velocity and not its change.
+            (rolling and isinstance(self.rolls, RollContact), Promise(1)),
+            (skating and self.skates != "rows", Promise(1, gap=gap, slip=slip)),
+            (tied and order > 1, Promise(2, rate=1, slip=1, energy=1, reaction=1, integrator=order)),
+            (tied and is_prescribed(mechanism), SPRUNG_PRESCRIBED),
+            (tied, SPRUNG),
+            (tree.closed or rolling or skating, Promise(order, gap=gap)),
+            # Coordinates that turn at a constant rate, which any integrator adds up.
+            (turns_steadily(mechanism), Promise(EXACT)),
+            (True, Promise(order, gap=EXACT, slip=EXACT)),
+        )
+        return next(promise for holds, promise in table if holds)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:

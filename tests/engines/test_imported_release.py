@@ -55,15 +55,14 @@ def answer(monkeypatch):
     imported_release._modules.cache_clear()
 
 
-@pytest.mark.parametrize("says", ["2.0.1", "2.0.1.0", "2.0.1+patched", "2.0.1.dev3", "2", "1999", None])
+@pytest.mark.parametrize("says", ["2.0.1.0", "2.0.1.dev3", "1999", None])
 def test_a_module_whose_files_are_as_installed_may_call_itself_anything(tmp_path, answer, says):
     distribution(tmp_path, NAME, "2.0.1", says)
     assert answer(tmp_path) == ""
 
 
-@pytest.mark.parametrize("version", ["2.0.1+patched", "2.0.1.post1", "2.0.1rc1"])
-def test_a_build_of_a_release_is_of_that_release(tmp_path, answer, version):
-    distribution(tmp_path, NAME, version, "2.0.1")
+def test_a_build_of_a_release_is_of_that_release(tmp_path, answer):
+    distribution(tmp_path, NAME, "2.0.1+patched", "2.0.1")
     (tmp_path / NAME / "__init__.py").write_text("__version__ = '2.0.1' \n")  # as the author changed it since
     assert answer(tmp_path) == ""
 
