@@ -2,6 +2,7 @@
 
 import os
 import signal
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,8 @@ FIRST = (
     *("promised", "matrix", "random", "scenes", "conformance"),
 )
 
+GOLDEN = Path(__file__).parent / "golden"
+
 # The one file whose tests are marked `crosscheck`, which a test there holds.
 GRID = "test_crosscheck.py"
 
@@ -35,6 +38,23 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the longest files; the order within a file stays."""
     place = {f"test_{name}.py": number for number, name in enumerate(FIRST)}
     items.sort(key=lambda item: place.get(Path(item.path).name, len(FIRST)))
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--renew-golden", action="store_true", help="Write tests/golden/* from what is rendered now.")
+
+
+@pytest.fixture
+def golden(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
+    """compare(name, text): fail unless tests/golden/name has this text; --renew-golden writes it."""
+
+    def compare(name: str, text: str) -> None:
+        if request.config.getoption("--renew-golden"):
+            GOLDEN.mkdir(exist_ok=True)
+            (GOLDEN / name).write_text(text, encoding="utf-8")
+        assert text == (GOLDEN / name).read_text(encoding="utf-8")
+
+    return compare
 
 
 @pytest.fixture
