@@ -10,6 +10,7 @@
     crosscheck.draw(mechanism)
     beside = crosscheck.compare(mechanism, "mujoco default", dt=2e-3, duration=1.0)
     beside                                                  # truth, run, errors and a figure; beside.frame() for pandas
+    rows = crosscheck.run("free_four_bar", "pymunk", every=[100])   # rows of errors; crosscheck.report() writes pages
 
 `reference`, `engines` and `reports` are general names, and Python takes the first package of a name that it finds:
 `clash` says when another package hides one of ours. What takes time is imported when it is called.
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from reference.mechanism import Mechanism
     from reports.check.comparing import Comparison, Drawing
     from reports.check.request import CheckReport
+    from reports.model.measure import Measurement
 
 PACKAGES = ("reference", "engines", "reports")
 HERE = os.path.dirname(os.path.realpath(__file__))
@@ -80,10 +82,10 @@ def check(
     wanted = tolerance if fix_to is None else fix_to
     terms = {"quick": quick, "search": fix_to is not None, "apply": str(apply), "pictures": True}
     request = CheckRequest(word, str(folder or Path.cwd()), duration, wanted, tuple(without), key, step, **terms)
-    found = answered(request, None if isinstance(model, str | Path) else model)
-    if isinstance(found, Refused) or found.trouble:
-        raise ValueError(found.sentence if isinstance(found, Refused) else found.trouble)
-    return found
+    answer = answered(request.refuse_bad(), None if isinstance(model, str | Path) else model)
+    if isinstance(answer, Refused) or answer.trouble:
+        raise ValueError(answer.sentence if isinstance(answer, Refused) else answer.trouble)
+    return answer
 
 
 def compare(mechanism: Mechanism, engine: Engine | str, dt: float, duration: float = 2.0) -> Comparison:
@@ -95,6 +97,39 @@ def compare(mechanism: Mechanism, engine: Engine | str, dt: float, duration: flo
     from reports.check.comparing import compared
 
     return compared(mechanism, engine, dt, duration)
+
+
+def run(
+    scenes: str | Sequence[str] = (),
+    engine: str | None = None,
+    variant: str | None = None,
+    *,
+    settings: Mapping[str, float] | None = None,
+    full: bool = False,
+    every: Sequence[int] = (),
+    steps: Sequence[float] = (),
+    fresh: bool = False,
+    workers: int | None = None,
+    results: str | Path = "crosscheck-results",
+) -> list[Measurement]:
+    """The rows of `crosscheck run`: cells that the folder `results` does not have are run and stored there.
+
+    scenes: names of scenes or pages, all if empty; settings: other numbers of these scenes; every: steps between two
+    samples, steps [s]: these alone. Raises ValueError.
+    """
+    from reports.cli.run import Selection, run_grid
+
+    names = (scenes,) if isinstance(scenes, str) else tuple(scenes)
+    numbers = tuple(f"{name}={value!r}" for name, value in (settings or {}).items())
+    chosen = Selection(names, engine, variant, numbers, full, tuple(every), tuple(steps))
+    return run_grid(chosen, Path(results), workers, fresh)
+
+
+def report(results: str | Path = "crosscheck-results") -> Path:
+    """Write pages, charts and tables of what is stored in a folder; the path of the first page. Raises ValueError."""
+    from reports.cli.report import write_report
+
+    return write_report(Path(results)).folder / "index.md"
 
 
 def linkage(

@@ -1,9 +1,4 @@
-"""The judge of a check: the ideal motion, how long it can be trusted, and a run of the user's model beside it.
-
-The law of motion stands here in plain equations too, with joints that hold exactly or give way as an engine declares.
-It is a second way to the same accelerations as the judge's, and the only one with a compliance that grows and falls
-with the gap. J a = bias - damping slip - stiffness gap - compliance F, and M a = f + J^T F.
-"""
+"""The ideal motion of a model, how long it is known well enough for a tolerance, and errors of runs beside it."""
 
 from __future__ import annotations
 
@@ -19,12 +14,11 @@ from scipy.interpolate import CubicHermiteSpline
 
 from engines import Unsupported
 from engines.lagrange import TRUTH, Lagrange
-from engines.lagrange.dynamics import Dynamics
+from engines.lagrange.dynamics import Dynamics, constrained_acceleration
 from engines.reading import Give, Reading, left_out
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
-from reference.plane import COMPLEX_STEP
-from reference.rows import solve_symmetric, undetermined
+from reference.rows import undetermined
 from reference.trajectory import Trajectory, energy
 from reports.check.one_freedom import has_one_freedom, motion_along_curve
 
@@ -34,22 +28,17 @@ TOLERANCE = 1e-10  # far below what an engine's own step leaves, far above round
 
 
 def accelerations(mechanism: Mechanism, pose: Array, twist: Array, t: float, give: Give | None = None) -> Array:
-    """(bodies, 3) [m/s^2, rad/s^2] at pose and twist (bodies, 3)."""
-    inverse = 1 / mechanism.inertias.reshape(-1)
-    free = np.broadcast_to(mechanism.unconstrained(pose, twist), pose.shape).reshape(-1)
-    if not mechanism.row_count:
-        return free.reshape(-1, 3)
-    rows = mechanism.joint_rows.dense(pose)
-    bias = -np.imag(mechanism.joint_rows.velocities(pose + 1j * COMPLEX_STEP * twist, twist)) / COMPLEX_STEP
-    right = bias - rows @ free
-    matrix = (rows * inverse) @ rows.T
-    if give is not None:
-        slip = rows @ twist.reshape(-1) - mechanism.rate
-        gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(t)))
-        right = right - give.damping * slip - give.stiffness * gap
-        right = right + np.nan_to_num(give.instead - bias)
-        matrix = matrix + give.compliance
-    return (free + inverse * (rows.T @ solve_symmetric(matrix, right))).reshape(-1, 3)
+    """(bodies, 3) [m/s^2, rad/s^2] at pose and twist (bodies, 3), with joints that are ideal or as soft as `give`.
+
+    Soft rows: J a = bias - damping slip - stiffness gap - compliance F, with `give.instead` in place of the bias.
+    """
+    if give is None or not mechanism.row_count:
+        return constrained_acceleration(mechanism, pose, twist)[0]
+    bias = mechanism.bias(pose, twist)
+    slip = mechanism.rows(pose) @ twist.reshape(-1) - mechanism.rate
+    gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(t)))
+    target = np.where(np.isnan(give.instead), bias, give.instead) - give.damping * slip - give.stiffness * gap
+    return constrained_acceleration(mechanism, pose, twist, target, give.compliance)[0]
 
 
 def soft_motion(
@@ -59,9 +48,9 @@ def soft_motion(
     tolerance: float = TOLERANCE,
     twist: Array | None = None,
 ) -> Array:
-    """Poses (times, bodies, 3) of joints that give way; NaN from where the equations are not solved.
+    """Poses (times, bodies, 3) of soft joints; NaN from where the equations can't be integrated.
 
-    twist (bodies, 3) [m/s, rad/s]: velocities at t = 0, the mechanism's unless they are given; soft joints allow any.
+    give(gap, pose): the softness. twist (bodies, 3): velocities at t = 0, the mechanism's unless passed.
     By LSODA: dampers of light bodies, and stiff joints, are much faster than the motion.
     """
     count = mechanism.pose.size

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
+from reports.write import tables
+
 STYLE = """
 :root { color-scheme: light dark }
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem }
@@ -20,9 +22,7 @@ img { max-width: 100%; height: auto }
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the report. `facts`: what a sentence is about, and the sentence; `code`: lines to copy; `picture`: what
-    it shows, and the SVG.
-    """
+    """A part of the report. facts: (label, sentence) pairs; code: lines to copy; picture: (title, SVG)."""
 
     title: str
     sentences: tuple[str, ...] = ()
@@ -45,25 +45,21 @@ def plain(sections: Sequence[Section], width: int = 120) -> str:
         lines += ["", *(f"      {line}" for line in section.code)] if section.code else []
         if section.rows:
             lines += [""] if lines else []
-            widths = [max(map(len, column)) for column in zip(section.header, *section.rows, strict=True)]
-            for row in (section.header, *section.rows):
-                cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-                lines.append(f"    {'  '.join(cells)}".rstrip())
+            lines += [f"    {line}" for line in tables.text_table(section.header, section.rows)]
         lines.append("")
     return "\n".join(lines)
 
 
 def markdown(name: str, sections: Sequence[Section], files: dict[str, str]) -> str:
-    """`files`: the path of each picture's file by what the picture shows."""
-    from reports.write.tables import markdown as table
-
+    """`files`: the path of each picture's file by the picture's title."""
     lines = [f"# {' '.join(name.split())}", ""]
     for section in sections:
         lines += [f"## {section.title}", ""] if section.title else []
         lines += [f"* {_inert(sentence)}" for sentence in section.sentences]
         lines += [f"* {label}: {_inert(sentence)}" for label, sentence in section.facts]
         lines += ["", "```", *section.code, "```"] if section.code else []
-        lines += ["", _inert(table(section.header, section.rows, len(section.header)))] if section.rows else []
+        if section.rows:
+            lines += ["", _inert(tables.markdown(section.header, section.rows, len(section.header)))]
         if section.picture is not None:
             lines += ["", f"![{section.picture[0]}]({files[section.picture[0]]})"]
         lines.append("")
@@ -79,16 +75,28 @@ def html(name: str, sections: Sequence[Section]) -> str:
 
 
 def body(name: str, sections: Sequence[Section]) -> str:
-    """What stands in the page, which a notebook can show too."""
-    from markdown_it import MarkdownIt
-
-    # Images of their own: as elements of this page two drawings would share the names of their clips.
-    drawn = dict(section.picture for section in sections if section.picture is not None)
-    files = {title: f"data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}" for title, svg in drawn.items()}
-    reader = MarkdownIt("commonmark", {"html": False}).enable("table")
-    # Our own pictures, which it would leave out, and no address that the name of a body may hold.
-    reader.validateLink = lambda address: address in files.values()  # type: ignore[method-assign]
-    return reader.render(markdown(name, sections, files))
+    """The content of the HTML page, which a notebook can show too."""
+    lines = [f"<h1>{escape(' '.join(name.split()))}</h1>"]
+    for section in sections:
+        lines += [f"<h2>{escape(section.title)}</h2>"] if section.title else []
+        items = [*section.sentences, *(f"{label}: {sentence}" for label, sentence in section.facts)]
+        lines += ["<ul>", *(f"<li>{escape(item)}</li>" for item in items), "</ul>"] if items else []
+        if section.code:
+            code = escape("\n".join(section.code))
+            lines.append(f"<pre><code>{code}\n</code></pre>")
+        if section.rows:
+            head, *rows = (
+                "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in row)
+                for tag, row in (("th", section.header), *(("td", row) for row in section.rows))
+            )
+            table = "".join(f"<tr>{row}</tr>\n" for row in rows)
+            lines.append(f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{table}</tbody>\n</table>")
+        if section.picture is not None:
+            # An image of its own: as elements of this page two drawings would share the names of their clips.
+            title, svg = section.picture
+            source = f"data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}"
+            lines.append(f'<p><img src="{source}" alt="{escape(title)}" /></p>')
+    return "\n".join(lines)
 
 
 def _inert(text: str) -> str:

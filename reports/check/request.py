@@ -1,6 +1,6 @@
-"""A check as work for a supervised process: what is asked, and what comes back, both plain enough to be sent.
+"""A check as work for a supervised process: request and report are plain enough to be sent to it and back.
 
-A user's script is run in that process: if it raises, ends the process or never ends, the command says so and goes on.
+A user's script is run in that process: the command goes on if the script raises, ends its process or never ends.
 """
 
 from __future__ import annotations
@@ -9,24 +9,28 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from reports.model.ending import BadInput
+
 if TYPE_CHECKING:
     from reports.check.checked import Plan
     from reports.check.rendering import Section
 
-USUAL_TOLERANCE = 1e-4  # of settings that are advised where nobody has asked for one
+USUAL_TOLERANCE = 1e-4  # error of the advised settings where no tolerance was asked for
+LONGEST = 1000.0  # s of motion
 
 
 @dataclass(frozen=True)
 class CheckRequest:
-    """`word`: the model as on the command line, seen from `folder`; `notes`: a file that tells how far the work is.
+    """The options of `crosscheck check` and of `planar_crosscheck.check`.
 
-    `tolerance`: None if nobody asked for one; `quick`, `everything`: see `Plan`; `search`: for settings that meet it,
-    until they are found; `apply`: the file that they are written into.
+    word: the model as on the command line, relative to `folder`; tolerance: None if none was asked for; quick,
+    everything: see `Plan`; search: look for settings until one meets the tolerance; apply: the file for the advised
+    settings; notes: a file into which the progress is written.
     """
 
     word: str
     folder: str
-    duration: float
+    duration: float = 2.0
     tolerance: float | None = None
     without: tuple[str, ...] = ()
     key: str = ""
@@ -37,6 +41,17 @@ class CheckRequest:
     search: bool = False
     apply: str = ""
     notes: str = ""
+
+    def refuse_bad(self) -> CheckRequest:
+        """The request itself. Raises BadInput for a number out of its range."""
+        tolerance = "fix-to" if self.search else "tolerance"
+        for name, value, most in (("duration", self.duration, LONGEST), (tolerance, self.tolerance, 1.0)):
+            if value is not None and not 0 < value <= most:
+                raise BadInput(f"--{name} is {value:g}; it must be greater than zero and at most {most:g}")
+        if self.step is not None and not 0 < self.step <= self.duration:
+            limits = f"greater than zero and at most the duration, {self.duration:g}"
+            raise BadInput(f"--step is {self.step:g}; it must be {limits}")
+        return self
 
     @property
     def label(self) -> str:
@@ -53,9 +68,7 @@ class CheckRequest:
 
 @dataclass(frozen=True, repr=False)
 class CheckReport:
-    """What was found, as the answer, as sections, as a line of a table and as plain data; `trouble`: why nothing was
-    written, if asked to.
-    """
+    """First screen, all sections, a line of a table and plain data; trouble: why --apply wrote nothing."""
 
     request: CheckRequest
     verdict: str
@@ -67,7 +80,7 @@ class CheckReport:
 
     @property
     def fine(self) -> bool:
-        """Whether a tolerance that was asked for is met, by the user's settings or by those that were looked for."""
+        """Whether the tolerance that was asked for is met, by the user's settings, or those of --fix-to or --apply."""
         mended = (self.request.search or self.data["applied"] is not None) and self.data["advised"] is not None
         return self.request.tolerance is None or self.data["met"] or mended
 
@@ -90,51 +103,49 @@ class Refused:
 
 
 def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
-    """In a worker: the check, or why there is none. `model`: an engine's own object, in the place of a file."""
-
-    # Here: who only asks is sooner there.
+    """The check, run in this process, or why there is none. `model`: an engine's own object in place of a file."""
+    # Imported here: a command that only makes requests starts sooner.
     from engines import Unsupported
     from engines.importers import read_object
     from engines.registry import mislabelled
-    from reference.checks import InvalidMechanism
     from reports.check.applying import applied
     from reports.check.checked import check, read
     from reports.check.document import data
     from reports.check.telling import answer, line, sections
 
-    def told(words: str) -> None:
+    def note(words: str) -> None:
         if request.notes:
             Path(request.notes).write_text(words, encoding="utf-8")
 
-    tolerance = USUAL_TOLERANCE if request.tolerance is None else request.tolerance
+    def refusal(reason: Exception) -> str:
+        sentence = " ".join(str(reason).split())
+        return sentence if sentence.startswith(("--", request.word)) else f"{request.word}: {sentence}"
+
     if sentence := mislabelled():
         return Refused(sentence)
+    tolerance = USUAL_TOLERANCE if request.tolerance is None else request.tolerance
+    trouble, drawn = "", {}
     try:
-        told("reading")
+        note("reading")
         if model is None:
             reading = read(request.word, Path(request.folder), request.without, request.key, request.step)
         else:
             reading = read_object(model, request.without, request.step)
         name = reading.title or Path(request.word).name
-        found = check(reading, name, request.duration, tolerance, told, request.plan, request.tolerance is not None)
-    except (Unsupported, InvalidMechanism, ValueError) as reason:
-        return Refused(_one_line(request, reason))
-    trouble, drawn = "", {}
+        result = check(reading, name, request.duration, tolerance, note, request.plan, request.tolerance is not None)
+    except (Unsupported, ValueError) as reason:  # InvalidMechanism is a ValueError
+        return Refused(refusal(reason))
     if request.apply:
-        told("writing the advised settings and running them")
+        note("writing the advised settings and running them")
         try:
-            found = replace(found, applied=applied(found, Path(request.folder) / request.apply))
-        except (Unsupported, InvalidMechanism, ValueError) as reason:
-            trouble = _one_line(request, reason)
+            result = replace(result, applied=applied(result, Path(request.folder) / request.apply))
+        except (Unsupported, ValueError) as reason:
+            trouble = refusal(reason)
     if request.pictures:
-        told("drawing")
+        note("drawing")
         from reports.check.picture_data import shown_of
         from reports.check.pictures import pictures  # a second of imports
 
-        drawn = pictures(shown_of(found))
-    return CheckReport(request, found.verdict, answer(found), sections(found, drawn), line(found), data(found), trouble)
-
-
-def _one_line(request: CheckRequest, reason: Exception) -> str:
-    sentence = " ".join(str(reason).split())
-    return sentence if sentence.startswith(("--", request.word)) else f"{request.word}: {sentence}"
+        drawn = pictures(shown_of(result))
+    shown = answer(result), sections(result, drawn), line(result)
+    return CheckReport(request, result.verdict, *shown, data(result), trouble)

@@ -8,6 +8,7 @@ import shutil
 import sys
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Annotated, Any
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from reports.check.folder import Answers
     from reports.check.request import CheckReport, CheckRequest, Refused
 
-LONGEST = 1000.0  # s of motion
 WIDTH = 120  # columns at most
 OVERWRITE = "\r\x1b[K"  # on a terminal
 # What a check imports: the process from which workers are forked does so while this one gets ready.
@@ -79,79 +79,87 @@ def check(
 
     Exit status 1 if a tolerance that was asked for is missed.
     """
+    from reports.check.request import CheckRequest
+
     if as_schema:
         from reports.check.document import schema
 
         return _say(json.dumps(schema(), indent=1))
-    files = {"html": html, "markdown": markdown, "junit": junit, "apply": apply}
-    sizes = {"duration": (duration, LONGEST), "tolerance": (tolerance, 1.0), "fix-to": (fix_to, 1.0)}
-    _refuse_bad(model, sizes | {"limit": (limit, 1e6)}, step, duration, files, force)
+    if not 0 < limit <= 1e6:
+        raise BadInput(f"--limit is {limit:g}; it must be greater than zero and at most 1e+06")
     if tolerance is not None and fix_to is not None:
         raise BadInput("--tolerance and --fix-to both name an error; give one of them")
+    files = {"html": html, "markdown": markdown, "junit": junit, "apply": apply}
+    folder = Path(model).is_dir()
+    drawn = not folder and (html is not None or markdown is not None)
+    request = CheckRequest(
+        model,
+        os.getcwd(),
+        duration,
+        tolerance if fix_to is None else fix_to,
+        tuple(without or ()),
+        key,
+        step,
+        drawn,
+        quick,
+        everything or as_json or drawn,
+        fix_to is not None,
+        str(apply or ""),
+    )
+    _refuse_bad(request, files, everything, force)
     from reports.run.worker import start_early
 
     start_early(*EARLY)
-    from reports.check.request import CheckRequest, Refused
-
-    folder = Path(model).is_dir()
-    for name, given in (("apply", apply), ("html", html), ("all", everything)) if folder else ():
-        if given:
-            raise BadInput(f"--{name} is for one model, and {model} is a folder; give one of its models")
-    drawn = not folder and (html is not None or markdown is not None)
-    common: dict[str, Any] = {"duration": duration, "tolerance": tolerance if fix_to is None else fix_to, "key": key}
-    common |= {"without": tuple(without or ()), "step": step, "quick": quick, "search": fix_to is not None}
-    common |= {"apply": str(apply or ""), "pictures": drawn, "everything": everything or as_json or drawn}
     begin = monotonic()
-    answers = _answers([CheckRequest(word, os.getcwd(), **common) for word in _models(model)], limit)
+    answers = _answers([replace(request, word=word) for word in _models(model)], limit)
     if folder:
         _print_folder(model, answers, as_json)
     else:
-        (_, answer), *_ = answers
-        if isinstance(answer, Refused):
-            raise BadInput(answer.sentence)
-        _print(answer, as_json, everything)
+        _print(answers[0][1], as_json, everything)
     _write(model, answers, files, monotonic() - begin)
-    told = [answer for _, answer in answers if not isinstance(answer, Refused)]
-    for answer in told:
-        if answer.trouble:
-            raise BadInput(answer.trouble)
-    missed = [answer for answer in told if not answer.fine]
+    _refuse_missed(answers, folder)
+
+
+def _refuse_missed(answers: Answers, folder: bool) -> None:
+    """Raises BadInput where nothing could be written, and Broken where a tolerance is missed."""
+    from reports.check.request import CheckReport
+
+    reports = [answer for _, answer in answers if isinstance(answer, CheckReport)]
+    for report in reports:
+        if report.trouble:
+            raise BadInput(report.trouble)
+    missed = [report for report in reports if not report.fine]
     if missed and folder:
-        names = ", ".join(answer.request.word for answer in missed)
-        raise Broken(f"{len(missed)} of {len(answers)} models miss {common['tolerance']:g}: {names}")
+        names = ", ".join(report.request.word for report in missed)
+        raise Broken(f"{len(missed)} of {len(answers)} models miss {missed[0].request.tolerance:g}: {names}")
     if missed:
         raise Broken(missed[0].verdict)
 
 
-def _refuse_bad(
-    model: str,
-    sizes: Mapping[str, tuple[float | None, float]],
-    step: float | None,
-    duration: float,
-    files: Mapping[str, Path | None],
-    force: bool,
-) -> None:
+def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everything: bool, force: bool) -> None:
     """Raises BadInput and FileTrouble before anything is run."""
+    model = request.word
     if not model:
         raise BadInput("no model was given; give model.xml, model.urdf, script.py or a folder of them")
-    for name, (value, most) in sizes.items():
-        if value is not None and not 0 < value <= most:
-            raise BadInput(f"--{name} is {value:g}; it must be greater than zero and at most {most:g}")
-    if step is not None and not 0 < step <= duration:
-        raise BadInput(f"--step is {step:g}; it must be greater than zero and at most the duration, {duration:g}")
-    given = {f"--{name}": path for name, path in files.items() if path is not None}
-    own = {Path(word).resolve() for word in (model, model.rpartition(":")[0])}
-    for name, path in given.items():
+    request.refuse_bad()
+    paths = {f"--{name}": path for name, path in files.items() if path is not None}
+    sources = {Path(word).resolve() for word in (model, model.rpartition(":")[0])}
+    for name, path in paths.items():
         if path == STDOUT:
             raise BadInput(f"{name} is '-', and standard output has the answer already; give a file")
         if not path.name or path.is_dir():
             raise BadInput(f"{name} is {str(path)!r}, which is a folder; give a file")
-        if name != "--apply" and path.resolve() in own:
+        if name != "--apply" and path.resolve() in sources:
             raise BadInput(f"{name} is {str(path)!r}, which is the model; give another file")
-    if "--apply" in given:  # reports are written again, as those of pytest are
-        refuse_existing([given["--apply"]], "--apply", force)
-    if len({path.resolve() for path in given.values()}) < len(given):
-        raise BadInput(f"{' and '.join(given)} name one file twice; give each a file of its own")
+    if "--apply" in paths:  # reports are written again, as those of pytest are
+        refuse_existing([paths["--apply"]], "--apply", force)
+    if len({path.resolve() for path in paths.values()}) < len(paths):
+        raise BadInput(f"{' and '.join(paths)} name one file twice; give each a file of its own")
+    for name in ("--apply", "--html") if Path(model).is_dir() else ():
+        if name in paths:
+            raise BadInput(f"{name} is for one model, and {model} is a folder; give one of its models")
+    if everything and Path(model).is_dir():
+        raise BadInput(f"--all is for one model, and {model} is a folder; give one of its models")
 
 
 def _models(model: str) -> list[str]:
@@ -168,8 +176,6 @@ def _models(model: str) -> list[str]:
 
 def _answers(requests: list[CheckRequest], limit: float) -> Answers:
     """Each request with its answer, from supervised processes, with progress on stderr. Raises WorkersLost."""
-    from dataclasses import replace
-
     from reports.check.request import Refused, answered
     from reports.model.outcomes import Loss
     from reports.run.files import temporary_folder
@@ -217,17 +223,15 @@ class _Progress:
 
 def _write(model: str, answers: Answers, files: Mapping[str, Path | None], seconds: float) -> None:
     """The files that are asked for. Raises FileTrouble."""
-    from reports.check import rendering
+    from reports.check import folder, rendering
     from reports.check.request import CheckReport
     from reports.run.files import write_whole
+    from reports.write.tables import markdown as table
 
     texts, html, markdown, junit = dict[Path, str](), files["html"], files["markdown"], files["junit"]
     answer = answers[0][1]
     if markdown is not None and Path(model).is_dir():
-        from reports.check.folder import HEADER, rows
-        from reports.write.tables import markdown as table
-
-        texts[markdown] = f"# {model}\n\n{table(HEADER, rows(answers), left=len(HEADER))}\n"
+        texts[markdown] = f"# {model}\n\n{table(folder.HEADER, folder.rows(answers), left=len(folder.HEADER))}\n"
     elif isinstance(answer, CheckReport):
         name = f"{answer.data['name']} in {answer.data['engine']}"
         if html is not None:
@@ -238,9 +242,7 @@ def _write(model: str, answers: Answers, files: Mapping[str, Path | None], secon
             texts |= {markdown.with_name(paths[title]): drawing for title, drawing in drawn}
             texts[markdown] = rendering.markdown(name, answer.sections, paths)
     if junit is not None:
-        from reports.check.folder import junit_xml
-
-        texts[junit] = junit_xml(answers, seconds)
+        texts[junit] = folder.junit_xml(answers, seconds)
     write_whole(texts, "give another file")
 
 
@@ -253,9 +255,13 @@ def _print_folder(model: str, answers: Answers, as_json: bool) -> None:
     return print_table(Terminal(WIDTH), f"Models of {model}", HEADER, rows(answers), len(HEADER))
 
 
-def _print(answer: CheckReport, as_json: bool, everything: bool) -> None:
+def _print(answer: CheckReport | Refused, as_json: bool, everything: bool) -> None:
+    """The answer for one model. Raises BadInput if there is none."""
     from reports.check.rendering import plain
+    from reports.check.request import Refused
 
+    if isinstance(answer, Refused):
+        raise BadInput(answer.sentence)
     if as_json:
         return _say(json.dumps(answer.data, indent=1, allow_nan=False))
     width = min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns)

@@ -27,9 +27,9 @@ LIMIT = 600.0  # CPU seconds of one page
 
 
 def known_to(store: Store, publish: bool) -> Known:
-    """What a report tells of: published is what is registered; a report of one's own shows what else was run."""
-    own = registered()
-    return own if publish else with_remembered(own, store.remembered(), motion=True)
+    """The contents of a report: a published one has what is registered, another also what else was run."""
+    known = registered()
+    return known if publish else with_remembered(known, store.remembered(), motion=True)
 
 
 def material_of(page: Page, store: Store) -> Material:
@@ -39,13 +39,13 @@ def material_of(page: Page, store: Store) -> Material:
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a worker does with (a page's name, what is stored of it). words: what the store remembers, if it is told."""
+    """The work of a worker on (a page's name, what is stored of it). words: references that the store remembers."""
 
     words: tuple[str, ...]
     command: str
 
-    def __call__(self, asked: tuple[str, Material]) -> dict[str, str]:
-        name, material = asked
+    def __call__(self, item: tuple[str, Material]) -> dict[str, str]:
+        name, material = item
         pages = _pages(self.words)
         gc.disable()  # it would look through all that was imported; what one page leaves is little
         try:
@@ -65,20 +65,18 @@ def _pages(words: tuple[str, ...]) -> dict[str, Page]:
 def drawn(
     material: Mapping[Page, Material], words: Iterable[str], command: str, order: Path
 ) -> dict[str, dict[str, str]]:
-    """The files of pages by their names, of those that a worker could render: what is wrong with another is told where
-    it is rendered again.
+    """The files of the pages that a worker could render, by the pages' names; the caller renders the others.
 
-    words: those that the store remembers, of a report that tells of them. order: a folder with a report, of which those
-    pages begin that have the largest pictures.
+    words: references that the store remembers; order: a folder with a report: pages with the largest pictures begin.
     """
-    asked = sorted(((page.name, given) for page, given in material.items()), key=lambda pair: -_size(order, pair[0]))
+    pages = sorted(((page.name, stored) for page, stored in material.items()), key=lambda pair: -_size(order, pair[0]))
     work = Drawing(tuple(words), command)
-    found: dict[str, dict[str, str]] = {}
+    files: dict[str, dict[str, str]] = {}
     with suppress(WorkersLost):
-        for (name, _), result, _ in supervise(work, asked, LIMIT, worker_count()):
+        for (name, _), result, _ in supervise(work, pages, LIMIT, worker_count()):
             if not isinstance(result, Loss):
-                found[name] = result
-    return found
+                files[name] = result
+    return files
 
 
 def _size(folder: Path, name: str) -> int:

@@ -1,4 +1,4 @@
-"""What a command works with: registered scenes, engines and pages, and what its words or its store name beside them."""
+"""Scenes, engines and pages that a command knows: registered ones, and those that its words or its store name."""
 
 from __future__ import annotations
 
@@ -136,10 +136,10 @@ def with_remembered(known: Known, texts: Iterable[str], motion: bool = False) ->
 def with_words(
     known: Known, scenes: Sequence[str], engine: str | None, settings: Sequence[str] = (), motion: bool = False
 ) -> tuple[Known, tuple[str, ...], tuple[Engine, ...]]:
-    """(this and what the words bring, the names of the scenes meant, the engines meant if `engine` is a reference).
+    """(known with what the words name, names of the scenes, the engines if `engine` is a reference). Raises BadInput.
 
     Names that are no references are left for `choose_scenes`, unless numbers of theirs are set. motion: of a command
-    that asks scenes for their motion. Raises BadInput.
+    that calls the motion of scenes.
     """
     folder = str(Path.cwd())
     values = _settings(settings)
@@ -148,20 +148,20 @@ def with_words(
     names: list[str] = []
     engines: tuple[Engine, ...] = ()
     try:
-        given = [Given("engine", engine, folder)] if engine is not None and is_reference(engine) else []
-        words = [each for word in scenes for each in (_words_of(known, word) if values else [word])]
-        own = {each: Given("scene", each, folder, tuple(values.items())) for each in words}
-        own = {each: given for each, given in own.items() if values or is_reference(each)}
-        for reason in refused([*given, *own.values()], motion).values():
+        words = [name for word in scenes for name in (_words_of(known, word) if values else [word])]
+        references = {
+            word: Given("scene", word, folder, tuple(values.items())) for word in words if values or is_reference(word)
+        }
+        of_engine = [Given("engine", engine, folder)] if engine is not None and is_reference(engine) else []
+        for reason in refused([*of_engine, *references.values()], motion).values():
             raise BadInput(reason)
-        for each in given:
-            known, engines = known.with_(each)
+        for reference in of_engine:
+            known, engines = known.with_(reference)
         for word in words:
-            if word in own:
-                known, found = known.with_(own[word])
-                names += [scene.name for scene in found]
-            else:
-                names.append(word)
+            loaded: tuple[Any, ...] = ()
+            if word in references:
+                known, loaded = known.with_(references[word])
+            names += [scene.name for scene in loaded] or [word]
     except ValueError as reason:
         raise BadInput(str(reason)) from None
     return known, tuple(names), engines
@@ -202,50 +202,36 @@ def _settings(words: Sequence[str]) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Trial:
-    """What a worker does: read what is given, and ask its members. `motion`: the motion at the samples too."""
+    """The work of a worker: load a reference, and call what a command will call. `motion`: the scene's motion too."""
 
     motion: bool
 
     def __call__(self, given: Given) -> str:
-        """Why it can't be used, a sentence; empty if it can."""
+        """The sentence that says why it can't be used; empty if it can."""
         try:
-            values = values_of(given)
+            for value in values_of(given):
+                # As the tables, dictionaries and lists of a command do.
+                if not (isinstance(hash(value), int) and value == value and isinstance(repr(value), str)):
+                    raise ValueError("it is not equal to itself")
+                is_scene = isinstance(value, Scene)
+                if is_scene:
+                    value.mechanism()
+                for scene in (value,) if is_scene else catalogue.SCENES:
+                    for engine in registry.VARIANTS if is_scene else (value,):
+                        with suppress(BadInput):  # reported where the cost is needed
+                            estimated_cost(Cell(scene, engine, 1))
+                if is_scene and self.motion:
+                    with suppress(ValueError):  # the textbook refuses, which pages can report
+                        value.motion(np.linspace(0.0, value.duration, value.samples + 1))
         except ValueError as reason:
             return str(reason)
-        for value in values:
-            _touch(value)
-            if isinstance(value, Scene):
-                _ask(value, self.motion)
-            else:
-                _ask_costs(catalogue.SCENES, (value,))
         return ""
 
 
-def _touch(value: Any) -> None:
-    """As the tables, dictionaries and lists of a command do."""
-    if not (isinstance(hash(value), int) and value == value and isinstance(repr(value), str)):
-        raise ValueError("it is not equal to itself")
-
-
-def _ask(scene: Scene, motion: bool) -> None:
-    scene.mechanism()
-    _ask_costs((scene,), registry.VARIANTS)
-    if motion:
-        with suppress(ValueError):  # the textbook refuses, which pages can tell
-            scene.motion(np.linspace(0.0, scene.duration, scene.samples + 1))
-
-
-def _ask_costs(scenes: Sequence[Scene], engines: Sequence[Engine]) -> None:
-    for scene in scenes:
-        for engine in engines:
-            with suppress(BadInput):  # that is told where the cost is needed
-                estimated_cost(Cell(scene, engine, 1))
-
-
 def refused(given: Sequence[Given], motion: bool = False) -> dict[Given, str]:
-    """Why some of what is given can't be used, a sentence each. Raises WorkersLost.
+    """Why some references can't be used, a sentence each. Raises WorkersLost.
 
-    A worker does first what a command will ask of it: somebody else's code may end its process.
+    A worker tries them first: somebody else's code may end its process.
     """
     from reports.run.running import TIME_LIMIT
     from reports.run.supervisor import supervise

@@ -5,6 +5,9 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -27,12 +30,17 @@ from reports.cli.options import (
 from reports.model.ending import BadInput, Broken
 
 if TYPE_CHECKING:
+    from engines import Engine
+    from reference.scene import Scene
+    from reports.cli.known import Known
     from reports.cli.terminal import Terminal
     from reports.model.cells import Cell
     from reports.model.measure import Measurement
     from reports.model.tasks import Task
     from reports.run.cluster import Workforce
     from reports.run.store import Store
+
+LIMIT = 60.0  # CPU seconds of a cell
 
 
 def run(
@@ -44,7 +52,7 @@ def run(
     fresh: Annotated[bool, typer.Option("--fresh", help="Run again what is already stored.")] = False,
     every: Every = None,
     step: Annotated[list[float] | None, typer.Option(help="Only this step [s]; must divide the sampling.")] = None,
-    limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = 60.0,
+    limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = LIMIT,
     workers: Workers = None,
     scheduler: Scheduler = None,
     as_json: AsJson = False,
@@ -53,42 +61,120 @@ def run(
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
     from engines import method_name
-    from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks, grid_engines, left_out
     from reports.cli.terminal import opened, telling
     from reports.run.cluster import elsewhere, pool
 
-    if not 0 < limit < float("inf"):
-        raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
-    known, names, given = with_words(registered(), scene or (), engine, settings or ())
-    scenes = choose_scenes(names, known.scenes, known.pages)
-    engines = choose_engines(None if given else engine, variant, given or known.engines)
-    alone = bool(scene) and not full
-    cells = choose_cells(
-        scenes, engines, known.pages, full, every or (), step or (), named=engine is not None, alone=alone
+    chosen = Selection(
+        tuple(scene or ()), engine, variant, tuple(settings or ()), full, tuple(every or ()), tuple(step or ()), limit
     )
-    # Steps that are named are asked of the grid alone; a quick run of scenes that are named, of nothing but these.
-    items = cells if every or step or alone else (*cells, *choose_tasks(scenes, engines, known.pages, full))
-    if not items:
-        compared = (each for scene in scenes for each in grid_engines(scene, known.engines, known.pages))
-        methods = ", ".join(dict.fromkeys(method_name(each) for each in compared))
-        longer = "" if full else "; --full has what takes longer"
-        raise BadInput(f"nothing to run: pages compare these methods in what is named: {methods}{longer}")
+    items = chosen.items
     with telling(140, as_json, as_markdown) as console:
         with elsewhere(scheduler) as crew, opened(results / STORE) as store:
-            store.remember(each.text() for each in known.given)
+            store.remember(chosen.references)
             count = run_interruptible(console, store, items, fresh, limit, crew or pool(workers))
-            rows = list(store.get(cells).values())
+            rows = list(store.get(chosen.cells).values())
             print_summary(console, rows)
-        if engine is not None and not (every or step):
-            for cell, why in left_out(scenes, engines, known.pages, full, cells):
-                method = method_name(cell.engine)
-                told = f"{cell.scene.name}, {method}: no step of {cell.step:.4g} s, since {why}"
-                console.tell(f"{told}; --every {cell.every} runs it")
-        following = with_folder("crosscheck report", results)
+        for cell, why in chosen.left_out:
+            method = method_name(cell.engine)
+            words = f"{cell.scene.name}, {method}: no step of {cell.step:.4g} s, since {why}"
+            console.tell(f"{words}; --every {cell.every} runs it")
         refuse_without_motion(rows)
+        following = with_folder("crosscheck report", results)
         console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
         refuse_nothing_but_failures(rows)
+
+
+@dataclass(frozen=True)
+class Selection:
+    """The options of `crosscheck run` and `planar_crosscheck.run` that choose cells; each property raises BadInput.
+
+    scenes: names of scenes or pages, or references, all if empty; settings: "NAME=VALUE" for numbers of the scenes;
+    every: steps between samples, steps [s]: of these alone; limit: CPU seconds of a cell.
+    """
+
+    scenes: tuple[str, ...] = ()
+    engine: str | None = None
+    variant: str | None = None
+    settings: tuple[str, ...] = ()
+    full: bool = False
+    every: tuple[int, ...] = ()
+    steps: tuple[float, ...] = ()
+    limit: float = LIMIT
+
+    def __post_init__(self) -> None:
+        if not 0 < self.limit < float("inf"):
+            raise BadInput(f"--limit is {self.limit}; it must be a finite number of seconds greater than zero")
+
+    @cached_property
+    def _chosen(self) -> tuple[Known, tuple[Scene, ...], tuple[Engine, ...]]:
+        from reports.cli.known import registered, with_words
+        from reports.cli.selection import choose_engines, choose_scenes
+
+        known, names, given = with_words(registered(), self.scenes, self.engine, self.settings)
+        scenes = choose_scenes(names, known.scenes, known.pages)
+        return known, scenes, choose_engines(None if given else self.engine, self.variant, given or known.engines)
+
+    @property
+    def references(self) -> list[str]:
+        """Texts by which a store finds unregistered scenes and engines again."""
+        return [reference.text() for reference in self._chosen[0].given]
+
+    @property
+    def _alone(self) -> bool:
+        return bool(self.scenes) and not self.full
+
+    @cached_property
+    def cells(self) -> tuple[Cell, ...]:
+        """The cells that are run."""
+        from reports.cli.selection import choose_cells
+
+        known, scenes, engines = self._chosen
+        named = self.engine is not None
+        return choose_cells(
+            scenes, engines, known.pages, self.full, self.every, self.steps, named=named, alone=self._alone
+        )
+
+    @cached_property
+    def items(self) -> Sequence[Cell | Task]:
+        """The cells, and the tasks of pages: not where steps are named, nor in a quick run of scenes that are named."""
+        from engines import method_name
+        from reports.cli.selection import choose_tasks, grid_engines
+
+        known, scenes, engines = self._chosen
+        tasks = () if self.every or self.steps or self._alone else choose_tasks(scenes, engines, known.pages, self.full)
+        if not (items := (*self.cells, *tasks)):
+            compared = (each for scene in scenes for each in grid_engines(scene, known.engines, known.pages))
+            methods = ", ".join(dict.fromkeys(method_name(each) for each in compared))
+            longer = "" if self.full else "; --full has what takes longer"
+            raise BadInput(f"nothing to run: pages compare these methods in what is named: {methods}{longer}")
+        return items
+
+    @property
+    def left_out(self) -> list[tuple[Cell, str]]:
+        """Cells of the grid of an engine that was named which are not run, with the reason."""
+        from reports.cli.selection import left_out
+
+        known, scenes, engines = self._chosen
+        if self.engine is None or self.every or self.steps:
+            return []
+        return left_out(scenes, engines, known.pages, self.full, self.cells)
+
+
+def run_grid(
+    chosen: Selection, results: Path = FOLDER, workers: int | None = None, fresh: bool = False
+) -> list[Measurement]:
+    """The rows of these cells, of which those that are not stored in the folder `results` are run. Raises BadInput."""
+    from reports.run.cluster import pool
+    from reports.run.running import run_into
+    from reports.run.store import Store
+
+    by = pool(workers)
+    with Store(results / STORE) as store:
+        store.remember(chosen.references)
+        run_into(store, chosen.items, fresh, chosen.limit, by.threads, supervised=by.supervise)
+        rows = list(store.get(chosen.cells).values())
+    refuse_without_motion(rows)
+    return rows
 
 
 def refuse_without_motion(rows: Sequence[Measurement]) -> None:
@@ -132,15 +218,16 @@ def refuse_nothing_but_failures(rows: Sequence[Measurement]) -> None:
 
 
 def print_summary(console: Terminal, rows: list[Measurement]) -> None:
-    """A table a scene, a line a method; then what became of the experiments outside the sweeps."""
+    """A table a scene, a line a method; then the outcomes of the experiments outside the sweeps."""
     from reports.cli.terminal import print_table
     from reports.model.convergence import judged
     from reports.write.tables import SUMMARY_HEADER, summary_rows
 
-    told = judged(rows)
-    console.keep(told)
-    for scene in dict.fromkeys(row.scene for row in told if row.purpose == "sweep"):
-        print_table(console, scene, SUMMARY_HEADER, summary_rows([row for row in told if row.scene == scene]), 1)
+    judged_rows = judged(rows)
+    console.keep(judged_rows)
+    for scene in dict.fromkeys(row.scene for row in judged_rows if row.purpose == "sweep"):
+        lines = summary_rows([row for row in judged_rows if row.scene == scene])
+        print_table(console, scene, SUMMARY_HEADER, lines, 1)
         console.print()
     extra = Counter(str(row.outcome) for row in rows if row.purpose != "sweep")
     if extra:

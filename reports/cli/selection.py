@@ -38,18 +38,15 @@ def choose_engines(engine: str | None, variant: str | None, engines: Sequence[En
     """The engines of this name and variant; None takes all. Raises BadInput."""
     from engines.registry import ABSENT
 
-    chosen = tuple(engines)
-    if engine is not None:
-        if engine in ABSENT:
-            raise BadInput(ABSENT[engine])
-        chosen = tuple(e for e in chosen if e.name == engine)
-        if not chosen:
-            raise nearest("engine", engine, (e.name for e in engines), ABSENT)
-    if variant is not None:
-        found = tuple(e for e in chosen if e.variant == variant)
-        if not found:
-            raise nearest("variant" if engine is None else f"variant of {engine}", variant, (e.variant for e in chosen))
-        chosen = found
+    if engine in ABSENT:
+        raise BadInput(ABSENT[engine])
+    named = tuple(each for each in engines if engine in (None, each.name))
+    if engine is not None and not named:
+        raise nearest("engine", engine, (each.name for each in engines), ABSENT)
+    chosen = tuple(each for each in named if variant in (None, each.variant))
+    if variant is not None and not chosen:
+        kind = "variant" if engine is None else f"variant of {engine}"
+        raise nearest(kind, variant, (each.variant for each in named))
     return chosen
 
 
@@ -125,16 +122,15 @@ def choose_cells(
         cells += sweep_cells((scene,), compared, FULL if full else QUICK)
         cells += usual_cells((scene,), compared) if full else ()
         cells += beside_cells((scene,), _beside(engines))
-    for page in pages:
-        if any(page.is_run_with(scene) for scene in scenes):
-            cells += [
-                cell
-                for cell in page.extra_cells()
-                if any(cell.engine == engine for engine in engines)
-                and (full or (cell.purpose != "large" and not (alone and cell.scene not in scenes)))
-            ]
-    chosen_once = dict.fromkeys(cells)
-    return tuple(chosen_once) if full else _quick(tuple(chosen_once), math.inf if named else QUICK_CELL)
+    cells += [
+        cell
+        for page in pages
+        if any(page.is_run_with(scene) for scene in scenes)
+        for cell in page.extra_cells()
+        if cell.engine in engines and (full or (cell.purpose != "large" and not (alone and cell.scene not in scenes)))
+    ]
+    cells = list(dict.fromkeys(cells))
+    return tuple(cells) if full else _quick(cells, math.inf if named else QUICK_CELL)
 
 
 def left_out(

@@ -6,12 +6,11 @@ import json
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-from rich.cells import cell_len
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
@@ -108,39 +107,37 @@ def telling(width: int, as_json: bool, as_markdown: bool) -> Iterator[Terminal]:
 
 
 def print_table(
-    console: Console, title: str, header: Sequence[str], rows: Iterable[Sequence[str | float]], left: int
+    console: Terminal, title: str, header: Sequence[str], rows: Iterable[Sequence[str | float]], left: int
 ) -> None:
-    """A table whose first `left` columns are words, the others numbers: as text, as Markdown or into the document.
+    """A table whose first `left` columns are words, the others numbers, in the form of the terminal.
 
-    All of it is plain text: a unit in brackets, as in "step [s]", is no markup. rich folds what is too wide.
+    All of it is plain text: a unit in brackets, as in "step [s]", is no markup. rich folds a table that is too wide.
     """
-    form = getattr(console, "form", "text")
-    if form == "json":
-        found = [{name: plain(cell) for name, cell in zip(header, row, strict=True)} for row in rows]
-        console.document["tables"].append({"title": title, "rows": found})  # type: ignore[attr-defined]
-        return
-    from reports.write.tables import markdown, words_of
+    from reports.write.tables import display_width, markdown, text_table, words_of
 
+    if console.form == "json":
+        cells = [{name: plain(cell) for name, cell in zip(header, row, strict=True)} for row in rows]
+        console.document["tables"].append({"title": title, "rows": cells})
+        return
     title, header = visible(title), [visible(name) for name in header]
     words = [tuple(visible(words_of(cell)) for cell in row) for row in rows]
-    if form == "markdown":
+    if console.form == "markdown":
         from reports.write.templates import inert
 
         with written():
             print(f"**{inert(title)}**\n\n{inert(markdown(header, words, left))}\n")
         return
-    lines = [tuple(header), *words]
-    widths = [max(map(cell_len, column)) for column in zip(*lines, strict=True)]
-    if sum(widths) + 3 * (len(widths) - 1) <= console.width and not any(
-        "\n" in word for line in lines for word in line
-    ):
-        console.print(_plain_table(title, lines, widths, left), soft_wrap=True)
+    lines = text_table(header, words, left, (" ┃ ", " │ "), ("━", "━╇━"))
+    if max(map(display_width, lines)) <= console.width and not any("\n" in word for row in words for word in row):
+        head, *rest = lines
+        text = Text.assemble((title, "table.title"), "\n", (head, "bold"), *(f"\n{line}" for line in rest))
+        console.print(text, soft_wrap=True)  # rich takes ten times as long for a table of its own
         return
     table = Table(title=Text(title), title_justify="left", header_style="bold", show_edge=False, pad_edge=False)
     for index, name in enumerate(header):
         table.add_column(Text(name), justify="left" if index < left else "right", overflow="fold")
-    for line in words:
-        table.add_row(*map(Text, line))
+    for row in words:
+        table.add_row(*map(Text, row))
     console.print(table)
 
 
@@ -149,24 +146,6 @@ def plain(cell: Any) -> str | float | None:
     if not isinstance(cell, int | float):
         return str(cell)
     return cell if math.isfinite(cell) else None if math.isnan(cell) else str(cell)
-
-
-def _plain_table(title: str, lines: Sequence[Sequence[str]], widths: Sequence[int], left: int) -> Text:
-    """What rich makes of a table that fits, in a tenth of its time: a run's summary has a thousand lines."""
-
-    def told(line: Sequence[str], between: str) -> str:
-        words = (
-            word + " " * (width - cell_len(word)) if index < left else " " * (width - cell_len(word)) + word
-            for index, (word, width) in enumerate(zip(line, widths, strict=True))
-        )
-        return between.join(words)
-
-    head, *rest = lines
-    rule = "━╇━".join("━" * width for width in widths)
-    body = "\n".join(told(line, " │ ") for line in rest)
-    return Text.assemble(
-        (title, "table.title"), "\n", (told(head, " ┃ "), "bold"), "\n", rule, "\n" if rest else "", body
-    )
 
 
 @contextmanager
@@ -207,57 +186,42 @@ def interruptible(
 def progress(
     console: Console, total: int, check: Callable[[], None], unit: str = "cells"
 ) -> Iterator[tuple[Callable[..., None], Callable[[list[Any]], None]]]:
-    """(done, watch): call done with each result, and how many of these it is; and watch with what is running; both
-    `check` for Ctrl-C.
+    """(done, watch): done(result, count=1) counts results, watch(items) shows what runs; both `check` for Ctrl-C.
 
     A bar on a terminal; a line every PULSE seconds into a file or a pipe, where a bar would not be seen.
     """
-    if not console.is_terminal:
-        yield _lines(console, total, check, unit)
-        return
-    bar = Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("{task.fields[running]}", style="dim"),
-        console=console,
-        transient=True,
-    )
-    with bar:
-        task = bar.add_task(unit, total=total, running="starting")
-
-        def watch(running: list[Any]) -> None:
-            bar.update(task, running=visible(" | ".join(item.label for item in running)))
-            check()
-
-        def done(row: object, many: int = 1) -> None:
-            bar.advance(task, many)
-            check()
-
-        yield done, watch
-
-
-def _lines(
-    console: Console, total: int, check: Callable[[], None], unit: str
-) -> tuple[Callable[..., None], Callable[[list[Any]], None]]:
-    """(done, watch) of `progress`, which print what is done, and what runs, at most once in PULSE seconds."""
+    bar: Progress | None = None
+    if console.is_terminal:
+        bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("{task.fields[running]}", style="dim"),
+            console=console,
+            transient=True,
+        )
+        bar.add_task(unit, total=total, running="starting")
     start = last = monotonic()
     count = 0
 
-    def watch(cells: list[Any]) -> None:
+    def watch(items: list[Any]) -> None:
         nonlocal last
-        now = monotonic()
-        if now - last >= PULSE:
+        running = visible(" | ".join(item.label for item in items))
+        if bar is not None:
+            bar.update(bar.task_ids[0], running=running)
+        elif (now := monotonic()) - last >= PULSE:
             last = now
-            running = f"; running: {' | '.join(cell.label for cell in cells)}" if cells else ""
-            line = f"{count} of {total} {unit} run after {now - start:.0f} s{running}"
-            console.print(visible(line), markup=False, highlight=False, soft_wrap=True)
+            line = f"{count} of {total} {unit} run after {now - start:.0f} s{f'; running: {running}' if items else ''}"
+            console.print(line, markup=False, highlight=False, soft_wrap=True)
         check()
 
-    def done(row: object, many: int = 1) -> None:
+    def done(result: object, many: int = 1) -> None:
         nonlocal count
         count += many
+        if bar is not None:
+            bar.advance(bar.task_ids[0], many)
         check()
 
-    return done, watch
+    with bar or nullcontext():
+        yield done, watch

@@ -49,6 +49,7 @@ def with_settings(found: Checked, *rows: tuple[float, float], tolerance: float) 
                 whole=np.full_like(first.errors.t, error),
             ),
             run=replace(first.run, stepping=cost),
+            front=True,
         )
         for index, (error, cost) in enumerate(rows)
     ]

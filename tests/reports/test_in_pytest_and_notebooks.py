@@ -31,11 +31,14 @@ def test_the_lines_of_the_modules_first_words_run_as_they_stand(tmp_path, monkey
     (tmp_path / "model.xml").write_text(FOUR_BAR)
     monkeypatch.chdir(tmp_path)
     lines = re.findall(r"^    (.*)$", str(planar_crosscheck.__doc__), re.MULTILINE)
-    assert len(lines) <= 11
+    assert len(lines) <= 12
     values = {}
     exec("\n".join(lines), values)
     assert values["found"].data["met"] is False
     assert values["mechanism"].degrees_of_freedom() == (1, 1)
+    assert {row.outcome for row in values["rows"]} == {"finished"}
+    assert planar_crosscheck.run("free_four_bar", "pymunk", every=[100]) == values["rows"]  # stored
+    assert planar_crosscheck.report().is_file()
     shown = values["beside"]._repr_html_()
     for words in ("mujoco default at 2 ms", "<th>largest</th>", "data:image/svg+xml"):
         assert words in shown

@@ -16,12 +16,10 @@ from reports.run.running import run_into
 from reports.run.store import Store
 from reports.run.supervisor import WorkersLost
 from tests import ROOT
-from tests.reports.test_command_line import call, here, one_line  # noqa: F401 (here is a fixture)
+from tests.reports.test_command_line import one_line
 from tests.toys import Disc, Toy
 
 HIDDEN = ("reference", "engines", "reports", "csv", "numpy", "typing", "mujoco", "pymunk", "threading", "pickle")
-MODEL = """<mujoco><worldbody><body><joint type="hinge" axis="0 1 0"/>
-<geom type="capsule" size=".02" fromto="0 0 0 .5 0 0"/></body></worldbody></mujoco>"""
 RUN = ("run", "free_four_bar", "--engine", "pymunk", "--every", "10")
 # As where there is no fork server, and a worker imports all that it needs from nothing: on macOS and Windows.
 SPAWN = "import multiprocessing; multiprocessing.get_all_start_methods = lambda: ['spawn']\n"
@@ -35,7 +33,6 @@ def hostile(tmp_path):
         path = tmp_path / name / "__init__.py" if name in ("engines", "reports") else tmp_path / f"{name}.py"
         path.parent.mkdir(exist_ok=True)
         path.write_text(f"open({str(tmp_path / 'executed')!r}, 'a').write('{name} ')\nraise ValueError('hidden')\n")
-    (tmp_path / "model.xml").write_text(MODEL)
     return tmp_path
 
 
@@ -45,28 +42,17 @@ def ended(folder, *words):
     return subprocess.run([sys.executable, *words], cwd=folder, env=environment, capture_output=True, text=True)
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ("-P", "-c", PROGRAM.format(more=""), *RUN),
-        ("-P", "-c", SPAWN + PROGRAM.format(more=""), *RUN),
-        ("-P", "-m", "reports", "check", "model.xml", "--quick", "--duration", "0.1"),
-        ("-P", "-m", "reports", "search", "--engine", "pymunk", "--variant", "default", "--cases", "2"),
-        ("-P", "-m", "reports", "list"),
-    ],
-    ids=["run", "run by spawn", "check", "search", "list"],
-)
-def test_no_process_imports_a_file_of_the_current_folder(hostile, words):
-    done = ended(hostile, *words)
+@pytest.mark.parametrize("before", ["", SPAWN], ids=["workers forked", "workers spawned"])
+def test_no_process_imports_a_file_of_the_current_folder(hostile, before):
+    done = ended(hostile, "-P", "-c", before + PROGRAM.format(more=""), *RUN)
     assert done.returncode == 0, done.stderr
     assert not (hostile / "executed").exists()
 
 
-@pytest.mark.parametrize("module", ["reports", "planar_crosscheck"])
-def test_as_a_module_the_program_leaves_the_current_folder_off_its_path(tmp_path, module):
+def test_as_a_module_the_program_leaves_the_current_folder_off_its_path(tmp_path):
     (tmp_path / "csv.py").write_text("raise ValueError('hidden')")
     (tmp_path / "numpy.py").write_text("raise ValueError('hidden')")
-    done = ended(tmp_path, "-m", module, "show", "free_four_bar")
+    done = ended(tmp_path, "-m", "reports", "show", "free_four_bar")
     assert "crosscheck run free_four_bar" in one_line(done.stderr)
 
 
@@ -97,14 +83,6 @@ def test_a_row_whose_cause_is_an_import_is_not_stored(tmp_path):
         with pytest.raises(WorkersLost, match=r"1 of 2 cells are lost.*No module named 'nowhere'"):
             run_into(store, cells)
         assert set(store.get(cells)) == {cells[1]}
-
-
-def test_a_run_in_which_every_cell_failed_has_another_status_than_0(here, capfd):  # noqa: F811
-    (here / "mine.py").write_text("from tests.toys import FailingToy, Toy\nBAD, GOOD = FailingToy('raise'), Toy()\n")
-    (here / "disc.py").write_text("from tests.toys import Disc\nDISC = Disc()\n")
-    assert call("run", "disc.py", "--engine", "mine.py:BAD", "--every", "1") == 1
-    assert "none of 1 cells gave a motion" in one_line(capfd.readouterr().err)
-    assert call("run", "disc.py", "--engine", "mine.py", "--every", "1") == 0
 
 
 def test_a_version_s_process_has_no_current_folder_on_its_path_either(hostile, monkeypatch):
