@@ -1,4 +1,4 @@
-"""The whole check of a user's model, from its reading to its verdict: numbers alone, told by `telling`."""
+"""The whole check of a user's model, from its reading to its verdict: numbers alone; `telling` renders them."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ SEARCH = 60.0  # s of CPU time to look for settings that reach a goal
 
 @dataclass(frozen=True)
 class Plan:
-    """Which documented settings are tried: those that may be advised, as far as `patience` [s of CPU time] allows.
+    """Which documented settings are tried: those that may be advised, within `patience` [s of CPU time].
 
-    `goal`: an error; then ever smaller steps, until a setting is within it. `quick`: four settings, and rougher parts.
-    `everything`: the others too, that are dearer than one with a tenth of the error that is asked for.
+    goal: an error; ever smaller steps are tried until a setting is within it. quick: four settings, and rougher parts.
+    everything: also settings that cost more than one with a tenth of the error that is asked for.
     """
 
     patience: float
@@ -57,7 +57,7 @@ MEMBERS = ("words", "elements", "reads", "read")
 
 
 def readers() -> dict[str, Reader]:
-    """Who reads a user's models, by the keys of the entry point group `crosscheck.readers`."""
+    """The readers of users' models, by the keys of the entry point group `crosscheck.readers`."""
     lacking = f"it lacks one of {', '.join(MEMBERS)}"
     kind = Kind("reader", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
     return registered_by_key("crosscheck.readers", kind)
@@ -100,91 +100,94 @@ def tried(
     truth: Trajectory,
     samples: int,
     every: int,
-    own: Trajectory,
-    told: Callable[[int, int], None],
+    user_run: Trajectory,
+    progress: Callable[[int, int], None],
     plan: Plan,
     tolerance: float,
 ) -> list[Tried]:
-    """Runs at the documented settings, coarse steps first. `own`: at the user's own, which come first in the answer.
+    """Runs at the documented settings, coarse steps first; the user's own settings come first in the result.
 
-    Left out is what takes too long: by how often the engine would step, from what it took so far.
+    A setting is left out where it would take too long, by the number of its steps and the CPU time of a step so far.
     """
-    model, mechanism = reading.model, reading.mechanism
-    every_one = plan.quick or plan.everything or plan.patience == float("inf")
+    model = reading.model
+
+    def result(change: Change, run: Trajectory) -> Tried:
+        return Tried(change, errors(reading.mechanism, truth, run, reading.jumps), run)
+
+    all_wanted = plan.quick or plan.everything or plan.patience == float("inf")
     unlimited = plan.goal is not None or plan.quick or plan.patience == float("inf")
-    smallest = 0.0 if unlimited else model.dt * max(own.stepping, 1e-4) / LONGEST
+    smallest = 0.0 if unlimited else model.dt * max(user_run.stepping, 1e-4) / LONGEST
     changes = model.changes(min(smallest, model.dt), plan.goal is not None)
     order = sorted(_few(changes) if plan.quick else range(1, len(changes)), key=lambda index: -changes[index].dt)
-    begin, rates = time.process_time(), {changes[0].options: max(own.stepping, 1e-5) / (samples * every)}
-    found = [(0, Tried(changes[0], errors(mechanism, truth, own, reading.jumps), own))]
+    begin, rates = time.process_time(), {changes[0].options: max(user_run.stepping, 1e-5) / (samples * every)}
+    done = {0: result(changes[0], user_run)}
     for place, index in enumerate(order):
-        done, change = [each for _, each in found], changes[index]
-        alike = [each for each in done if each.change.options == change.options]
-        if plan.goal is not None and done[-1].error <= plan.goal:
+        change, settings = changes[index], list(done.values())
+        alike = [setting for setting in settings if setting.change.options == change.options]
+        if plan.goal is not None and settings[-1].error <= plan.goal:
             break
-        told(place, len(order))
+        progress(place, len(order))
         steps = samples * every * model.dt / change.dt
         cost = steps * rates.get(change.options, max(rates.values()))
         if time.process_time() - begin + cost > plan.patience:
             continue
-        for_parts = plan.goal is None and alike[:1] == done[:1] and len(alike) <= SMALLER
-        dear = plan.goal is None and cost > _enough(done, tolerance)
-        if (dear or _stays(alike)) and not (every_one or for_parts):
+        for_parts = plan.goal is None and alike[:1] == settings[:1] and len(alike) <= SMALLER
+        dear = plan.goal is None and cost > _enough(settings, tolerance)
+        if (dear or _stays(alike)) and not (all_wanted or for_parts):
             continue
         run = model.run(samples, every, change)
         rates[change.options] = max(run.stepping / steps, rates.get(change.options, 0.0))
-        found.append((index, Tried(change, errors(mechanism, truth, run, reading.jumps), run)))
-    table = [each for _, each in sorted(found, key=lambda pair: pair[0])]
+        done[index] = result(change, run)
+    table = [done[index] for index in sorted(done)]
     front = best(table)
-    return [replace(each, front=each in front) for each in table]
+    return [replace(setting, front=setting in front) for setting in table]
 
 
-def _enough(found: list[Tried], tolerance: float) -> float:
-    """CPU time [s] of a setting with a tenth of the advised one's error: what takes longer is not advised."""
-    advised = cheapest(found, tolerance)
-    decade = None if advised is None else cheapest(found, advised.error / 10)
+def _enough(table: list[Tried], tolerance: float) -> float:
+    """CPU time [s] of a setting with a tenth of the advised one's error: a setting that takes longer is not advised."""
+    advised = cheapest(table, tolerance)
+    decade = None if advised is None else cheapest(table, advised.error / 10)
     return float("inf") if decade is None else decade.cost
 
 
 def _few(changes: list[Change]) -> list[int]:
     """The user's own settings at a quarter of the step, and the last kind at that step, a quarter and a sixteenth."""
-    own, last = changes[0], changes[-1].options
-    wanted = [(own.options, 4), (last, 1), (last, 4), (last, 16)]
-    places = {(each.options, round(own.dt / each.dt)): index for index, each in enumerate(changes)}
-    return sorted({places[each] for each in wanted if each in places} - {0})
+    user, last = changes[0], changes[-1].options
+    wanted = [(user.options, 4), (last, 1), (last, 4), (last, 16)]
+    places = {(change.options, round(user.dt / change.dt)): index for index, change in enumerate(changes)}
+    return sorted({places[key] for key in wanted if key in places} - {0})
 
 
-def _stays(found: list[Tried]) -> bool:
-    """Whether smaller steps have stopped to help: the last two of them took less than a quarter of the error away, or,
-    of one that is larger than what a motion tells, hardly changed it.
+def _stays(table: list[Tried]) -> bool:
+    """Whether smaller steps have stopped to help: the last two of them took less than a quarter of the error away, or
+    hardly changed an error that is SATURATED.
     """
 
     def stays(before: float, after: float) -> bool:
         return after >= FALLS * before if before < SATURATED else abs(after - before) <= ALIKE * before
 
-    last = [each.error for each in sorted(found, key=lambda each: -each.change.dt)][-3:]
+    last = [setting.error for setting in sorted(table, key=lambda setting: -setting.change.dt)][-3:]
     return len(last) == 3 and bool(np.isfinite(last).all()) and all(stays(a, b) for a, b in pairwise(last))
 
 
-def cheapest(found: list[Tried], tolerance: float) -> Tried | None:
+def cheapest(table: list[Tried], tolerance: float) -> Tried | None:
     """The setting of the least cost whose error is within a tolerance, if there is one."""
-    good = [each for each in found if each.error <= tolerance]
-    return min(good, key=lambda each: each.cost, default=None)
+    return min((each for each in table if each.error <= tolerance), key=lambda setting: setting.cost, default=None)
 
 
-def best(found: list[Tried]) -> list[Tried]:
+def best(table: list[Tried]) -> list[Tried]:
     """The settings that no other beats in both error and cost, the cheapest first."""
     out: list[Tried] = []
-    for each in sorted(found, key=lambda one: (one.cost, one.error)):
-        if np.isfinite(each.error) and (not out or each.error < out[-1].error):
-            out.append(each)
+    for setting in sorted(table, key=lambda setting: (setting.cost, setting.error)):
+        if np.isfinite(setting.error) and (not out or setting.error < out[-1].error):
+            out.append(setting)
     return out
 
 
-def same_step(found: list[Tried], own: Tried) -> list[Tried]:
+def same_step(table: list[Tried], user: Tried) -> list[Tried]:
     """The user's own settings at ever smaller steps, the largest step first."""
-    like = [each for each in found if each.change.options == own.change.options]
-    return sorted(like, key=lambda each: -each.change.dt)
+    alike = [setting for setting in table if setting.change.options == user.change.options]
+    return sorted(alike, key=lambda setting: -setting.change.dt)
 
 
 Array = NDArray[np.float64]

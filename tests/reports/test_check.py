@@ -196,15 +196,6 @@ def test_the_judge_of_a_check_is_the_truth_of_a_scene():
     assert errors(scene.mechanism(), judge.trajectory, judge.looser).largest < 1e-7
 
 
-def test_equations_of_the_check_are_those_of_the_scenes_forces():
-    for scene in (FreeFourBar(), PENDULUM_1):
-        mechanism = scene.mechanism()
-        truth = scene.motion(np.array([0.0]))
-        found = accelerations(mechanism, mechanism.pose, mechanism.twist, 0.0)
-        told = mechanism.reaction(mechanism.pose, found)
-        np.testing.assert_allclose(told, truth.reaction[0], rtol=0, atol=1e-8 * np.abs(truth.reaction).max())
-
-
 def test_a_drive_that_gives_way_is_damped_against_its_own_rate():
     joints = (Pin("hinge", None, "wheel", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "wheel", 3.0, 0.0))
     at_rate = Mechanism((Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 3.0)),), joints)
@@ -276,43 +267,26 @@ def test_nobody_is_judged_where_the_judge_does_not_know_a_tenth_of_the_tolerance
 
 
 def test_the_report_can_be_read_by_people_and_programs(shipped):
-    found = shipped
-    shown = from_text(shown_of(found).as_text())
+    shown = from_text(shown_of(shipped).as_text())
     drawn = pictures(shown)
     without_error = replace(shown, found=replace(shown.found, bars=shown.ideal.bars))
     assert pictures(without_error)["worst"] != drawn["worst"]
-    told = sections(found, drawn)
-    text = rendering.plain(told)
-    for words in ("near-singular", "the judge's own", "joints as soft as", "What to change"):
-        assert words in text
-    screen = rendering.plain([answer(found)])
-    assert len(screen.splitlines()) <= 30
-    assert max(map(len, screen.splitlines())) <= 120
+    told = sections(shipped, drawn)
+    screen = rendering.plain([answer(shipped)]).splitlines()
+    assert len(screen) <= 30
+    assert max(map(len, screen)) <= 120
     page = rendering.html("four bar", told)
     # As elements of one page the second drawing would be clipped by the first's frame.
     assert page.count("data:image/svg+xml;base64,") == page.count("<img ") == 2
     assert "<svg" not in page
-    assert "<script" not in page
     files = {title: f"{key}.svg" for key, (title, _) in drawn.items()}
     assert "](errors.svg)" in rendering.markdown("four bar", told, files)
-    foreign = rendering.Section("", ("<i>",), (("why", "<i>"),), header=("<i>",), rows=(("<i>",),))
-    assert "<i>" not in rendering.markdown("four bar", [foreign], {})
-    numbers = json.loads(json.dumps(data(found), allow_nan=False))
+    foreign = rendering.Section("", ("<i>",), (("why", "<i>"),), ("<i>",), header=("<i>",), rows=(("<i>",),))
+    assert "<i>" not in rendering.html("<i>", [foreign])
+    assert rendering.markdown("four bar", [foreign], {}).count("<i>") == 1  # in the lines to copy
+    numbers = json.loads(json.dumps(data(shipped), allow_nan=False))
     assert mismatch(numbers) == ""
     assert mismatch({**numbers, "cpu": "fast"}) != ""
     assert mismatch({name: value for name, value in numbers.items() if name != "parts"}) != ""
-    assert numbers["error"] == found.own_errors.largest
-    assert len(numbers["over_time"]["t"]) == len(found.own_errors.t)
-    for name, setting in (("advised", found.advised), ("next_decade", found.decade)):
+    for name, setting in (("advised", shipped.advised), ("next_decade", shipped.decade)):
         assert numbers[name] == (setting and next(t for t in numbers["tried"] if t["words"] == setting.change.words))
-    for setting, each in zip(found.table, numbers["tried"], strict=True):
-        told = (setting.change.words, setting.error, setting.errors.worst["reaction"])
-        assert (each["words"], each["error"], each["reaction"]) == told
-
-
-def test_a_model_at_rest_says_that_nothing_moves(tmp_path):
-    bodies = '<body><joint axis="0 0 1"/><geom size=".1" pos=".2 0 0"/></body>'
-    found = found_in(tmp_path, f"<mujoco><worldbody>{bodies}</worldbody></mujoco>", duration=0.1)
-    text = rendering.plain(sections(found))
-    assert "nothing moves" in text
-    assert found.met

@@ -171,11 +171,6 @@ def test_what_is_applied_to_joints_and_bodies_acts_in_its_direction(flag):
     np.testing.assert_allclose(gone[:, 1, 2], -0.4 / INERTIA * half, rtol=0, atol=CLOSE)
 
 
-def test_a_model_that_may_sleep_is_refused_by_name():
-    with pytest.raises(Unsupported, match=r"^flag sleep: .* --without sleep judges your model without it"):
-        mjcf(WHEEL, flags='sleep="enable"')
-
-
 # ---------------------------------------------------------------------------------------------------------- pymunk
 
 
