@@ -77,6 +77,10 @@ class Described:
         place = body.local_to_world((point[0], point[1]))
         return (float(place.x), float(place.y))
 
+    def anchors(self, constraint: Any) -> tuple[Vector, Vector]:
+        """The anchors of both bodies in our frames."""
+        return self.own(constraint.a, constraint.anchor_a), self.own(constraint.b, constraint.anchor_b)
+
     def angle(self, body: pymunk.Body) -> float:
         """0 on the ground, where lines and angles are those of the world."""
         return float(body.angle) if body in self.words else 0.0
@@ -183,37 +187,11 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
         raise refuse(label, f"a {kind} has no ideal counterpart here; read are {', '.join(READ_NAMES)}")
     match constraint:
         case PivotJoint():
-            points = out.own(a, constraint.anchor_a), out.own(b, constraint.anchor_b)
-            out.joints.append(Pin(label, first, second, *points))
+            out.joints.append(Pin(label, first, second, *out.anchors(constraint)))
         case GrooveJoint():
-            ends = [out.own(a, point) for point in (constraint.groove_a, constraint.groove_b)]
-            line = pymunk.Vec2d(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1])
-            if not line.length:
-                raise refuse(label, "its groove has no length")
-            point = out.own(b, constraint.anchor_b)
-            # Where the anchor stands now: an end of the groove may be far from all that moves.
-            held = pymunk.Vec2d(*out.own(a, a.world_to_local(b.local_to_world(constraint.anchor_b))))
-            along = line.normalized() * (held - ends[0]).dot(line.normalized())
-            at = (float(ends[0][0] + along.x), float(ends[0][1] + along.y))
-            out.joints.append(Slot(label, first, second, at, float(line.angle), point))
-            if _turns(a) or not groove_is_exact(point, _turns(b)):
-                out.suspects[label] = (
-                    "pymunk's GrooveJoint does not push straight across its groove, at any step, unless its anchor is "
-                    "a centre of mass and the groove is in a body that can't turn freely; slide a body of its own in "
-                    "the groove, by its centre, and pin the other body to it"
-                )
-        case PinJoint():
-            points = out.own(a, constraint.anchor_a), out.own(b, constraint.anchor_b)
-            if constraint.distance:
-                out.joints.append(Rod(label, first, second, *points, float(constraint.distance)))
-            else:
-                raise refuse(label, "its distance is zero, which has no direction; give a PivotJoint")
-        case SlideJoint():
-            if not constraint.min:
-                raise refuse(label, "its min and max are zero, which has no direction; give a PivotJoint")
-            points = out.own(a, constraint.anchor_a), out.own(b, constraint.anchor_b)
-            out.joints.append(Rod(label, first, second, *points, float(constraint.min)))
-            out.notes.append(Note(label, EQUALITY.format("rod", "PinJoint")))
+            _add_slot(out, constraint, label)
+        case PinJoint() | SlideJoint():
+            _add_rod(out, constraint, label)
         case RotaryLimitJoint():
             turned = float(constraint.min) + out.standing(a) - out.standing(b)
             out.joints.append(Drive(label, first, second, 0.0, turned))
@@ -223,22 +201,56 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
         case SimpleMotor():
             turned = out.angle(b) - out.angle(a)
             out.joints.append(Drive(label, first, second, -float(constraint.rate), turned))
-        case DampedSpring():
-            _refuse_own_force(constraint, label, "_force_func")
-            ends = first, second, out.own(a, constraint.anchor_a), out.own(b, constraint.anchor_b)
-            if constraint.stiffness:
-                out.forces.append(Spring(label, *ends, float(constraint.stiffness), float(constraint.rest_length)))
-            if constraint.damping:
-                out.forces.append(Damper(out.names.new(f"{label} damper"), *ends, float(constraint.damping)))
-        case DampedRotarySpring():
-            _refuse_own_force(constraint, label, "_torque_func")
-            # Chipmunk's angle is that of the first body against the second.
-            rest = float(constraint.rest_angle) + out.standing(b) - out.standing(a)
-            if constraint.stiffness:
-                out.forces.append(TorsionSpring(label, second, first, float(constraint.stiffness), rest))
-            if constraint.damping:
-                word = out.names.new(f"{label} damper")
-                out.forces.append(TorsionDamper(word, second, first, float(constraint.damping)))
+        case DampedSpring() | DampedRotarySpring():
+            _add_spring(out, constraint, label)
+
+
+def _add_slot(out: Described, groove: GrooveJoint, label: str) -> None:
+    a, b = groove.a, groove.b
+    ends = [out.own(a, point) for point in (groove.groove_a, groove.groove_b)]
+    line = pymunk.Vec2d(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1])
+    if not line.length:
+        raise refuse(label, "its groove has no length")
+    point = out.own(b, groove.anchor_b)
+    # The place of the anchor on the line now: an end of the groove may be far from all that moves.
+    anchor = pymunk.Vec2d(*out.own(a, a.world_to_local(b.local_to_world(groove.anchor_b))))
+    along = line.normalized() * (anchor - ends[0]).dot(line.normalized())
+    at = (float(ends[0][0] + along.x), float(ends[0][1] + along.y))
+    out.joints.append(Slot(label, out.name(a), out.name(b), at, float(line.angle), point))
+    if _turns(a) or not groove_is_exact(point, _turns(b)):
+        out.suspects[label] = (
+            "pymunk's GrooveJoint does not push straight across its groove, at any step, unless its anchor is "
+            "a centre of mass and the groove is in a body that can't turn freely; slide a body of its own in "
+            "the groove, by its centre, and pin the other body to it"
+        )
+
+
+def _add_rod(out: Described, constraint: PinJoint | SlideJoint, label: str) -> None:
+    slides = isinstance(constraint, SlideJoint)
+    length = float(constraint.min if slides else constraint.distance)
+    if not length:
+        words = "its min and max are zero" if slides else "its distance is zero"
+        raise refuse(label, f"{words}, which has no direction; give a PivotJoint")
+    ends = out.name(constraint.a), out.name(constraint.b), *out.anchors(constraint)
+    out.joints.append(Rod(label, *ends, length))
+    if slides:
+        out.notes.append(Note(label, EQUALITY.format("rod", "PinJoint")))
+
+
+def _add_spring(out: Described, spring: Any, label: str) -> None:
+    straight = isinstance(spring, DampedSpring)
+    if getattr(spring, "_force_func" if straight else "_torque_func", None):
+        raise refuse(label, "its force is a function of its own")
+    first, second = out.name(spring.a), out.name(spring.b)
+    # Chipmunk's relative angle is that of the first body against the second.
+    ends: tuple[Any, ...] = (first, second, *out.anchors(spring)) if straight else (second, first)
+    elastic: Any = Spring if straight else TorsionSpring
+    viscous: Any = Damper if straight else TorsionDamper
+    rest = spring.rest_length if straight else spring.rest_angle + out.standing(spring.b) - out.standing(spring.a)
+    if spring.stiffness:
+        out.forces.append(elastic(label, *ends, float(spring.stiffness), float(rest)))
+    if spring.damping:
+        out.forces.append(viscous(out.names.new(f"{label} damper"), *ends, float(spring.damping)))
 
 
 def is_equality(constraint: Constraint) -> bool:
@@ -258,11 +270,6 @@ def both_sided(limit: Any) -> Constraint:
 def _turns(body: pymunk.Body) -> bool:
     """Whether an impulse can turn it."""
     return body.body_type == pymunk.Body.DYNAMIC and not isinf(body.moment)
-
-
-def _refuse_own_force(constraint: Constraint, label: str, function: str) -> None:
-    if getattr(constraint, function, None):
-        raise refuse(label, "its force is a function of its own")
 
 
 def _geared(out: Described, gear: GearJoint, label: str) -> Joint:
