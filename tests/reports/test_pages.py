@@ -35,7 +35,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_words
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task
-from reports.pages.engines.experiments import ASKED, Capabilities, OpenWork, VelocityTerm
+from reports.pages.engines.experiments import ASKED, Capabilities, VelocityTerm
 from reports.pages.errata import experiments as referees
 from reports.pages.faults.page import Offsets, Script
 from reports.pages.findings import findings
@@ -282,8 +282,6 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"error": np.full(3, 1e-3)}
         case BeforeAndAfter():
             values = {"gap": np.array([0.1, 0.01]), "angle": np.full(2, 0.1), "iterations": np.asarray(16.0)}
-        case OpenWork():
-            values = {"lost": np.asarray(-0.1), "work": np.full(8, -0.01)}
         case VelocityTerm():
             values = {"t": np.ones(2), "with": np.full(2, 0.5), "without": np.full(2, 1e-6)}
         case Capabilities():

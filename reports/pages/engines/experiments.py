@@ -1,5 +1,5 @@
 """What is asked of engines: rows of other pages, compiled models at one step, the gap that stays open; and beside cells
-what they build, the velocity term of their rows, the work at open pins.
+what they build, and the velocity term of their rows.
 
 The velocity term of loops, by force: reactions at instants of the exact motion, and the law with it and without. The
 mechanism is started anew at poses and velocities of the exact motion, where every gap and slip is zero. In the tree's
@@ -25,9 +25,7 @@ from engines.conformance.worlds import MOVING, WORLDS
 from engines.mujoco.engine import MuJoCo
 from engines.mujoco.stiffness import TiedToStep
 from engines.pinocchio import Pinocchio
-from engines.pymunk.contraction import Sweeping
 from engines.pymunk.engine import SHIPPED_ERROR_BIAS, Pymunk
-from engines.pymunk.model import Model
 from engines.tree import spanning_tree
 from reference.joints import Gear, Pin, Rod, Skate, Weld
 from reference.mechanism import Body, Mechanism
@@ -35,7 +33,6 @@ from reference.rolling.roll import Roll
 from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
-from reference.trajectory import energy
 from reports.model.cells import FULL, SLOW_TO_BUILD, Cell, beside_cells, sweep_cells
 from reports.model.ending import describe
 from reports.model.tasks import Task, Values
@@ -120,38 +117,6 @@ class Capabilities(Asked):
         # Velocities are the engine's own numbers, which poses of a tree or of angles are not.
         told["width"] = "32 bits" if np.array_equal(velocity, velocity.astype(np.float32)) else "64 bits"
         return told
-
-
-@dataclass(frozen=True)
-class OpenWork(Task):
-    """`lost`: the change of energy over the motion [J]; `work` (rows,): sum of reaction times opening of a row [J].
-
-    The cell's motion is sampled at every step. A row's gap counts from the first body to the second and its reaction
-    acts on the second, so that opening against a force that pulls together is negative work.
-    """
-
-    cell: Cell
-
-    @property
-    def cost(self) -> float:
-        return 0.1
-
-    @property
-    def label(self) -> str:
-        return f"work at open pins: {self.cell.label}"
-
-    @property
-    def engine(self) -> Engine:
-        return self.cell.engine
-
-    def run(self) -> Values:
-        mechanism = self.cell.scene.mechanism()
-        run = self.cell.engine.build(mechanism, self.cell.step)(self.cell.sample_count * self.cell.every, 1)
-        gap = np.nan_to_num(mechanism.gap(run.pose, run.t))
-        force = np.nan_to_num(run.reaction)  # a change of velocity is not told at the start
-        own = energy(mechanism, run)
-        work = np.sum((force[1:] + force[:-1]) / 2 * np.diff(gap, axis=0), axis=0)
-        return {"lost": np.array(own[-1] - own[0]), "work": work}
 
 
 Array = NDArray[np.float64]
@@ -240,27 +205,9 @@ SWEPT = beside_cells(CHARTED_SCENES, registry.OTHERS, sweep=True)
 
 # The share of a gap that is closed in a step of a millisecond; the second is about pymunk's as shipped.
 SHARES = (0.002, 1 - SHIPPED_ERROR_BIAS**1e-3, 0.02, 0.06, 0.2, 0.6, 1.0)
-SUBSTEPS = (1, 4, 16, 64, 256)
-# Box2D's pins at a frequency of their own, times the length of a sub-step; 0 as shipped, and as many sub-steps.
-FREQUENCIES = (0.0, 0.02, 0.05, 0.1, 0.25)
-FEW = (1, 4)
-CORRECTIONS = (0.0, 10.0, 100.0, 300.0)  # 1/s; explicit steps of a millisecond bear no more than about 500
-OPEN = ("A", "B", "C", "D")
-
-
-@dataclass(frozen=True)
-class SomePins(Pymunk):
-    """All gaps are closed in every step but those of the pins named `shipped`, which are closed as shipped."""
-
-    shipped: tuple[str, ...] = ()
-
-    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Sweeping) -> Model:
-        """Pins stand in the space in the order of the joints, where nothing is driven."""
-        model = super().swept_model(mechanism, dt, sweeping)
-        for joint, constraint in zip(mechanism.joints, model.space.constraints, strict=True):
-            if joint.name in self.shipped:
-                constraint.error_bias = SHIPPED_ERROR_BIAS
-        return model
+FEW = (1, 4)  # sub-steps of Box2D in a millisecond
+STIFFER = 0.25  # the frequency of Box2D's pins, times the length of a sub-step
+CORRECTIONS = (0.0, 300.0)  # 1/s, of Pinocchio's loops; explicit steps of a millisecond bear no more than about 500
 
 
 def _cell(engine: Engine) -> Cell:
@@ -276,20 +223,11 @@ CLOSING: dict[str, dict[float, Cell]] = {
         share: _cell(Bullet(f"closes {share:.2g} of a gap", 200, 0.0, share)) for share in SHARES
     },
 }
-SUBSTEPPED = {count: _cell(Box2D(f"{count} sub-steps", count)) for count in SUBSTEPS}
-PINS = {
-    name: _cell(SomePins(f"gap left at {name or 'none'}", 30, 0.0, shipped=tuple(name))) for name in ("", *OPEN, "ABCD")
-}
-CLOSED_AT = {
-    (count, share): _cell(Box2D(f"{count} sub-steps, pins of {share:g} a sub-step", count, share))
+CLOSED_AT = {(count, 0.0): _cell(Box2D(f"{count} sub-steps", count)) for count in FEW} | {
+    (count, STIFFER): _cell(Box2D(f"{count} sub-steps, pins of {STIFFER:g} a sub-step", count, STIFFER))
     for count in FEW
-    for share in FREQUENCIES[1:]
-} | {(count, 0.0): SUBSTEPPED[count] for count in FEW}
-CORRECTED = {
-    (integrator, rate): _cell(Pinocchio(f"{integrator}, correction {rate:g}", integrator, rate))
-    for integrator in ("euler", "rk4")
-    for rate in CORRECTIONS
 }
+CORRECTED = {rate: _cell(Pinocchio(f"euler, correction {rate:g}", "euler", rate)) for rate in CORRECTIONS}
 # All pins as springs of some steps, and only that of the loop.
 SPRUNG = {
     (coordinates, steps): _cell(
@@ -310,7 +248,7 @@ MOVES: tuple[tuple[str, str, Cell, Cell], ...] = (
         CLOSING["pymunk, all four pins"][SHARES[1]],
         CLOSING["pymunk, all four pins"][1.0],
     ),
-    ("box2d", "frequency of the pins", CLOSED_AT[4, 0.0], CLOSED_AT[4, 0.25]),
+    ("box2d", "frequency of the pins", CLOSED_AT[4, 0.0], CLOSED_AT[4, STIFFER]),
     (
         "mujoco, pins that are all springs",
         "their time constant, 20 steps and 2",
@@ -327,8 +265,8 @@ MOVES: tuple[tuple[str, str, Cell, Cell], ...] = (
     (
         "pinocchio, Euler steps, the loop's pin alone",
         "correction of the loop, none and 300 / s",
-        CORRECTED["euler", 0.0],
-        CORRECTED["euler", 300.0],
+        CORRECTED[0.0],
+        CORRECTED[300.0],
     ),
 )
 CLOSED_BY = tuple(cell for cells in CLOSING.values() for cell in cells.values())

@@ -27,21 +27,14 @@ from reports.pages.engines.experiments import (
     COMPILED,
     CONTACT,
     CORRECTED,
-    CORRECTIONS,
-    FEW,
     FREE,
-    FREQUENCIES,
     MOVES,
-    OPEN,
-    PINS,
     SHARES,
     SPRUNG,
-    SUBSTEPPED,
     SWEPT,
     TOO_OLD,
     YES,
     Capabilities,
-    OpenWork,
     VelocityTerm,
 )
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
@@ -110,15 +103,6 @@ def share_table(material: Material) -> str:
     return markdown(header, body, left=0) if any(lines.values()) else ""
 
 
-def experiment_table(material: Material, cells: Mapping[Any, Any], head: str, said: Mapping[Any, str]) -> str:
-    body = [
-        [said[key], number(row.angle), number(row.gap), number(row.energy)]
-        for key, cell in cells.items()
-        if (row := material.rows.get(cell)) is not None
-    ]
-    return markdown([head, "angle error [rad]", "gap [m]", "energy [relative]"], body) if body else ""
-
-
 def _told(row: Measurement | None) -> str:
     """The angle error, or what became of the run."""
     if row is None:
@@ -135,28 +119,6 @@ def moves_table(material: Material) -> str:
     ]
     header = ["engine", "what is turned", "angle error before [rad]", "after [rad]"]
     return markdown(header, body, left=2) if body else ""
-
-
-def frequency_table(material: Material) -> str:
-    """Errors by the frequency of pins, for few sub-steps; empty without rows."""
-
-    def cells(share: float) -> list[str]:
-        rows = [material.rows.get(CLOSED_AT[count, share]) for count in FEW]
-        return [told for row in rows for told in (_told(row), NOTHING if row is None else number(row.gap))]
-
-    body = [["as shipped" if share == 0 else f"{share:g}", *cells(share)] for share in FREQUENCIES]
-    names = {1: "one sub-step", 4: "four sub-steps"}
-    header = ["frequency x sub-step"]
-    header += [f"{names[count]}: {what}" for count in FEW for what in ("angle error [rad]", "gap [m]")]
-    return markdown(header, body) if any(cell in material.rows for cell in CLOSED_AT.values()) else ""
-
-
-def correction_table(material: Material) -> str:
-    """Errors of both integrators by the correction of loops; empty without rows."""
-    names = {"euler": "Euler", "rk4": "Runge-Kutta"}
-    body = [[f"{rate:g}", *(_told(material.rows.get(CORRECTED[each, rate])) for each in names)] for rate in CORRECTIONS]
-    header = ["correction [1/s]", *(f"{name}: angle error [rad]" for name in names.values())]
-    return markdown(header, body, left=0) if any(cell in material.rows for cell in CORRECTED.values()) else ""
 
 
 LOOKS = (("first", "o", "-"), ("second", "s", "--"))
@@ -193,24 +155,11 @@ TERMS = tuple(
     for engine in (*registry.VARIANTS, *registry.OTHERS)
     if engine.variant == "tuned" and (soft := engine.softness(FREE.mechanism(), 1e-3)) is not None and soft.compliance
 )
-# What an open pin costs: as shipped, and with all of a gap closed in every step.
-WORKS = {
-    f"{name}, {share:.2g} of a gap closed in a step": OpenWork(CLOSING[name][share])
-    for name in CLOSING
-    for share in (SHARES[0], SHARES[1], SHARES[-1])
-}
 EXPERIMENTS = (
     Failure(
         title="How much of a gap a step closes",
         expected="The share that a step closes decides how far pins stay open, and so the error, at equal step.",
-        cells=tuple(
-            dict.fromkeys(
-                [
-                    *(*CLOSED_BY, *SUBSTEPPED.values(), *PINS.values()),
-                    *(*CLOSED_AT.values(), *SPRUNG.values(), *CORRECTED.values()),
-                ]
-            )
-        ),
+        cells=tuple(dict.fromkeys((*CLOSED_BY, *CLOSED_AT.values(), *SPRUNG.values(), *CORRECTED.values()))),
     ),
     Failure(
         title="Compiled models",
@@ -269,31 +218,14 @@ def _terms(material: Material) -> str:
     return markdown(header, body) if body else ""
 
 
-def _works(material: Material) -> str:
-    body = [
-        [name, number(answer.number("lost")), number(float(answer.array("work").sum()))]
-        for name, task in WORKS.items()
-        if (answer := material.finished(task)) is not None
-    ]
-    return markdown(["engine", "energy gained [J]", "work of joints at open pins [J]"], body) if body else ""
-
-
 def words(material: Material) -> Mapping[str, Any]:
     """Tables by name, each empty where nothing was run."""
     answers = {task: answer for task in MATRIX if (answer := material.finished(task)) is not None}
-    pins = {"": "none", **{pin: f"{pin} alone" for pin in OPEN}, "ABCD": "all four"}
     return {
         "matrix": matrix(answers),
         "refused": sentences(answers),
         "shares": share_table(material),
-        "pins": experiment_table(material, PINS, "gap closed as shipped at", pins),
-        "substeps": experiment_table(
-            material, SUBSTEPPED, "sub-steps in a millisecond", {count: str(count) for count in SUBSTEPPED}
-        ),
         "moves": moves_table(material),
-        "frequencies": frequency_table(material),
-        "corrections": correction_table(material),
-        "works": _works(material),
         "terms": _terms(material),
         "absent": list(registry.ABSENT.values()),
     }
@@ -311,5 +243,5 @@ PAGE = Page(
     failures=EXPERIMENTS,
     figures=figures,
     words=words,
-    tasks=(*MATRIX, *TERMS, *WORKS.values()),
+    tasks=(*MATRIX, *TERMS),
 )
