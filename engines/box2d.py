@@ -88,6 +88,7 @@ class Box2D(Optional):
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     forces_by: ClassVar[Holder] = "ours"
     precision: ClassVar[float] = 2.0**-23  # of its numbers
+    angle_error: ClassVar[float] = 2.8e-5  # b2Atan2 of its math_functions.h is a polynomial, by which it reads a weld
 
     variant: Name
     substeps: Count = 4

@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
@@ -108,6 +108,12 @@ class Bullet(Optional):
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
         """Every joint is the engine's own."""
         return "engine"
+
+    def alike(self, mechanism: Mechanism) -> Bullet | None:
+        """With twenty times as many iterations, where there are loops, whose rows they solve."""
+        if not spanning_tree(mechanism).loops and not any(isinstance(joint, Drive) for joint in mechanism.joints):
+            return None
+        return replace(self, iterations=20 * self.iterations, residual=0.0)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:

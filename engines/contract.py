@@ -25,6 +25,8 @@
 9. `holder(joint, mechanism)` says who holds a joint: the engine by a joint, contact or coordinate of its own; the
    engine by rows that our code writes anew while it steps; or our code alone, between steps of free bodies.
 10. `softness(mechanism, dt)` says how its joints give way by its own settings: a Softness, or None where they don't.
+11. `instants`, `alike`, `precision` and `angle_error` declare the law of one instant, the tolerance of the solver and
+   the rounding; `crosscheck search` holds the engine to them. Usual is: no law, no tolerance, double precision.
 
 More may be declared. Under the entry point group `crosscheck.bare_loops`, by an engine's name, stands a function that
 is given (engine, mechanism, dt, steps) and tells the CPU seconds of that many steps of its model with nothing read:
@@ -36,7 +38,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
@@ -131,6 +133,22 @@ class Unpromised:
     reason: str
 
 
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """What an engine computes in one state, and what the law that its settings stand for asks for there.
+
+    `check`: "acceleration", "velocity" (after a step) or "reaction", or a name of the engine's own for another law.
+    `found` and `expected` are of the shape (bodies, 3), or (rows,) for reactions. `scales` are further arrays of such
+    shapes: an error counts relative to the largest of them and of `expected`.
+    """
+
+    check: str
+    state: tuple[np.ndarray, np.ndarray]  # pose and twist (bodies, 3)
+    found: np.ndarray
+    expected: np.ndarray
+    scales: tuple[np.ndarray, ...] = ()
+
+
 class Run(Protocol):
     """A built model, ready to be stepped once."""
 
@@ -166,6 +184,8 @@ class Engine(ABC):
     building: ClassVar[float] = 0.0
     # The relative rounding of its numbers, where these are of less than double precision.
     precision: ClassVar[float] = 0.0
+    # How far angles that it measures between bodies may be off [rad], beside rounding.
+    angle_error: ClassVar[float] = 0.0
     # Who works out what springs, dampers and the like do.
     forces_by: ClassVar[Holder] = "engine"
 
@@ -197,6 +217,22 @@ class Engine(ABC):
 
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """Nothing is declared that the judge could follow."""
+        return None
+
+    def instants(
+        self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
+    ) -> tuple[Instant, ...] | Unpromised:
+        """What it computes at the start, or in its first `steps` steps of dt [s], beside the law that it declares.
+
+        `built`: the mechanism that the model is made of, if it is another one: a test puts a mistake there.
+        """
+        return Unpromised("it declares no law of an instant")
+
+    def alike(self, mechanism: Mechanism) -> Engine | None:
+        """The same method with a solver that goes much farther; None where it leaves nothing but rounding.
+
+        By how much the two differ, the engine declares that it may be wrong.
+        """
         return None
 
     def iterations_of(self, mechanism: Mechanism) -> int | None:
@@ -260,6 +296,10 @@ class Around(Engine):
     def precision(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
         return self.engine.precision
 
+    @property
+    def angle_error(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        return self.engine.angle_error
+
     def prepare(self) -> None:
         self.engine.prepare()
 
@@ -274,6 +314,10 @@ class Around(Engine):
 
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         return self.chosen(mechanism).softness(mechanism, dt)
+
+    def alike(self, mechanism: Mechanism) -> Engine | None:
+        stricter = self.engine.alike(mechanism)
+        return None if stricter is None else replace(self, engine=stricter)  # type: ignore[type-var]
 
     def within(self, mechanism: Mechanism) -> Engine:
         return self.chosen(mechanism).within(mechanism)

@@ -115,6 +115,12 @@ class Exudyn(Optional):
         """Every joint is the engine's own."""
         return "engine"
 
+    def alike(self, mechanism: Mechanism) -> Exudyn | None:
+        """With a thousandth of Newton's tolerances, where they are not of the mechanism's own units."""
+        if self.own_units:
+            return None
+        return replace(self, relative=1e-3 * self.relative, absolute=1e-3 * self.absolute)
+
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A system for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""

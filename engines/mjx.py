@@ -30,7 +30,7 @@ from __future__ import annotations
 import math
 import os
 import platform
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, ClassVar
 
@@ -38,8 +38,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.contract import EXACT, Holder, Promise, Size, Softness, Unpromised, Unsupported
+from engines.contract import EXACT, Holder, Instant, Promise, Size, Softness, Unpromised, Unsupported
 from engines.motions import is_prescribed, over_three, turns_steadily
+from engines.mujoco import declared
 from engines.mujoco.engine import MuJoCo
 from engines.mujoco.methods import DEFAULT as C_DEFAULT
 from engines.mujoco.methods import TUNED as C_TUNED
@@ -102,6 +103,25 @@ class Mjx(Optional):
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """As the settings declare it in MuJoCo; that the velocity term is missing is declared nowhere."""
         return self.settings.softness(mechanism, dt)
+
+    def instants(
+        self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
+    ) -> tuple[Instant, ...] | Unpromised:
+        """Accelerations in the states that MuJoCo steps to; those of loops and rods lack their velocity terms."""
+        settings = replace(self.settings, tolerance=min(self.settings.tolerance, declared.SOLVED))
+        solved = replace(self, settings=settings)
+        _, held = solved.model(built or mechanism, dt)
+        check = declared.WITHOUT if lacks_velocity_terms(spanning_tree(mechanism)) else "acceleration"
+
+        def accelerations(model: Model, data: Any) -> Array:
+            return solved.accelerations(model, held, data)
+
+        return declared.instants(settings, mechanism, dt, steps, built or mechanism, accelerations, check)
+
+    def alike(self, mechanism: Mechanism) -> Mjx | None:
+        """As MuJoCo with these settings."""
+        settings = self.settings.alike(mechanism)
+        return None if settings is None else replace(self, settings=settings)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:

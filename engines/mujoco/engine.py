@@ -11,8 +11,9 @@ from typing import Any, Literal
 import mujoco
 import numpy as np
 
-from engines import EXACT, Engine, Holder, Promise, Size, Softness, Unpromised, Unsupported
+from engines import EXACT, Engine, Holder, Instant, Promise, Size, Softness, Unpromised, Unsupported
 from engines.motions import is_prescribed, over_three, turns_steadily
+from engines.mujoco import declared
 from engines.mujoco.joints.links import DriveBy, RodBy
 from engines.mujoco.joints.roll import RollBy, RollContact
 from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
@@ -166,6 +167,16 @@ class MuJoCo(Engine, Valid):
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * softening
         rows = tuple(which for joint, which in zip(mechanism.joints, soft, strict=True) for _ in range(joint.size))
         return Softness(gain, damping, compliance, rows, complete=not lacking)
+
+    def instants(
+        self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
+    ) -> tuple[Instant, ...] | Unpromised:
+        """Accelerations and reactions; see `engines.mujoco.declared`."""
+        return declared.instants(self, mechanism, dt, steps, built or mechanism)
+
+    def alike(self, mechanism: Mechanism) -> MuJoCo | None:
+        """With a tolerance at which its solver leaves nothing but rounding."""
+        return None if self.tolerance <= declared.SOLVED else replace(self, tolerance=declared.SOLVED)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> MuJoCoRun:

@@ -8,10 +8,10 @@ from typing import Literal
 import pymunk
 from pymunk.constraints import PivotJoint
 
-from engines import Around, Engine, Holder, Promise, Run, Softness, Unpromised
+from engines import Around, Engine, Holder, Instant, Promise, Run, Softness, Unpromised
 from engines.extrapolated import Extrapolated
 from engines.motions import over_three
-from engines.pymunk import theory
+from engines.pymunk import declared, theory
 from engines.pymunk.contraction import CONTACT_CONVERGED, FEWEST, Sweeping, Whole, sweeping, swept_by
 from engines.pymunk.expected import worst_contraction
 from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstruction
@@ -107,6 +107,16 @@ class Pymunk(Engine, Valid):
         if not stale and (closed == 1 or not mechanism.holonomic.any()):
             return None
         return Softness(max(closed, 1e-9) / dt**2, 1 / dt, 0.0, (True,) * mechanism.row_count, complete=False)
+
+    def instants(
+        self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
+    ) -> tuple[Instant, ...] | Unpromised:
+        """Velocities after each step; see `engines.pymunk.declared`."""
+        return declared.instants(self, mechanism, dt, steps, built or mechanism)
+
+    def alike(self, mechanism: Mechanism) -> Pymunk | None:
+        """With ten times as many sweeps, where their number is a setting."""
+        return replace(self, iterations=10 * self.iterations) if isinstance(self.iterations, int) else None
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> PymunkRun:
@@ -207,6 +217,9 @@ class Extended(Around, Valid):
         if any(isinstance(joint, Skate) for joint in mechanism.joints) or mechanism.applied.dissipate:
             return self.skates
         return self.pins
+
+    def alike(self, mechanism: Mechanism) -> Engine | None:
+        return self.chosen(mechanism).alike(mechanism)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:

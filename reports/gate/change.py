@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from engines import Around, Engine, Run
+from engines import Around, Engine, Instant, Run, Unpromised
 from reference.mechanism import Mechanism
 from reports.model.cells import Cell
 from reports.model.checks import CHANGE, Check
@@ -175,6 +175,12 @@ class Altered(Around):
     def within(self, mechanism: Mechanism) -> Engine:
         """Itself: what is inside is not stepped as it is."""
         return self
+
+    def instants(
+        self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
+    ) -> tuple[Instant, ...] | Unpromised:
+        """What the engine that is stepped computes with a model of the changed mechanism, beside the right law."""
+        return self.engine.within(mechanism).instants(mechanism, dt, steps, self.change(mechanism))
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:
         """Raises whatever the change and the engine raise."""

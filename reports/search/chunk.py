@@ -11,7 +11,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ from reports.model.tasks import Answer, Task, Values
 from reports.run.store import Store
 from reports.search.claims import REPORTED
 from reports.search.parts import SINGULAR
-from reports.search.subjects import Adapted, Subject, Told, is_shaped
+from reports.search.subjects import Adapted, Result, Subject, is_shaped
 
 SIZE = 10  # cases in a piece: a second or some
 
@@ -58,68 +58,53 @@ class Chunk(Task):
         return self.subject.engine if isinstance(self.subject, Adapted) else None
 
     def run(self) -> Values:
-        told = []
+        """The results as JSON, one a case."""
+        results = []
         for number in range(self.first, self.first + self.count):
             case: Any = self.subject.draw(self.seed, number, self.kinds, self.decades)
-            told.append((number, case.kinds, self.subject.ask(case, number, self.oracles)))
-        checks = sorted({check for _, _, one in told for check in one.errors})
-        errors = np.full((len(told), len(checks), 2), np.nan)
-        for row, (_, _, one) in enumerate(told):
-            for check, pair in one.errors.items():
-                errors[row, checks.index(check)] = pair
-        words = [[list(kinds), list(one.not_asked), one.words] for _, kinds, one in told]
-        return {"checks": json.dumps(checks), "errors": errors, "words": json.dumps(words)}
+            result = self.subject.ask(case, number, self.oracles)
+            errors = {check: (float(error), float(bound)) for check, (error, bound) in result.errors.items()}
+            results.append([list(case.kinds), errors, list(result.skipped), result.words])
+        return {"results": json.dumps(results)}
 
     @property
     def single(self) -> tuple[Chunk, ...]:
         """Its cases, each a piece of its own."""
-        numbers = range(self.first, self.first + self.count)
-        return tuple(
-            Chunk(self.subject, self.seed, number, 1, self.kinds, self.decades, self.oracles) for number in numbers
-        )
+        return tuple(replace(self, first=number, count=1) for number in range(self.first, self.first + self.count))
 
 
 @dataclass(frozen=True)
-class Asked:
-    """A case, and what was found of it."""
+class CaseResult:
+    """A case of a piece, and its result."""
 
     chunk: Chunk
     number: int
     kinds: tuple[str, ...]
-    told: Told
+    result: Result
 
 
-def asked(answers: Mapping[Chunk, Answer]) -> Iterator[Asked]:
+def results_of(answer: Answer) -> list[tuple[tuple[str, ...], Result]]:
+    """(kinds, result) of each case of a piece; none of one that has to be asked case by case."""
+    if not answer.finished:
+        return []
+    return [
+        (
+            tuple(kinds),
+            Result({check: (error, bound) for check, (error, bound) in pairs.items()}, tuple(skipped), words),
+        )
+        for kinds, pairs, skipped, words in json.loads(str(answer.values["results"]))
+    ]
+
+
+def case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
     """The cases of these pieces. One whose process ended is a fault without a number."""
     for chunk, answer in answers.items():
-        if not answer.finished:
-            if chunk.count == 1:
-                fault = answer.outcome in (Outcome.ABORTED, Outcome.TIMED_OUT, Outcome.FAILED)
-                errors = {str(answer.outcome): (np.inf, 0.0)} if fault else {}
-                yield Asked(chunk, chunk.first, chunk.kinds, Told(errors, words=answer.sentence))
-            continue
-        checks, pairs = json.loads(str(answer.values["checks"])), answer.array("errors")
-        words = json.loads(str(answer.values["words"]))
-        for row, (kinds, left, said) in enumerate(words):
-            errors = {
-                check: (float(pairs[row, column, 0]), float(pairs[row, column, 1]))
-                for column, check in enumerate(checks)
-                if not np.isnan(pairs[row, column, 1])
-            }
-            yield Asked(chunk, chunk.first + row, tuple(kinds), Told(errors, tuple(left), said))
-
-
-def cases_in(answer: Answer) -> int:
-    """How many cases a piece tells of; none of one that has to be asked case by case."""
-    return len(answer.array("errors")) if answer.finished else 0
-
-
-def has_fault(answer: Answer) -> bool:
-    """Whether any case of a piece has one."""
-    if not answer.finished:
-        return False
-    error, bound = np.moveaxis(answer.array("errors"), -1, 0)
-    return bool(np.any(~(error <= bound) & ~np.isnan(bound)))
+        if not answer.finished and chunk.count == 1:
+            fault = answer.outcome in (Outcome.ABORTED, Outcome.TIMED_OUT, Outcome.FAILED)
+            errors = {str(answer.outcome): (np.inf, 0.0)} if fault else {}
+            yield CaseResult(chunk, chunk.first, chunk.kinds, Result(errors, words=answer.sentence))
+        for place, (kinds, result) in enumerate(results_of(answer)):
+            yield CaseResult(chunk, chunk.first + place, kinds, result)
 
 
 def chunks(
@@ -129,15 +114,14 @@ def chunks(
     kinds: Sequence[str],
     decades: int,
     oracles: tuple[str, ...],
-    begin: int = 0,
 ) -> list[Chunk]:
-    """The pieces of the cases `begin` to `cases - 1`, those of all subjects in turn; all kinds of a subject if none."""
+    """The pieces of the first cases of a seed, those of all subjects in turn; all kinds of a subject if none."""
     out = []
-    for first in range(begin, cases, SIZE):
+    for first in range(0, cases, SIZE):
         count = min(SIZE, cases - first)
         for subject in subjects:
-            own = tuple(kind for kind in (*subject.kinds, *SINGULAR) if kind in kinds) or subject.kinds
-            out.append(Chunk(subject, seed, first, count, own, decades, oracles))
+            taken = tuple(kind for kind in (*subject.kinds, *SINGULAR) if kind in kinds) or subject.kinds
+            out.append(Chunk(subject, seed, first, count, taken, decades, oracles))
     return out
 
 
@@ -156,78 +140,52 @@ def stored(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
     return answers | {piece: single[piece] for piece in singles if piece in single}
 
 
-def as_words(chunk: Chunk) -> str:
+def chunk_to_json(chunk: Chunk) -> str:
     """What finds a piece again: its numbers, and the subject's name."""
     numbers = [chunk.seed, chunk.first, chunk.count, list(chunk.kinds), chunk.decades, list(chunk.oracles)]
     return json.dumps([chunk.subject.name, *numbers])
 
 
-def from_words(words: str, subjects: Sequence[Subject]) -> Chunk | None:
-    """The piece that `as_words` told; None where its subject is not among these."""
-    name, seed, first, count, kinds, decades, oracles = json.loads(words)
+def chunk_from_json(text: str, subjects: Sequence[Subject]) -> Chunk | None:
+    """The piece that `chunk_to_json` wrote; None where its subject is not among these."""
+    name, seed, first, count, kinds, decades, oracles = json.loads(text)
     subject = next((one for one in subjects if one.name == name), None)
     return Chunk(subject, seed, first, count, tuple(kinds), decades, tuple(oracles)) if subject else None
+
+
+def label(case: CaseResult) -> str:
+    """The subject, and the kinds that were asked for where they are not all of its own."""
+    chunk = case.chunk
+    kinds = "" if chunk.kinds == chunk.subject.kinds else f" ({', '.join(chunk.kinds)})"
+    return f"{chunk.subject.name}{kinds}"
 
 
 HEADER = ("subject", "check", "judged", "median", "99 %", "worst", "faults")
 
 
-@dataclass(frozen=True)
-class Distribution:
-    """One check of one subject."""
-
-    subject: str
-    check: str
-    errors: tuple[float, ...]
-    faults: int
-
-    @property
-    def quantiles(self) -> tuple[float, float, float]:
-        """Median, 99 % and worst; infinite for what has no number."""
-        ordered = np.sort(np.array(self.errors))
-        places = [math.ceil(share * (len(ordered) - 1)) for share in (0.5, 0.99, 1.0)]
-        median, most, worst = (float(ordered[place]) for place in places)
-        return median, most, worst
-
-
-def label(one: Asked) -> str:
-    """The subject, and the kinds that were asked for where they are not all of its own."""
-    chunk = one.chunk
-    kinds = "" if chunk.kinds == chunk.subject.kinds else f" ({', '.join(chunk.kinds)})"
-    return f"{chunk.subject.name}{kinds}"
-
-
-def lines(told: Iterable[Asked]) -> list[Distribution]:
-    """In the order in which subjects and checks first come up."""
-    found: dict[tuple[str, str], list[tuple[float, bool]]] = {}
-    for one in told:
-        for check, (error, bound) in one.told.errors.items():
-            found.setdefault((label(one), check), []).append((error, not error <= bound))
-    return [
-        Distribution(subject, check, tuple(error for error, _ in pairs), sum(fault for _, fault in pairs))
-        for (subject, check), pairs in found.items()
-    ]
-
-
-def summary(told: Sequence[Asked]) -> list[list[str]]:
+def summary(cases: Sequence[CaseResult]) -> list[list[str]]:
     """Rows of a table under HEADER; a last line a subject says how many cases it refused."""
-    out = [
-        [line.subject, line.check, str(len(line.errors)), *map(_short, line.quantiles), str(line.faults)]
-        for line in lines(told)
-        if line.check != REPORTED
-    ]
-    for line in lines(told):
-        if line.check == REPORTED and any(line.errors):
-            words = f"{sum(line.errors):.0f} reported, though right"
-            out.append([line.subject, words, str(len(line.errors)), "", "", "", ""])
-    for subject, count in refused(told).items():
-        out.append([subject, "refused", str(count), "", "", "", ""])
-    return out
+    checks: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    for case in cases:
+        for check, pair in case.result.errors.items():
+            checks.setdefault((label(case), check), []).append(pair)
+    out, reported = [], []
+    for (subject, check), pairs in checks.items():
+        errors = np.sort([error for error, _ in pairs])
+        if check == REPORTED:
+            if errors.any():
+                words = f"{errors.sum():.0f} reported, though right"
+                reported.append([subject, words, str(len(pairs)), "", "", "", ""])
+            continue
+        quantiles = [_short(errors[math.ceil(share * (len(errors) - 1))]) for share in (0.5, 0.99, 1.0)]
+        out.append([subject, check, str(len(pairs)), *quantiles, str(sum(not error <= most for error, most in pairs))])
+    refusals = [[subject, "refused", str(count), "", "", "", ""] for subject, count in refused(cases).items()]
+    return [*out, *reported, *refusals]
 
 
-def refused(told: Iterable[Asked]) -> Mapping[str, int]:
+def refused(cases: Iterable[CaseResult]) -> Mapping[str, int]:
     """How many cases a subject can't build, by its own word."""
-    return Counter(label(one) for one in told if any(why.startswith("unsupported") for why in one.told.not_asked))
+    return Counter(label(case) for case in cases if any(why.startswith("unsupported") for why in case.result.skipped))
 
 
 def _short(value: float) -> str:
@@ -237,35 +195,29 @@ def _short(value: float) -> str:
 FOUND = ("subject", "check", "error", "may be", "seed", "decades", "case", "kinds")
 
 
-def findings(told: Iterable[Asked]) -> list[list[str]]:
+def findings(cases: Iterable[CaseResult]) -> list[list[str]]:
     """Rows of a table under FOUND, one for each check that fails in a case."""
     return [
         [
-            one.chunk.subject.name,
+            case.chunk.subject.name,
             check,
-            _short(one.told.errors[check][0]),
-            _short(one.told.errors[check][1]),
-            str(one.chunk.seed),
-            str(one.chunk.decades),
-            str(one.number),
-            ",".join(one.kinds),
+            *map(_short, case.result.errors[check]),
+            str(case.chunk.seed),
+            str(case.chunk.decades),
+            str(case.number),
+            ",".join(case.kinds),
         ]
-        for one in told
-        for check in one.told.faults
+        for case in cases
+        for check in case.result.faults
     ]
 
 
-def left_out(told: Iterable[Asked]) -> list[list[str]]:
-    """(law, why it was not asked, subjects, cases), the most frequent first; numbers in reasons are left out."""
-    found: dict[tuple[str, str], Counter[str]] = {}
-    for one in told:
-        for reason in one.told.not_asked:
-            law, _, why = reason.partition(": ")
-            if law != "unsupported":
-                key = law, re.sub(r"\d[\d.e+-]*", "...", why)
-                found.setdefault(key, Counter())[one.chunk.subject.name] += 1
-    rows = [
-        [law, why, ", ".join(f"{name} {many}" for name, many in of.most_common()), str(of.total())]
-        for (law, why), of in found.items()
-    ]
-    return sorted(rows, key=lambda row: -int(row[-1]))
+def skip_reasons(cases: Iterable[CaseResult]) -> list[tuple[str, str, int]]:
+    """(oracle, why it did not apply, cases), the most frequent first; numbers in reasons are left out."""
+    found: Counter[tuple[str, str]] = Counter()
+    for case in cases:
+        for reason in case.result.skipped:
+            oracle, _, why = reason.partition(": ")
+            if oracle != "unsupported":
+                found[oracle, re.sub(r"\d[\d.e+-]*", "...", why)] += 1
+    return [(oracle, why, count) for (oracle, why), count in found.most_common()]

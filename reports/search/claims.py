@@ -14,7 +14,7 @@ from engines.lagrange import HELD, TRUTH
 from engines.remembered import by_identity
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search.law import NotAsked
+from reports.search.law import Errors, Skip
 
 LASTS = 2.0  # times the mechanism's own time scale
 STEPS, EVERY = (40, 100, 200), (1, 2, 5)  # in that time, and between samples: in turn, by the case's number
@@ -22,20 +22,19 @@ CLAIMED, REACTIONS, REPORTED = "claimed", "claimed of reactions", "reported, tho
 ASKED = 16  # motions of the judge that are kept, as all engines are asked of one mechanism after the other
 
 
-def errors(engine: Engine, mechanism: Mechanism, number: int) -> dict[str, tuple[float, float]]:
+def errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | Skip:
     """(error, claim) of poses, in radians or parts of the length, and of reactions, in parts of the largest force.
 
-    REPORTED, which is 1 or 0, of motions alone that are right from beginning to end: no fault, but counted. Raises
-    NotAsked where the engine claims nothing, or the judge does not hold its own motion.
+    REPORTED, which is 1 or 0, of motions alone that are right from beginning to end: no fault, but counted.
     """
     steps, every = STEPS[number % len(STEPS)], EVERY[number // len(STEPS) % len(EVERY)]
     dt = LASTS * mechanism.time_scale / steps
     run = engine.build(mechanism, dt)(steps // every, every)
     if run.estimate is None:
-        raise NotAsked("it has no estimate of its own error")
+        return Skip("it has no estimate of its own error")
     truth = _judged(mechanism)
     if truth.unresolved_at is not None or truth.warnings or not np.isfinite(truth.pose).all():
-        raise NotAsked(f"the judge itself does not hold {HELD:g}, as it says")
+        return Skip(f"the judge itself does not hold {HELD:g}, as it says")
     return compared(mechanism, run, truth)
 
 

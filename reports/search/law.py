@@ -1,185 +1,80 @@
-"""What accelerations, or velocities after an impulse, a mechanism's own rows allow: the judge at one instant.
+"""Differences of motions and forces, and how large rounding and a solver's tolerance make them, by one rule.
 
-Gauss's principle: of all that satisfy the rows it is the nearest to the free motion, in the metric of the masses. Rows
-may give way to their forces, as an engine says that its own do.
+A check fails where its error is more than MARGIN times the noise of its case, and more than a floor. Noise is the
+largest difference of the same case in descriptions that are shifted and turned a little and rounded otherwise, so that
+every number of every step is rounded anew, and of the same engine with a solver that goes much farther
+(`Engine.alike`). So it has the condition of the case in it: nearly dependent rows, masses far apart, weights of
+combined runs, gaps that are closed although they are but rounded.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from engines.conformance.same import Described, Isometry
+from engines.constrained import constrained
+from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
+from reports.gate.change import Nudge
 
 Array = NDArray[np.float64]
-ROUNDINGS = 10.0  # of a place or a velocity
-ESTIMATED = 10.0  # times its own estimate an error may be
-REFINED = 3
+
+MARGIN = 10.0  # noise is the largest of a few draws
+NUDGES, NUDGED = 3, 1e-3  # of its place and of a radian: what depends on these themselves changes as little
+Errors = Mapping[str, tuple[float, float]]  # by check (error, what it may be)
 
 
-class NotAsked(Exception):
-    """A law that can't be asked of an engine here; the message is one sentence that says why."""
+@dataclass(frozen=True)
+class Skip:
+    """The reason why a check does not apply to a case, one sentence."""
+
+    reason: str
 
 
 class Fault(Exception):
-    """Something is not there that has to be; the message is one sentence that says what."""
+    """An error without a number; the message is one sentence that says what is wrong."""
 
 
-@dataclass(frozen=True, eq=False)
-class Constrained:
-    """Accelerations or velocities (bodies, 3), and the forces or impulses of the rows (rows,)."""
+def nudges(mechanism: Mechanism, away: float = 0.0) -> Iterator[Described]:
+    """The mechanism shifted by NUDGED of how far `away` [m] it stands, turned by as much, and with rounded numbers.
 
-    motion: Array
-    force: Array
-
-
-def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: Array | None = None) -> Constrained:
-    """J a = right - give give^T f with M (a - free) = J^T f, for rows (rows, 3 bodies) and `give` (rows, any number).
-
-    By the SVD of J M^(-1/2), never through its square. That is right to rounding of the largest part of M^(1/2) a, in
-    which a light body's is small: so what both equations leave is solved for again (iterative refinement; Skeel 1980).
+    Beside each stands the function that describes a run of it back.
     """
-    if not len(rows):
-        return Constrained(free, np.zeros(0))
-    root = np.sqrt(inertias.reshape(-1))
-    matrix = rows / root
-    norm = np.linalg.norm(matrix, axis=1)
-    if give is not None:  # further coordinates of unit mass, which the forces move
-        matrix = np.hstack([matrix, give])
-    left, sizes, turned = np.linalg.svd(matrix / norm[:, None], full_matrices=False)
-    own, motion, force = free.reshape(-1), np.zeros(len(root)), np.zeros(len(rows))
-    for _ in range(1 + REFINED):
-        pushed = own - motion + (rows.T @ force) / root**2
-        short = right - rows @ motion - (0.0 if give is None else give @ (give.T @ force))
-        lacking = left.T @ ((short - rows @ pushed) / norm)
-        motion = motion + pushed + (turned.T @ (lacking / sizes))[: len(root)] / root
-        force = force + left @ (lacking / sizes**2) / norm
-    return Constrained(motion.reshape(-1, 3), force)
+    random = np.random.default_rng(NUDGES)
+    far = NUDGED * max(away, mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+    for seed, (x, y, turn) in enumerate(random.uniform(-1.0, 1.0, (NUDGES, 3)).tolist()):
+        moved, back = Isometry(turn=NUDGED * turn, shift=(far * x, far * y))(mechanism)
+        with suppress(InvalidMechanism):  # numbers that fit to the last digit alone
+            moved = Nudge(seed)(moved)
+        yield moved, back
 
 
-def ideal(mechanism: Mechanism, pose: Array, twist: Array) -> Constrained:
-    """Accelerations and forces of a mechanism whose rows do not give way."""
-    free = mechanism.unconstrained(pose, twist)
-    return constrained(mechanism.rows(pose), mechanism.bias(pose, twist), mechanism.inertias, free)
+def difference(mechanism: Mechanism, found: Array, expected: Array, scales: tuple[Array, ...] = ()) -> float:
+    """The largest difference of two motions (..., bodies, 3), relative to the largest of `expected` and of `scales`.
 
-
-@dataclass(frozen=True, eq=False)
-class Response:
-    """What joints make of rows that miss by so much: motions M^-1 J^T A^-1 (3 bodies, rows), and forces A^-1 (rows,
-    rows), with A = J M^-1 J^T + give give^T."""
-
-    motion: Array
-    force: Array
-
-
-def response(rows: Array, inertias: Array, give: Array | None = None) -> Response:
-    """By the SVD of J M^(-1/2), as in `constrained`: the larger the more nearly rows depend on each other, and the
-    farther masses are apart."""
-    root = np.sqrt(inertias.reshape(-1))
-    matrix = rows / root
-    norm = np.linalg.norm(matrix, axis=1)
-    if not len(rows):
-        return Response(np.zeros((len(root), 0)), np.zeros((0, 0)))
-    given = matrix if give is None else np.hstack([matrix, give])
-    left, sizes, turned = np.linalg.svd(given / norm[:, None], full_matrices=False)
-    motion = (turned.T[: len(root)] / sizes) @ left.T / norm / root[:, None]
-    return Response(motion, (left / sizes**2) @ left.T / norm / norm[:, None])
-
-
-def lost_in_products(mechanism: Mechanism, pose: Array) -> float:
-    """Which part of forces, or of what closes a gap, rounding of A = J M^-1 J^T may change, whoever forms it.
-
-    Its sums are rounded by dA = eps |J| M^-1 |J^T|, in which a body that is far from its joint, beside its radius of
-    gyration, leaves nothing of its mass. So f of A f = b changes by |A^-1| dA |f| (Higham 2002, theorem 7.4), beside
-    the largest of f sqrt(diag A), in which rows of any unit are alike. Bodies move as forces do.
+    Rotations count as the arcs that they make at the mechanism's own length. Infinite where a number is lost.
     """
-    rows, light = mechanism.rows(pose), 1 / mechanism.inertias.reshape(-1)
-    if not len(rows):
-        return 0.0
-    size = np.sqrt(rows**2 @ light)
-    inverse = np.abs(response(rows, mechanism.inertias).force) * np.outer(size, size)
-    products = (np.abs(rows) * light) @ np.abs(rows.T) / np.outer(size, size)
-    return float(np.finfo(float).eps * (inverse @ products).sum(axis=1).max())
+    return _relative(found, expected, np.array([1.0, 1.0, mechanism.length_scale]), scales)
 
 
-def carried(mechanism: Mechanism, pose: Array, wrong: Array, gap: Array | float = 0.0) -> Constrained:
-    """What numbers that are `wrong` (bodies, 3) by so much, and a `gap` (rows,), leave in motions (bodies, 3), and in
-    impulses (rows,).
+def force_difference(mechanism: Mechanism, found: Array, expected: Array, scales: tuple[Array, ...] = ()) -> float:
+    """The same of forces (..., rows): torques count as the forces that they need at the mechanism's own length.
 
-    Each row then misses by e, the sum of its sizes times these, and joints that set it right move bodies (`response`).
-    Rounding has no sign, so squares are added. A motion is wrong by its numbers at least.
+    Rows whose force is NaN, since the engine can't tell it, are left out.
     """
-    rows = mechanism.rows(pose)
-    back = response(rows, mechanism.inertias)
-    missed = np.linalg.norm(rows * wrong.reshape(-1), axis=1) + gap
-    moved = np.linalg.norm(back.motion * missed, axis=1).reshape(-1, 3)
-    return Constrained(np.maximum(wrong, moved), np.linalg.norm(back.force * missed, axis=1))
-
-
-def rounded(
-    rows: Array,
-    law: Constrained,
-    right: Array,
-    inertias: Array,
-    free: Array,
-    give: Array,
-    doubt: tuple[Array, Array],
-) -> Constrained:
-    """What rounding of everything that enters `constrained` leaves in its motion and its forces, `law`.
-
-    `doubt` (rows,) and (bodies, 3): by how much `right`, and M a, may be wrong beside their own rounding.
-
-    With e the unit of rounding, dJ = e |J|, M, J, f and a as there and G = give give^T, the first order of
-    M a - J^T f = M free and J a + G f = right is
-
-        M da - J^T df = u, u = e (|J^T f| + |M free|) + doubt;  J da + G df = w, w = e (|J a| + |right|) + doubt
-        da = S M^-1 u + M^-1 J^T A^-1 w,  df = A^-1 (w - J M^-1 u),  A = J M^-1 J^T + G,  S = 1 - M^-1 J^T A^-1 J
-
-    where products of absolute values are meant. Rounding has no sign, so squares are added.
-    """
-    unit = ROUNDINGS * np.finfo(float).eps
-    inverse, motion, back = 1 / inertias.reshape(-1), law.motion.reshape(-1), response(rows, inertias, give)
-    pushed = unit * np.sqrt((rows**2).T @ law.force**2 + (free.reshape(-1) / inverse) ** 2) + doubt[1].reshape(-1)
-    lacking = unit * np.sqrt(rows**2 @ motion**2 + right**2) + doubt[0]
-    moved = np.hstack([back.motion * lacking, (np.eye(len(motion)) - back.motion @ rows) * inverse * pushed])
-    pulled = np.hstack([back.force * lacking, back.motion.T * pushed])
-    return Constrained(np.linalg.norm(moved, axis=1).reshape(-1, 3), np.linalg.norm(pulled, axis=1))
-
-
-def written(mechanism: Mechanism, away: float = 0.0) -> Array:
-    """How large the numbers (bodies, 3) are in which it is written [m, m, and 1 for a cosine]; at least `away` [m]."""
-    out = np.ones_like(mechanism.pose)
-    far = np.abs(mechanism.pose[:, :2]).max(axis=1)
-    out[:, :2] = np.maximum(far, max(mechanism.length_scale, away))[:, None]
-    return out
-
-
-def difference(mechanism: Mechanism, found: Array, expected: Array, others: tuple[Array, ...] = ()) -> float:
-    """The largest difference of two motions (bodies, 3), beside the largest of them and of `others`; NaN is infinite.
-
-    Rotations count as the arcs that they make at the mechanism's own length.
-    """
-    size = np.array([1.0, 1.0, mechanism.length_scale])
-    largest = max(float(np.abs(each * size).max()) for each in (expected, *others))
-    error = float(np.abs((found - expected) * size).max())
-    if not np.isfinite(error):
-        return np.inf
-    return error / largest if largest > 0 else (np.inf if error > 0 else 0.0)
-
-
-def force_difference(mechanism: Mechanism, found: Array, expected: Array, others: tuple[float, ...] = ()) -> float:
-    """The same of forces (rows,): torques count as the forces that they need at the mechanism's own length.
-
-    Rows whose force is NaN, since the engine can't tell it, are left out. `others` [N] are sizes to compare with.
-    """
+    known = ~np.isnan(found)
     size = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
-    told = ~np.isnan(found)
-    if not told.any():
-        return 0.0
-    largest = max(float(np.abs(expected * size).max()), *others, 0.0)
-    error = float(np.abs((found - expected) * size)[told].max())
+    return _relative(np.where(known, found, 0.0), np.where(known, expected, 0.0), size, (expected, *scales))
+
+
+def _relative(found: Array, expected: Array, size: Array, scales: tuple[Array, ...]) -> float:
+    largest = max(float(np.abs(values * size).max(initial=0.0)) for values in (expected, *scales))
+    error = float(np.abs((found - expected) * size).max(initial=0.0))
     if not np.isfinite(error):
         return np.inf
     return error / largest if largest > 0 else (np.inf if error > 0 else 0.0)
@@ -195,7 +90,8 @@ def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array)
     size = np.array([1.0, 1.0, mechanism.length_scale])
     parts = np.abs(rows.reshape(len(rows), *twist.shape) / size).max(axis=-1, initial=0.0)  # (rows, bodies)
     moving = parts.max(axis=1, initial=0.0) * ((parts > 0) @ np.abs(twist * size).max(axis=-1))
-    spin = np.abs(twist[:, 2]).max() * dt + np.abs(ideal(mechanism, pose, twist).motion[:, 2]).max() * dt**2
+    change = constrained(rows, bias, mechanism.inertias, mechanism.unconstrained(pose, twist)).motion
+    spin = np.abs(twist[:, 2]).max() * dt + np.abs(change[:, 2]).max() * dt**2
     return float(max(spin, dt * (np.abs(bias) / np.where(moving > 0, moving, np.inf)).max(initial=0.0)))
 
 

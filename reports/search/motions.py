@@ -1,238 +1,104 @@
 """A short motion and its reactions against the judge, at two steps or more, with the order that the engine promises.
 
-The judge moves one mechanism at a time: no two cases are of one shape.
+An order shows where steps are short against all that happens: a rod that turns fast, impulses that settle in many
+steps, a gap that is closed in a time of its own. So they are halved, up to FINEST parts, until it shows for poses and
+for reactions; an error that was small by chance does not count against the next. A step at which the motion is lost, as
+anybody sees, is too long, if it is right at shorter ones. What never falls is a fault, unless it is noise
+(`reports.search.law`), what joints that give way as declared leave, or what a textbook method does not show either.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from engines import Engine, Promise, Unpromised
 from engines.lagrange import HELD, TRUTH
-from engines.pymunk import Pymunk
-from engines.pymunk.contraction import contraction_at
 from engines.remembered import by_identity
-from reference.joints import Roll
 from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
 from reports.gate.judge import TABLEAUS, giving_way, in_numpy, own_inertia
 from reports.search.law import (
-    ESTIMATED,
+    MARGIN,
+    Errors,
     Fault,
-    NotAsked,
+    Skip,
     difference,
+    driving_force,
     force_difference,
+    nudges,
     turned_in_a_step,
 )
-from reports.search.motion_bounds import (
-    COARSE,
-    LEAST,
-    ROOM,
-    SAMPLES,
-    SPAN,
-    drifted,
-    force_size,
-    least_of,
-    left_by_newton,
-    left_open,
-    rounded_reactions,
-    shares,
-    size_of,
-)
+from reports.search.relations import ESTIMATED
 
-# An order shows where steps are short against all that happens: a rod that turns fast, impulses that settle in many
-# steps, a gap that is closed in a time of its own. So they are halved, up to this many parts, until it shows for
-# poses and for reactions; an error that was small by chance does not count against the next. What never falls is a
-# fault, as rounding that grows with shorter steps excuses no more than it does at the first. A step at which the
-# motion is lost, as anybody sees, is too long, if it is right at shorter ones: kept impulses of rows that turn within
-# it grow, say. A method that tells its own error has to tell that, too.
+Array = NDArray[np.float64]
+Floors = dict[str, float]
+
+SPAN = 0.4  # of the mechanism's own time scale: nothing has had time to become chaotic
+SAMPLES, COARSE = 4, 10  # and steps between samples
+# Above what the promised order lets expect of the coarser step: the next power of the step, and samples (as in
+# engines.conformance.moving).
+ROOM = 2.5
+# Relative to the motion: rounding, that of combined runs and of a drive which a large inertia holds.
+LEAST = {"motion": 1e-8, "reactions": 1e-5}
 FINEST = 64
 LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
 OFF = 0.1  # of a radian, or of the mechanism's length: forces of poses that far away are other forces
 ASKED = 16  # mechanisms of which all engines are asked before others come: see `chunk.SIZE`
 HARD = 1e-10  # of the time scale squared: joints that give way by less are ideal here
-
-
-def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float]]:
-    """(error at the finer step, what it may be) of "motion", "reactions" and, of an engine that gives one, "estimate".
-
-    Raises NotAsked where nothing is promised or joints give way for good; Fault where a motion is lost in silence.
-    """
-    if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.touches:
-        raise NotAsked("shapes that touch may part, and those with corners do not roll as the curves do, at any step")
-    dt = SPAN * mechanism.time_scale / SAMPLES / COARSE
-    coarse = _run(engine, mechanism, dt, COARSE)
-    promise = engine.order(mechanism)
-    if isinstance(promise, Unpromised):
-        raise NotAsked(f"no order is promised: {promise.reason}")
-    if _gives_way(engine, mechanism, dt):
-        raise NotAsked("joints give way as the engine says, by the same at every step")
-    truth = judged(mechanism)
-    if not np.isfinite(truth.pose).all():
-        raise NotAsked("the judge itself finds no motion")
-    if truth.unresolved_at is not None:
-        raise NotAsked(f"the judge itself does not hold {HELD:g}, as it says")
-    if max(turned_in_a_step(mechanism, dt, *state) for state in zip(truth.pose, truth.twist, strict=True)) > 1:
-        raise NotAsked("steps are too long for what turns, so that no order is seen")
-    out: dict[str, tuple[float, float]] = {}
-    parts, run, warned, silent, longest = 1, coarse, False, 0, 0
-    while parts < FINEST and (not out or _misses(out)):
-        finer = _run(engine, mechanism, dt / (2 * parts), 2 * parts * COARSE)
-        if not out and (coarse.warnings or finer.warnings):
-            raise NotAsked("it says itself that something is wrong")
-        parts *= 2
-        if finer.warnings:
-            warned, silent = True, 0
-            continue
-        silent += 1
-        longest = max(longest, silent)
-        run, coarser = finer, _apart(mechanism, run, truth, promise)
-        least, apart = least_of(engine, mechanism, promise, truth, parts), _apart(mechanism, run, truth, promise)
-        if apart["motion"] * size_of(mechanism, truth, promise) > OFF * mechanism.length_scale:
-            least["reactions"] = LOST
-        for name, error in apart.items():
-            known = least[name] < LOST and (coarser[name] < LOST or parts == FINEST)
-            if known and (name not in out or not out[name][0] <= out[name][1]):
-                out[name] = (error, _may_be(promise, name, coarser[name], least[name]))
-    lost = not np.isfinite(run.pose).all()
-    if lost or _misses(out):
-        if warned and longest < 2:  # what two steps after each other say nothing of is silent
-            raise NotAsked("it says itself, at shorter steps, that something is wrong")
-        left = _left_by_sweeps(engine, mechanism, truth, dt / parts)
-        if lost:
-            raise Fault(f"at a step of {dt / parts:.3g} s it lost the motion, and says nothing")
-        newton = shares(mechanism, truth, promise, left_by_newton(engine, mechanism, truth, dt / parts))
-        if all(error <= max(bound, newton[name]) for name, (error, bound) in out.items()):
-            raise NotAsked("what is missed is within the tolerance of Newton's method that it declares")
-        out |= _as_declared(engine, mechanism, promise, truth, run, parts)
-        if _misses(out) and not _resolved(mechanism, promise, truth, max(4, int(parts * (1 - left)))):
-            raise NotAsked("something passes within a step: a textbook method shows no order at these steps either")
-    if run.estimate is not None:
-        size = np.array([1.0, 1.0, mechanism.length_scale])
-        both = max(float(np.abs(each * size).max()) for each in (run.estimate, truth.estimate) if each is not None)
-        # The judge may miss as much as it says, too, and what it leaves open.
-        told = (both + left_open(mechanism, truth)) / size_of(mechanism, truth, promise)
-        missed = _apart(mechanism, run, truth, promise)["motion"]
-        out["estimate"] = (missed, min(ESTIMATED * told + LEAST["motion"], LOST))
-    return out
+WARNED = Skip("it says itself that something is wrong")
 
 
 @by_identity(ASKED)
 def judged(mechanism: Mechanism) -> Trajectory:
-    """What the judge says of a mechanism, which many engines are asked about."""
+    """The judge's motion of a mechanism, which many engines are asked about."""
     return TRUTH.build(mechanism, SPAN * mechanism.time_scale / SAMPLES)(SAMPLES, 1)
 
 
-def _run(engine: Engine, mechanism: Mechanism, dt: float, every: int) -> Trajectory:
-    run = engine.build(mechanism, dt)(SAMPLES, every)
+def errors(engine: Engine, mechanism: Mechanism) -> Errors | Skip:
+    """(error at the finer step, what it may be) of "motion", "reactions" and, of an engine that gives one, "estimate".
+
+    Raises Fault where a motion is lost in silence.
+    """
+    if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.touches:
+        return Skip("shapes that touch may part, and those with corners do not roll as the curves do, at any step")
+    dt = SPAN * mechanism.time_scale / SAMPLES / COARSE
+    coarse = _run(engine, mechanism, dt, 1)
+    promise = engine.order(mechanism)
+    if isinstance(promise, Unpromised):
+        return Skip(f"no order is promised: {promise.reason}")
+    if _gives_way(engine, mechanism, dt):
+        return Skip("joints give way as the engine says, by the same at every step")
+    truth = judged(mechanism)
+    if not np.isfinite(truth.pose).all():
+        return Skip("the judge itself finds no motion")
+    if truth.unresolved_at is not None:
+        return Skip(f"the judge itself does not hold {HELD:g}, as it says")
+    if max(turned_in_a_step(mechanism, dt, *state) for state in zip(truth.pose, truth.twist, strict=True)) > 1:
+        return Skip("steps are too long for what turns, so that no order is seen")
+    case = _Case(engine, mechanism, promise, truth, dt)
+    halved = case.halved(coarse)
+    if isinstance(halved, Skip):
+        return halved
+    run, parts, out = halved
+    reason = case.excuse(run, parts, out) if _fails(out) else None
+    if reason is not None:
+        return reason
+    if run.estimate is not None:
+        out["estimate"] = case.of_estimate(run, parts)
+    return out
+
+
+def _run(engine: Engine, mechanism: Mechanism, dt: float, parts: int) -> Trajectory:
+    run = engine.build(mechanism, dt / parts)(SAMPLES, parts * COARSE)
     if run.estimate is not None and not run.warnings and not np.isfinite(run.pose).all():
-        raise Fault(f"at a step of {dt:.3g} s it lost the motion, though it tells its own error")
+        raise Fault(f"at a step of {dt / parts:.3g} s it lost the motion, though it tells its own error")
     return run
-
-
-def _apart(mechanism: Mechanism, run: Trajectory, truth: Trajectory, promise: Promise) -> dict[str, float]:
-    largest = np.array([[size_of(mechanism, truth, promise), 0.0, 0.0]])
-    moved = [
-        difference(mechanism, own - mechanism.pose, right - mechanism.pose, (largest,))
-        for own, right in zip(run.pose[1:], truth.pose[1:], strict=True)
-    ]
-    most = force_size(mechanism, truth)
-    pulled = [
-        force_difference(mechanism, own, right, (most,))
-        for own, right in zip(run.reaction[1:], truth.reaction[1:], strict=True)
-    ]
-    return {"motion": max(moved), "reactions": max(pulled)}
-
-
-def _may_be(promise: Promise, name: str, coarser: float, least: float) -> float:
-    order = promise.of("angle" if name == "motion" else "reaction")
-    return min(max(ROOM * coarser * 0.5 ** min(order, 20.0), LEAST[name], least), LOST)
-
-
-def _misses(found: dict[str, tuple[float, float]]) -> bool:
-    return any(not error <= bound for error, bound in found.values())
-
-
-def _resolved(mechanism: Mechanism, promise: Promise, truth: Trajectory, parts: int) -> bool:
-    """Whether a textbook method of the promised order, or 4, shows it up to these parts: twice, for once may be luck.
-
-    A spring that shrinks to nothing for less than a step pushes one way and then the other: what a method makes of that
-    depends on where its stages fall, and its error on no power of the step.
-    """
-    own = Promise(max((each for each in TABLEAUS if each <= promise.order), default=1))
-    spacing = SPAN * mechanism.time_scale / SAMPLES
-    halved = (parts // 4, parts // 2, parts)
-    try:
-        runs = [in_numpy(mechanism, SAMPLES, spacing, int(own.order), n * COARSE, None, True) for n in halved]
-    except ValueError:  # it went where curves can't touch
-        return False
-    found = [_apart(mechanism, run, truth, own) for run in runs]
-    rounded = drifted(mechanism, truth, SAMPLES * COARSE * parts) / size_of(mechanism, truth, promise)
-    least = {"motion": rounded, "reactions": rounded_reactions(mechanism, own, truth, spacing / COARSE / 2)}
-    return not any(
-        _misses({name: (fine[name], _may_be(own, name, coarse[name], least[name])) for name in fine})
-        for coarse, fine in pairwise(found)
-    )
-
-
-def _as_declared(
-    engine: Engine, mechanism: Mechanism, promise: Promise, truth: Trajectory, run: Trajectory, parts: int
-) -> dict[str, tuple[float, float]]:
-    """How far a run is from the judge's with joints that give way as declared at its step, and how far it may be.
-
-    A softness that is tied to the step falls with its power only where it is small: a light body's gear that turns a
-    heavy one gives way by a radian, and a row without its term of velocities loses the energy of a short rod's end
-    until the row turns little in its own time constant. The judge's own run shows that, at the same steps, and the
-    engine may be ROOM times as far from it as its numbers are open: by the steps, which it takes in other coordinates,
-    as far as double steps lead; and by the compliance, a share of an inverse inertia, which the judge takes at each
-    pose and MuJoCo at the start: as far as their largest ratio leads.
-    """
-    spacing = SPAN * mechanism.time_scale / SAMPLES
-    softness = engine.softness(mechanism, spacing / COARSE / parts)
-    if softness is None or not softness.compliance:
-        return {}
-    order, gives = int(promise.step("angle")), giving_way(mechanism, softness)
-
-    def judged_as(compliance: float, finer: float = 1.0) -> Trajectory:
-        soft = replace(softness, compliance=compliance * softness.compliance)
-        every = max(1, int(finer * parts))  # of SAMPLES x COARSE samples, so that fast rows are met
-        return in_numpy(mechanism, SAMPLES * COARSE, spacing / COARSE, order, every, soft, least=0.0)
-
-    try:
-        right = judged_as(1.0)
-        products = [(rows / mechanism.inertias.reshape(-1)) @ rows.T for rows in mechanism.rows(right.pose)]
-        own = np.array([own_inertia(each, gives, 0.0)[gives] for each in products])
-        others = judged_as(1.0, 0.5), judged_as(float((own.max(axis=0) / own.min(axis=0)).max()))
-    except ValueError:  # curves can't touch where it goes
-        return {}
-    right, *others = (
-        replace(each, **{name: getattr(each, name)[::COARSE] for name in ("t", "pose", "twist", "reaction")})
-        for each in (right, *others)
-    )
-    found = [_apart(mechanism, each, right, promise) for each in others]
-    least = least_of(engine, mechanism, promise, truth, parts)
-    return {
-        name: (error, max(LEAST[name], least[name], ROOM * max(each[name] for each in found)))
-        for name, error in _apart(mechanism, run, right, promise).items()
-    }
-
-
-def _left_by_sweeps(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt: float) -> float:
-    """Which part r of the slowest mode a step's sweeps leave, where their number is given: 0 for any other engine.
-
-    Impulses then follow a motion only over 1 / (1 - r) steps, and a share of a gap above (1 - r) / r that is closed in
-    one makes them grow (`engines.pymunk.contraction`): as shipped, pymunk closes 99.8 % in a second, whatever the
-    mechanism's own time. Raises NotAsked where that is so at this step.
-    """
-    if not isinstance(engine, Pymunk) or not isinstance(engine.iterations, int):
-        return 0.0
-    left = max(contraction_at(mechanism, pose) for pose in truth.pose) ** engine.iterations
-    if isinstance(engine.error_bias, float) and (1 - engine.error_bias**dt) * left > 1 - left:
-        raise NotAsked("its sweeps leave more of an impulse than it may close of a gap at these steps")
-    return left
 
 
 def _gives_way(engine: Engine, mechanism: Mechanism, dt: float) -> bool:
@@ -242,3 +108,188 @@ def _gives_way(engine: Engine, mechanism: Mechanism, dt: float) -> bool:
         return False
     ways = [soft.compliance / soft.stiffness / mechanism.time_scale**2 for soft in (coarse, fine)]
     return ways[1] > HARD and 2 * ways[1] > ways[0]
+
+
+def _fails(found: Errors) -> bool:
+    return any(not error <= bound for error, bound in found.values())
+
+
+def _tolerance(promise: Promise, name: str, coarser: float, floor: float) -> float:
+    order = promise.of("angle" if name == "motion" else "reaction")
+    return min(max(ROOM * coarser * 0.5 ** min(order, 20.0), LEAST[name], floor), LOST)
+
+
+@dataclass(frozen=True, eq=False)
+class _Case:
+    """A mechanism in an engine, with the judge's motion of it; `dt`: the coarse step [s]."""
+
+    engine: Engine
+    mechanism: Mechanism
+    promise: Promise
+    truth: Trajectory
+    dt: float
+
+    @cached_property
+    def size(self) -> float:
+        """How far anything moves [m], or would without joints; at least so far that rounded places are below LEAST."""
+        mechanism, arm = self.mechanism, np.array([1.0, 1.0, self.mechanism.length_scale])
+        moved = float(np.abs((self.truth.pose - mechanism.pose) * arm).max())
+        pulled = float(np.abs(mechanism.unconstrained(mechanism.pose, mechanism.twist) * arm).max())
+        far = max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+        return max(
+            moved,
+            pulled * (SPAN * mechanism.time_scale) ** 2 / 2,
+            MARGIN * np.finfo(float).eps * far / LEAST["motion"],
+        )
+
+    @cached_property
+    def forces(self) -> tuple[Array, ...]:
+        """What reactions are compared with: those of the judge, and the forces that act."""
+        acting = max(driving_force(self.mechanism, twist) for twist in self.truth.twist)
+        arms = np.where(self.mechanism.turning, self.mechanism.length_scale, 1.0)
+        return np.nan_to_num(self.truth.reaction), arms * max(acting, np.finfo(float).tiny)
+
+    def apart(self, run: Trajectory, other: Trajectory | None = None) -> Floors:
+        """By how much a run differs from another, or from the judge's motion."""
+        other = other or self.truth
+        moved = run.pose[1:] - self.mechanism.pose, other.pose[1:] - self.mechanism.pose
+        return {
+            "motion": difference(self.mechanism, *moved, (np.array([[self.size, 0.0, 0.0]]),)),
+            "reactions": force_difference(self.mechanism, run.reaction[1:], other.reaction[1:], self.forces),
+        }
+
+    def halved(self, run: Trajectory) -> tuple[Trajectory, int, dict[str, tuple[float, float]]] | Skip:
+        """The finest run, its steps as parts of `dt`, and (error, what it may be) by the promised order."""
+        out: dict[str, tuple[float, float]] = {}
+        parts, warned, silent, longest, coarse = 1, False, 0, 0, run
+        while parts < FINEST and (not out or _fails(out)):
+            parts *= 2
+            finer = _run(self.engine, self.mechanism, self.dt, parts)
+            if not out and (coarse.warnings or finer.warnings):
+                return WARNED
+            if finer.warnings:
+                warned, silent = True, 0
+                continue
+            silent += 1
+            longest = max(longest, silent)
+            coarser, errors, run = self.apart(run), self.apart(finer), finer
+            far = errors["motion"] * self.size > OFF * self.mechanism.length_scale
+            for name, error in errors.items():
+                floor = LOST if far and name == "reactions" else LEAST[name]
+                known = floor < LOST and (coarser[name] < LOST or parts == FINEST)
+                if known and (name not in out or not out[name][0] <= out[name][1]):
+                    out[name] = (error, _tolerance(self.promise, name, coarser[name], floor))
+        # What two steps after each other say nothing of is silent.
+        if warned and longest < 2 and (_fails(out) or not np.isfinite(run.pose).all()):
+            return WARNED
+        return run, parts, out
+
+    def excuse(self, run: Trajectory, parts: int, out: dict[str, tuple[float, float]]) -> Skip | None:
+        """Raise what errors may be by noise and by declared softness; the reason why they count for nothing, if any."""
+        if not np.isfinite(run.pose).all():
+            stricter = self.engine.alike(self.mechanism)
+            if stricter is not None and np.isfinite(_run(stricter, self.mechanism, self.dt, parts).pose).all():
+                return Skip("its solver leaves so much at these steps that the motion is lost, and not if it goes on")
+            raise Fault(f"at a step of {self.dt / parts:.3g} s it lost the motion, and says nothing")
+        noise = self.noise(run, parts)
+        out |= {name: (error, max(bound, min(MARGIN * noise[name], LOST))) for name, (error, bound) in out.items()}
+        if _fails(out) and run.estimate is not None:
+            out["motion"] = (out["motion"][0], max(out["motion"][1], self.estimated(run)))
+        if _fails(out):
+            out |= self.as_declared(run, parts)
+        if _fails(out) and not self.resolved(parts):
+            return Skip("something passes within a step: a textbook method shows no order at these steps either")
+        return None
+
+    def noise(self, run: Trajectory, parts: int) -> Floors:
+        """How much errors change with the roundings of the run and of the judge, and with what its solver leaves."""
+        found = dict.fromkeys(LEAST, 0.0)
+
+        def compare(other: Trajectory, with_: Trajectory) -> None:
+            for name, value in self.apart(other, with_).items():
+                found[name] = max(found[name], value)
+
+        for nudged, back in nudges(self.mechanism):
+            for plain, other in (
+                (run, _run(self.engine, nudged, self.dt, parts)),
+                (self.truth, judged.__wrapped__(nudged)),  # pyright: ignore[reportFunctionMemberAccess]
+            ):
+                pose, twist, reaction = back(other)
+                compare(replace(other, pose=pose, twist=twist, reaction=reaction), plain)
+        stricter = self.engine.alike(self.mechanism)
+        if stricter is not None:
+            compare(_run(stricter, self.mechanism, self.dt, parts), run)
+        return found
+
+    def resolved(self, parts: int) -> bool:
+        """Whether a textbook method of the promised order, or 4, shows it up to these parts, twice in a row.
+
+        A spring that shrinks to nothing for less than a step pushes one way and then the other: what a method makes of
+        that depends on where its stages fall, and its error on no power of the step.
+        """
+        usual = Promise(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
+        spacing, parts = SPAN * self.mechanism.time_scale / SAMPLES, max(4, parts)
+        try:
+            runs = [
+                in_numpy(self.mechanism, SAMPLES, spacing, int(usual.order), n * COARSE, None, True)
+                for n in (parts // 4, parts // 2, parts)
+            ]
+        except ValueError:  # it went where curves can't touch
+            return False
+        found = [self.apart(run) for run in runs]
+        return not any(
+            _fails({name: (fine[name], _tolerance(usual, name, coarse[name], LEAST[name])) for name in fine})
+            for coarse, fine in pairwise(found)
+        )
+
+    def as_declared(self, run: Trajectory, parts: int) -> dict[str, tuple[float, float]]:
+        """How far a run is from the judge's with joints that give way as declared at its step, and how far it may be.
+
+        A softness that is tied to the step falls with its power only where it is small: a light body's gear that turns
+        a heavy one gives way by a radian, and a row without its term of velocities loses the energy of a short rod's
+        end until the row turns little in its own time constant. The judge's own run shows that, at the same steps, and
+        the engine may be ROOM times as far from it as its numbers are open: by the steps, which it takes in other
+        coordinates, as far as double steps lead; and by the compliance, a share of an inverse inertia, which the judge
+        takes at each pose and MuJoCo at the start: as far as their largest ratio leads.
+        """
+        mechanism, spacing = self.mechanism, SPAN * self.mechanism.time_scale / SAMPLES
+        softness = self.engine.softness(mechanism, self.dt / parts)
+        if softness is None or not softness.compliance:
+            return {}
+        order, gives = int(self.promise.step("angle")), giving_way(mechanism, softness)
+
+        def judged_as(compliance: float, finer: float = 1.0) -> Trajectory:
+            soft = replace(softness, compliance=compliance * softness.compliance)
+            every = max(1, int(finer * parts))  # of SAMPLES x COARSE samples, so that fast rows are met
+            return in_numpy(mechanism, SAMPLES * COARSE, spacing / COARSE, order, every, soft, least=0.0)
+
+        def at_samples(soft: Trajectory) -> Trajectory:
+            names = ("t", "pose", "twist", "reaction")
+            return replace(soft, **{name: getattr(soft, name)[::COARSE] for name in names})
+
+        try:
+            right = judged_as(1.0)
+            products = [(rows / mechanism.inertias.reshape(-1)) @ rows.T for rows in mechanism.rows(right.pose)]
+            share = np.array([own_inertia(product, gives, 0.0)[gives] for product in products])
+            others = judged_as(1.0, 0.5), judged_as(float((share.max(axis=0) / share.min(axis=0)).max()))
+        except ValueError:  # curves can't touch where it goes
+            return {}
+        right = at_samples(right)
+        open_by = [self.apart(at_samples(other), right) for other in others]
+        return {
+            name: (error, max(LEAST[name], ROOM * max(each[name] for each in open_by)))
+            for name, error in self.apart(run, right).items()
+        }
+
+    def estimated(self, run: Trajectory) -> float:
+        """The error that the estimates of a run and of the judge let pass."""
+        arm = np.array([1.0, 1.0, self.mechanism.length_scale])
+        estimates = [np.abs(one * arm).max() for one in (run.estimate, self.truth.estimate) if one is not None]
+        return ESTIMATED * float(max(estimates)) / self.size + LEAST["motion"]
+
+    def of_estimate(self, run: Trajectory, parts: int) -> tuple[float, float]:
+        """(error, what it may be) of a run that estimates its own; the judge may miss as much as it says, too."""
+        bound, missed = self.estimated(run), self.apart(run)["motion"]
+        if missed > bound:
+            bound = max(bound, MARGIN * self.noise(run, parts)["motion"])
+        return missed, min(bound, LOST)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import shlex
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,38 +16,37 @@ from reports.model.tasks import Answer
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.run.store import Store
 from reports.search import plan
-from reports.search.chunk import Asked, asked, from_words, left_out, refused, stored
+from reports.search.chunk import CaseResult, case_results, chunk_from_json, refused, skip_reasons, stored
 from reports.search.mechanisms import SHAPES
+from reports.search.mujoco_alone import BESIDE, CURVED
 from reports.search.planted import FAULTS, SIZES, Control, controls
-from reports.search.raw_law import BESIDE, CURVED
 from reports.search.recipe import LEAST_RANK, NEAREST
+from reports.search.relations import NAMES
 from reports.search.release import release_of
 from reports.search.shrinking import Shrink, line_of, worst_of
-from reports.search.subjects import Adapted, Alone, Subject, Told, is_shaped
+from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 from reports.write.tables import number
 from reports.write.templates import environment
 
 LAWS = ("acceleration", CURVED, "velocity", "without velocity terms")
-# What the page counts together: checks of one instant, of descriptions, and the others, which are of a motion.
+# The page counts together: checks of one instant, of descriptions, and the others, which are of a motion.
 GROUPS: Mapping[str, tuple[str, ...]] = {
     "instant": (*LAWS, "reaction", "as its groove pushes", BESIDE),
-    "description": (
-        "turned", "shifted", "mirrored", "renamed", "swapped", "in other lengths", "in other masses",
-    ),
+    "description": NAMES,
     "motion": (),
-}  # fmt: skip
+}
 RARE = 0.01  # of all cases: reasons that came up less often are counted together
 LEAST, MOST = 1e-17, 1e2  # what an error of exactly zero, and one without a number, is drawn at
 LINE = 0.24  # inches
 
 
-def distribution(told: Iterable[Asked], theme: Theme = LIGHT) -> Figure | None:
+def distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figure | None:
     """A line a subject, from the median to the worst error of its law of an instant; None where none was asked."""
     found: dict[str, list[float]] = {}
-    for one in told:
+    for case in cases:
         for law in LAWS:
-            if law in one.told.errors:
-                found.setdefault(one.chunk.subject.name, []).append(one.told.errors[law][0])
+            if law in case.result.errors:
+                found.setdefault(case.chunk.subject.name, []).append(case.result.errors[law][0])
     if not found:
         return None
     with settings():
@@ -71,59 +70,59 @@ def distribution(told: Iterable[Asked], theme: Theme = LIGHT) -> Figure | None:
     return figure
 
 
-def known_subjects(words: Sequence[str]) -> list[Subject]:
-    """Every engine that is registered, and MuJoCo alone in the releases that these words name."""
-    releases = dict.fromkeys(release_of(json.loads(word)[0]) for word in words)
+def known_subjects(texts: Sequence[str]) -> list[Subject]:
+    """Every engine that is registered, and MuJoCo alone in the releases that these pieces, as JSON, name."""
+    releases = dict.fromkeys(release_of(json.loads(text)[0]) for text in texts)
     engines = dict.fromkeys([*ENGINES, *OTHERS, plan.GROOVE.engine])
     return [*(Adapted(engine) for engine in engines), *(Alone(each) for each in releases if each is not None)]
 
 
-Stored = tuple[list[Asked], list[tuple[Shrink, Answer]], Mapping[Control, Answer]]
+Stored = tuple[list[CaseResult], list[tuple[Shrink, Answer]], Mapping[Control, Answer]]
 
 
 def read(store: Store, published: bool = False) -> Stored:
     """The cases that are stored for the present sources, the findings among them that were made smaller, and how soon
     planted faults were found; `published`: of the plan alone (`reports.search.plan`), whose seeds nobody chose."""
-    words = store.remembered()
-    subjects = known_subjects(words)
-    pieces = [piece for piece in (from_words(word, subjects) for word in words) if piece is not None]
-    told = list(asked(stored(store, plan.published() if published else pieces)))
-    tasks = [Shrink.of(check, one) for check, one in worst_of(told)]
+    texts = store.remembered()
+    subjects = known_subjects(texts)
+    pieces = [piece for piece in (chunk_from_json(text, subjects) for text in texts) if piece is not None]
+    cases = list(case_results(stored(store, plan.published() if published else pieces)))
+    tasks = [Shrink.of(check, case) for check, case in worst_of(cases)]
     small, soon = store.answers(tasks), store.answers(controls())
     found = [(task, small[task]) for task in tasks if task in small]
-    return told, found, {task: soon[task] for task in controls() if task in soon}
+    return cases, found, {task: soon[task] for task in controls() if task in soon}
 
 
 def files(
-    told: Sequence[Asked],
+    cases: Sequence[CaseResult],
     findings: Sequence[tuple[Shrink, Answer]],
     planted: Mapping[Control, Answer],
     foot: str,
     planned: int = 0,
 ) -> dict[str, str]:
     """search.md and its picture, by name; nothing of a search that asked nothing. `planned`: 0 for no plan."""
-    if not told:
+    if not cases:
         return {}
-    picture = distribution(told)
+    picture = distribution(cases)
     out = {} if picture is None else {"search_errors.svg": svg(picture, "Errors by engine")}
     page = {
-        "cases": len(told),
-        "planned": max(planned, len(told)),
-        "alone": any(isinstance(one.chunk.subject, Alone) for one in told),
+        "cases": len(cases),
+        "planned": max(planned, len(cases)),
+        "alone": any(isinstance(case.chunk.subject, Alone) for case in cases),
         "cases_a_seed": (plan.CASES, plan.COMPILED),
-        "shapes": SHAPES if any(is_shaped(one.chunk.subject) for one in told) else 0,
+        "shapes": SHAPES if any(is_shaped(case.chunk.subject) for case in cases) else 0,
         "rank": number(LEAST_RANK, 1),
         "near": number(NEAREST, 1),
         "rule": plan.origin(),
         "seeds": ", ".join(map(str, plan.seeds())),
-        "by_rule": {one.chunk.seed for one in told} <= {*plan.seeds()},
+        "by_rule": {case.chunk.seed for case in cases} <= {*plan.seeds()},
         "groups": list(GROUPS),
-        "asked": _asked(told),
-        "left_out": _left_out(told),
+        "asked": _counts(cases),
+        "left_out": _skipped(cases),
         "engines": list(dict.fromkeys(task.name for task in planted)),
         "planted": _planted(planted),
         "picture": next(iter(out), ""),
-        "found": _found(told, findings),
+        "found": _found(cases, findings),
     }
     template = environment(Path(__file__).parent).get_template("own/page.md")
     out["search.md"] = template.render(page=page, foot=foot)
@@ -134,65 +133,60 @@ def _group(check: str) -> str:
     return next((name for name, checks in GROUPS.items() if check in checks), "motion")
 
 
-def _asked(told: Sequence[Asked]) -> list[list[str]]:
+def _counts(cases: Sequence[CaseResult]) -> list[list[str]]:
     """A line for each subject: cases, those refused, and of each group of checks how many it judged and found wrong."""
-    groups: dict[str, list[Asked]] = {}
-    for one in told:
-        groups.setdefault(one.chunk.subject.name, []).append(one)
+    subjects: dict[str, list[CaseResult]] = {}
+    for case in cases:
+        subjects.setdefault(case.chunk.subject.name, []).append(case)
     return [
-        [
-            name,
-            str(len(own)),
-            str(sum(refused(own).values())),
-            *(_judged([one.told for one in own], group) for group in GROUPS),
-        ]
-        for name, own in groups.items()
+        [name, str(len(some)), str(sum(refused(some).values())), *(_judged(some, group) for group in GROUPS)]
+        for name, some in subjects.items()
     ]
 
 
-def _judged(told: Sequence[Told], group: str) -> str:
+def _judged(cases: Sequence[CaseResult], group: str) -> str:
     """'119', or '119, **2 wrong**'; a dash where nothing of the group was asked."""
-    count = sum(any(_group(check) == group for check in one.errors) for one in told)
-    wrong = sum(any(_group(check) == group for check in one.faults) for one in told)
+    count = sum(any(_group(check) == group for check in case.result.errors) for case in cases)
+    wrong = sum(any(_group(check) == group for check in case.result.faults) for case in cases)
     return (f"{count}, **{wrong} wrong**" if wrong else str(count)) if count or wrong else "-"
 
 
-def _left_out(told: Sequence[Asked]) -> list[list[str]]:
-    """(law, why it was not asked, cases): the reasons of all subjects together, the rarest in a last line."""
-    lines = left_out(told)
-    often = [line for line in lines if int(line[-1]) >= RARE * len(told)]
-    rest = sum(int(line[-1]) for line in lines) - sum(int(line[-1]) for line in often)
-    further = [["all", f"{len(lines) - len(often)} rarer reasons", str(rest)]] if rest else []
+def _skipped(cases: Sequence[CaseResult]) -> list[list[str]]:
+    """(question, why it did not apply, cases): the reasons of all subjects together, the rarest in a last line."""
+    reasons = skip_reasons(cases)
+    often = [reason for reason in reasons if reason[-1] >= RARE * len(cases)]
+    rest = sum(count for *_, count in reasons) - sum(count for *_, count in often)
+    further = [["all", f"{len(reasons) - len(often)} rarer reasons", str(rest)]] if rest else []
     names = {"relations": "description", "motions": "motion"}
-    return [[names.get(law, law), why, cases] for law, why, _, cases in often] + further
+    return [[names.get(oracle, oracle), why, str(count)] for oracle, why, count in often] + further
 
 
-def _found(told: Sequence[Asked], small: Sequence[tuple[Shrink, Answer]]) -> list[list[str]]:
+def _found(cases: Sequence[CaseResult], small: Sequence[tuple[Shrink, Answer]]) -> list[list[str]]:
     """A line for each check of a subject that fails: in how many cases, the smallest mechanism, and the first case."""
-    groups: dict[tuple[str, str], list[Asked]] = {}
-    for one in told:
-        if one.chunk.subject.name != plan.GROOVE.name:
-            for check in one.told.faults:
-                groups.setdefault((one.chunk.subject.name, check), []).append(one)
+    groups: dict[tuple[str, str], list[CaseResult]] = {}
+    for case in cases:
+        if case.chunk.subject.name != plan.GROOVE.name:
+            for check in case.result.faults:
+                groups.setdefault((case.chunk.subject.name, check), []).append(case)
     least = {(task.subject.name, task.check): line_of(answer) for task, answer in reversed(small)}
-    return [[*key, str(len(own)), least.get(key, ""), f"`{_command(own[0])}`"] for key, own in groups.items()]
+    return [[*key, str(len(some)), least.get(key, ""), f"`{_command(some[0])}`"] for key, some in groups.items()]
 
 
-def _command(one: Asked) -> str:
+def _command(case: CaseResult) -> str:
     """What draws a case again, and writes its script."""
-    chunk = one.chunk
+    chunk = case.chunk
     name, variant = ("mujoco", "alone") if isinstance(chunk.subject, Alone) else chunk.subject.name.split(" ", 1)
     words = ["crosscheck", "search", "--engine", name, "--variant", variant, "--seed", str(chunk.seed)]
     words += ["--decades", str(chunk.decades)] if chunk.decades else []
     words += ["--kinds", ",".join(chunk.kinds)] if chunk.kinds != chunk.subject.kinds else []
-    return shlex.join([*words, "--cases", str(one.number + 1)])
+    return shlex.join([*words, "--cases", str(case.number + 1)])
 
 
-def _planted(controls: Mapping[Control, Answer]) -> list[list[str]]:
+def _planted(answers: Mapping[Control, Answer]) -> list[list[str]]:
     """A line for each fault: the case that found it in each engine, and how large it had to be if not 1e-6."""
-    told = {(task.fault, task.name): answer for task, answer in controls.items()}
-    names = dict.fromkeys(task.name for task in controls)
-    return [[fault, *(_how_soon(told.get((fault, name))) for name in names)] for fault in FAULTS if controls]
+    known = {(task.fault, task.name): answer for task, answer in answers.items()}
+    names = dict.fromkeys(task.name for task in answers)
+    return [[fault, *(_how_soon(known.get((fault, name))) for name in names)] for fault in FAULTS if answers]
 
 
 def _how_soon(answer: Answer | None) -> str:

@@ -15,10 +15,10 @@ from reports.model.digest import SHORT, digest
 from reports.model.fingerprint import OURS, ROOT
 from reports.search import mechanisms
 from reports.search.chunk import Chunk, chunks
-from reports.search.parts import EVERY, TOGGLE
-from reports.search.raw_law import HINGED
+from reports.search.mujoco_alone import HINGED
+from reports.search.parts import EVERY, ORACLES, TOGGLE
 from reports.search.recipe import build
-from reports.search.subjects import ORACLES, Adapted, Alone, Subject, is_shaped
+from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 
 COMMIT, SOURCES = "the last commit's hash", "the SHA-256 of all sources, as there is no git"
 DECADES = (0, 2, 4)  # one for each of the seeds

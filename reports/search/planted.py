@@ -8,20 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Any
-from unittest import mock
 
 import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, box2d, bullet, exudyn, lagrange, mjx, mujoco, pinocchio, pymunk
-from engines.box2d import Box2D
-from engines.mjx import Mjx
-from engines.mujoco import MuJoCo
-from engines.pymunk import Pymunk
 from reference.checks import InvalidMechanism
 from reference.joints import Body
 from reference.mechanism import Mechanism
@@ -34,7 +28,7 @@ from reports.search import relations
 from reports.search.mechanisms import RUN, SHAPES
 from reports.search.parts import EVERY
 from reports.search.plan import taken
-from reports.search.subjects import Adapted, Told
+from reports.search.subjects import Adapted, Result
 
 Array = NDArray[np.float64]
 
@@ -103,6 +97,16 @@ class Off:
     def kind(self) -> str:
         return self.fault.split()[0] if self.fault in FURTHER else self.fault
 
+    @property
+    def is_relation(self) -> bool:
+        """Whether it depends on how a mechanism is described."""
+        return self.kind in relations.NAMES
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of mechanisms that may show it."""
+        return ("pin",) if self.kind not in EVERY else tuple(dict.fromkeys(("pin", self.kind)))
+
     def __call__(self, mechanism: Mechanism) -> Mechanism:
         if self.kind == "turned":
             x, y = mechanism.gravity
@@ -155,26 +159,6 @@ def kind_of(part: Any) -> str:
     return re.sub(r"(?<!^)(?=[A-Z])", "-", type(part).__name__).lower()
 
 
-@contextmanager
-def planting(change: Off) -> Iterator[None]:
-    """The engines whose laws of an instant are asked build their models from changed mechanisms meanwhile."""
-    with ExitStack() as all_of_them:
-        for engine, name in ((MuJoCo, "model"), (Mjx, "model"), (Pymunk, "swept_model"), (Box2D, "build")):
-            wrong = _planted(getattr(engine, name), change)
-            all_of_them.enter_context(mock.patch.object(engine, name, wrong))
-        yield
-
-
-def _planted(right: Any, change: Off) -> Any:
-    def wrong(self: Any, mechanism: Mechanism, *given: Any, **named: Any) -> Any:
-        made = right(self, change(mechanism), *given, **named)
-        if isinstance(self, MuJoCo):  # what is read out belongs to the mechanism that was asked for
-            return replace(made, mechanism=mechanism)
-        return (replace(made[0], mechanism=mechanism), made[1]) if isinstance(self, Mjx) else made
-
-    return wrong
-
-
 FAULTS = ("inertia", *EVERY, *FURTHER, *relations.NAMES)
 # By engine, the variants of which the own error hides least: one for the law of an instant, one for a motion.
 LEAST: Mapping[str, tuple[Engine, ...]] = {
@@ -218,50 +202,42 @@ class Control(Task):
         builds this kind, and how many times it was asked until then."""
         kind, asked = Off(self.fault, 0.0).kind, 0
         built = kind not in EVERY or kind in taken(LEAST[self.name][0])
-        for size in self.sizes if built else ():
-            for number, told, check in found(LEAST[self.name], Off(self.fault, size), self.cases):
-                asked += bool(told.errors)
-                if check:
-                    return _values(size, number, built, asked) | {"check": check}
-            if not asked:
+        size, case, check = np.nan, np.nan, ""
+        for tried in self.sizes if built else ():
+            for number, result, found in searched(LEAST[self.name], Off(self.fault, tried), self.cases):
+                asked += bool(result.errors)
+                if found:
+                    size, case, check = tried, number, found
+            if check or not asked:
                 break
-        return _values(np.nan, np.nan, built, asked) | {"check": ""}
+        numbers = {"size": size, "case": case, "built": built, "asked": asked}
+        return {name: np.array(value) for name, value in numbers.items()} | {"check": check}
 
 
-def _values(size: float, case: float, built: bool, asked: int) -> dict[str, Any]:
-    told = {"size": size, "case": case, "built": built, "asked": asked}
-    return {name: np.array(value) for name, value in told.items()}
-
-
-def found(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[tuple[int, Told, str]]:
-    """(case, what was found, the check that fails by this change and not without it), by number until one does."""
-    relation = change.kind in relations.NAMES
-    kinds = ("pin",) if change.kind not in EVERY else tuple(dict.fromkeys(("pin", change.kind)))
+def searched(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[tuple[int, Result, str]]:
+    """(case, result, the check that fails by this change and not without it), by number until one does."""
     for number in range(cases):
-        if relation and relations.NAMES[number % len(relations.NAMES)] != change.kind:
+        if change.is_relation and relations.NAMES[number % len(relations.NAMES)] != change.kind:
             continue
         for engine in engines:
             right, wrong = Adapted(engine), Adapted(Altered(engine, change))
-            case = right.draw(SEED, number, kinds, 0)
+            case = right.draw(SEED, number, change.kinds, 0)
             if change.kind in EVERY and change.kind not in case.kinds:
                 continue
-            # Where a program is compiled for each shape, one is enough.
-            own_oracles = ("instant",) if engine.building else ("instant", "motions")
-            for oracle in ("relations",) if relation else own_oracles:
+            # Where a program is compiled for each shape, one oracle is enough.
+            motion = ("instant",) if engine.building else ("instant", "motions")
+            for oracle in ("relations",) if change.is_relation else motion:
                 try:
-                    if oracle == "instant":
-                        with planting(change):
-                            told = right.ask(case, number, (oracle,))
-                    else:
-                        told = wrong.ask(case, number, (oracle,))
+                    result = wrong.ask(case, number, (oracle,))
                 except (InvalidMechanism, np.linalg.LinAlgError):  # with the fault this one is no mechanism
                     continue
-                own = [name for name in told.faults if name != "raised" and (not relation or name == change.kind)]
-                if own:
+                checks = [name for name in result.faults if name != "raised"]
+                checks = [name for name in checks if not change.is_relation or name == change.kind]
+                if checks:
                     before = right.ask(case, number, (oracle,)).faults
-                    own = [name for name in own if name not in before]
-                yield number, told, f"{engine.variant}: {own[0]}" if own else ""
-                if own:
+                    checks = [name for name in checks if name not in before]
+                yield number, result, f"{engine.variant}: {checks[0]}" if checks else ""
+                if checks:
                     return
 
 

@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from reports.run.installed import environment, installed
-from reports.search import raw, raw_law
+from reports.search import mujoco_alone
 
 DISTRIBUTIONS = ("mujoco-core", "mujoco")  # the first is a part of the second from 4.0 on
 ROOT = Path(__file__).resolve().parents[2]
@@ -32,12 +32,12 @@ class Release:
             env=environment(folder, (ROOT,)),
         )
 
-    def asked(self, model: raw.Model) -> dict:
+    def asked(self, model: mujoco_alone.Model) -> dict:
         """What `answer` gives there. Raises RuntimeError where the process ended."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         try:
-            self._process.stdin.write(f"{raw.as_text(model)}\n")
+            self._process.stdin.write(f"{mujoco_alone.as_text(model)}\n")
             self._process.stdin.flush()
             line = self._process.stdout.readline()
         except BrokenPipeError:
@@ -65,13 +65,13 @@ def release_of(name: str) -> str | None:
     return " ".join(words[2:]) if words[:2] == ["mujoco", "alone"] else None
 
 
-def answer(model: raw.Model) -> dict:
+def answer(model: mujoco_alone.Model) -> dict:
     """{"errors": ...}, or {"raised": sentence}; with the version, and what was found and expected."""
     import mujoco  # of the folder
 
     try:
-        found, expected = raw_law.found_and_expected(model, raw_law.judged(model))
-        told = {"errors": raw_law.errors(model), "found": found.tolist(), "expected": expected.tolist()}
+        found, expected = mujoco_alone.found_and_expected(model, mujoco_alone.judged(model))
+        told = {"errors": mujoco_alone.errors(model), "found": found.tolist(), "expected": expected.tolist()}
     except Exception as error:
         told = {"raised": f"{type(error).__name__}: {error}"}
     return told | {"version": mujoco.__version__}
@@ -79,7 +79,7 @@ def answer(model: raw.Model) -> dict:
 
 def main() -> None:
     for line in sys.stdin:
-        print(json.dumps(answer(raw.from_text(line))), flush=True)
+        print(json.dumps(answer(mujoco_alone.from_text(line))), flush=True)
 
 
 if __name__ == "__main__":

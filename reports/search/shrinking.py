@@ -12,11 +12,11 @@ from typing import Any, TypeVar
 from engines import Engine
 from reference.checks import InvalidMechanism
 from reports.model.tasks import Answer, Task, Values
-from reports.search import raw
-from reports.search.chunk import Asked
-from reports.search.parts import Recipe
+from reports.search import mujoco_alone
+from reports.search.chunk import CaseResult
+from reports.search.parts import CLAIMS, ORACLES, Recipe
 from reports.search.scripts import script
-from reports.search.subjects import CLAIMS, ORACLES, Adapted, Subject, Told
+from reports.search.subjects import Adapted, Result, Subject
 
 Case = TypeVar("Case")
 
@@ -77,7 +77,7 @@ def _without_part(case: Recipe, removed: int) -> Recipe:
     return replace(case, parts=tuple(parts), links=tuple(links))
 
 
-def _without_link(case: raw.Model, removed: int) -> raw.Model:
+def _without_link(case: mujoco_alone.Model, removed: int) -> mujoco_alone.Model:
     parent = case.links[removed - 1].parent
     links = [
         replace(link, parent=_after(removed, parent, link.parent))
@@ -87,13 +87,13 @@ def _without_link(case: raw.Model, removed: int) -> raw.Model:
     return _of_links(case, links, removed)
 
 
-def _of_links(case: raw.Model, links: Sequence[raw.RawBody], removed: int = 0) -> raw.Model:
+def _of_links(case: mujoco_alone.Model, links: Sequence[mujoco_alone.RawBody], removed: int = 0) -> mujoco_alone.Model:
     """The model with other links, one of them perhaps gone, and those of its equalities that still have both ends."""
-    before = raw.coordinates(case)
-    after = raw.coordinates(replace(case, links=tuple(links), equalities=()))
+    before = mujoco_alone.coordinates(case)
+    after = mujoco_alone.coordinates(replace(case, links=tuple(links), equalities=()))
     places = {each: number for number, each in enumerate(after)}
 
-    def end(each: raw.Equality, which: int) -> int | None:
+    def end(each: mujoco_alone.Equality, which: int) -> int | None:
         if each.kind in ("connect", "weld"):
             return None if removed and which == removed else _after(removed, 0, which) if removed else which
         if which >= len(before) or before[which][0] == removed:
@@ -109,7 +109,7 @@ def _of_links(case: raw.Model, links: Sequence[raw.RawBody], removed: int = 0) -
     return replace(case, links=tuple(links), equalities=tuple(equalities))
 
 
-def _with_fewer_coordinates(case: raw.Model) -> Iterator[raw.Model]:
+def _with_fewer_coordinates(case: mujoco_alone.Model) -> Iterator[mujoco_alone.Model]:
     for place, link in enumerate(case.links):
         for fewer in (replace(link, slides=max(link.slides - 1, 0)), replace(link, turns=False)):
             if fewer != link and (fewer.slides or fewer.turns):
@@ -142,7 +142,6 @@ def _with_smaller_numbers(value: Any) -> Iterator[Any]:
 
 
 SECONDS = 20.0  # of CPU time for one finding
-TRIED = 1  # times the seconds that a shape takes to build, for engines that compile one: few shapes are tried
 # Of the error that was found: what is left of it in a smaller case. Of less, it may be another fault, or a trifle.
 KEPT = 0.01
 MOST = 2  # findings of one check of a subject that are made smaller
@@ -161,14 +160,14 @@ class Shrink(Task):
     oracles: tuple[str, ...]
 
     @classmethod
-    def of(cls, check: str, one: Asked) -> Shrink:
+    def of(cls, check: str, case: CaseResult) -> Shrink:
         """What makes a finding smaller."""
-        chunk = one.chunk
-        return cls(chunk.subject, chunk.seed, one.number, chunk.kinds, chunk.decades, check, chunk.oracles)
+        chunk = case.chunk
+        return cls(chunk.subject, chunk.seed, case.number, chunk.kinds, chunk.decades, check, chunk.oracles)
 
     @property
     def cost(self) -> float:
-        return SECONDS + (TRIED * self.engine.building if self.engine else 0.0)
+        return SECONDS + (self.engine.building if self.engine else 0.0)  # few shapes of a compiled engine are tried
 
     @property
     def label(self) -> str:
@@ -180,70 +179,69 @@ class Shrink(Task):
         return self.subject.engine if isinstance(self.subject, Adapted) else None
 
     def run(self) -> Values:
+        """The smallest case, in a line and as JSON (`replayed` reads it), and a script of it."""
         case: Any = self.subject.draw(self.seed, self.number, self.kinds, self.decades)
-        oracles = oracle_of(self.subject, case, self.number, self.check, self.oracles)
-
+        oracles = self._oracle(case)
         whole = self.subject.ask(case, self.number, oracles)
         why, least = _kind_of(whole), KEPT * whole.errors[self.check][0]
 
         def still(smaller: Any) -> bool:
             try:
-                told = self.subject.ask(smaller, self.number, oracles)
+                result = self.subject.ask(smaller, self.number, oracles)
             except InvalidMechanism:
                 return False
-            return self.check in told.faults and told.errors[self.check][0] >= least and _kind_of(told) == why
+            return self.check in result.faults and result.errors[self.check][0] >= least and _kind_of(result) == why
 
         small = shrunk(case, still, self.cost)
-        told = self.subject.ask(small, self.number, oracles)
-        error, bound = told.errors[self.check]
-        text = self.subject.text(small)
+        result = self.subject.ask(small, self.number, oracles)
+        error, bound = result.errors[self.check]
+        finite = error < float("inf")
         finding = {
             "subject": self.subject.name,
             "check": self.check,
             "oracles": list(oracles),
             "number": self.number,
             "seed": self.seed,
-            "error": error if error < float("inf") else None,
+            "error": error if finite else None,
             "bound": bound,
-            "words": told.words,
-            "case": json.loads(text),
+            "words": result.words,
+            "case": json.loads(self.subject.text(small)),
         }
-        line = f"{' '.join(small.kinds)}: {f'{error:.1e}' if error < float('inf') else 'lost'}"
+        line = f"{' '.join(small.kinds)}: {f'{error:.1e}' if finite else 'lost'}"
         return {
-            "line": f"{line}{'; ' + told.words if told.words else ''}",
+            "line": f"{line}{'; ' + result.words if result.words else ''}",
             "finding": json.dumps(finding, indent=1),
             "script": script(self.subject, small, self.check, self.number),
         }
 
+    def _oracle(self, case: Any) -> tuple[str, ...]:
+        """The one oracle that finds this fault, so that the others are not asked again and again."""
+        for oracle in (name for name in (*ORACLES, CLAIMS) if name in self.oracles):
+            if self.check in self.subject.ask(case, self.number, (oracle,)).faults:
+                return (oracle,)
+        return self.oracles
 
-def _kind_of(told: Told) -> str:
+
+def _kind_of(result: Result) -> str:
     """What a fault without a number is, its own numbers and names left out: another one is no smaller example."""
-    return re.sub(r"'[^']*'|[0-9.e+-]+", "", told.words)
+    return re.sub(r"'[^']*'|[0-9.e+-]+", "", result.words)
 
 
-def oracle_of(subject: Subject, case: Any, number: int, check: str, oracles: tuple[str, ...]) -> tuple[str, ...]:
-    """The one oracle that tells this fault, so that the others are not asked again and again."""
-    for oracle in (one for one in (*ORACLES, CLAIMS) if one in oracles):
-        if check in subject.ask(case, number, (oracle,)).faults:
-            return (oracle,)
-    return oracles
-
-
-def worst_of(told: Iterable[Asked], most: int = MOST) -> list[tuple[str, Asked]]:
+def worst_of(cases: Iterable[CaseResult], most: int = MOST) -> list[tuple[str, CaseResult]]:
     """(check, case): of each check of each subject those with fewest kinds of joints, at most so many; one of a set."""
-    found: dict[tuple[str, str], dict[tuple[str, ...], Asked]] = {}
-    for one in told:
-        for check in one.told.faults[:1]:
-            found.setdefault((one.chunk.subject.name, check), {}).setdefault(one.kinds, one)
+    found: dict[tuple[str, str], dict[tuple[str, ...], CaseResult]] = {}
+    for case in cases:
+        for check in case.result.faults[:1]:
+            found.setdefault((case.chunk.subject.name, check), {}).setdefault(case.kinds, case)
     return [
-        (check, one)
+        (check, case)
         for (_, check), kinds in found.items()
-        for one in sorted(kinds.values(), key=lambda each: (len(each.kinds), each.number))[:most]
+        for case in sorted(kinds.values(), key=lambda case: (len(case.kinds), case.number))[:most]
     ]
 
 
 def line_of(answer: Answer) -> str:
-    """What was found, for one line."""
+    """The finding in one line."""
     return str(answer.values["line"]) if answer.finished else f"not made smaller: {answer.sentence}"
 
 
@@ -258,7 +256,7 @@ def files_of(task: Shrink, answer: Answer) -> dict[str, str]:
     return files
 
 
-def replayed(finding: dict[str, Any], subject: Subject) -> Told:
-    """What is found now of a finding that was written before."""
+def replayed(finding: dict[str, Any], subject: Subject) -> Result:
+    """The present result of a finding that was written before."""
     case: Any = subject.read(json.dumps(finding["case"]))
     return subject.ask(case, finding["number"], tuple(finding["oracles"]))

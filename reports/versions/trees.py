@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, method_name
+from engines.constrained import constrained
 from reference.checks import Count, InvalidMechanism
 from reference.mechanism import Mechanism
 from reports.model.tasks import Task, Values
-from reports.search.law import constrained
 from reports.search.parts import Link, Part, Recipe
 from reports.search.recipe import build
 

@@ -7,6 +7,7 @@ mechanisms, at any sampling.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,11 +23,11 @@ from reference.forces import Spring
 from reference.joints import Pin, Rod, Slot
 from reference.mechanism import Mechanism
 from reports.search.claims import CLAIMED, REACTIONS, REPORTED, compared, errors
-from reports.search.law import NotAsked
+from reports.search.law import Errors, Skip
 from reports.search.mechanisms import mechanism
-from reports.search.parts import EVERY, LINKS
+from reports.search.parts import CLAIMS, EVERY, LINKS
 from reports.search.parts import FORCES as ELEMENTS
-from reports.search.subjects import CLAIMS, Adapted
+from reports.search.subjects import Adapted
 from tests.engines.test_promised import QUICKLY, installed
 from tests.mechanisms import bar, pendulum
 from tests.present import present
@@ -119,7 +120,7 @@ def test_claims_are_asked_of_methods_with_an_estimate_alone():
     asked = Adapted(mujoco.EXTENDED), Adapted(mujoco.EXTENDED.within(pendulum()))
     case = asked[0].draw(5, 1, ("pin", "spring", "toggle", "fold"), 0)
     assert CLAIMED in asked[0].ask(case, 1, (CLAIMS,)).errors
-    assert "no estimate" in Adapted(replace(mujoco.EXTENDED, estimates=False)).ask(case, 1, (CLAIMS,)).not_asked[0]
+    assert "no estimate" in Adapted(replace(mujoco.EXTENDED, estimates=False)).ask(case, 1, (CLAIMS,)).skipped[0]
     assert present(mujoco.EXTENDED.build(pendulum(), DT)(STEPS, 1).estimate).max() < CLAIM
 
 
@@ -144,16 +145,16 @@ HELD = ("pin", "slot", "skate", "drive")
 STEP = 1e-3
 
 
-def claims(engine: Engine, seed: int, kinds: tuple[str, ...], count: int) -> list[dict[str, tuple[float, float]]]:
+def claims(engine: Engine, seed: int, kinds: tuple[str, ...], count: int) -> list[Errors]:
     """Errors and claims of the first mechanisms that the engine builds and whose motion the judge knows."""
-    found: list[dict[str, tuple[float, float]]] = []
+    found: list[Errors] = []
     for number in range(10 * count):
         if len(found) == count:
             return found
-        try:
-            found.append(errors(installed(engine), mechanism(seed, number, kinds), number))
-        except (Unsupported, NotAsked):
-            continue
+        with suppress(Unsupported):
+            answer = errors(installed(engine), mechanism(seed, number, kinds), number)
+            if not isinstance(answer, Skip):
+                found.append(answer)
     return found
 
 

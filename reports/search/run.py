@@ -1,0 +1,153 @@
+"""A search from its cases to the findings, as a function: pieces are run by workers and kept in a store."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import monotonic
+from typing import Any
+
+from reports.model.tasks import Answer, Task
+from reports.run.cluster import Workforce, pool
+from reports.run.running import missing, run_into
+from reports.run.store import Store
+from reports.search import plan
+from reports.search.chunk import CaseResult, Chunk, case_results, chunk_to_json, chunks, lost, results_of, stored
+from reports.search.parts import ORACLES
+from reports.search.planted import controls
+from reports.search.shrinking import Shrink, worst_of
+from reports.search.subjects import Subject
+
+STORE = "cells.sqlite"
+LIMIT = 120.0  # CPU seconds of one piece
+CONTROL = 1800.0  # of a planted fault: 300 cases of each size
+WAVE = 4  # pieces for each worker between two looks at the clock
+CASES = 200
+
+# (store, items, limit, words, size of an item) -> the items that are to be run, done(answer, count), watch
+Progress = Callable[..., AbstractContextManager[tuple[Sequence[Any], Callable[..., None], Any]]]
+
+
+@contextmanager
+def quietly(
+    store: Store, items: Sequence[Task], limit: float, words: str, size: Callable[[Any], int] | None = None
+) -> Iterator[tuple[Sequence[Any], Callable[..., None], Any]]:
+    """A run that nobody watches."""
+    yield missing(items, store, limit), lambda *_: None, None
+
+
+def run_search(
+    folder: Path,
+    subjects: Sequence[Subject],
+    cases: int = CASES,
+    seed: int | None = None,
+    kinds: Sequence[str] = (),
+    decades: int = 0,
+    oracles: tuple[str, ...] = ORACLES,
+    seconds: float | None = None,
+    workers: int | None = None,
+) -> tuple[list[CaseResult], Mapping[Shrink, Answer]]:
+    """The results of so many cases of these subjects, and the findings, made small; a store in `folder` keeps both.
+
+    `seed`: that of the last commit if None; `kinds`: all of a subject if empty; `seconds`: begin nothing after these.
+    """
+    kinds = kinds or tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
+    pieces = chunks(subjects, plan.seeds()[0] if seed is None else seed, cases, kinds, decades, oracles)
+    with Store(folder / STORE) as store:
+        search = Search(store, pool(workers), seconds)
+        results = search.run([pieces])
+        return results, search.shrink(results)
+
+
+@dataclass
+class Search:
+    """A search into a store; `seconds`: begin nothing after these."""
+
+    store: Store
+    crew: Workforce
+    seconds: float | None = None
+    progress: Progress = quietly
+    begin: float = field(default_factory=monotonic)
+    cases: int = 0  # that were asked now
+    first: str = ""  # when the first finding came
+
+    @property
+    def spent(self) -> float:
+        return monotonic() - self.begin
+
+    @property
+    def over(self) -> bool:
+        return self.seconds is not None and self.spent >= self.seconds
+
+    def run(self, batches: Iterable[Sequence[Chunk]]) -> list[CaseResult]:
+        """Ask what is not stored, until the time is over, and give all results of what was begun."""
+        pieces: list[Chunk] = []
+        for batch in batches:
+            if not pieces:  # what a subject takes is asked before anything is drawn
+                self.begin = monotonic()
+            if self.over:
+                break
+            self.store.remember(chunk_to_json(piece) for piece in batch)
+            self._run_batch(batch)
+            pieces += batch
+        return list(case_results(stored(self.store, pieces)))
+
+    def _run_batch(self, batch: Sequence[Chunk]) -> None:
+        """A case that ends its process is found and kept.
+
+        All at once where there is time for all: between two waves workers wait for the last of the first.
+        """
+        with self.progress(self.store, batch, LIMIT, "pieces", size=lambda piece: piece.count) as (
+            waiting,
+            done,
+            watch,
+        ):
+            size = len(waiting) if self.seconds is None else WAVE * self.crew.threads
+
+            def count(answer: Answer, single: int = 0) -> None:
+                done(answer, self._count(answer, single))
+
+            while waiting and not self.over:
+                wave, waiting = waiting[:size], waiting[size:]
+                self._into(wave, LIMIT, count, watch)
+                singles = missing(lost(stored(self.store, wave)), self.store, LIMIT)
+                self._into(singles, LIMIT, lambda answer: count(answer, 1), watch)
+
+    def _into(self, items: Sequence[Any], limit: float, done: Callable[..., None], watch: Any) -> None:
+        run_into(self.store, items, False, limit, self.crew.threads, done, watch, supervised=self.crew.supervise)
+
+    def _count(self, answer: Answer, single: int) -> int:
+        """The cases in an answer; `single`: in one that may have ended its process."""
+        results = results_of(answer)
+        count = len(results) or single
+        self.cases += count
+        fault = single and not answer.finished
+        if not self.first and (fault or any(result.faults for _, result in results)):
+            self.first = f" The first finding came after {self.spent:.1f} s, within {self.cases} cases."
+        return count
+
+    @property
+    def summary(self) -> str:
+        """The number of cases that were asked now, the time, and when the first finding came."""
+        return f"{self.cases} cases were asked in {self.spent:.0f} s.{self.first}"
+
+    def run_controls(self) -> None:
+        """Find how soon planted faults are found; those that are stored are not run again."""
+        with self.progress(self.store, controls(), CONTROL, "planted faults") as (waiting, done, watch):
+            self._into(waiting, CONTROL, done, watch)
+
+    def shrink(self, results: Iterable[CaseResult]) -> Mapping[Shrink, Answer]:
+        """Make some findings of each check smaller, for as long again as was searched."""
+        tasks = [Shrink.of(check, case) for check, case in worst_of(results)]
+        if not tasks:
+            return {}
+        begin = monotonic()
+        with self.progress(self.store, tasks, LIMIT, "findings") as (waiting, done, watch):
+            size = len(waiting) if self.seconds is None else self.crew.threads
+            while waiting and (self.seconds is None or monotonic() - begin < self.seconds):
+                wave, waiting = waiting[:size], waiting[size:]
+                self._into(wave, LIMIT, done, watch)
+        answers = self.store.answers(tasks)
+        return {task: answers[task] for task in tasks if task in answers}
