@@ -10,7 +10,7 @@ import json
 import math
 import re
 from collections import Counter
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -42,12 +42,6 @@ class Chunk(Task):
     @property
     def cost(self) -> float:
         return (3.0 if is_shaped(self.subject) else 0.1) * self.count
-
-    @property
-    def kin(self) -> Hashable:
-        """The same mechanisms, which are built and judged once for all engines; or shapes that are compiled once."""
-        subject = self.subject.name if is_shaped(self.subject) else ""
-        return subject, self.seed, self.decades, "" if subject else self.first
 
     @property
     def label(self) -> str:

@@ -29,6 +29,7 @@ from engines.pymunk import declared as pymunk_declared
 from engines.pymunk import model as pymunk_model
 from engines.pymunk.declared import PUSHED
 from engines.registry import INSTALLED, VARIANTS
+from reference.joints import Gear, Rod, Weld
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.gate.change import Altered
@@ -166,21 +167,37 @@ def _late_reaction(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(MuJoCoRun, "__call__", late)
 
 
-def _changed_joint(name: str, **numbers: Callable[[Any], Any]) -> Callable[[pytest.MonkeyPatch], None]:
+def _changed_joint(kind: type, **numbers: Callable[[Any], Any]) -> Callable[[pytest.MonkeyPatch], None]:
+    """The joints of a kind are built with other numbers."""
+
     def put(monkeypatch: pytest.MonkeyPatch) -> None:
-        right = getattr(pymunk_model, name)
+        right = pymunk_model._Builder._constraints
 
-        def wrong(joint: Any, *arguments: Any) -> Any:
-            return right(replace(joint, **{field: change(joint) for field, change in numbers.items()}), *arguments)
+        def wrong(self: Any, joint: Any) -> Any:
+            if isinstance(joint, kind):
+                joint = replace(joint, **{field: change(joint) for field, change in numbers.items()})
+            return right(self, joint)
 
-        monkeypatch.setattr(pymunk_model, name, wrong)
+        monkeypatch.setattr(pymunk_model._Builder, "_constraints", wrong)
 
     return put
 
 
+def _other_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = pymunk_model.motor
+    monkeypatch.setattr(
+        pymunk_model, "motor", lambda joint, *rest: right(replace(joint, turning_rate=-joint.turning_rate), *rest)
+    )
+
+
 def _weld_without_angle(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = pymunk_model.weld
-    monkeypatch.setattr(pymunk_model, "weld", lambda *arguments: right(*arguments)[:1])
+    right = pymunk_model._Builder._constraints
+
+    def wrong(self: Any, joint: Any) -> Any:
+        constraints = right(self, joint)
+        return constraints[:1] if isinstance(joint, Weld) else constraints
+
+    monkeypatch.setattr(pymunk_model._Builder, "_constraints", wrong)
 
 
 def _faster(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,18 +218,18 @@ def _faster(monkeypatch: pytest.MonkeyPatch) -> None:
         (EXTENDED, ("slot",), _changed_row(_flipped_velocity_term), "acceleration"),
         (EXTENDED, ("pin", "rod"), _without_velocity_term, "acceleration"),
         (DEFAULT, ("pin",), _late_reaction, "reaction"),
-        (LEAPFROG, ("pin", "drive"), _changed_joint("motor", turning_rate=lambda j: -j.turning_rate), "velocity"),
-        (LEAPFROG, ("pin", "gear"), _changed_joint("gear", ratio=lambda j: 1 / j.ratio), ""),
-        (LEAPFROG, ("pin", "gear"), _changed_joint("gear", ratio=lambda j: -j.ratio), ""),
-        (LEAPFROG, ("pin", "gear"), _changed_joint("gear", phase=lambda j: j.phase + 1e-4), ""),
+        (LEAPFROG, ("pin", "drive"), _other_way, "velocity"),
+        (LEAPFROG, ("pin", "gear"), _changed_joint(Gear, ratio=lambda j: 1 / j.ratio), ""),
+        (LEAPFROG, ("pin", "gear"), _changed_joint(Gear, ratio=lambda j: -j.ratio), ""),
+        (LEAPFROG, ("pin", "gear"), _changed_joint(Gear, phase=lambda j: j.phase + 1e-4), ""),
         (
             LEAPFROG,
             ("pin", "rod"),
-            _changed_joint("rod", second_point=lambda j: (j.second_point[0], -j.second_point[1])),
+            _changed_joint(Rod, second_point=lambda j: (j.second_point[0], -j.second_point[1])),
             "",
         ),
-        (LEAPFROG, ("pin", "rod"), _changed_joint("rod", length=lambda j: 1.0001 * j.length), ""),
-        (LEAPFROG, ("pin", "weld"), _changed_joint("weld", angle=lambda j: j.angle + 1e-4), ""),
+        (LEAPFROG, ("pin", "rod"), _changed_joint(Rod, length=lambda j: 1.0001 * j.length), ""),
+        (LEAPFROG, ("pin", "weld"), _changed_joint(Weld, angle=lambda j: j.angle + 1e-4), ""),
         (LEAPFROG, ("pin", "weld"), _weld_without_angle, ""),
         (PYMUNK_TUNED, ("pin", "spring"), _faster, "velocity"),
     ],
