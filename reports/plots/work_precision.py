@@ -105,12 +105,27 @@ def _legend(figure: Figure, handles: Sequence[Line2D]) -> None:
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, handlelength=3.2)
 
 
-def _handles(variants: dict[str, list[str]]) -> list[Line2D]:
-    return [
+Pairs = list[tuple[float, float]]
+
+
+def _chart(
+    shown: Sequence[Measurement], scenes: Sequence[str], field: str, label: str, series: Callable[..., Pairs]
+) -> tuple[Figure, list[Axes], list[Line2D]]:
+    """A panel for each scene with a line for each method, through what `series` makes of its rows; and the legend's."""
+    variants = _shown_variants(shown)
+    figure, panels = _panels(scenes, 3.6)
+    for index, (panel, scene) in enumerate(zip(panels, scenes, strict=True)):
+        for (_, engine, variant), members in groups(row for row in shown if row.scene == scene).items():
+            panel.plot(*zip(*series(members), strict=True), zorder=3, **look(engine, variant, variants))
+        panel.set_xlabel(label)
+        if index % COLUMNS == 0:
+            panel.set_ylabel(f"largest {quantity(field).axis}")
+    handles = [
         Line2D([], [], label=f"{engine} {variant}", **look(engine, variant, variants))
-        for engine, shown in variants.items()
-        for variant in shown
+        for engine, names in variants.items()
+        for variant in names
     ]
+    return figure, panels, handles
 
 
 def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle") -> Figure:
@@ -119,27 +134,22 @@ def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row:
     The front is that of all rows, also of those that are not featured as series: those stand as small grey dots.
     A series never runs backwards: see `forwards`.
     """
+
+    def pairs(members: Iterable[Measurement]) -> Pairs:
+        return [(1e3 * row.cpu, getattr(row, field)) for row in members]
+
     rows = [row for row in drawable(rows, field) if row.cpu > 0]
     shown = [row for row in rows if featured(row)]
-    scenes = _with_lines(shown or rows)
-    variants = _shown_variants(shown)
+    scenes, label = _with_lines(shown or rows), "CPU time per simulated second [ms]"
     with settings():
-        figure, panels = _panels(scenes, 3.6)
+        figure, panels, handles = _chart(shown, scenes, field, label, lambda members: pairs(forwards(members)))
         for panel, scene in zip(panels, scenes, strict=True):
             here = [row for row in rows if row.scene == scene]
-            front = pareto((1e3 * row.cpu, getattr(row, field)) for row in here)
-            panel.plot(*zip(*front, strict=True), color=LIGHT.grid, linewidth=7, drawstyle="steps-post", zorder=1)
-            others = [(1e3 * row.cpu, getattr(row, field)) for row in here if not featured(row)]
-            if others:
+            front = zip(*pareto(pairs(here)), strict=True)
+            panel.plot(*front, color=LIGHT.grid, linewidth=7, drawstyle="steps-post", zorder=1)
+            if others := pairs(row for row in here if not featured(row)):
                 panel.plot(*zip(*others, strict=True), ".", color=LIGHT.quiet, markersize=3, zorder=2)
-            for (_, engine, variant), members in groups(row for row in here if featured(row)).items():
-                series = [(1e3 * row.cpu, getattr(row, field)) for row in forwards(members)]
-                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants))
-            panel.set_xlabel("CPU time per simulated second [ms]")
-            if panels.index(panel) % COLUMNS == 0:
-                panel.set_ylabel(f"largest {quantity(field).axis}")
             _finish(panel)
-        handles = _handles(variants)
         handles.append(Line2D([], [], color=LIGHT.grid, linewidth=8, label="nothing is better and cheaper"))
         if len(shown) < len(rows):
             handles.append(Line2D([], [], color=LIGHT.quiet, marker=".", linestyle="none", label="other methods"))
@@ -151,26 +161,19 @@ def error_against_step(
     rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle"
 ) -> Figure:
     """Error against step, one panel a scene, with slopes 1, 2 and 4 as guides. A flat end is a plateau: the model."""
+
+    def pairs(members: Iterable[Measurement]) -> Pairs:
+        return [(1e3 * row.step, getattr(row, field)) for row in members]
+
     rows = [row for row in drawable(rows, field) if featured(row)]
-    scenes = _with_lines(rows)
-    variants = _shown_variants(rows)
     with settings():
-        figure, panels = _panels(scenes, 3.6)
-        for panel, scene in zip(panels, scenes, strict=True):
-            here = [row for row in rows if row.scene == scene]
-            for (_, engine, variant), members in groups(here).items():
-                series = [(1e3 * row.step, getattr(row, field)) for row in members]
-                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants))
-            panel.axhspan(1e-16, quantity(field).rounding, color=LIGHT.grid, alpha=0.45, linewidth=0, zorder=0)
-            panel.set_xlabel("step [ms]")
-            if panels.index(panel) % COLUMNS == 0:
-                panel.set_ylabel(f"largest {quantity(field).axis}")
+        figure, panels, handles = _chart(rows, _with_lines(rows), field, "step [ms]", pairs)
         for panel in panels:
+            panel.axhspan(1e-16, quantity(field).rounding, color=LIGHT.grid, alpha=0.45, linewidth=0, zorder=0)
             panel.set_ylim(bottom=min(getattr(row, field) for row in rows) / 3)
         for panel in panels:
             _guides(panel)
             _finish(panel)
-        handles = _handles(variants)
         handles.append(Line2D([], [], color=LIGHT.grid, linewidth=8, alpha=0.6, label="rounding"))
         _legend(figure, handles)
     return figure
