@@ -8,13 +8,13 @@ from a mechanism and can do nothing else. It stands beside the engines to say wh
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from engines import EXACT, Engine, Holder, Promise, Size, Unpromised, Unsupported
+from engines.sampling import sampled
 from reference.checks import Count, Positive, validated
 from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
@@ -111,13 +111,17 @@ class BandedRun:
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         self._mechanism.require_room(samples)
         chain, states = self._chain, np.empty((samples + 1, len(self._start)))
-        state = states[0] = self._start
-        begin = time.process_time()
-        for sample in range(1, samples + 1):
-            for _ in range(every):
+        state = self._start
+
+        def advance(count: int) -> None:
+            nonlocal state
+            for _ in range(count):
                 state = self._step(state)
+
+        def record(sample: int) -> None:
             states[sample] = state
-        stepping = time.process_time() - begin
+
+        stepping = sampled([every] * samples, advance, record)
         angle, rate = states[:, : chain.links], states[:, chain.links :]
         pose, twist, _ = chain.placement(angle, rate, np.zeros_like(angle))
         reaction = chain.forces(angle, rate).reshape(samples + 1, -1)
