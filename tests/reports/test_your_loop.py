@@ -18,11 +18,6 @@ from pymunk.constraints import RotaryLimitJoint
 from engines.mujoco.writers import MJCF
 from engines.pymunk.written_script import SCRIPT
 from reference.scene import Scene
-from reports.model.page import Material
-from reports.model.tasks import Answer, Task, answered
-from reports.pages.guides.experiments import CUTS
-from reports.pages.guides.page import PAGES
-from reports.pages.rendering import render_page
 from reports.pages.your_loop.experiments import EVERY, Fresh, draw, run_lines
 from reports.pages.your_loop.linkages import LINKAGES, jansen
 from reports.pages.your_loop.page import (
@@ -38,7 +33,6 @@ from reports.pages.your_loop.page import (
     cell,
 )
 from reports.pages.your_model.experiments import MODELS
-from reports.write.tables import number
 from tests.committed_rows import committed_rows
 
 STEP = 1e-3
@@ -262,19 +256,3 @@ def test_a_model_that_is_attached_keeps_its_stiff_loop_and_gets_the_options_of_i
     for option in ("timestep", "integrator", "tolerance"):
         assert getattr(model.opt, option) == getattr(usual.opt, option)
     assert model.opt.gravity.tolist() == usual.opt.gravity.tolist()
-
-
-def test_the_place_where_a_loop_is_cut_changes_its_error_and_the_page_has_each():
-    answers: dict[Task, Answer] = {task: answered(task) for task in CUTS.values()}
-    error = {place: answers[task].number("angle") for place, task in CUTS.items()}
-    case, _ = CASES[LOOP.name]
-    assert error["C", False] == pytest.approx(row(case, case.after), rel=0.02)  # the tree of the page's own model
-    usual = [error[pin, False] for pin in "ABCD"]
-    assert max(usual) > 30 * min(usual)
-    assert error["C", True] > 3 * error["C", False]
-    (page,) = (page for page in PAGES if page.name == "settings")
-    text = render_page(page, Material({}, answers), "the command")["settings.md"]
-    for pin in "ABCD":
-        assert f"| `connect` at pin {pin} | {number(error[pin, False])} | {number(error[pin, True])} |" in text
-    assert "which is larger here, so that the loop is softer" in text
-    assert "`connect` at pin" not in render_page(page, Material({}), "the command")["settings.md"]

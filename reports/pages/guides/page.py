@@ -10,7 +10,6 @@ from engines import Engine, lagrange, method_name, mujoco, pymunk
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model.cells import FULL, sweep_cells
 from reports.model.page import Material, Page
-from reports.pages.guides.experiments import CUTS
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.write.rows import lookups
 from reports.write.tables import markdown, number
@@ -37,13 +36,8 @@ def table(material: Material) -> str:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """The table, what asks for single rows, and errors by where a loop is cut: {pin: (usual, exact diagonal)} [rad]."""
-    cuts: dict[str, list[float]] = {}
-    for (pin, _), task in CUTS.items():
-        if (answer := material.finished(task)) is not None:
-            cuts.setdefault(pin, []).append(answer.number("angle"))
-    whole = len(cuts) * 2 == len(CUTS) and all(len(pair) == 2 for pair in cuts.values())
-    return {**lookups(material, (FOUR_BAR,)), "table": table(material), "cuts": cuts if whole else {}}
+    """The table, and the functions that look up single rows."""
+    return {**lookups(material, (FOUR_BAR,)), "table": table(material)}
 
 
 PAGES = (
@@ -62,9 +56,7 @@ PAGES = (
         lesson="Which integrator, how stiff a loop, and how to read a reaction.",
         scenes=(),
         engines=ENGINES,
-        companions=(FOUR_BAR,),  # a full run of it cuts the loop too
         borrowed=sweep_cells((FOUR_BAR,), ENGINES, FULL),
-        tasks=tuple(CUTS.values()),
         template=FOLDER / "settings.md",
         words=words,
     ),
