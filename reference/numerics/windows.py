@@ -220,8 +220,12 @@ def error_of(rates: Rates, start: ArrayLike, t: ArrayLike, unit: ArrayLike) -> A
     """A bound on the error of `motion` (times,): COARSER times how far it moves by a coarser rule, and rounding."""
     times = np.atleast_1d(np.asarray(t, dtype=float))
     until = max(float(times.max()), math.ulp(1.0))
-    fine, coarse = (motion(rates, start, until, unit, factor)(times) for factor in (1.0, COARSER))
-    return np.asarray(COARSER * (np.abs(fine - coarse) + np.finfo(float).eps * np.abs(fine)).max(axis=-1))
+    return bound(*(motion(rates, start, until, unit, factor)(times) for factor in (1.0, COARSER)))
+
+
+def bound(fine: NDArray[Any], coarse: NDArray[Any]) -> Array:
+    """A bound (times,) on the error of states (times, n) from those by a coarser rule; not below rounding."""
+    return (COARSER * (np.abs(fine - coarse) + np.finfo(float).eps * np.abs(fine))).max(axis=-1).astype(float)
 
 
 def _found(

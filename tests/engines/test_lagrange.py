@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from engines import Promise, Softness
+from engines import Softness
 from engines.lagrange import HELD, TRUTH, Judge, Lagrange
 from engines.lagrange.dynamics import RK4, Dynamics, constrained_acceleration, inverse_inertia, runge_kutta
-from reference.joints import Drive, Pin, Rod, Skate, Slot
+from reference.joints import Drive, Pin, Rod, Slot
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import joint_gap, slip
 from tests.mechanisms import four_bar, pendulum
@@ -84,26 +84,6 @@ def test_a_joint_whose_row_is_lost_beside_others_is_told(method, stabilisation, 
     assert (run.warnings == ()) is held
 
 
-def test_a_skate_that_leaves_no_velocity_free_leaves_poses_to_the_integrator():
-    """A crank is driven, and a bar on it has a blade: all velocities follow from the pose, no pose from the time."""
-    crank = Body("crank", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 2.0))
-    # The crank's end moves up at 2 m/s; a blade along x at the bar's far end, 1 m to the right, stays at its height.
-    bar = Body("bar", 1.0, 0.1, (2.0, 0.0, 0.0), (0.0, 0.0, -2.0))
-    joints = (
-        Pin("centre", None, "crank", (0.0, 0.0), (0.0, 0.0)),
-        Drive("motor", None, "crank", 2.0, 0.0),
-        Pin("elbow", "crank", "bar", (1.0, 0.0), (-1.0, 0.0)),
-        Skate("blade", None, "bar", (0.0, 0.0), 0.0),
-    )
-    towed = Mechanism((crank, bar), joints)
-    assert towed.degrees_of_freedom() == (1, 0)
-    truth = TRUTH.build(towed, 0.05)(4, 1)
-    errors = [np.abs(Lagrange("euler").build(towed, 0.05 / n)(4, n).pose - truth.pose).max() for n in (10, 20)]
-    assert errors[1] == pytest.approx(errors[0] / 2, rel=0.1)
-    promised = [Lagrange("euler").order(towed), Lagrange("rk4").order(towed)]
-    assert [isinstance(each, Promise) and each.of("angle") for each in promised] == [1, 4]
-
-
 @pytest.mark.parametrize(("integrator", "order"), [("euler", 1), ("rk4", 4)])
 @pytest.mark.parametrize("stabilisation", ["none", "projection"])
 def test_the_error_falls_with_the_integrators_order(integrator, order, stabilisation):
@@ -116,18 +96,6 @@ def test_the_error_falls_with_the_integrators_order(integrator, order, stabilisa
     observed = np.log2(np.array(errors[:-1]) / errors[1:])
     # Within half an order: the next power of the step still contributes at these steps.
     np.testing.assert_allclose(observed, order, atol=0.5)
-
-
-def test_without_stabilisation_the_joints_drift_apart_and_projection_closes_them():
-    mechanism = four_bar(crank_rate=3.0)
-    gaps = {}
-    for stabilisation in ("none", "baumgarte", "projection"):
-        run = Lagrange("rk4", stabilisation).build(mechanism, 5e-3)(40, 5)
-        gaps[stabilisation] = np.max(np.abs(joint_gap(mechanism, run)))
-        if stabilisation == "projection":
-            assert np.max(np.abs(slip(mechanism, run))) < 1e-13
-    assert gaps["projection"] < 1e-14 < gaps["none"]
-    assert gaps["baumgarte"] < gaps["none"]
 
 
 def test_projection_closes_wide_gaps_and_takes_from_a_velocity_only_what_does_work_against_the_joints():

@@ -19,6 +19,7 @@ from reference.kinds import of_shape
 
 Array = NDArray[np.float64]
 ADAPTIVE: dict[str, Any] = {"RK45": RK45, "RK23": RK23, "DOP853": DOP853, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
+FIXED = {"euler": (0.0,), "rk4": (0.0, 0.5, 0.5, 1.0)}  # where each stage stands in its step
 Method = Literal["euler", "rk4", "RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA"]
 
 
@@ -74,7 +75,7 @@ def integrate_rates(
         solver = ADAPTIVE[method](odes, times[0], out[0].copy(), times[-1], rtol=rtol, atol=atol)
         evaluations, stopped = _adaptive(solver, times, out, limit)
     else:
-        evaluations, stopped = _fixed(odes, _euler if method == "euler" else _rk4, times, out, every, limit)
+        evaluations, stopped = _fixed(odes, FIXED[method], times, out, every, limit)
     return RateIntegration(times, out[:, 0], out[:, 1], out[:, 2], evaluations, stopped)
 
 
@@ -95,40 +96,21 @@ def _adaptive(solver: Any, times: Array, out: Array, limit: int) -> tuple[int, s
 
 
 def _fixed(
-    odes: Callable[[float, Array], Array],
-    advance: tuple[int, Callable[..., Array]],
-    times: Array,
-    out: Array,
-    every: int,
-    limit: int,
+    odes: Callable[[float, Array], Array], nodes: tuple[float, ...], times: Array, out: Array, every: int, limit: int
 ) -> tuple[int, str]:
-    cost, step = advance
-    evaluations = 0
+    """Steps of Euler's method or the classical one of Runge and Kutta, whose stages follow from one another."""
+    evaluations, weights = 0, np.array([1.0] if len(nodes) == 1 else [1 / 6, 1 / 3, 1 / 3, 1 / 6])
     for index in range(1, times.size):
-        angles, length = out[index - 1], (times[index] - times[index - 1]) / every
+        angles, step = out[index - 1], (times[index] - times[index - 1]) / every
         for _ in range(every):
-            if evaluations + cost > limit:
+            if evaluations + len(nodes) > limit:
                 return evaluations, f"stopped at t = {times[index - 1]:.6g} s after {evaluations} evaluations"
-            angles = step(odes, angles, length)
-            evaluations += cost
+            slopes = [np.zeros(3)]
+            for node in nodes:
+                slopes.append(odes(0.0, angles + step * node * slopes[-1]))  # the rates don't depend on time
+            angles = angles + step * (weights @ np.array(slopes[1:]))
+            evaluations += len(nodes)
         out[index] = angles
         if not np.all(np.isfinite(angles)):
             return evaluations, f"failed before t = {times[index]:.6g} s: the rates are not finite"
     return evaluations, ""
-
-
-def _euler_step(odes: Callable[[float, Array], Array], angles: Array, step: float) -> Array:
-    return angles + step * odes(0.0, angles)
-
-
-def _rk4_step(odes: Callable[[float, Array], Array], angles: Array, step: float) -> Array:
-    first = odes(0.0, angles)
-    second = odes(0.0, angles + step / 2 * first)
-    third = odes(0.0, angles + step / 2 * second)
-    fourth = odes(0.0, angles + step * third)
-    return angles + step / 6 * (first + 2 * second + 2 * third + fourth)
-
-
-# Evaluations a step, and the step: the rates don't depend on time.
-_euler = (1, _euler_step)
-_rk4 = (4, _rk4_step)

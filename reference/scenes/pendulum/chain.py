@@ -37,7 +37,6 @@ Motion = Callable[[ArrayLike], Array]
 
 # Up to so many links a call of numpy costs more than its numbers, and windows are fastest; beyond, an explicit method.
 FEW_LINKS = 20
-COARSE_STAGES = 16
 NUDGE = 1e-6  # rad, the difference of starts whose growth is measured: small against a swing, large against rounding
 TENFOLD = 10.0
 
@@ -127,7 +126,7 @@ class Chain(Valid):
         """The same for a few links; `coarse`: by another rule that lets ten times as much pass."""
         angle, rate = np.split(start, 2)
         unit = float(units_of_motion(self.rates, start)[-1])
-        stages, tolerance = (COARSE_STAGES, TENFOLD) if coarse else (windows.STAGES, 1.0)
+        stages, tolerance = (windows.COARSE_STAGES, windows.COARSER) if coarse else (windows.STAGES, 1.0)
         return windows.integrate(self._accelerations, angle, rate, until, unit, stages, tolerance * windows.TOLERANCE)
 
     @validated
@@ -248,9 +247,7 @@ class Chain(Valid):
         if self.links > FEW_LINKS:
             return error_of(self.rates, start, times, unit=units_of_motion(self.rates, start))
         until = max(float(times.max(initial=0.0)), math.ulp(1.0))
-        fine, coarse = (self._by_windows(start, until, coarse)(times) for coarse in (False, True))
-        rounding = np.finfo(float).eps * np.abs(fine)
-        return (TENFOLD * (np.abs(fine - coarse) + rounding)).max(axis=-1).astype(float)
+        return windows.bound(*(self._by_windows(start, until, coarse)(times) for coarse in (False, True)))
 
     def _start(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         return np.concatenate(self._alike(angle, rate))
