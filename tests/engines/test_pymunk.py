@@ -33,7 +33,6 @@ from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse, RollingInRing, RollingOnCircle
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import Trajectory
 from tests import ROOT
 from tests.engines.test_matrix import blade_on_a_board, elbow
@@ -301,13 +300,6 @@ def test_the_first_force_of_a_contact_is_swept_until_its_points_agree(step):
 
 def slip(scene: Scene, found: Trajectory) -> float:
     return largest(scene.mechanism().slip(found.pose, found.twist))
-
-
-def test_grooves_that_are_aimed_slip_by_rounding_only():
-    assert slip(SLEIGH, run(TUNED, SLEIGH, 10)) < 1e-10
-    assert TUNED.softness(SLED, 1e-3) is None
-    assert slip(SLEIGH, run(EXTENDED, SLEIGH, 1)) < 1e-11
-    assert slip(CarAndTrailer(), run(EXTENDED, CarAndTrailer(), 1)) < 1e-8
 
 
 def test_a_blade_set_at_an_angle_is_turned_with_the_body():
