@@ -155,7 +155,7 @@ class MuJoCo(Engine, Valid):
         if isinstance(self.rolls, RollContact) and any(isinstance(joint, Roll) for joint in mechanism.joints):
             stiffness, lacking = Shipped() if self.rolls.steps is None else TiedToStep(self.rolls.steps), True
         skating = any(isinstance(joint, Skate) for joint in mechanism.joints)
-        lacking |= skating and self.skates in ("blade", "tendon friction")
+        lacking |= skating and self.skates == "blade"
         lacking |= self.rods == "tendon" and any(isinstance(joint, Rod) for joint in mechanism.joints)
         gain, damping = stiffness.gains(mechanism, dt)
         if self.skates == "rows" and all(

@@ -6,14 +6,11 @@ them; what each way is stands in `engines.mujoco.joints`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from engines.mujoco.engine import MuJoCo
 from engines.mujoco.joints.roll import RollContact
-from engines.mujoco.model import Model
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
-from reference.checks import Positive, validated
-from reference.mechanism import Mechanism
 
 DEFAULT = MuJoCo("default")
 CONTACT = RollContact(friction=10.0, steps=2.0, stick=True, cone="elliptic")
@@ -63,22 +60,3 @@ SKATES = (replace(TUNED, variant="friction blade", skates="blade", integrator="E
 ROLLS = (replace(TUNED, variant="contact, stiff Euler", integrator="Euler"),)
 # A slot whose line moves as a row of ours. It is no setting of MuJoCo's, so it is not what `TUNED` itself takes.
 SLOTS = (replace(TUNED, variant="tuned, slots as rows", slots="rows"),)
-
-
-@dataclass(frozen=True)
-class LimitedTendon(MuJoCo):
-    """A skate that slips when it would have to give more than `limit` [N]: the friction loss of MuJoCo's tendon."""
-
-    limit: Positive = 1.0
-
-    def model(self, mechanism: Mechanism, dt: Positive, unit: Positive | None = None) -> Model:
-        model = super().model(mechanism, dt, unit)
-        model.compiled.tendon_frictionloss[:] = self.limit / model.unit
-        return model
-
-
-@validated
-def limited_tendon(limit: Positive) -> LimitedTendon:
-    """The tendon with a limit [N] on its friction."""
-    settings = {name: value for name, value in vars(TUNED).items() if name not in ("variant", "skates")}
-    return LimitedTendon("tendon with friction loss", **settings, skates="tendon friction", limit=limit)

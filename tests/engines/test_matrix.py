@@ -50,7 +50,6 @@ FREE_COORDINATES = replace(mujoco.EXTENDED, variant="free coordinates", coordina
 HALVES = replace(mujoco.EXTENDED, variant="halves", slots="halves")
 FREE_HALVES = replace(FREE_COORDINATES, variant="free coordinates, halves", slots="halves")
 TUNED_FREE = replace(mujoco.TUNED, variant="tuned, free coordinates", coordinates="free")
-TENDON_FRICTION = replace(mujoco.TUNED, variant="tendon friction", skates="tendon friction")
 SOFT = replace(mujoco.EXTENDED, variant="shipped compliance", stiffness=Hardened(softening=1.0), estimates=False)
 OVERWRITTEN = replace(mujoco.DEFAULT, variant="overwritten crank", drive="overwrite")
 (BLADE,) = SKATES
@@ -255,7 +254,6 @@ OF_MUJOCO = (
     Row(mujoco.TUNED, RollingEllipse(), 25, order=(1,), room=0.3, span=2.0),
     # A direction is a whole step late at most: the way on which it then leads off is the speed times the turning.
     Row(mujoco.TUNED, SLEIGH, order=(1,), span=3.0, pose=2e-2, reaction=5e-3, since=1),
-    Row(TENDON_FRICTION, SLEIGH, order=(1,), span=3.0, pose=2e-2, reaction=5e-3, since=1),
     # The blade's friction along it is MuJoCo's least, 1e-5 of the weight.
     Row(BLADE, SLEIGH, 25, pose=5e-3, reaction=5e-3, since=1, floor=1e-4, span=3.0),
     # Friction's time constant of 0.02 s is a slip of that times u w, and it doesn't know the step.

@@ -34,7 +34,7 @@ from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.scenes.wheels.cart import Cart
 from reference.trajectory import Trajectory
-from tests.engines.test_matrix import SOFT, TENDON_FRICTION, blade_on_a_board
+from tests.engines.test_matrix import SOFT, blade_on_a_board
 
 ELLIPSE, DISC = RollingEllipse(), RollingDisc()
 (EULER,) = ROLLS
@@ -166,9 +166,7 @@ def test_what_a_construction_can_not_do_is_refused_with_a_sentence() -> None:
 # Skates and slots
 
 
-@pytest.mark.parametrize(
-    "engine", [DEFAULT, TUNED, EXTENDED, BLADE, TENDON_FRICTION], ids=lambda engine: engine.variant
-)
+@pytest.mark.parametrize("engine", [DEFAULT, TUNED, EXTENDED, BLADE], ids=lambda engine: engine.variant)
 def test_two_wheels_on_one_axle_change_nothing_and_break_nothing(engine: MuJoCo) -> None:
     once, twice = Cart(duration=0.5), Cart(redundant=True, duration=0.5)
     dt = 1e-3

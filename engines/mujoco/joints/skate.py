@@ -3,7 +3,6 @@
 - "blade": a capsule that touches a plane with friction across it, MuJoCo's own parts alone, as its maintainers suggest.
 - "predicted tendon": a fixed tendon, a sum of joint velocities. Its coefficients are rewritten before every step as the
   skate's row at the pose that the velocity leads to.
-- "tendon friction": the same at the present pose, held by the tendon's friction loss, which can give way at a limit.
 - "rows": the skate's own row, written by a callback in every stage.
 
 Bodies here can't move out of the plane, so nothing weighs on a contact: a blade stands that deep in the ground that the
@@ -26,9 +25,9 @@ from engines.tree import world_offset
 from reference.joints import Skate
 from reference.mechanism import Mechanism
 
-SkateBy = Literal["rows", "predicted tendon", "tendon friction", "blade"]
+SkateBy = Literal["rows", "predicted tendon", "blade"]
 # These change once a step, so an integrator of several stages gains nothing and costs four times as much.
-STEPWISE: tuple[SkateBy, ...] = ("predicted tendon", "tendon friction")
+STEPWISE: tuple[SkateBy, ...] = ("predicted tendon",)
 
 # Along and across the blade. A capsule on a plane, because there the frame of the contact lies along the capsule: so
 # the answer of one of MuJoCo's maintainers to how one skates on ice, github.com/google-deepmind/mujoco/issues/67.
@@ -63,10 +62,10 @@ def add_skates(building: Building, skates: Sequence[Skate], by: SkateBy) -> None
     if by != "rows":
         joints = building.written[before:]
         del building.written[before:]
-        _add_tendons(building, joints, by)
+        _add_tendons(building, joints)
 
 
-def _add_tendons(building: Building, joints: Sequence[WrittenJoint], by: SkateBy) -> None:
+def _add_tendons(building: Building, joints: Sequence[WrittenJoint]) -> None:
     """Rows that stop the slip within a step: J v = 0 after it, at a pose that is known before.
 
     MuJoCo holds a tendon's length. Here the stiffness is next to none and only the damping acts, so the length that the
@@ -74,33 +73,26 @@ def _add_tendons(building: Building, joints: Sequence[WrittenJoint], by: SkateBy
     """
     from engines.mujoco.user_rows import RowWriter
 
-    mechanism, tree, spec = building.mechanism, building.tree, building.spec
-    direct, options = [NO_STIFFNESS, -STIFFEST[1] / building.dt], dict[str, Any]()
-    if by == "tendon friction":
-        # Never overcome: as strong as ten thousand of the mechanism's own inertial forces.
-        weight = sum(body.mass for body in mechanism.bodies) * mechanism.length_scale / mechanism.time_scale**2
-        options = {"frictionloss": 1e4 * weight, "solref_friction": direct, "solimp_friction": list(STIFFEST)}
+    tree, spec = building.tree, building.spec
     # The coefficients at the start set the scale of the compliance when the model is compiled.
     width = tree.coordinates
     start, _ = RowWriter(tree, range(width), joints).rows(np.zeros(width), np.zeros(width))
     chains = [building.chain(joint) for joint in joints]
     for number, columns in enumerate(chains):
-        tendon = spec.add_tendon(name=f"skate {number}", **options)
+        tendon = spec.add_tendon(name=f"skate {number}")
         for column in columns:
             tendon.wrap_joint(f"coordinate {column}", float(start[number, column]))
-        if by == "predicted tendon":
-            spec.add_equality(
-                type=mujoco.mjtEq.mjEQ_TENDON,
-                objtype=mujoco.mjtObj.mjOBJ_TENDON,
-                name1=f"skate {number}",
-                solref=direct,
-                solimp=list(STIFFEST),
-            )
+        spec.add_equality(
+            type=mujoco.mjtEq.mjEQ_TENDON,
+            objtype=mujoco.mjtObj.mjOBJ_TENDON,
+            name1=f"skate {number}",
+            solref=[NO_STIFFNESS, -STIFFEST[1] / building.dt],
+            solimp=list(STIFFEST),
+        )
     building.size += len(joints)
-    ahead = building.dt if by == "predicted tendon" else 0.0
 
     def bind(compiled: Any, address: Sequence[int]) -> Hooks:
-        writer = RowWriter(tree, address, joints, ahead=ahead)
+        writer = RowWriter(tree, address, joints, ahead=building.dt)
         own = np.array([row * compiled.nv + address[column] for row, each in enumerate(chains) for column in each])
         first = int(compiled.tendon_adr[compiled.tendon("skate 0").id])
         coefficients = compiled.wrap_prm[first : first + len(own)]

@@ -9,7 +9,6 @@ import numpy as np
 
 from engines import Engine, method_name
 from engines.mujoco import methods as mujoco_methods
-from engines.mujoco.methods import limited_tendon
 from engines.pymunk import methods as pymunk_methods
 from engines.pymunk.engine import limited_groove
 from engines.registry import VARIANTS
@@ -136,10 +135,7 @@ PEAK = float(np.abs(BACKWARDS.lateral_force(np.linspace(0, BACKWARDS.duration, 1
 
 
 # A friction's limit [N] -> runs with it.
-LIMITED = {
-    limit: tuple(Cell(BACKWARDS, engine(limit), 10) for engine in (limited_groove, limited_tendon))
-    for limit in (0.1, 0.3, 0.5, 0.7)
-}
+LIMITED = {limit: (Cell(BACKWARDS, limited_groove(limit), 10),) for limit in (0.1, 0.3, 0.5, 0.7)}
 
 
 SLIPS = 2e-3  # m/s: above what either method lets pass at this step while it holds
