@@ -18,9 +18,8 @@ from reports import __main__ as command_line
 from reports.cli.selection import page_tasks
 from reports.model.page import Material
 from reports.model.tasks import answered
-from reports.pages.errata import experiments as referees
-from reports.pages.errata.experiments import CONFIRMED, REFEREES, TASKS, Ruling, Window, rulings
-from reports.pages.errata.page import SNIPPETS, digits, verdict
+from reports.pages.errata import page as referees
+from reports.pages.errata.page import CONFIRMED, REFEREES, SNIPPETS, TASKS, Ruling, Window, digits, rulings, verdict
 from reports.pages.faults.page import (
     OFFSETS,
     PAGE,

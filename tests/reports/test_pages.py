@@ -36,7 +36,7 @@ from reports.model.page import Material, Page, no_words
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task
 from reports.pages.engines.experiments import ASKED, Capabilities, VelocityTerm
-from reports.pages.errata import experiments as referees
+from reports.pages.errata import page as referees
 from reports.pages.faults.page import Offsets, Script
 from reports.pages.findings import findings
 from reports.pages.index import render_index, render_readme

@@ -1,20 +1,221 @@
-"""The errata's page: every slip of the chapter by number, what decides, what engines say, and a snippet to run."""
+"""The errata's page: every slip of the chapter by number, what decides, what engines say, and a snippet to run.
+
+Engines are referees: they know bodies, joints and forces and none of the chapter's formulas, so they may decide too.
+
+Each runs a mechanism for a while; an acceleration is then what its own velocities differ by between samples. Nothing
+but linear relations of positions is put in: the end of a bar is twice as far from its pin as its centre.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS, Erratum, Values
-from reference.chapter.errata.rolling_and_skates import rolling_acceleration
+from engines import Engine, method_name, mujoco, pymunk
+from engines.lagrange import Lagrange
+from reference.chapter.errata import linkages as pendulum
+from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS
+from reference.chapter.errata.erratum import Array, Erratum, Values
+from reference.chapter.errata.linkages import closed_form, integrated
+from reference.chapter.errata.linkages import rates as printed_rates
+from reference.chapter.errata.rolling_and_skates import acceleration_of_g, rolling_acceleration
+from reference.joints import Pin
+from reference.mechanism import Body, Mechanism
+from reference.scene import Scene
+from reference.scenes.four_bar.scenes import DrivenFourBar
+from reference.scenes.pendulum.chain import Chain
+from reference.scenes.pendulum.scenes import LinkPendulum
+from reference.scenes.rolling.scenes import RollingOnCircle
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
-from reports.pages.errata.experiments import CONFIRMED, QUESTIONS, TASKS, Ruling, rulings
+from reports.model.tasks import Answer, Task
+from reports.model.tasks import Values as Kept
+from reports.run.running import run_items
 from reports.write.tables import number
 
-NAME = "errata"
+REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
+
+# 1 ms: the differences of order eight below, and the rounding that they magnify, are then far below an engine's errors.
+SPACING = 1e-3
+SAMPLES = 300  # the motion is well away from its start
+FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
+SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
+POINTS, MIDDLE = len(FIRST), len(FIRST) // 2
+
+
+@dataclass(frozen=True)
+class Window:
+    """POINTS samples in a row of one engine's motion; what is asked is asked at the middle one."""
+
+    pose: Array  # (POINTS, bodies, 3)
+    twist: Array  # (POINTS, bodies, 3)
+
+    def change(self, values: Array) -> Array:
+        """The derivative in time of values (POINTS, ...) at the middle one, per second."""
+        return np.tensordot(FIRST, values, axes=1) / SPACING
+
+
+Reading = Callable[[Window], dict[int, Values]]
+CONFIRMED = 0  # the key of (18.70) and (18.71), which are right as printed
+
+
+def double_pendulum() -> Mechanism:
+    """Two uniform bars of the errata's lengths, angles and rates, 1 kg each, under gravity."""
+    chain = Chain((pendulum.BAR,) * 2, (1.0, 1.0))
+    angle, rate = np.array(pendulum.PHI), np.array(pendulum.PHI_RATE)
+    pose, twist, _ = chain.placement(angle, rate, np.zeros(2))
+    bodies = tuple(
+        Body(name, 1.0, float(chain.inertia[i]), tuple(pose[i].tolist()), tuple(twist[i].tolist()))
+        for i, name in enumerate(("OA", "AB"))
+    )
+    half = pendulum.BAR / 2
+    joints = (Pin("O", None, "OA", (0.0, 0.0), (-half, 0.0)), Pin("A", "OA", "AB", (half, 0.0), (-half, 0.0)))
+    return Mechanism(bodies, joints, (0.0, -chain.gravity))
+
+
+def _pendulum(window: Window) -> dict[int, Values]:
+    """r_A = 2 r_G1 and r_B/A = 2 (r_G2 - r_A): linear, so the accelerations of the ends follow without a formula."""
+    velocity = window.twist[:, :, :2]
+    ends = np.stack([2 * velocity[:, 0], 2 * (velocity[:, 1] - 2 * velocity[:, 0])], axis=1)
+    measured, turning = window.change(ends), window.change(window.twist[:, :, 2])
+    angle, rate = window.pose[MIDDLE, :, 2] + math.pi / 2, window.twist[MIDDLE, :, 2]  # a bar's x axis points down it
+    # The right side of the note is phi1'' itself; the angles, differentiated twice, decide.
+    twice = np.atleast_1d(SECOND @ window.pose[:, 0, 2]) / SPACING**2
+    found = {24: Values(rate[:1], turning[:1], twice)}
+    for slip, (bar, printed) in pendulum.PENDULUM_SLIPS.items():
+        state = pendulum.BarState(pendulum.BAR, float(angle[bar]), float(rate[bar]), float(turning[bar]))
+        found[slip] = Values(printed(state), pendulum.right(state), measured[bar])
+    return found
+
+
+def _rolling(window: Window) -> dict[int, Values]:
+    """The disc's centre lies on the contact's normal, so the contact is where the ray to it meets the hill."""
+    scene = RollingOnCircle()
+    pose, twist = window.pose[:, 0], window.twist[:, 0]
+    arm = scene.eccentricity * np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
+    centre = pose[:, :2] + arm
+    direction = centre / np.linalg.norm(centre, axis=-1, keepdims=True)
+    contact = scene.hill * direction
+    normal, rate = direction[MIDDLE], twist[MIDDLE, 2]
+    tangent = np.array([-normal[1], normal[0]])
+    advance = scene.hill * (math.atan2(normal[1], normal[0]) - math.pi / 2)  # s; arc 0 is at the top
+    speed = rate / (1 / scene.hill + 1 / scene.radius)
+
+    def material(point: Array) -> Array:
+        """The velocity of the body's point at a place in space."""
+        x, y = point - pose[MIDDLE, :2]
+        return twist[MIDDLE, :2] + rate * np.array([-y, x])
+
+    return {
+        1: Values(advance * tangent, speed * tangent, window.change(contact)),
+        # A pole is a point without velocity: the origin of the ground is not, the contact is.
+        2: Values(material(np.zeros(2)), material(contact[MIDDLE]), np.zeros(2)),
+    }
+
+
+def _skate(window: Window) -> dict[int, Values]:
+    scene = ChaplyginSleigh()
+    pose, twist = window.pose[:, 0], window.twist[:, 0]
+    along = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
+    speed = np.sum(twist[:, :2] * along, axis=-1)  # of C too: G is straight ahead of it
+    push, turning = (float(window.change(values)) for values in (speed, twist[:, 2]))
+    state = (float(pose[MIDDLE, 2]), float(speed[MIDDLE]), push, float(twist[MIDDLE, 2]), turning, (scene.offset, 0.0))
+    return {11: Values(*acceleration_of_g(*state), window.change(twist[:, :2]))}
+
+
+def _four_bar(window: Window) -> dict[int, Values]:
+    theta, beta, phi = (float(angle) for angle in window.pose[MIDDLE, :, 2])
+    crank, *others = window.twist[MIDDLE, :, 2]
+    rates = crank * np.array(printed_rates(theta, beta, phi))
+    return {
+        19: Values(integrated(theta), np.array(closed_form(theta)), np.array([beta, phi])),
+        CONFIRMED: Values(rates, rates, np.array(others)),
+    }
+
+
+@dataclass(frozen=True)
+class Question:
+    """A mechanism, what its motion says of which slips, and the scene with which it is run."""
+
+    mechanism: Callable[[], Mechanism]
+    read: Reading
+    companion: Scene
+
+
+# By what happens in the motion.
+QUESTIONS: dict[str, Question] = {
+    "a disc rolls off a round hill": Question(RollingOnCircle().mechanism, _rolling, RollingOnCircle()),
+    "a sleigh on one skate coasts": Question(ChaplyginSleigh().mechanism, _skate, ChaplyginSleigh()),
+    "the crank of sample 18.15 turns at 10 rad/s": Question(DrivenFourBar().mechanism, _four_bar, DrivenFourBar()),
+    "the double pendulum falls": Question(double_pendulum, _pendulum, LinkPendulum()),
+}
+
+
+@dataclass(frozen=True)
+class Refereed(Task):
+    """The last POINTS samples of an engine's motion of the mechanism of a question."""
+
+    question: str
+    referee: Engine
+
+    @property
+    def engine(self) -> Engine:
+        return self.referee
+
+    @property
+    def cost(self) -> float:
+        return SAMPLES * self.engine.step_cost(QUESTIONS[self.question].mechanism())
+
+    @property
+    def label(self) -> str:
+        return f"{method_name(self.engine)}: {self.question}"
+
+    def run(self) -> Kept:
+        motion = self.engine.build(QUESTIONS[self.question].mechanism(), SPACING)(SAMPLES, 1)
+        return {"pose": motion.pose[-POINTS:], "twist": motion.twist[-POINTS:]}
+
+
+TASKS = tuple(Refereed(question, engine) for question in QUESTIONS for engine in REFEREES)
+
+
+@dataclass(frozen=True)
+class Ruling:
+    """What one engine says of one slip: `values.decides` is its own; after 0.3 s of `about`."""
+
+    number: int
+    method: str
+    about: str
+    values: Values
+
+
+def rulings(answers: Iterable[tuple[Task, Answer]], lost: list[str] | None = None) -> tuple[Ruling, ...]:
+    """Every referee's answer to every question, by number; an engine that has no such joint says nothing.
+
+    What became of an engine that failed, or whose motion is not finite, becomes a sentence in `lost`, if that is given.
+    """
+    found: list[Ruling] = []
+    lost = [] if lost is None else lost
+    for task, answer in answers:
+        if not isinstance(task, Refereed) or answer.outcome == Outcome.UNSUPPORTED:
+            continue
+        method = method_name(task.engine)
+        if not answer.finished:
+            lost.append(f"{method} where {task.question}: {answer.told}")
+            continue
+        window = Window(answer.array("pose"), answer.array("twist"))
+        if not (np.isfinite(window.pose).all() and np.isfinite(window.twist).all()):
+            lost.append(f"{method} where {task.question}: its motion is not finite")
+            continue
+        said = QUESTIONS[task.question].read(window)
+        found += [Ruling(slip, method, task.question, values) for slip, values in said.items()]
+    return tuple(sorted(found, key=lambda ruling: ruling.number))
+
+
 SNIPPETS = "errata/snippets"
 
 
@@ -24,26 +225,22 @@ def digits(values: Iterable[float]) -> str:
     return f"({', '.join(told)})" if len(told) > 1 else told[0]
 
 
-@dataclass(frozen=True)
-class Told:
-    """A slip ready for the template."""
-
-    erratum: Erratum
-    verdict: str
-    script: str  # its file
+def missed(erratum: Erratum, pattern: str, between: str) -> str:
+    """By how much an integration misses at each of its tolerances; `pattern` has a miss and a tolerance."""
+    assert erratum.by_tolerance is not None
+    return between.join(pattern.format(number(miss), number(each)) for each, miss in erratum.by_tolerance().items())
 
 
 def verdict(erratum: Erratum, values: Values, said: Sequence[Ruling]) -> str:
     """By how much the printed and the right formula miss the derivative that decides, and each engine's own motion."""
-    missed = f"The printed formula misses it by {number(values.miss)}, the right one by {number(values.agreement)}."
+    misses = f"The printed formula misses it by {number(values.miss)}, the right one by {number(values.agreement)}."
     if erratum.by_tolerance is not None:
-        misses = erratum.by_tolerance().items()
-        at_each = " and ".join(f"{number(miss)} at a relative tolerance of {number(each)}" for each, miss in misses)
-        missed = (
+        at_each = missed(erratum, "{} at a relative tolerance of {}", " and ")
+        misses = (
             f"The closed form misses it by {number(values.agreement)}. The integration misses it by {at_each}: the "
             "tolerance is ours, since the chapter states none."
         )
-    told = f"Decides ({erratum.deciding}): {digits(values.decides)} {erratum.unit}. {missed}"
+    told = f"Decides ({erratum.deciding}): {digits(values.decides)} {erratum.unit}. {misses}"
     if not said:
         return told
     least, most = min(ruling.values.miss for ruling in said), max(ruling.values.agreement for ruling in said)
@@ -56,21 +253,58 @@ def verdict(erratum: Erratum, values: Values, said: Sequence[Ruling]) -> str:
     )
 
 
+def slip_rows() -> list[tuple[str, ...]]:
+    """A row a slip by number: where, both formulas with their values, what decides, the verdict."""
+    found: dict[int, tuple[str, ...]] = {}
+    for erratum in ERRATA:
+        values = erratum.values()
+        misses = f"off by {number(values.miss)}, right by {number(values.agreement)}"
+        if erratum.by_tolerance is not None:
+            integrated = missed(erratum, "{} at rtol {}", ", ")
+            misses = f"the claim; integration off by {integrated} (ours); formula by {number(values.agreement)}"
+        found[erratum.number] = (
+            str(erratum.number),
+            erratum.where,
+            f"{erratum.printed}\n= {digits(values.printed)}",
+            f"{erratum.right}\n= {digits(values.right)}",
+            f"{digits(values.decides)}\n{erratum.unit}",
+            f"{misses}; {'dimensions show it' if erratum.dimensions else 'only numbers show it'}",
+        )
+    for slip in WORD_SLIPS:
+        found[slip.number] = (str(slip.number), slip.where, slip.printed, slip.right, "-", f"words: {slip.reason}")
+    return [found[key] for key in sorted(found)]
+
+
+def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
+    """(a row a slip and engine: both formulas' misses of its motion; sentences on engines that failed)."""
+    lost: list[str] = []
+    units = {slip.number: slip.unit for slip in ERRATA}
+    answers = dict(run_items(TASKS))
+    said = rulings(((task, answers[task]) for task in TASKS), lost)
+    return [
+        (str(r.number), r.method, r.about, units[r.number], number(r.values.miss), number(r.values.agreement))
+        for r in said
+        if r.number in units
+    ], lost
+
+
 def words(material: Material) -> Mapping[str, Any]:
     """Values of the formulas, which are computed at once, and what engines say, from their stored motions."""
     lost: list[str] = []
     said = rulings(material.answers.items(), lost)
-    told = [
-        Told(
-            erratum,
-            verdict(erratum, erratum.values(), [ruling for ruling in said if ruling.number == erratum.number]),
-            f"reports/pages/{SNIPPETS}/slip_{erratum.number:02}.py",
-        )
+    slips = [
+        {
+            "erratum": erratum,
+            "verdict": verdict(
+                erratum, erratum.values(), [ruling for ruling in said if ruling.number == erratum.number]
+            ),
+            "script": f"reports/pages/{SNIPPETS}/slip_{erratum.number:02}.py",
+        }
         for erratum in ERRATA
     ]
     rates = [(r.method, r.values.agreement) for r in said if r.number == CONFIRMED]
     return {
-        "errata": told,
+        "errata": slips,
         "word_slips": WORD_SLIPS,
         "blind": [erratum.number for erratum in ERRATA if not erratum.dimensions],
         "seen": [erratum.number for erratum in ERRATA if erratum.dimensions],
@@ -81,7 +315,7 @@ def words(material: Material) -> Mapping[str, Any]:
 
 
 PAGE = Page(
-    name=NAME,
+    name="errata",
     title="Errata of the chapter",
     lesson="Printed slips of section 18.5 of a textbook, *advanced kinematics of planar motion*: each decided by a "
     "derivative, by engines, and by a few lines to run.",
