@@ -1,4 +1,4 @@
-"""The lecture as a page: its cells are run once, and stand with what they print and draw."""
+"""The lecture as a Markdown page: its cells are run once, and stand with their output and their pictures."""
 
 from __future__ import annotations
 
@@ -7,57 +7,60 @@ import json
 import sys
 import warnings
 from contextlib import redirect_stdout
-from html import escape
+from pathlib import Path
 
-from reports.model.fingerprint import ROOT
 from reports.run.installed import environment
-from reports.site import markdown
 from reports.site.packages import printed
 
+ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 300  # s
 
 
-def html(notebook: str) -> str:
-    """The cells of a notebook in their order; its last one, the solutions, is folded. Raises NotFetched, with why."""
+def render_lecture(notebook: str) -> dict[str, str]:
+    """The page "lecture.md" and its pictures by name; the last cell, the solutions, is folded.
+
+    Raises NotFetched with the reason where a cell fails.
+    """
     cells = json.loads(notebook)["cells"]
     sources = ["".join(cell["source"]) for cell in cells]
     codes = [source for cell, source in zip(cells, sources, strict=True) if cell["cell_type"] == "code"]
     words = [sys.executable, "-m", "reports.site.lecture"]
-    made = iter(json.loads(printed(words, "a cell fails", PATIENCE, input=json.dumps(codes), env=environment(ROOT))))
-    parts = []
+    runs = iter(json.loads(printed(words, "a cell fails", PATIENCE, input=json.dumps(codes), env=environment(ROOT))))
+    parts, files = [], {}
     for cell, source in zip(cells, sources, strict=True):
         if cell["cell_type"] == "markdown":
-            parts.append(markdown.html(source))
+            parts.append(source)
             continue
-        told, pictures = next(made)
-        parts.append(f"<pre><code>{escape(source)}</code></pre>")
-        if told:
-            parts[-1] += f'<pre class="printed">{escape(told)}</pre>'
-        parts[-1] += "".join(f'<div class="drawn">{picture}</div>' for picture in pictures)
-    parts[-1] = f"<details><summary>Solutions</summary>{parts[-1]}</details>"
-    return "".join(parts)
+        output, pictures = next(runs)
+        parts.append(f"```python\n{source}\n```" + (f"\n\n```text\n{output.rstrip()}\n```" if output else ""))
+        for picture in pictures:
+            name = f"lecture_{len(files)}.svg"
+            files[name] = picture
+            parts.append(f"![Figure {len(files)}]({name})")
+    parts[-1] = f"<details><summary>Solutions</summary>\n\n{parts[-1]}\n\n</details>"
+    return {"lecture.md": "\n\n".join(parts), **files}
 
 
 def main() -> None:
-    """Run the cells that come as JSON, and write what each printed and drew."""
+    """Run the cells that come as JSON, and write the output and the pictures of each."""
     import matplotlib
 
     matplotlib.use("agg")
     import matplotlib.pyplot as plt
 
     warnings.simplefilter("ignore")  # that nothing can be shown here
-    given, told = {"__name__": "lecture"}, []
+    names, runs = {"__name__": "lecture"}, []
     for code in json.load(sys.stdin):
         out, pictures = io.StringIO(), []
         with redirect_stdout(out):
-            exec(code, given)
+            exec(code, names)
         for number in plt.get_fignums():
             drawn = io.StringIO()
             plt.figure(number).savefig(drawn, format="svg", metadata={"Date": None})
-            pictures.append(drawn.getvalue()[drawn.getvalue().index("<svg") :])
+            pictures.append(drawn.getvalue())
         plt.close("all")
-        told.append((out.getvalue(), pictures))
-    json.dump(told, sys.stdout)
+        runs.append((out.getvalue(), pictures))
+    json.dump(runs, sys.stdout)
 
 
 if __name__ == "__main__":

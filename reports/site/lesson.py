@@ -110,7 +110,7 @@ class Source:
     cache: Path
     foot: str
     contributing: str = ""  # CONTRIBUTING.md, of which how-to pages quote parts; empty outside of a checkout
-    api: bool = True  # whether pdoc makes the reference, which takes some ten seconds
+    api: bool = True  # whether docstrings become a reference, which takes a minute
     lecture: str = ""  # the notebook, as JSON
     troubles: list[str] = field(default_factory=list)  # what could not be built, and why, a sentence each
 

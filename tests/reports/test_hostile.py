@@ -26,7 +26,7 @@ from reports.model.page import Material
 from reports.pages.rendering import render_page
 from reports.run.supervisor import supervise
 from reports.site.folder import server
-from reports.site.markdown import html
+from reports.site.markdown import render_html
 from reports.write.csv_files import as_csv
 from reports.write.templates import inert_page
 from tests.reports.rough_toys import is_free, wait_until
@@ -168,7 +168,7 @@ def test_a_job_that_forks_is_answered_once_and_its_child_is_ended(tmp_path):
 def test_names_are_words_on_pages_and_no_formula_is_one_in_a_table():
     page = inert_page("# <script>x</script>\n<details>\n<summary>a</summary>\n\n`<b>` <!-- c -->\n```\n<b>\n```\n")
     assert page == "# &lt;script>x&lt;/script>\n<details>\n<summary>a</summary>\n\n`<b>` <!-- c -->\n```\n<b>\n```\n"
-    site = html("# <script>x</script>\n\n| <img src=x onerror=y> |\n|--|\n| <!--><iframe> `<b>` |\n")
+    site = render_html("# <script>x</script>\n\n| <img src=x onerror=y> |\n|--|\n| <!--><iframe> `<b>` |\n")
     assert set(re.findall(r"<[/!]?[\w-]+", site)) == {"<h1", "</h1", "<div", "</div", "<table", "</table", "<!--"} | {
         f"<{slash}{tag}" for slash in ("", "/") for tag in ("thead", "tbody", "tr", "th", "td", "code")
     }

@@ -36,6 +36,7 @@ BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 if BROWSER is None:
     pytest.skip("no Chromium is installed: tests/tools/browser.sh installs it on Debian", allow_module_level=True)
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: pip install '.[browser]'")
+pytest.importorskip("furo", reason="furo is not installed: pip install '.[site]'")
 
 PHONE = {"width": 390, "height": 844}
 TALL = {"width": 1200, "height": 8000}  # nothing scrolls, and so no other part comes to the middle and is shown

@@ -7,7 +7,8 @@
       use(localStorage);
     } catch {}
   };
-  kept((store) => Object.assign(root.dataset, store.scheme && { scheme: store.scheme }));
+  // The documents of the site store the choice under this name, "auto" without one.
+  kept(({ theme }) => Object.assign(root.dataset, /^(light|dark)$/.test(theme) && { scheme: theme }));
   const dark = () => (root.dataset.scheme ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "")) === "dark";
   addEventListener("DOMContentLoaded", () => {
     const button = document.querySelector("button.scheme");
@@ -17,7 +18,7 @@
     name();
     button.addEventListener("click", () => {
       const scheme = (root.dataset.scheme = dark() ? "light" : "dark");
-      kept((store) => store.setItem("scheme", scheme));
+      kept((store) => store.setItem("theme", scheme));
       name();
     });
   });

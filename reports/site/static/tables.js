@@ -52,9 +52,9 @@ export function equip(table) {
       row.hidden = !words.every((word) => text.includes(word));
     }
   });
-  (table.closest(".wide") ?? table).before(label);
+  (table.closest(".table-wrapper, .wide") ?? table).before(label);
 }
 
-for (const table of document.querySelectorAll("table.sortable")) {
+for (const table of document.querySelectorAll("table.docutils")) {
   if (table instanceof HTMLTableElement) equip(table);
 }

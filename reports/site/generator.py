@@ -1,0 +1,187 @@
+"""Sphinx with MyST and Furo: Markdown pages and docstrings as HTML, with formulas in MathML and a search.
+
+The pages of our own templates (lessons, stored rows) are added to those of the documents.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields
+from importlib.util import find_spec
+from pathlib import Path
+from pkgutil import walk_packages
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from reports.model.ending import BadInput
+from reports.plots.theme import DARK, LIGHT, Theme
+from reports.site.markdown import mathml
+
+HERE = Path(__file__).parent
+NEEDED = ("sphinx", "myst_parser", "furo", "latex2mathml")
+LINE = re.compile(r' (?:d|x|y)="[^"]*"')
+LONG = re.compile(r"-?\d+\.\d{2,}(?![\de])")
+PACKAGES = ("reference", "engines")
+MODULE = "{name}\n{line}\n\n.. automodule:: {name}\n   :members:\n"
+# Kinds of warnings about docstrings, which are plain text, and about the look of pages.
+HARMLESS = ("docutils", "autodoc", "ref.", "toc.", "myst.header")  # warnings about docstrings, which are plain text
+
+# Of the theme, but for the list of lessons.
+SIDEBAR = ("scroll-start", "brand", "search", "lessons", "navigation", "scroll-end")
+
+Extra = tuple[str, dict[str, Any], str]  # page, context, template
+
+
+@dataclass(frozen=True)
+class Documents:
+    """Files of a Sphinx project: `sources` are read as documents, `extra` are copied to the site as they are."""
+
+    sources: Mapping[str, bytes]
+    extra: Mapping[str, bytes]
+    context: Mapping[str, Any]  # values of our own templates
+    add_pages: Callable[[Any], Iterator[Extra]]  # of the Sphinx application, when all documents are written
+
+
+def build_html(documents: Documents) -> tuple[dict[str, bytes], list[str]]:
+    """The files of the site by name, and the warnings about our pages. Raises BadInput where a package is missing."""
+    missing = [name for name in NEEDED if find_spec(name) is None]
+    if missing:
+        raise BadInput(f"the site needs packages that are not installed ({', '.join(missing)}): pip install '.[site]'")
+    from sphinx.application import Sphinx
+    from sphinx.util.docutils import docutils_namespace
+
+    with TemporaryDirectory() as folder, docutils_namespace(), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # deprecations of Sphinx that its theme and MyST still use
+        source, extra, out = (Path(folder) / name for name in ("source", "extra", "out"))
+        for place, files in ((source, documents.sources), (extra, documents.extra)):
+            for name, content in files.items():
+                (place / name).parent.mkdir(parents=True, exist_ok=True)
+                (place / name).write_bytes(content)
+        said = io.StringIO()
+        settings = {**configure(extra), "html_context": dict(documents.context)}
+        app = Sphinx(source, None, out, Path(folder) / "trees", "html", settings, status=None, warning=said)
+        app.connect("html-collect-pages", documents.add_pages)
+        app.build()
+        names = (path for path in sorted(out.rglob("*")) if path.is_file() and path.name != ".buildinfo")
+        built = {path.relative_to(out).as_posix(): path.read_bytes() for path in names}
+    lines = [re.sub(r"\x1b\[[\d;]*m", "", line).replace(folder, "") for line in said.getvalue().splitlines()]
+    ours = [line for line in lines if "WARNING" in line and not any(f"[{word}" in line for word in HARMLESS)]
+    return built, [line for line in ours if "docstring of" not in line]
+
+
+def setup(app: Any) -> None:
+    """Register the renderer of formulas; Sphinx calls it, since this module is one of its extensions."""
+    app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))
+
+
+def configure(extra: Path) -> dict[str, Any]:
+    """The settings of Sphinx."""
+    return {
+        "project": "crosscheck",
+        "extensions": ["myst_parser", "sphinx.ext.autodoc", __name__],
+        "html_theme": "furo",
+        "html_title": "crosscheck",
+        "html_theme_options": {
+            "light_css_variables": furo_colours(LIGHT),
+            "dark_css_variables": furo_colours(DARK),
+            "footer_icons": [],
+        },
+        "html_math_renderer": "mathml",
+        "html_sidebars": {"**": [f"sidebar/{part}.html" for part in SIDEBAR]},
+        "html_favicon": str(HERE / "static" / "icon.svg"),
+        "html_static_path": [str(HERE / "static")],
+        "html_css_files": ["pages.css"],
+        "html_js_files": [("tables.js", {"type": "module"})],
+        "html_extra_path": [str(extra)],
+        "html_copy_source": False,
+        "html_show_sphinx": False,
+        "html_show_copyright": False,
+        "templates_path": [str(HERE / "templates")],
+        "default_role": "code",
+        "myst_enable_extensions": ["dollarmath"],
+        "myst_dmath_allow_space": False,
+        "myst_dmath_allow_digits": False,
+        "myst_dmath_double_inline": True,
+        "myst_heading_anchors": 6,
+        "myst_fence_as_directive": ["math"],
+        "autodoc_typehints": "signature",
+        "autodoc_typehints_format": "short",
+        "autodoc_preserve_defaults": True,
+        "python_use_unqualified_type_names": True,
+        "toc_object_entries": False,
+    }
+
+
+def furo_colours(theme: Theme) -> dict[str, str]:
+    """The colours of our charts as those of the theme."""
+    return {
+        "color-brand-primary": theme.ink,
+        "color-brand-content": theme.second,
+        "color-brand-visited": theme.second,
+        "color-background-primary": theme.paper,
+        "color-foreground-primary": theme.ink,
+    }
+
+
+def colours() -> str:
+    """CSS that sets a variable for each role; the reader's own choice stands above the system's."""
+    light, dark = (" ".join(f"--{f.name}: {getattr(theme, f.name)};" for f in fields(Theme)) for theme in (LIGHT, DARK))
+    return (
+        f":root {{ color-scheme: light dark; {light} }}\n"
+        f"@media (prefers-color-scheme: dark) {{ :root:not([data-scheme=light]) {{ {dark} }} }}\n"
+        f":root[data-scheme=dark] {{ color-scheme: dark; {dark} }}\n"
+        ":root[data-scheme=light] { color-scheme: light }\n"
+    )
+
+
+def visit_inline(translator: Any, node: Any) -> None:
+    """Write a formula of a sentence, and nothing of its children."""
+    from docutils.nodes import SkipNode
+
+    translator.body.append(mathml(node.astext()))
+    raise SkipNode
+
+
+def visit_block(translator: Any, node: Any) -> None:
+    """Write a displayed formula, and nothing of its children."""
+    from docutils.nodes import SkipNode
+
+    translator.body.append(f'<div class="math">{mathml(" ".join(node.astext().split()), True)}</div>')
+    raise SkipNode
+
+
+def quote_section(app: Any, page: str, heading: str) -> str | None:
+    """The HTML of a part of a results page, as a page in a folder beside `results` shows it; None without that part."""
+    from docutils import nodes
+
+    name = f"results/{page}"
+    if name not in app.env.all_docs:
+        return None
+    tree = app.env.get_and_resolve_doctree(name, app.builder)
+    app.builder.post_process_images(tree)
+    app.builder.imgpath = "../_images"
+    app.builder.dlpath = "../_downloads"
+    for section in tree.findall(nodes.section):
+        if section[0].astext() == heading:
+            body = "".join(app.builder.render_partial(child)["fragment"] for child in section[1:])
+            body = re.sub(r' id="[^"]*"', "", body).replace('href="#', f'href="{page}.html#')
+            return re.sub(r'href="(?!https?:|mailto:|\.\./)([^"]+)"', r'href="../results/\1"', body)
+    return None
+
+
+def reference_sources() -> dict[str, bytes]:
+    """A document for each module of the packages, whose docstrings Sphinx reads, and their index."""
+    names = [*PACKAGES]
+    for package in PACKAGES:
+        names += [module.name for module in walk_packages([str(HERE.parents[1] / package)], f"{package}.")]
+    texts = {f"reference/{name}.rst": MODULE.format(name=name, line="=" * len(name)) for name in names}
+    texts["reference/index.rst"] = "Reference\n=========\n\n.. toctree::\n   :glob:\n   :maxdepth: 1\n\n   *\n"
+    return {name: text.encode() for name, text in texts.items()}
+
+
+def lighten(picture: str) -> str:
+    """An SVG whose lines are drawn to a tenth of a point, a fraction of a pixel, instead of a millionth."""
+    return LINE.sub(lambda found: LONG.sub(lambda digits: f"{float(digits[0]):.1f}", found[0]), picture)
