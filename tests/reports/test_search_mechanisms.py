@@ -2,40 +2,33 @@
 
 from __future__ import annotations
 
-from collections import Counter
+import hashlib
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from engines.lagrange import TRUTH
 from reference.checks import InvalidMechanism
-from reference.forces import Spring, TorsionSpring
 from reference.joints import Slot
-from reports.search.mechanisms import ALL, mechanism, recipe, renumbered
-from reports.search.parts import EVERY, FORCES, KINDS, Link, Part, Recipe, Rim, as_text, from_text, ladder
+from reports.search.mechanisms import mechanism, recipe, renumbered
+from reports.search.parts import EVERY, FORCES, KINDS, SINGULAR, Link, Part, Recipe, Rim, as_text, from_text
 from reports.search.recipe import LEAST_RANK, NEAREST, build, dependence
 
 CASES = range(40)
+# Of the recipes below. It changes with any change of the drawing: seeds in documents would then name other mechanisms.
+DIGEST = "a70ba875a1348f267414ef4ca0cc7f05393aa4b0745440069cc1fdfeeff82ed7"
 
 
-def test_a_case_depends_on_its_own_numbers_alone():
-    assert recipe(3, 41) == recipe(3, 41)
-    assert len({as_text(recipe(seed, number)) for seed in (3, 4) for number in CASES}) == 2 * len(CASES)
+def test_a_seed_and_a_number_give_the_same_mechanism_for_ever():
+    drawn = [
+        as_text(recipe(seed, number, kinds, decades))
+        for seed in (3, 1001)
+        for number in range(20)
+        for kinds in (KINDS, EVERY, ("pin", *SINGULAR))
+        for decades in (0, 2, 4)
+    ]
+    assert hashlib.sha256("\n".join(drawn).encode()).hexdigest() == DIGEST
     assert recipe(3, 41, ("slot", "pin")) == recipe(3, 41, ("pin", "slot"))
-
-
-def test_the_numbers_of_a_case_are_those_of_every_machine():
-    """Written down once: another generator, or another order of drawing, would change every published number."""
-    assert as_text(recipe(1, 13, ("pin", "skate"))) == PUBLISHED
-
-
-PUBLISHED = (
-    '{"gravity": [9, 10], "links": [{"at": [4, -1], "first": 0, "kind": "pin", "second": 1, "turn": 3}, {'
-    '"at": [3, -1], "first": 0, "kind": "skate", "second": 2, "turn": 8}], "parts": [{"angle": -10, "gyra'
-    'tion": -1, "mass": -1, "offset": [-7, -6], "size": 1, "velocity": [2, -2, -6]}, {"angle": -9, "gyrat'
-    'ion": -2, "mass": -3, "offset": [-3, -3], "velocity": [0, 3, 1]}]}'
-)
 
 
 def test_the_point_of_a_slots_line_lies_beside_the_slide():
@@ -56,32 +49,6 @@ def test_every_start_fulfils_its_joints_and_none_hold_the_same(decades):
         assert drawn.twist.any() or np.hypot(*drawn.gravity) > 0
 
 
-@pytest.mark.parametrize("kind", EVERY)
-def test_kinds_are_those_asked_for(kind):
-    assert {link.kind for number in CASES for link in recipe(5, number, (kind,)).links} == {kind}
-
-
-def test_kinds_that_came_later_change_no_case_without_them():
-    """What was published is drawn anew by the same words: the first five kinds are those of the beginning."""
-    assert ALL == KINDS == EVERY[:5]
-    assert as_text(recipe(1, 13)) == as_text(recipe(1, 13, KINDS))
-
-
-def test_most_springs_are_stretched_or_pushed_at_the_start():
-    """By `rest` tenths of their length, or so many steps of an angle: at rest no wrong stiffness would show."""
-    stretched = 0
-    for number in range(60):
-        case = recipe(5, number, ("pin", "spring", "torsion-spring"))
-        drawn = build(case)
-        links = [link for link in case.links if "spring" in link.kind]
-        for link, spring in zip(links, drawn.forces, strict=True):
-            assert isinstance(spring, Spring | TorsionSpring)
-            pull = np.abs(replace(drawn, forces=(spring,)).applied.on(drawn.pose, drawn.twist)).max()
-            assert (pull > 1e-9 * spring.stiffness) == (link.rest != 0), link
-            stretched += link.rest != 0
-    assert stretched > 30
-
-
 def test_a_toggle_holds_its_bodies_together_by_rows_that_nearly_depend_on_each_other():
     """A rod that misses the pin of its bodies by d of their length: its moment is d, beside a force of 1."""
     seen = 0
@@ -95,18 +62,6 @@ def test_a_toggle_holds_its_bodies_together_by_rows_that_nearly_depend_on_each_o
     assert "toggle" not in {link.kind for number in CASES for link in recipe(5, number, EVERY).links}
 
 
-def test_rods_gears_welds_and_forces_all_come_up_between_bodies_and_on_the_ground():
-    seen: Counter[str] = Counter()
-    for number in range(300):
-        drawn = recipe(6, number, EVERY)
-        mechanism = build(drawn)  # a rod off its length, a damper without a direction are refused here
-        assert len(mechanism.joints) + len(mechanism.forces) == len(drawn.links)
-        for link in drawn.links:
-            seen[f"{link.kind} on {'a body' if link.first else 'the ground'}"] += 1
-    assert len(seen) == 2 * len(EVERY)
-    assert min(seen.values()) >= 5, seen
-
-
 @pytest.mark.parametrize("kind", FORCES)
 def test_the_units_of_forces_are_units(kind):
     """In other units of length, mass and time a force element gives the same accelerations, scaled."""
@@ -117,28 +72,6 @@ def test_the_units_of_forces_are_units(kind):
         size = np.array([1e-5, 1e-5, 1e-2])  # m/s^2 and rad/s^2: 1e-3 / 10^2, 1 / 10^2
         largest = np.abs(before).max(axis=(0, 1)) + np.abs(plain.twist).max() + 1
         assert np.allclose(after / size, before, rtol=1e-9, atol=1e-11 * largest)
-
-
-def test_all_that_is_promised_comes_up():
-    """In 400 cases of each spread: trees, loops, rest, motion, drives in a loop, skates and slots on moving bodies."""
-    seen: Counter[str] = Counter()
-    for number in range(400):
-        drawn = recipe(6, number)
-        seen["at rest"] += not any(any(part.velocity) for part in drawn.parts)
-        seen["without gravity"] += not any(drawn.gravity)
-        seen["loop"] += len({frozenset((link.first, link.second)) for link in drawn.links}) > len(drawn.parts)
-        for link in drawn.links:
-            seen[link.kind] += 1
-            seen[f"{link.kind} on a moving body"] += link.first > 0
-            seen[f"{link.kind} at the centre of mass"] += link.at == (0, 0)
-            if link.rims:
-                seen[" on ".join(rim.shape for rim in link.rims[::-1])] += 1
-    assert min(seen.values()) >= 10, seen
-    assert len(seen) == 3 + 3 * len(ALL) + 7, seen
-    masses = [
-        10 ** np.ptp([np.log10(float(ladder(part.mass))) for part in recipe(6, n, decades=3).parts]) for n in CASES
-    ]
-    assert max(masses) > 1e6
 
 
 def test_a_shape_keeps_its_ratios_of_gears_and_gets_other_numbers_for_all_else():
@@ -169,16 +102,6 @@ def test_units_are_units():
         assert np.allclose(scaled.inertias, plain.inertias * [1e2, 1e2, 1e-4], rtol=1e-12)
         if plain.length_scale != 1:  # a metre stands for none at all
             assert scaled.time_scale == pytest.approx(10 * plain.time_scale, rel=1e-9)
-
-
-def test_the_judge_runs_them():
-    """Joints stay closed and nothing is lost, so that a gap in an engine is the engine's."""
-    for number in range(6):
-        drawn = mechanism(9, number)
-        run = TRUTH.build(drawn, 1e-3)(1, 20)
-        assert np.isfinite(run.pose).all()
-        gap = np.nan_to_num(drawn.gap(run.pose, run.t))
-        assert np.abs(gap).max() < 1e-11 * max(1.0, drawn.length_scale)  # projected to the rounding of the rows
 
 
 @pytest.mark.parametrize(
