@@ -34,6 +34,19 @@ if TYPE_CHECKING:
 
 TEN = 10  # cases of a fresh seed for each engine
 ALL_ORACLES = ",".join(ORACLES)
+Seed = Annotated[
+    int | None, typer.Option(min=0, help="Other mechanisms; if none is given, those of the last commit's hash.")
+]
+Fresh = Annotated[bool, typer.Option(help="Keep drawing new random seeds until --seconds is over; all engines.")]
+Kinds = Annotated[
+    str | None, typer.Option(help="Of joints and forces: pin,rod,spring,...; of MuJoCo alone: connect,gear,...")
+]
+Oracles = Annotated[
+    str, typer.Option(help=f"What is asked: {ALL_ORACLES}; or {CLAIMS}, of methods that estimate their own errors.")
+]
+ReleaseName = Annotated[
+    str | None, typer.Option(help="MuJoCo alone in this release, as 3.6.0: installed once, in the user's cache.")
+]
 
 
 def search(
@@ -41,24 +54,13 @@ def search(
     variant: VariantName = None,
     cases: Annotated[int | None, typer.Option(min=1, help="Cases for each engine: 200; 10 of a fresh seed.")] = None,
     seconds: Annotated[float | None, typer.Option(help="Begin nothing after this time; what is done is kept.")] = None,
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="Other mechanisms; if none is given, those of the last commit's hash.")
-    ] = None,
-    fresh: Annotated[
-        bool, typer.Option(help="Keep drawing new random seeds until --seconds is over; all engines.")
-    ] = False,
+    seed: Seed = None,
+    fresh: Fresh = False,
     published: Annotated[bool, typer.Option(help="All that the published page shows, planted faults too.")] = False,
-    kinds: Annotated[
-        str | None,
-        typer.Option(help="Of joints and forces: pin,rod,spring,...; of MuJoCo alone: connect,gear,..."),
-    ] = None,
+    kinds: Kinds = None,
     decades: Annotated[int, typer.Option(min=0, max=6, help="By how many more masses and lengths differ.")] = 0,
-    oracles: Annotated[
-        str, typer.Option(help=f"What is asked: {ALL_ORACLES}; or {CLAIMS}, of methods that estimate their own errors.")
-    ] = ALL_ORACLES,
-    release: Annotated[
-        str | None, typer.Option(help="MuJoCo alone in this release, as 3.6.0: installed once, in the user's cache.")
-    ] = None,
+    oracles: Oracles = ALL_ORACLES,
+    release: ReleaseName = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
     as_json: AsJson = False,
@@ -66,14 +68,8 @@ def search(
     results: Folder = FOLDER,
 ) -> None:
     """Search random mechanisms for faults; each finding is made small and written as a script of the engine's own."""
-    if seconds is not None and not 0 < seconds < float("inf"):
-        raise BadInput(f"--seconds is {seconds}; it must be a finite number greater than zero")
-    if fresh and (seconds is None or published or seed is not None):
-        raise BadInput("--fresh needs --seconds, and takes no --seed and no --published: it draws seeds until then")
-    if published and any((engine, variant, cases, seed is not None, kinds, decades, release, oracles != ALL_ORACLES)):
-        raise BadInput(
-            "--published takes --seconds, --workers, --scheduler and --results alone: what is asked is fixed"
-        )
+    chosen = any((engine, variant, cases, seed is not None, kinds, decades, release, oracles != ALL_ORACLES))
+    _refuse(seconds, seed, fresh, published, chosen)
     from reports.cli.terminal import interruptible, opened, telling
     from reports.run.cluster import elsewhere, pool
     from reports.search import plan
@@ -93,11 +89,7 @@ def search(
         first = plan.seeds()[0] if seed is None else seed
         batches = iter([chunks(subjects, first, cases or CASES, wanted, decades, asked)])
     folder = results / SEARCH
-    with (
-        telling(150, as_json, as_markdown) as terminal,
-        elsewhere(scheduler) as crew,
-        opened(folder / STORE) as store,
-    ):
+    with telling(150, as_json, as_markdown) as terminal, elsewhere(scheduler) as crew, opened(folder / STORE) as store:
         run = Search(store, crew or pool(workers), seconds, partial(interruptible, terminal))
         found = run.run(batches)
         if published:
@@ -106,6 +98,18 @@ def search(
         terminal.tell(run.summary)
         shrink_and_write(terminal, run, found, folder)
         terminal.say(f"{len(found)} cases are stored in {folder}. Next: {with_folder('crosscheck report', results)}")
+
+
+def _refuse(seconds: float | None, seed: int | None, fresh: bool, published: bool, chosen: bool) -> None:
+    """Raise BadInput for options that contradict each other; `chosen`: whether any option says what is asked."""
+    if seconds is not None and not 0 < seconds < float("inf"):
+        raise BadInput(f"--seconds is {seconds}; it must be a finite number greater than zero")
+    if fresh and (seconds is None or published or seed is not None):
+        raise BadInput("--fresh needs --seconds, and takes no --seed and no --published: it draws seeds until then")
+    if published and chosen:
+        raise BadInput(
+            "--published takes --seconds, --workers, --scheduler and --results alone: what is asked is fixed"
+        )
 
 
 def _subjects(engine: str | None, variant: str | None, release: str | None, everything: bool) -> list[Subject]:
