@@ -4,8 +4,8 @@
 engine. Two round curves, or a round one on a line, are in closed form here; any other pair is a table of short
 polynomials through exact contacts.
 
-With s' = ds/dtheta, the arm a = r_{O'/C} and e_n (see `reference.rolling.contact`), the body's origin in the frame of
-the ground is P = point + a, and P' = i a, P'' = s' e_n - a: the velocity (18.66) at one radian a second, and the
+With s' = ds/dtheta, the arm a = r_{O'/C} and e_n (see `reference.rolling.kinematics`), the body's origin in the frame
+of the ground is P = point + a, and P' = i a, P'' = s' e_n - a: the velocity (18.66) at one radian a second, and the
 acceleration that rolling implies then. Vectors are complex numbers x + i y.
 """
 

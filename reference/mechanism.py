@@ -149,7 +149,7 @@ class Mechanism(Valid):
         return np.array([joint.holonomic for joint in self.joints for _ in range(joint.size)], dtype=bool)
 
     def require_room(self, samples: int) -> None:
-        """Raise InvalidMechanism if the poses of a trajectory of so many samples take more than memory.LARGEST."""
+        """Raise InvalidMechanism if the poses of a trajectory of so many samples take more than checks.LARGEST."""
         require_room("mechanism: a trajectory", (samples + 1, len(self.bodies), 3))
 
     @validated
@@ -164,7 +164,7 @@ class Mechanism(Valid):
     def rows(self, pose: States) -> NDArray[Any]:
         """The velocity rows J (..., rows, 3 bodies) at poses (..., bodies, 3); analytic, so a complex step passes.
 
-        Dense, though each row has two bodies: raises InvalidMechanism where that would take more than memory.LARGEST.
+        Dense, though each row has two bodies: raises InvalidMechanism where that would take more than checks.LARGEST.
         """
         return self.joint_rows.dense(pose)
 

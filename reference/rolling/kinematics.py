@@ -1,4 +1,7 @@
-"""One rigid curve rolling on another: contact, pose, velocity (18.66) and acceleration as functions of the rotation."""
+"""One rigid curve rolling on another: contact, pose, velocity (18.66) and acceleration as functions of the rotation.
+
+Where one curve touches another that it rolls on, and where two can't roll: they cut, fit, or one leaves a ring.
+"""
 
 from __future__ import annotations
 
@@ -14,15 +17,137 @@ from reference.checks import InvalidMechanism, Valid, validated
 from reference.kinds import of_shape
 from reference.numerics.roots import solve_increasing
 from reference.plane import rotated, rotation_acceleration, rotation_velocity
-from reference.rolling.contact import Contact, first_fit, refuse_conformal, refuse_overlap
 from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
 
 
-def _round(curve: Curve) -> float | None:
-    """Radius [m] of a disc, or of a hole with a negative sign, placed or not; None for any other curve."""
-    if isinstance(curve, Placed):
-        return _round(curve.curve)
-    return curve.sense * curve.radius if isinstance(curve, Circle | Ring) else None
+@dataclass(frozen=True)
+class Contact:
+    """The contact at rotations (...) [rad] of the body, everything in the ground's frame unless it says otherwise."""
+
+    theta: Array
+    ground_arc: Array  # (...) m
+    body_arc: Array  # (...) m; ground_arc + body_arc is constant
+    point: Array  # (..., 2) m, where the curves touch
+    arm: Array  # (..., 2) m, r_{O'/C}: the body's origin seen from the contact
+    tangent_angle: Array  # (...) rad, of e_t: the direction in which the ground is traversed
+    ground_curvature: Array  # (...) 1/m
+    body_curvature: Array  # (...) 1/m
+
+    @property
+    def rate(self) -> Array:
+        """ds/dtheta = 1 / (curvature_A + curvature_B) (...) [m/rad]."""
+        return 1 / (self.ground_curvature + self.body_curvature)
+
+    @property
+    def tangent(self) -> Array:
+        """e_t (..., 2)."""
+        return np.stack([np.cos(self.tangent_angle), np.sin(self.tangent_angle)], axis=-1)
+
+    @property
+    def normal(self) -> Array:
+        """e_n (..., 2), towards the interior of the body: -k x e_t whatever the curves are."""
+        return np.stack([np.sin(self.tangent_angle), -np.cos(self.tangent_angle)], axis=-1)
+
+    @property
+    def conformality(self) -> Array:
+        """(curvature_A + curvature_B) / max(|curvature|) (...): 1 on flat ground, 0 when the curves fit each other."""
+        largest = np.maximum(np.abs(self.ground_curvature), np.abs(self.body_curvature))
+        return (self.ground_curvature + self.body_curvature) / largest
+
+
+# The contact is lost as the inverse of (curvature_A + curvature_B) / max(|curvature|): at this fraction about seven
+# of a double's sixteen digits are left in it, and a truth of fewer would be none.
+NEAR_CONFORMAL = 1e-9
+SCAN = 721  # places at which a pair that might be conformal somewhere is examined, once round
+
+
+def first_fit(body: Curve, ground: Curve, body_arc: float, ground_arc: float, end: float, side: int) -> float:
+    """The first arc of the body [m] on one side (+1, -1) of its start where the curvatures cancel, or the `end` [m].
+
+    At the start `body_arc` touches the ground at `ground_arc` [m]. `end`: the last arc there is, maybe infinite.
+    """
+    total = ground_arc + body_arc
+    period = body.length if not math.isfinite(ground.length) else body.length + ground.length
+    if not math.isfinite(end):
+        if not math.isfinite(period):
+            return end
+        reach = body_arc + side * period
+    else:
+        reach = end
+
+    def free(arc: ArrayLike) -> Array:
+        on_body = body.curvature_of(body.parameter(arc))
+        on_ground = ground.curvature_of(ground.parameter(total - np.asarray(arc)))
+        with np.errstate(invalid="ignore"):  # at a pole, where rolling never ends
+            return on_ground + on_body - NEAR_CONFORMAL * np.maximum(np.abs(on_ground), np.abs(on_body))
+
+    arcs = np.linspace(body_arc, reach, SCAN)
+    blocked = np.flatnonzero(free(arcs) <= 0)
+    if blocked.size == 0:
+        return end
+    good, bad = float(arcs[max(blocked[0] - 1, 0)]), float(arcs[blocked[0]])
+    for _ in range(60):
+        middle = 0.5 * (good + bad)
+        good, bad = (middle, bad) if free(middle) > 0 else (good, middle)
+    return good
+
+
+def refuse_conformal(contact: Contact) -> None:
+    """Raises InvalidMechanism where curvature_A + curvature_B isn't positive, or below NEAR_CONFORMAL of the larger."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        near = ~(contact.conformality >= NEAR_CONFORMAL)
+    if np.any(near):
+        theta, arc, on_body, a, b = (
+            float(value[near].flat[0])
+            for value in (
+                np.broadcast_to(contact.theta, near.shape),
+                np.broadcast_to(contact.ground_arc, near.shape),
+                np.broadcast_to(contact.body_arc, near.shape),
+                contact.ground_curvature,
+                contact.body_curvature,
+            )
+        )
+        raise InvalidMechanism(
+            f"rolling: at theta = {theta:.9g} rad (arc {arc:.9g} m of the ground, {on_body:.9g} m of the body) the "
+            f"curvatures are {a:.9g} and {b:.9g} 1/m; their sum must be positive, and above "
+            f"{NEAR_CONFORMAL:g} of the larger, else the curves cut into each other or fit so closely "
+            "that the contact has no place"
+        )
+
+
+def refuse_overlap(body: Curve, ground: Curve, contact: Contact) -> None:
+    """A closed curve inside a ring must lie inside it all round, not only at the contact; else InvalidMechanism."""
+    rings = [(hole[0], -hole[1]) if (hole := _circle(curve)) and hole[1] < 0 else None for curve in (ground, body)]
+    if rings[0] is not None and rings[1] is None and math.isfinite(body.length):
+        (centre, radius), other = rings[0], body
+    elif rings[1] is not None and rings[0] is None and math.isfinite(ground.length):
+        (centre, radius), other = rings[1], ground
+    else:
+        return
+    rim = other.point(np.linspace(0, other.length, SCAN))
+    theta, origin = contact.theta, contact.point + contact.arm
+    if other is body:
+        world = rotated(theta[..., None], rim) + origin[..., None, :]
+    else:
+        world = rotated(-theta[..., None], rim - origin[..., None, :])
+    excess = np.linalg.norm(world - centre, axis=-1).max(axis=-1) - radius
+    if np.any(excess > 1e-9 * radius):
+        worst = np.unravel_index(int(np.argmax(excess)), excess.shape)
+        raise InvalidMechanism(
+            f"rolling: at theta = {float(theta[worst]):.9g} rad the curve inside the ring of radius "
+            f"{radius:g} m reaches {float(excess[worst]):.3g} m beyond it; "
+            "the ring must be larger than its roller everywhere"
+        )
+
+
+def _circle(curve: Curve) -> tuple[Array, float] | None:
+    """Centre (2,) [m], and radius [m], negative of a hole, of a round curve, placed or not; None for any other."""
+    if isinstance(curve, Circle | Ring):
+        return np.asarray(curve.centre, dtype=float), curve.sense * curve.radius
+    inner = _circle(curve.curve) if isinstance(curve, Placed) else None
+    if inner is None or not isinstance(curve, Placed):
+        return None
+    return rotated(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
 
 
 Place = Annotated[ArrayLike, of_shape("...", 2)]
@@ -36,7 +161,7 @@ class Rolling(Valid):
     `Rolling.at_arcs`, which find the third of these from two. Rotations are unwrapped, any number of turns.
 
     Raises InvalidMechanism, saying where, if the tangents don't match at the start, if curvature_A + curvature_B isn't
-    positive (the curves would cut into each other) or falls below `fitting.NEAR_CONFORMAL` of the larger curvature, if
+    positive (the curves would cut into each other) or falls below `NEAR_CONFORMAL` of the larger curvature, if
     a place doesn't exist on a curve, and if a hole is too small for what is in it. Not checked: whether curves that are
     neither convex nor a ring meet at a second place.
     """
@@ -134,8 +259,9 @@ class Rolling(Valid):
         rotation = theta - self.theta
         if isinstance(self.ground, Line) and not isinstance(self.body, (Line, Side)):
             return self.body.parameter_at(self._start_angles[1] - rotation)
-        ground, body = _round(self.ground), _round(self.body)
-        if ground is not None and body is not None:
+        circles = _circle(self.ground), _circle(self.body)
+        if circles[0] is not None and circles[1] is not None:
+            ground, body = circles[0][1], circles[1][1]
             # The angles of a disc in a hole of nearly its size cancel; the difference of the radii keeps its digits.
             return self._body_start - rotation * (body * (ground / (ground + body)))
         low, high = self.limits

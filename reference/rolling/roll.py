@@ -11,9 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import Name, Valid
 from reference.plane import components, rotation_velocity
-from reference.rolling.contact import Contact
 from reference.rolling.curves import Vector
-from reference.rolling.kinematics import Rolling
+from reference.rolling.kinematics import Contact, Rolling
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,8 @@ from reference.kinds import Floats
 from reference.mechanism import Mechanism
 from reference.numerics.windows import COARSE_STAGES, STAGES
 from reference.scene import Scene, shared
-from reference.scenes.four_bar.forces import Densities, three_densities
 from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion, States
-from reference.scenes.four_bar.linkage import FourBar, Unreachable
+from reference.scenes.four_bar.linkage import Densities, FourBar, Unreachable, three_densities
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]

@@ -16,9 +16,8 @@ from reference.numerics import windows
 from reference.numerics.integration import IntegrationFailed, units_of_motion
 from reference.numerics.roots import first_below, root
 from reference.plane import rotation_acceleration
-from reference.rolling.contact import Contact
 from reference.rolling.curves import Array, Vector
-from reference.rolling.kinematics import Rolling
+from reference.rolling.kinematics import Contact, Rolling
 
 GRAVITY = 9.81
 
