@@ -43,11 +43,6 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         values = errors((method,), "angle")[skip:]
         return len(values) > 1 and all(0.8 < fine / coarse < 1.25 for coarse, fine in pairwise(values))
 
-    def ratio(method: str) -> float:
-        """The error at the smallest step over that at the next one."""
-        coarse, fine = errors((method,), "angle")[-2:]
-        return fine / coarse
-
     def above(method: str, other: str, factor: float = 1.0) -> bool:
         """Whether the first has more than so many times the error of the other, at each step."""
         pairs = zip(errors((method,), "angle"), errors((other,), "angle"), strict=True)
@@ -77,7 +72,7 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         "largest": lambda name, *methods: max(errors(methods, name)),
         "falls": falls,
         "stays": stays,
-        "ratio": ratio,
+        "ratio": lambda method: rows(method)[-1].angle / rows(method)[-2].angle,  # smallest step over the next one
         "above": above,
         "share": share,
         "alike": alike,

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.trajectory import body_points, ground_points
-from reports.plots.theme import LIGHT, drawing, style_axes
+from reports.plots.theme import LIGHT, bare, drawing
 
 Array = NDArray[np.float64]
 
@@ -66,11 +66,9 @@ def configurations(
             panel.set_axis_off()
         drawn: set[str] = set()
         for index, (panel, pose, title) in enumerate(zip(panels, truth, titles, strict=False)):
-            style_axes(panel, grid=False)
-            panel.set_aspect("equal")
+            bare(panel, title)
             panel.set_xlim(low[0] - margin, high[0] + margin)
             panel.set_ylim(low[1] - margin, high[1] + margin)
-            panel.set_title(title, loc="left", fontsize=9, color=LIGHT.ink)
             draw_ground(panel, mechanism)
             draw_pose(
                 panel,
@@ -184,12 +182,9 @@ def stroboscope(strips: Sequence[Strip], columns: int = 2) -> Figure:
         for spare in panels[len(strips) :]:
             spare.set_visible(False)
         for panel, strip, poses, box in zip(panels, strips, drawn, boxes, strict=False):
-            style_axes(panel, grid=False)
-            panel.set_axis_off()
-            panel.set_aspect("equal")
+            bare(panel, strip.caption)
             panel.set_xlim(box[0], box[2])
             panel.set_ylim(box[1], box[3])
-            panel.set_title(strip.caption, loc="left", fontsize=9, color=LIGHT.ink)
             _draw(panel, strip, poses, max(box[2] - box[0], box[3] - box[1]))
     return figure
 

@@ -176,6 +176,14 @@ def style_axes(axes: Axes, theme: Theme = LIGHT, grid: bool = True) -> None:
     axes.set_axisbelow(True)
 
 
+def bare(panel: Axes, title: str) -> None:
+    """A panel without axes, in which lengths are as they are."""
+    style_axes(panel, grid=False)
+    panel.set_axis_off()
+    panel.set_aspect("equal")
+    panel.set_title(title, loc="left", fontsize=9, color=LIGHT.ink)
+
+
 def svg(figure: Figure, title: str) -> str:
     """A figure made with LIGHT as an SVG text whose colours follow the reader's scheme; the same bytes every time.
 

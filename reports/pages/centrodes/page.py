@@ -26,7 +26,7 @@ from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion
 from reports.plots.mechanisms import draw_ground, draw_pose
-from reports.plots.theme import LIGHT, drawing, note, style_axes, svg
+from reports.plots.theme import LIGHT, bare, drawing, note, style_axes, svg
 from reports.write.tables import markdown, number
 
 CHECKED = 101  # places looked at: enough to meet the largest error of smooth curves, few enough to wait for
@@ -52,9 +52,7 @@ def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indice
     """A panel for each index into the samples (of poses (samples, bodies, 3) and of the curves, in one order)."""
     with drawing(4.4) as figure:
         for panel, index in zip(figure.subplots(1, len(indices), sharex=True, sharey=True), indices, strict=True):
-            style_axes(panel, grid=False)
-            panel.set_axis_off()
-            panel.set_aspect("equal")
+            bare(panel, "")
             pose, centre = poses[index], curves.space[index]
             joints = mechanism.bodies[body].name
             for joint in mechanism.joints:

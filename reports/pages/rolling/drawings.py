@@ -18,7 +18,7 @@ from reference.rolling.open_curves import Catenary, Parabola
 from reference.rolling.roll import Roll
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingScene
-from reports.plots.theme import LIGHT, drawing, note, style_axes
+from reports.plots.theme import LIGHT, bare, drawing, note, style_axes
 
 POINTS = 241
 
@@ -107,7 +107,7 @@ def draw_roulettes(chosen: Sequence[Roulette], columns: int = 2) -> Figure:
     rows = -(-len(chosen) // columns)
     with drawing(2.75 * rows) as figure:
         for panel, one in zip(figure.subplots(rows, columns, squeeze=False).ravel(), chosen, strict=False):
-            _blank(panel, one.title)
+            bare(panel, one.title)
             ground = outline(one.rolling.ground, one.ground)
             panel.plot(*ground.T, color=LIGHT.ink, linewidth=1.8)
             body = outline(one.rolling.body, one.body)
@@ -139,7 +139,7 @@ def draw_contact() -> Figure:
             title = (
                 f"{title}: $\\kappa_A$ = {a:.2f}, $\\kappa_B$ = {b:.2f} 1/m\n$ds/d\\theta$ = {contact.rate:.3f} m/rad"
             )
-            _blank(panel, title)
+            bare(panel, title)
             near = np.linspace(-0.75, 0.75, POINTS) + float(contact.ground_arc)
             panel.plot(*ground.point(near).T, color=LIGHT.ink, linewidth=2.0)
             panel.plot(*placed(outline(body), rolling.pose(theta)).T, color=LIGHT.quiet, linewidth=1.6)
@@ -177,7 +177,7 @@ def draw_gears(scene: EllipticGears) -> Figure:
         rim = outline(roll.rolling.body)
         for index in range(4):
             panel = figure.add_subplot(grid[0, index])
-            _blank(panel, f"t = {times[index]:.2f} s")
+            bare(panel, f"t = {times[index]:.2f} s")
             for gear, colour in ((0, LIGHT.first), (1, LIGHT.second)):
                 pose = truth.pose[index, gear]
                 panel.plot(*placed(rim, pose).T, color=colour, linewidth=1.8)
@@ -199,13 +199,6 @@ def draw_gears(scene: EllipticGears) -> Figure:
         panel.set_xlabel("time [s]")
         panel.set_ylabel("rate [rad/s]")
     return figure
-
-
-def _blank(panel: Axes, title: str) -> None:
-    panel.set_facecolor(LIGHT.paper)
-    panel.set_axis_off()
-    panel.set_aspect("equal")
-    panel.set_title(title, loc="left", fontsize=9, color=LIGHT.ink)
 
 
 COEFFICIENTS = (0.2, 0.5, 1.0)
