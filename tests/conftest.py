@@ -61,10 +61,11 @@ def golden(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
 def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
     """Commands run what they run in this process: workers take seconds to start, and are the subject of other tests."""
     from reports.gate import walk
-    from reports.run import cluster, supervisor
+    from reports.run import cluster, supervisor, worker
     from tests.toys import in_process
 
     monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Workforce(1, in_process))
+    monkeypatch.setattr(worker, "start_early", lambda *modules: None)
     monkeypatch.setattr(supervisor, "supervise", in_process)  # for what commands import when they are called
     monkeypatch.setattr(walk, "supervise", in_process)
 

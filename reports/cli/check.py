@@ -90,34 +90,30 @@ def check(
     if tolerance is not None and fix_to is not None:
         raise BadInput("--tolerance and --fix-to both name an error; give one of them")
     files = {"html": html, "markdown": markdown, "junit": junit, "apply": apply}
-    folder = Path(model).is_dir()
-    drawn = not folder and (html is not None or markdown is not None)
-    request = CheckRequest(
-        model,
-        os.getcwd(),
-        duration,
-        tolerance if fix_to is None else fix_to,
-        tuple(without or ()),
-        key,
-        step,
-        drawn,
-        quick,
-        everything or as_json or drawn,
-        fix_to is not None,
-        str(apply or ""),
-    )
+    drawn = not Path(model).is_dir() and (html is not None or markdown is not None)
+    goal, without = tolerance if fix_to is None else fix_to, without or []
+    request = CheckRequest(model, os.getcwd(), duration, goal, tuple(without), key, step, drawn, quick)
+    request = replace(request, everything=everything or as_json or drawn, search=fix_to is not None)
+    request = replace(request, apply=str(apply or ""))
     _refuse_bad(request, files, everything, force)
+    _check(request, files, limit, as_json, everything)
+
+
+def _check(
+    request: CheckRequest, files: Mapping[str, Path | None], limit: float, as_json: bool, everything: bool
+) -> None:
+    """Check the model or those of the folder, print the answer and write the files."""
     from reports.run.worker import start_early
 
     start_early(*EARLY)
-    begin = monotonic()
+    begin, model = monotonic(), request.word
     answers = _answers([replace(request, word=word) for word in _models(model)], limit)
-    if folder:
+    if Path(model).is_dir():
         _print_folder(model, answers, as_json)
     else:
         _print(answers[0][1], as_json, everything)
     _write(model, answers, files, monotonic() - begin)
-    _refuse_missed(answers, folder)
+    _refuse_missed(answers, Path(model).is_dir())
 
 
 def _refuse_missed(answers: Answers, folder: bool) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -25,7 +25,9 @@ from reports.cli.options import (
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
+    from reference.scene import Scene
     from reports.cli.terminal import Terminal
+    from reports.model.cells import Cell
     from reports.model.measure import Measurement
 
 
@@ -73,12 +75,8 @@ def show(
     """Print a scene's stored numbers: every run, order and plateau, which setting is enough, and its experiments."""
     from reports.cli.known import registered, with_remembered, with_words
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes
-    from reports.cli.terminal import print_table, telling
-    from reports.model.convergence import judged, sweeps
-    from reports.model.quantities import QUANTITIES
+    from reports.cli.terminal import telling
     from reports.run.store import Store
-    from reports.write import page_tables
-    from reports.write.tables import order_rows
 
     known = registered()
     remembered: tuple[str, ...] = ()
@@ -103,26 +101,36 @@ def show(
         console.keep(found.values())
         for one in chosen:
             page = next((page for page in known.pages if page.teaches(one)), None)
-            compared = page.quantity if page else "angle"
-            grid = [row for cell, row in found.items() if cell.scene == one and cell.purpose in ("sweep", "usual")]
-            own = judged(grid, compared)
-            beside = [row for cell, row in found.items() if cell.scene == one and cell.purpose == "beside"]
-            _print_runs(console, f"{one.name}, {one.source}", [*own, *beside])
-            names = [q.name for q in QUANTITIES]
-            orders = [[cell.replace("**", "") for cell in line] for line in order_rows(sweeps(own), names)]
-            header = ["method", *(f"{q.label}: order, plateau [{q.unit}]" for q in QUANTITIES)]
-            print_table(console, f"{one.name}: order and plateau", header, orders, 9)
-            console.print()
-            advised = page_tables.advice(own, compared)
-            head, lines = page_tables.advice_lines(advised, compared)
-            plain = [[cell.replace("**", "") for cell in line] for line in lines]
-            print_table(console, f"{one.name}: which setting for which accuracy", head, plain, 3)
-            console.print()
+            _print_scene(console, one, found, page.quantity if page else "angle")
         for page in known.pages:
             for failure in page.failures if any(page.is_run_with(one) for one in chosen) else ():
                 runs = [found[cell] for cell in failure.cells if cell in found]
                 if runs:
                     _print_runs(console, failure.title, runs)
+
+
+def _print_scene(console: Terminal, scene: Scene, rows: Mapping[Cell, Measurement], quantity: str) -> None:
+    """Every run of a scene, order and plateau, and the settings that are enough for errors of this quantity."""
+    from reports.cli.terminal import print_table
+    from reports.model.convergence import judged, sweeps
+    from reports.model.quantities import QUANTITIES
+    from reports.write import page_tables
+    from reports.write.tables import order_rows
+
+    grid = [row for cell, row in rows.items() if cell.scene == scene and cell.purpose in ("sweep", "usual")]
+    beside = [row for cell, row in rows.items() if cell.scene == scene and cell.purpose == "beside"]
+    judged_rows = judged(grid, quantity)
+    _print_runs(console, f"{scene.name}, {scene.source}", [*judged_rows, *beside])
+    orders = order_rows(sweeps(judged_rows), [each.name for each in QUANTITIES])
+    header = ["method", *(f"{each.label}: order, plateau [{each.unit}]" for each in QUANTITIES)]
+    advice_header, advice = page_tables.advice_lines(page_tables.advice(judged_rows, quantity), quantity)
+    for title, head, lines, left in (
+        ("order and plateau", header, orders, 9),
+        ("which setting for which accuracy", advice_header, advice, 3),
+    ):
+        plain = [[cell.replace("**", "") for cell in line] for line in lines]
+        print_table(console, f"{scene.name}: {title}", head, plain, left)
+        console.print()
 
 
 def _print_runs(console: Terminal, title: str, rows: Sequence[Measurement]) -> None:

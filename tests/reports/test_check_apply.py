@@ -160,7 +160,7 @@ def test_settings_are_looked_for_until_an_error_is_met_or_nothing_documented_doe
         assert sum(each["error"] <= goal for each in answer.data["tried"]) == found  # it ends with the first
 
 
-def test_only_a_tolerance_that_was_asked_for_sets_the_status(here, capfd):
+def test_only_a_tolerance_that_was_asked_for_sets_the_status(here, capfd, at_home):
     (here / "model.xml").write_text(FOUR_BAR)
     words = ("check", "model.xml", "--duration", 0.2, "--quick")
     for more, status in (((), 0), (("--tolerance", 1e-5), 1), (("--tolerance", 0.5), 0), (("--fix-to", 1e-3), 0)):
@@ -179,7 +179,7 @@ def test_only_a_tolerance_that_was_asked_for_sets_the_status(here, capfd):
     assert "no model was given" in capfd.readouterr().err
 
 
-def test_a_folder_of_models_is_one_table_and_a_test_each(here, capfd):
+def test_a_folder_of_models_is_one_table_and_a_test_each(here, capfd, at_home):
     for name, text in (("a.xml", FOUR_BAR), ("b.py", PENDULUM), ("c.xml", "<mujoco/>"), ("other.xml", "<svg/>")):
         for folder in (here / ".models", here / ".models" / ".old"):  # within a folder hidden ones are left out
             folder.mkdir(exist_ok=True)
