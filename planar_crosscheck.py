@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from reports.check.comparing import Comparison, Drawing
     from reports.check.request import CheckReport
     from reports.model.measure import Measurement
+    from reports.search.chunk import CaseResult
 
 PACKAGES = ("reference", "engines", "reports")
 HERE = os.path.dirname(os.path.realpath(__file__))
@@ -130,6 +131,29 @@ def report(results: str | Path = "crosscheck-results") -> Path:
     from reports.cli.report import write_report
 
     return write_report(Path(results)).folder / "index.md"
+
+
+def search(
+    engine: str | None = None,
+    variant: str | None = None,
+    *,
+    cases: int = 200,
+    seed: int | None = None,
+    seconds: float | None = None,
+    workers: int | None = None,
+    results: str | Path = "crosscheck-results",
+) -> list[CaseResult]:
+    """The checks of random mechanisms in the variants of an engine, all if None, as by `crosscheck search`.
+
+    seed: the last commit's if None; seconds: begin nothing after these. A store below the folder `results` keeps the
+    cases and the findings, made small. Raises ValueError.
+    """
+    from reports.cli.options import SEARCH
+    from reports.cli.search import chosen_subjects
+    from reports.search.run import run_search
+
+    subjects = chosen_subjects(engine, variant)
+    return run_search(Path(results) / SEARCH, subjects, cases, seed, seconds=seconds, workers=workers)[0]
 
 
 def linkage(

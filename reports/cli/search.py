@@ -76,7 +76,7 @@ def search(
     from reports.search.chunk import chunks
     from reports.search.run import CASES, Search
 
-    subjects = _subjects(engine, variant, release, everything=fresh or published)
+    subjects = chosen_subjects(engine, variant, release, everything=fresh or published)
     all_kinds = tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
     wanted = listed("--kinds", [kinds], (*all_kinds, *SINGULAR)) if kinds is not None else all_kinds
     subjects = [subject for subject in subjects if {*wanted} & {*subject.kinds, *SINGULAR}]
@@ -112,7 +112,9 @@ def _refuse(seconds: float | None, seed: int | None, fresh: bool, published: boo
         )
 
 
-def _subjects(engine: str | None, variant: str | None, release: str | None, everything: bool) -> list[Subject]:
+def chosen_subjects(
+    engine: str | None, variant: str | None, release: str | None = None, everything: bool = False
+) -> list[Subject]:
     """The engines of these names, and MuJoCo alone; all variants if none is named. Raises BadInput."""
     from engines.loading import is_reference
     from engines.registry import ENGINES, INSTALLED, VARIANTS, load

@@ -122,6 +122,12 @@ def test_models_are_read_as_files_and_as_objects(tmp_path):
         planar_crosscheck.check({})
 
 
+def test_a_search_returns_the_cases_and_keeps_them_in_a_store(tmp_path, at_home):
+    cases = planar_crosscheck.search("lagrange", "rk4 projection", cases=2, seed=1, results=tmp_path)
+    assert [case.number for case in cases] == [0, 1]
+    assert (tmp_path / "search" / "cells.sqlite").is_file()
+
+
 FEW = ("reactions_have_sign_and_size", "has_a_name")
 THEIRS = """
 import pytest
