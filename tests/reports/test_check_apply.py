@@ -9,7 +9,7 @@ import xml.etree.ElementTree as xml
 
 import pytest
 
-from engines.mujoco.reading.rewriting import rewritten
+from engines.mujoco.reading.settings import rewritten
 from engines.pymunk.reading.script import BEGIN, END
 from engines.reading import Change
 from reports.check.request import CheckReport, CheckRequest, Refused, answered

@@ -17,8 +17,7 @@ from engines.mujoco.reading.forces import FORCES, forces, off, turns
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, bodies_of, find_frame, find_groups, flattened, name_of
 from engines.mujoco.reading.obstacles import limited_forces, positions
 from engines.mujoco.reading.own_model import OwnMuJoCo, in_state
-from engines.mujoco.reading.rewriting import rewritten
-from engines.mujoco.reading.settings import switch_off
+from engines.mujoco.reading.settings import rewritten, switch_off
 from engines.mujoco.running import listening
 from engines.reading import Note, Reading, Source, left_out, refuse, refuse_at_start
 from reference.checks import InvalidMechanism
