@@ -21,7 +21,7 @@ from reports.gate.walk import CaseVerdict, grown, remarks, walk
 from reports.model.ending import FileTrouble
 from reports.run.files import write_whole
 from reports.write.provenance import versions
-from reports.write.tables import markdown, number
+from reports.write.tables import markdown, number, text_table
 
 HEADER = ("scene", "method", "step [s]", "error", "bound", "nearest check", "how near", "verdict")
 
@@ -59,15 +59,6 @@ def verdict_word(verdict: CaseVerdict) -> str:
     if failed:
         return f"FAILED: {', '.join(failed)}"
     return "known" if verdict.case.known else "passed"
-
-
-def plain(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """A table as lines of text, columns aligned."""
-    widths = [max(len(cell) for cell in column) for column in zip(header, *rows, strict=True)]
-    return [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in (header, *rows)
-    ]
 
 
 def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
@@ -250,7 +241,11 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
         return
     baseline = config.stash[KNOWN]
     terminalreporter.section("crosscheck")
-    for line in (*plain(HEADER, lines(found.values())), *unable(found.values()), *changes(found.values(), baseline)):
+    for line in (
+        *text_table(HEADER, lines(found.values())),
+        *unable(found.values()),
+        *changes(found.values(), baseline),
+    ):
         terminalreporter.line(line)
     target = _option(config, "--crosscheck-report")
     if target is not None:

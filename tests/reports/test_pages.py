@@ -47,7 +47,7 @@ from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.skate import experiments as turning_round
 from reports.pages.wheels.page import Folding
 from reports.pages.your_loop.experiments import BeforeAndAfter, Fresh
-from reports.pages.your_model.experiments import Walk
+from reports.pages.your_model.page import Walk
 from reports.plots import theme
 from reports.run.store import Store
 from reports.write.experiments import observe

@@ -28,8 +28,8 @@ from reports.pages.published.experiments import (
 from reports.pages.published.page import PAGE, drifts, largest_step
 from reports.pages.rendering import render_page
 from reports.pages.your_model import page as others
-from reports.pages.your_model.experiments import CART, SWING, WALKS
-from reports.pages.your_model.experiments import FOUR_BAR as LOOP
+from reports.pages.your_model.page import CART, SWING, WALKS
+from reports.pages.your_model.page import FOUR_BAR as LOOP
 from reports.pages.your_model.page import PAGE as YOUR_MODEL
 from tests.reports.models_of_others import models, spaces, unpacked
 

@@ -32,7 +32,7 @@ from reports.pages.your_loop.page import (
     SLIDER,
     cell,
 )
-from reports.pages.your_model.experiments import MODELS
+from reports.pages.your_model.page import MODELS
 from tests.committed_rows import committed_rows
 
 STEP = 1e-3
