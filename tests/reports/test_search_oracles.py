@@ -446,9 +446,8 @@ def test_an_exception_is_a_fault_of_whoever_raised_it(monkeypatch: pytest.Monkey
 
 # ------------------------------------------------------------------------------------------------------ planted faults
 
-# Single precision hides more: ten roundings of 1.2e-7 beside a velocity, 1e4 of what moves between two descriptions.
-SINGLE: dict[str, float] = dict.fromkeys(("turned", "mirrored", "renamed", "in other lengths", "in other masses"), 1e-2)
-SINGLE |= dict.fromkeys(("shifted", "swapped"), 1e-1)
+# Single precision hides more: 1e4 roundings of 1.2e-7 of what moves between two descriptions.
+SINGLE: dict[str, float] = dict.fromkeys(NAMES, 1e-2) | {"in other masses": 1e-1}
 PARTS = 4  # of the faults; each adapter has another part of them every day, and all of them in the slow tests
 ADAPTERS = [name for name in LEAST if name != "mjx"]
 
