@@ -16,11 +16,9 @@ from reference.scenes.catalogue import SCENES
 from reports.model.cells import Cell
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
-from reports.model.page import Material, Page
-from reports.pages.comparison import compared_lines
+from reports.model.page import Page
 from reports.pages.skate.page import PAGE as SKATE
 from reports.write.columns import (
-    empty,
     equal_cost,
     equal_error,
     equal_step,
@@ -209,14 +207,6 @@ def test_the_cost_of_an_error_is_that_of_the_cheapest_method_of_its_column():
     head, line = table(equal_error([(page_of(*methods), rows)])["toy"])
     assert head == ["scene", "toy as shipped", "toy with our code"]
     assert line[1:] == ["-", "1, 10, 50, 50"]
-
-
-def test_every_engine_that_has_rows_of_the_compared_scenes_has_a_line_whichever_page_they_stand_on():
-    page = Page("four_bar", "Four-bar", "One.", (FREE,), (mujoco.DEFAULT, mujoco.TUNED))
-    (line,) = lines([(page, falling("mujoco tuned", POWER, scene=FREE.name))])
-    assert (empty(line, Column.SHIPPED), empty(line, Column.SETTINGS)) == ("", "")
-    assert empty(line, Column.NAIVE) == "no such joint"
-    assert compared_lines({page: Material({})}) == []
 
 
 def test_a_stand_in_for_documented_settings_is_named_and_a_usual_variant_is_not():
