@@ -42,7 +42,7 @@ TENTH = 1e-4  # s
 
 
 @dataclass(frozen=True)
-class Line:
+class PlottedLine:
     """Points (x, y) of one engine under a label that a reader understands; x is a number or a release."""
 
     label: str
@@ -50,22 +50,22 @@ class Line:
     points: tuple[tuple[Any, float], ...]
 
 
-def of_rows(label: str, rows: Rows, name: str, x: str = STEP) -> Line:
+def of_rows(label: str, rows: Rows, name: str, x: str = STEP) -> PlottedLine:
     """The errors of a quantity of this name in rows, from coarse to fine, against the step or the CPU time."""
     engine = rows[0].engine if rows else ""
     if x == CPU:
         usable = [row for row in rows.known(name) if row.cpu > 0 and Outcome(row.outcome).comparable]
-        return Line(label, engine, tuple((1e3 * row.cpu, getattr(row, name)) for row in usable))
-    return Line(label, engine, tuple((1e3 * step, error) for step, error in rows.points(name)))
+        return PlottedLine(label, engine, tuple((1e3 * row.cpu, getattr(row, name)) for row in usable))
+    return PlottedLine(label, engine, tuple((1e3 * step, error) for step, error in rows.points(name)))
 
 
-def of_releases(label: str, entries: Iterable[Entry]) -> Line:
+def of_releases(label: str, entries: Iterable[Entry]) -> PlottedLine:
     """The errors of one scene and method, from the oldest release to the newest."""
     shown = [entry for entry in entries if entry.comparable and entry.error > 0]
-    return Line(label, shown[0].engine if shown else "", tuple((entry.version, entry.error) for entry in shown))
+    return PlottedLine(label, shown[0].engine if shown else "", tuple((entry.version, entry.error) for entry in shown))
 
 
-def draw(lines: Sequence[Line], x: str, y: str) -> Figure:
+def draw(lines: Sequence[PlottedLine], x: str, y: str) -> Figure:
     """Lines against x, both axes logarithmic, but for releases, which stand side by side; an engine has its own colour.
 
     Raises ValueError for more lines than there are looks.
@@ -108,14 +108,14 @@ def draw(lines: Sequence[Line], x: str, y: str) -> Figure:
 
 
 @dataclass(frozen=True)
-class Known:
+class Sources:
     """The source of findings: rows from coarse to fine, and answers to tasks; the releases' rows are a file's."""
 
     rows: Rows
     answers: Mapping[Task, Answer] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, pages: Mapping[Page, Material]) -> Known:
+    def of(cls, pages: Mapping[Page, Material]) -> Sources:
         answers = {task: answer for material in pages.values() for task, answer in material.answers.items()}
         return cls(own_rows(pages), answers)
 
@@ -126,7 +126,7 @@ class Evidence:
 
     words: Mapping[str, Any]
     holds: bool
-    lines: tuple[Line, ...]
+    lines: tuple[PlottedLine, ...]
     y: str
     x: str = STEP
 
@@ -167,9 +167,9 @@ def _against_steps(words: Mapping[str, Any], holds: bool, lines: Mapping[str, Ro
     return Evidence(words, holds, drawn, quantity(name).axis)
 
 
-def spring(known: Known) -> Evidence:
+def spring(sources: Sources) -> Evidence:
     """MuJoCo's loop as shipped: Euler and RK4 have the same limit; gain and cost of documented settings."""
-    rows = known.rows.of("free_four_bar")
+    rows = sources.rows.of("free_four_bar")
     shipped, integrated, tuned = (rows.of(method=f"mujoco {each}") for each in ("default", "RK4 alone", "tuned"))
     limit, same, wide, gap = shipped.sweep(), integrated.sweep(), shipped.sweep("gap"), integrated.sweep("gap")
     before, after = shipped.at(COMPARED), tuned.at(COMPARED)
@@ -185,9 +185,9 @@ def spring(known: Known) -> Evidence:
     )
 
 
-def luck(known: Known) -> Evidence:
+def luck(sources: Sources) -> Evidence:
     """Two errors that cancel at one step."""
-    shipped, tuned = (known.rows.of("spinning_four_bar", f"mujoco {each}") for each in ("default", "tuned"))
+    shipped, tuned = (sources.rows.of("spinning_four_bar", f"mujoco {each}") for each in ("default", "tuned"))
     limit, best = shipped.sweep(), shipped.at(COMPARED)
     return _against_steps(
         {"limit": limit, "best": best},
@@ -199,9 +199,9 @@ def luck(known: Known) -> Evidence:
     )
 
 
-def crank(known: Known) -> Evidence:
+def crank(sources: Sources) -> Evidence:
     """Overwriting the crank's state after each step, with the loop as shipped and tuned."""
-    rows, scene = known.rows, "driven_four_bar"
+    rows, scene = sources.rows, "driven_four_bar"
     soft, stiff = (rows.of(scene, f"mujoco {each}, overwritten crank", "failure") for each in ("default", "tuned"))
     armature = rows.of(scene, "mujoco tuned")
     coarse, fine, over, right = soft.at(COMPARED), soft.at(TENTH), stiff.at(COMPARED), armature.at(COMPARED)
@@ -212,9 +212,9 @@ def crank(known: Known) -> Evidence:
     )
 
 
-def start(known: Known) -> Evidence:
+def start(sources: Sources) -> Evidence:
     """pymunk's loop as shipped, with all of its gap closed, and started half a step ahead."""
-    rows = known.rows.of("free_four_bar")
+    rows = sources.rows.of("free_four_bar")
     shipped, plain, ahead = (rows.of(method=f"pymunk {each}") for each in ("default", "tuned", "leapfrog"))
     first, second = plain.sweep(), ahead.sweep()
     before, closed, after = (each.at(COMPARED) for each in (shipped, plain, ahead))
@@ -233,9 +233,9 @@ def _seconds(rows: Rows) -> float:
     return next((row.samples * row.every * row.step for row in rows), math.nan)
 
 
-def energy(known: Known) -> Evidence:
+def energy(sources: Sources) -> Evidence:
     """The pendulum that slows down, in both engines as shipped and set."""
-    rows = known.rows.of("pendulum_1")
+    rows = sources.rows.of("pendulum_1")
     lines = {
         "pymunk as shipped": rows.of(method="pymunk default"),
         "pymunk, error_bias = 0": rows.of(method="pymunk tuned"),
@@ -251,15 +251,15 @@ def energy(known: Known) -> Evidence:
     return _against_steps(words, lost > 10 * closed > 1e3 * exact and closed < 1.5 * euler, lines, "energy")
 
 
-def _person(known: Known, count: int) -> Rows:
+def _person(sources: Sources, count: int) -> Rows:
     """The person whose joints are swept so often in a step, with all of each gap closed."""
-    return known.rows.of("person_one_foot", f"pymunk {count} sweeps, all of the gap", "failure")
+    return sources.rows.of("person_one_foot", f"pymunk {count} sweeps, all of the gap", "failure")
 
 
-def iterations(known: Known) -> Evidence:
+def iterations(sources: Sources) -> Evidence:
     """Ten iterations and twenty, on a person that falls, with all of each gap closed in a step; and as shipped."""
-    five, ten, twenty = (_person(known, count) for count in (5, 10, 20))
-    shipped = known.rows.of("person_one_foot", "pymunk default")
+    five, ten, twenty = (_person(sources, count) for count in (5, 10, 20))
+    shipped = sources.rows.of("person_one_foot", "pymunk default")
     coarse, fine, right = ten.at(1e-2), ten.at(COMPARED), twenty.at(COMPARED)
     return _against_steps(
         {"coarse": coarse, "fine": fine, "right": right, "shipped": shipped.at(COMPARED)},
@@ -275,9 +275,9 @@ def iterations(known: Known) -> Evidence:
     )
 
 
-def forces(known: Known) -> Evidence:
+def forces(sources: Sources) -> Evidence:
     """The same motion with 20 and with 100 iterations, but not the same reactions."""
-    few, many = (_person(known, count) for count in (20, 100))
+    few, many = (_person(sources, count) for count in (20, 100))
     less, more = few.at(COMPARED), many.at(COMPARED)
     return Evidence(
         {"less": less, "more": more},
@@ -292,7 +292,7 @@ def forces(known: Known) -> Evidence:
     )
 
 
-def releases(known: Known) -> Evidence:
+def releases(sources: Sources) -> Evidence:
     """The cure of MuJoCo 3.7.0, by the rows of the releases; and how the cost of a step as shipped has grown."""
     entries = [entry for entry in table().entries if entry.engine == "mujoco"]
     versions = table().versions("mujoco")
@@ -313,7 +313,7 @@ def releases(known: Known) -> Evidence:
     )
 
 
-def trees(known: Known) -> Evidence:
+def trees(sources: Sources) -> Evidence:
     """Random trees with loops across, in MuJoCo with the stiffest documented settings and with stiffer rows of ours."""
     newest = table().versions("mujoco")[-1]
     entries = [entry for entry in table().entries if (entry.engine, entry.quantity) == ("mujoco", ACCELERATION)]
@@ -340,23 +340,23 @@ FAULTS: Mapping[str, str] = {
 }
 
 
-def faults(known: Known) -> Evidence:
+def faults(sources: Sources) -> Evidence:
     """Faults of the installed releases at one instant, by the scripts that were run with them."""
     wrong, missing = [], 0
     for title in ("pymunk", "MuJoCo"):
         words, release = [], MARK
         for name, sentence in FAULTS.items():
             if name.startswith(title.lower()):
-                answer = known.answers.get(SCRIPTS[name])
+                answer = sources.answers.get(SCRIPTS[name])
                 if answer is None or not answer.finished or is_right(answer.number("expected"), answer.number("found")):
                     missing += 1
                 else:
                     words.append(sentence)
                     release = str(answer.values["version"])
         wrong.append(f"{title} {release}: {'; '.join(words)}.")
-    answer = known.answers.get(OFFSETS)
+    answer = sources.answers.get(OFFSETS)
     across = answer.array("across") if answer is not None and answer.finished else np.array([])
-    line = Line("pymunk's groove (ideal: 0)", "pymunk", tuple(zip(OFFSETS.offsets, -across, strict=False)))
+    line = PlottedLine("pymunk's groove (ideal: 0)", "pymunk", tuple(zip(OFFSETS.offsets, -across, strict=False)))
     return Evidence(
         {"wrong": " ".join(wrong)},
         not missing and len(line.points) > 3,
@@ -366,9 +366,9 @@ def faults(known: Known) -> Evidence:
     )
 
 
-def exact(known: Known) -> Evidence:
+def exact(sources: Sources) -> Evidence:
     """The plain judge against both engines, by the CPU time that errors of four sizes cost."""
-    rows = known.rows.of("free_four_bar")
+    rows = sources.rows.of("free_four_bar")
     least = {(each.engine, target): each.row for each in advice(rows, "angle") for target in each.targets}
     cost = {key: row.cpu if row is not None and row.cpu > 0 else math.inf for key, row in least.items()}
     targets = {target for _, target in least}
@@ -392,9 +392,9 @@ def exact(known: Known) -> Evidence:
     )
 
 
-def contact(known: Known) -> Evidence:
+def contact(sources: Sources) -> Evidence:
     """An ellipse that rolls: as a polygon, as an ellipsoid, and by two rows."""
-    rows = known.rows.of("rolling_ellipse")
+    rows = sources.rows.of("rolling_ellipse")
     polygon, ellipsoid = rows.of(method="pymunk tuned"), rows.of(method="mujoco default")
     tuned, written = rows.of(method="mujoco tuned"), rows.of(method="mujoco extended")
     corners, smooth = polygon.sweep(), ellipsoid.sweep()
@@ -413,9 +413,9 @@ def contact(known: Known) -> Evidence:
     )
 
 
-def skate(known: Known) -> Evidence:
+def skate(sources: Sources) -> Evidence:
     """The naive skate, which no step improves, and a groove."""
-    rows = known.rows.of("sleigh")
+    rows = sources.rows.of("sleigh")
     naive, groove = rows.of(method="pymunk default"), rows.of(method="pymunk tuned")
     least = min((error for _, error in naive.points("position")), default=math.nan)
     better = groove.at(COMPARED)
@@ -427,7 +427,7 @@ def skate(known: Known) -> Evidence:
     )
 
 
-FINDINGS: Mapping[str, Callable[[Known], Evidence]] = {
+FINDINGS: Mapping[str, Callable[[Sources], Evidence]] = {
     find.__name__: find
     for find in (
         spring, luck, crank, releases, faults, exact, start, energy, forces, iterations, trees, contact, skate,
@@ -447,17 +447,17 @@ def texts() -> Mapping[str, tuple[str, str, str]]:
     return found
 
 
-def finding(name: str, known: Known) -> Finding:
+def finding(name: str, sources: Sources) -> Finding:
     """The finding of this name with its numbers from these rows."""
     page, title, text = texts()[name]
-    evidence = FINDINGS[name](known)
+    evidence = FINDINGS[name](sources)
     return Finding(name, page, title, template(text).render(**evidence.words), evidence)
 
 
 def findings(pages: Mapping[Page, Material]) -> list[Finding]:
     """Those that these rows bear out and that one of these pages explains, in the order of FINDINGS."""
-    known, names = Known.of(pages), {page.name for page in pages}
-    return [each for name in FINDINGS if (each := finding(name, known)).is_sound and each.page in names]
+    sources, names = Sources.of(pages), {page.name for page in pages}
+    return [each for name in FINDINGS if (each := finding(name, sources)).is_sound and each.page in names]
 
 
 def pictures(shown: Iterable[Finding]) -> dict[str, str]:

@@ -18,7 +18,19 @@ from reports.model.page import Material
 from reports.model.tasks import Answer, Task
 from reports.pages import findings as module
 from reports.pages.faults.page import OFFSETS, SCRIPTS
-from reports.pages.findings import CPU, FINDINGS, LOOKS, STEP, TENTH, Known, Line, draw, finding, findings, of_rows
+from reports.pages.findings import (
+    CPU,
+    FINDINGS,
+    LOOKS,
+    STEP,
+    TENTH,
+    PlottedLine,
+    Sources,
+    draw,
+    finding,
+    findings,
+    of_rows,
+)
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import symptoms
 from reports.pages.rendering import render_page
@@ -108,7 +120,7 @@ TEN, TWENTY = (f"pymunk {count} sweeps, all of the gap" for count in (10, 20))
 )
 def test_a_finding_that_its_rows_contradict_is_dropped(name, wrong):
     assert shown()[name].is_sound
-    assert not finding(name, Known.of(changed(wrong))).is_sound
+    assert not finding(name, Sources.of(changed(wrong))).is_sound
 
 
 ABOUT = {
@@ -142,15 +154,15 @@ def test_findings_that_the_releases_contradict_are_dropped(monkeypatch):
         monkeypatch.setattr(module, "table", lambda: replace(whole, entries=mended))
 
     entries(lambda entry: (entry.version, entry.variant) == ("3.7.0", "tuned"), error=4e-3)
-    assert not finding("releases", Known(Rows())).is_sound
+    assert not finding("releases", Sources(Rows())).is_sound
     entries(lambda entry: entry.quantity == ACCELERATION, error=1e-4)
-    assert not finding("trees", Known(Rows())).is_sound
+    assert not finding("trees", Sources(Rows())).is_sound
     answers: dict[Task, Answer] = {task: answer_to(task) for task in (OFFSETS, *SCRIPTS.values())}
-    assert finding("faults", Known(Rows(), answers)).is_sound
+    assert finding("faults", Sources(Rows(), answers)).is_sound
     groove = SCRIPTS["pymunk_groove"]
     values = {**answers[groove].values, "found": answers[groove].values["expected"]}
     answers[groove] = replace(answers[groove], values=values)
-    assert not finding("faults", Known(Rows(), answers)).is_sound
+    assert not finding("faults", Sources(Rows(), answers)).is_sound
     lost = Entry("toy", "0", "disc", "default", 1e-3, "angle", 0.5, Outcome.TORN, 1.0, "")
     known = replace(lost, version="1", outcome=Outcome.FINISHED)
     assert module.of_releases("disc", [lost, known]).points == (("1", 0.5),)
@@ -163,7 +175,7 @@ def test_a_findings_picture_has_its_points_and_its_lines_differ_without_colours(
     assert len({(line.get_linestyle(), line.get_marker()) for line in axes.lines}) == len(LOOKS)
     assert len({line.get_color() for line in axes.lines}) == 1  # one engine, one colour
     with pytest.raises(ValueError, match="5 lines"):
-        draw([*steps, Line("e", "pymunk", ())], STEP, "error")
+        draw([*steps, PlottedLine("e", "pymunk", ())], STEP, "error")
     dear = of_rows("a", Rows(falling("pymunk a", (1e-2, 1e-3))), "angle", CPU)
     assert [x for x, _ in dear.points] == pytest.approx([1.0, 10.0])  # ms a simulated second: `falling` costs step^-1
 
@@ -202,12 +214,12 @@ def measured(page, rows) -> list[str]:
     return MEASURED.findall(text)
 
 
-def test_every_measured_number_of_a_guide_is_that_of_a_row():
-    assert all(measured(page, {}) == [] for page in GUIDES)
-    rows = page_rows(SETTINGS)
-    assert len(measured(SETTINGS, rows)) > 20
+def test_every_measured_number_of_a_guide_but_for_tables_measured_once_is_that_of_a_row():
+    assert all(measured(page, {}) == [] for page in GUIDES if page is not SETTINGS)
+    rows, once = page_rows(SETTINGS), measured(SETTINGS, {})
+    assert len(measured(SETTINGS, rows)) > len(once) + 20
     unknown = {cell: replace(row, angle=math.nan, reaction=math.nan, cpu=math.nan) for cell, row in rows.items()}
-    assert measured(SETTINGS, unknown) == []
+    assert measured(SETTINGS, unknown) == once
 
 
 def test_the_programs_of_the_settings_print_the_weight_of_the_hanging_body():
