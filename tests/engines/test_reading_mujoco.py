@@ -140,7 +140,10 @@ ELEMENTS = {
         f'<body><joint name="S" type="slide" axis="1 0 2"/>{BOX}</body>',
         '<actuator><motor joint="S" gear="2"/></actuator>',
     ),
-    "a position servo": (PENDULUM, '<actuator><position joint="B" kp="5" gear="2"/></actuator>'),
+    "a position servo": (
+        PENDULUM.replace('name="B"', 'name="B" ref=".3"'),
+        '<actuator><position joint="B" kp="5" gear="2"/></actuator>',
+    ),
     "a velocity servo": (PENDULUM, '<actuator><velocity joint="B" kv="3" gear="2"/></actuator>'),
     "a force at a site": (
         PENDULUM,
