@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -15,20 +18,16 @@ from reports.cli.streams import said
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
-    from engines import Engine
     from reference.scene import Scene
     from reports.cli.terminal import Terminal
     from reports.model.measure import Measurement
-    from reports.versions.column import VersionColumn, VersionRequest
+    from reports.versions.builds import Progress
+    from reports.versions.column import VersionColumn
     from reports.versions.table import Table
 
 WIDTH = 150  # into a file or a pipe
 DATA = "versions.csv"
-# A loop, rolling, a skate, a slide, a chain: one short scene of each kind of joint, with others that are driven.
-SCENES = ("driven_four_bar", "free_four_bar", "free_slider_crank", "rolling_ellipse", "sleigh", "pendulum_2")
-USUAL = f"Only these scenes (repeatable, or with commas); {', '.join(SCENES)} if none is named."
+USUAL = "Only these scenes (repeatable, or with commas); six short ones if none is named."
 
 
 def versions(
@@ -47,43 +46,40 @@ def versions(
     results: Folder = FOLDER,
 ) -> None:
     """Run scenes in released versions of an engine; each is installed once, in the user's cache folder."""
-    from engines.registry import OTHERS, VARIANTS
     from reports.cli.report import published, refuse_outside_a_checkout
     from reports.cli.run import refuse_nothing_but_failures
     from reports.cli.terminal import telling
     from reports.run.files import write_whole
+    from reports.versions.builds import SCENES
     from reports.versions.table import as_csv, as_published, catalogued, merged, read
 
     if publish:
         refuse_outside_a_checkout()
-    asked = _asked(engine, version or (), everything)
+    wanted = _versions_by_engine(engine, version or (), everything)
     if publish and (not everything or scenes):
         raise BadInput("--publish renews all of the page's data: give it with --all, and without --scenes")
     chosen = named_scenes(scenes or (() if everything else SCENES))
     wrong: list[str] = []
     rows: list[Measurement] = []
     with telling(WIDTH, as_json, as_markdown) as console, kept() as check:
+        run = _runner(console, check, chosen, results / STORE, fresh, everything and not scenes)
         table = catalogued(read(Path(results) / DATA)) if everything else None
-        for name, numbers in asked.items():
-            engines = [each for each in (*VARIANTS, *OTHERS) if each.name == name]
-            found = []
+        for name, numbers in wanted.items():
+            columns = []
             for number in numbers:
                 try:
-                    column = _column(
-                        console, name, number, engines, chosen, results, fresh, everything and not scenes, check
-                    )
+                    columns.append(run(name, number))
                 except BadInput as reason:
                     if not everything and len(numbers) == 1:
                         raise
                     wrong.append(f"{name} {number}: {reason}")
                     said(wrong[-1])
                     continue
-                found.append(column)
-                rows += column.rows
+                rows += columns[-1].rows
                 if table is not None:
-                    table = merged(table, _table(name, [column]))
+                    table = merged(table, _table(name, columns[-1:]))
                     write_whole({Path(results) / DATA: as_csv(table)}, "what is stored is kept")
-            _print(console, _table(name, found), name)
+            _print(console, _table(name, columns), name)
         if publish and table is not None and not wrong:
             renewed = as_published(table, read(published() / DATA))
             write_whole({published() / DATA: as_csv(renewed)}, "the file that was there stays as it was")
@@ -91,6 +87,42 @@ def versions(
         refuse_nothing_but_failures(rows)
     if wrong:
         raise BadInput(f"{len(wrong)} of the versions could not be run, the others are stored; the first: {wrong[0]}")
+
+
+def _runner(
+    console: Terminal, check: Callable[[], None], scenes: tuple[Scene, ...], store: Path, fresh: bool, trees: bool
+) -> Callable[[str, str], VersionColumn]:
+    """A function that runs a release and prints what became of it."""
+    from time import monotonic
+
+    from reports.cli.selection import QUICK_CELL
+    from reports.versions.builds import run_release
+
+    terms: dict[str, Any] = {"most": QUICK_CELL, "trees": True} if trees else {}
+
+    def run(name: str, number: str) -> VersionColumn:
+        begin = monotonic()
+        progress = progress_of(console, check)
+        column = run_release(name, number, scenes, store, progress, announce_pip, fresh=fresh, **terms)
+        console.say(f"{name} {number}: {len(column.rows)} rows after {monotonic() - begin:.0f} s")
+        if reason := column.trouble or column.mark:
+            console.tell(f"{name} {number}: {reason}")
+        return column
+
+    return run
+
+
+def progress_of(console: Terminal, check: Callable[[], None]) -> Progress:
+    """The progress of columns on a terminal; `check` for Ctrl-C."""
+
+    @contextmanager
+    def shown(label: str, count: int) -> Iterator[tuple[Callable[..., None], Callable[[Sequence[str]], None]]]:
+        from reports.cli.terminal import progress
+
+        with progress(console, count, check, f"cells of {label}") as (done, watch):
+            yield done, lambda labels: watch([SimpleNamespace(label=each) for each in labels])
+
+    return shown
 
 
 def installed_once(words: Iterable[str]) -> None:
@@ -103,7 +135,9 @@ def installed_once(words: Iterable[str]) -> None:
         installed(distributions(VARIANTS, name), number)
 
 
-def _asked(engine: str | None, numbers: list[str] | tuple[str, ...], everything: bool) -> dict[str, tuple[str, ...]]:
+def _versions_by_engine(
+    engine: str | None, numbers: list[str] | tuple[str, ...], everything: bool
+) -> dict[str, tuple[str, ...]]:
     """Engine -> versions. Raises BadInput for words that don't go together, or are not known."""
     from engines.registry import OTHERS, VARIANTS
     from reports.versions.catalogue import compared_versions, distributions
@@ -131,66 +165,9 @@ def named_scenes(words: list[str] | tuple[str, ...]) -> tuple[Scene, ...]:
     return choose_scenes(names, known.scenes, known.pages)
 
 
-def _column(
-    console: Terminal,
-    name: str,
-    number: str,
-    engines: list[Engine],
-    scenes: tuple[Scene, ...],
-    results: Path,
-    fresh: bool,
-    trees: bool,
-    check: Callable[[], None],
-) -> VersionColumn:
-    from time import monotonic
-
-    from reports.cli.selection import QUICK_CELL
-    from reports.run.installed import installed
-    from reports.versions.catalogue import distributions
-
-    tell_of_pip(f"{name} {number}")
-    place = installed(distributions(engines, name), number)
-    begin, most = monotonic(), QUICK_CELL if trees else float("inf")
-    request = request_of(name, place, scenes, results / STORE, most=most, trees=trees, fresh=fresh)
-    found = run_column(console, f"{name} {number}", number, request, engines, check)
-    told = found.trouble or found.mark
-    line = f"{name} {number}: {len(found.rows)} rows after {monotonic() - begin:.0f} s"
-    console.say(line)
-    if told:
-        console.tell(f"{name} {number}: {told}")
-    return found
-
-
-def tell_of_pip(word: str) -> None:
+def announce_pip(word: str) -> None:
     """Before a wait. It is progress, and does not begin as a refusal does."""
     print(f"{word}: installed by pip, unless it is there already", file=sys.stderr, flush=True)
-
-
-def request_of(engine: str, place: Path, scenes: tuple[Scene, ...], store: Path, **terms: Any) -> VersionRequest:
-    """What is asked of the version or build that lies in `place`; `terms`: further fields."""
-    from reports.versions.column import VersionRequest, modules_in
-
-    return VersionRequest(scenes, engine, modules_in(place), place, store.absolute(), folder=Path.cwd(), **terms)
-
-
-def run_column(
-    console: Terminal,
-    label: str,
-    version: str,
-    request: VersionRequest,
-    engines: Sequence[Engine],
-    check: Callable[[], None],
-) -> VersionColumn:
-    """A column, with its progress."""
-    from types import SimpleNamespace
-
-    from reports.cli.terminal import progress
-    from reports.versions.column import cells_of, column
-
-    with progress(console, len(cells_of(request, engines)), check, f"cells of {label}") as (done, watch):
-        return column(
-            version, request, engines, lambda labels: watch([SimpleNamespace(label=each) for each in labels]), done
-        )
 
 
 def _table(name: str, columns: list[VersionColumn]) -> Table:

@@ -1,11 +1,10 @@
 """The judge: a mechanism with exact multipliers, or with joints that give way in a known manner, by textbook methods.
 
-It knows no engine, but it is no stranger to one: with numba the compiled rows and steps of `engines.lagrange` do its
-work, a hundred times as fast as the steps here, and both take rows from `reference.mechanism`. So others stand beside
-it, which share no code with either. In scenes that is the truth, a closed form or an own integration of few angles, to
-which its errors fall with the order of its method (`tests/engines/test_judge.py`). In random mechanisms of all joints
-but rolling ones, and of all forces, it is the equations in the coordinates of a spanning tree, written anew there
-(`tests/engines/test_judge_witness.py`). Joints that give way are held by the sag of a spring, and by the steps here.
+It is `engines.lagrange`: its compiled rows and steps with numba, a hundred times as fast as those in numpy, which do
+the work without. So others stand beside it, which share no code with it. In scenes that is the truth, a closed form or
+an integration of few angles, to which its errors fall with the order of its method (`tests/engines/test_judge.py`). In
+random mechanisms of all joints but rolling ones, and of all forces, it is the equations in the coordinates of a
+spanning tree, written anew there (`tests/engines/test_judge_witness.py`). Soft joints are held by the sag of a spring.
 """
 
 from __future__ import annotations
@@ -16,11 +15,18 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs
 
 from engines import Softness
 from engines.lagrange.arrays import SMALLEST
-from engines.lagrange.dynamics import Tableau
+from engines.lagrange.dynamics import (
+    LEAST_INVERSE_INERTIA,
+    PROJECTION_ITERATIONS,
+    RK4,
+    Dynamics,
+    Tableau,
+    runge_kutta,
+    semi_implicit_euler,
+)
 from engines.lagrange.loading import installed
 from engines.lagrange.machine import Machine
 from reference.checks import fixed
@@ -34,34 +40,15 @@ from reports.model.quantities import QUANTITIES
 Array = NDArray[np.float64]
 QUANTITY_NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
-
-(_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
-
-# The least share of its own inverse inertia that a soft row is given for its compliance.
-REDUNDANT = 0.1
-
 # `refined`: pieces of a sample; how little a third of the step may change; and after how many steps it gives up, half a
 # minute for 60 rows. With a tenth of SAME no error of the N-four-bars moves by more than a tenth.
 PARTS, SAME, MOST = 10, 1e-6, 200_000
 
-TABLEAUS: dict[int, tuple[Array, Array]] = {
-    1: (np.zeros((1, 1)), np.array([1.0])),
-    2: (np.array([[0, 0], [0.5, 0]]), np.array([0.0, 1.0])),
-    4: (np.array([[0, 0, 0, 0], [0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 1, 0]]), np.array([1, 2, 2, 1]) / 6),
+TABLEAUS: dict[int, Tableau] = {
+    1: Tableau(np.zeros((1, 1)), np.array([1.0]), np.zeros(1)),
+    2: Tableau(np.array([[0, 0], [0.5, 0]]), np.array([0.0, 1.0]), np.array([0, 0.5])),
+    4: RK4,
 }
-NODES = {1: np.zeros(1), 2: np.array([0, 0.5]), 4: np.array([0, 0.5, 0.5, 1])}
-
-
-def solved(matrix: Array, right: Array) -> Array:
-    """The solution of a symmetric system, the smallest one where rows depend on each other."""
-    factor, solution, failed = _positive(matrix, right, lower=True)
-    # Cholesky's pivots show dependence: their ratio squared is at least the matrix' condition.
-    pivots = np.diag(factor)
-    if not failed and pivots.min() ** 2 > RANK_TOLERANCE * pivots.max() ** 2:
-        return solution
-    if not np.all(np.isfinite(matrix)):
-        return np.full_like(right, np.nan)
-    return np.linalg.pinv(matrix, rcond=RANK_TOLERANCE, hermitian=True) @ right
 
 
 def giving_way(mechanism: Mechanism, soft: Softness) -> NDArray[np.bool_]:
@@ -70,52 +57,10 @@ def giving_way(mechanism: Mechanism, soft: Softness) -> NDArray[np.bool_]:
     return np.array(soft.rows) & ((mechanism.rate == 0) | (soft.compliance > 0))
 
 
-def own_inertia(matrix: Array, gives: NDArray[np.bool_], least: float = REDUNDANT) -> Array:
-    """What each soft row feels while the rigid ones hold: the diagonal of the Schur complement (rows,)."""
-    out = np.diag(matrix).copy()
-    if not gives.all():
-        rigid, soft = np.flatnonzero(~gives), np.flatnonzero(gives)
-        coupled = matrix[np.ix_(rigid, soft)]
-        out[soft] -= np.einsum("ij,ij->j", coupled, solved(matrix[np.ix_(rigid, rigid)], coupled))
-    # Of a row that others hold already nothing would be left; engines take an estimate that knows no others.
-    return np.maximum(out, least * np.diag(matrix))
-
-
-def multipliers(
-    mechanism: Mechanism, pose: Array, twist: Array, t: float, soft: Softness | None, least: float = REDUNDANT
-) -> tuple[Array, Array]:
-    """Accelerations (bodies, 3) and reactions (rows,) of ideal joints, or of soft ones: see `giving_way`."""
-    free = mechanism.unconstrained(pose, twist)
-    if not mechanism.row_count:
-        return free, np.zeros(0)
-    rows = mechanism.rows(pose)
-    weighted = rows / mechanism.inertias.reshape(-1)
-    matrix = weighted @ rows.T
-    right = mechanism.bias(pose, twist) - rows @ free.reshape(-1)
-    if soft is not None:
-        gives = giving_way(mechanism, soft)
-        if not soft.complete:
-            right = np.where(gives, -rows @ free.reshape(-1), right)
-        gap = np.nan_to_num(mechanism.gap(pose, t))
-        right = right - gives * (soft.damping * mechanism.slip(pose, twist) + soft.stiffness * gap)
-        matrix = matrix + soft.compliance * np.diag(gives * own_inertia(matrix, gives, least))
-    reaction = solved(matrix, right)
-    return free + (weighted.T @ reaction).reshape(-1, 3), reaction
-
-
-def projected(mechanism: Mechanism, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
-    """The pose after one Newton step onto the joints, and the twist that they allow there: nearest by mass."""
-    which = mechanism.holonomic
-    for quantity in ("gap", "slip"):
-        rows = mechanism.rows(pose)
-        kept = rows[which] if quantity == "gap" else rows
-        wrong = mechanism.gap(pose, t)[which] if quantity == "gap" else mechanism.slip(pose, twist)
-        if not len(kept):
-            continue
-        weighted = kept / mechanism.inertias.reshape(-1)
-        back = (weighted.T @ solved(weighted @ kept.T, wrong)).reshape(-1, 3)
-        pose, twist = (pose - back, twist) if quantity == "gap" else (pose, twist - back)
-    return pose, twist
+def dynamics_of(mechanism: Mechanism, soft: Softness | None = None, least: float = LEAST_INVERSE_INERTIA) -> Dynamics:
+    """A mechanism with ideal joints, or with soft ones: see `giving_way`; the smallest reactions of dependent rows."""
+    gives = None if soft is None else giving_way(mechanism, soft)
+    return Dynamics(mechanism, soft, gives, least, RANK_TOLERANCE)
 
 
 def integrate(scene: Scene, order: int, every: int, soft: Softness | None = None, project: bool = False) -> Trajectory:
@@ -153,8 +98,8 @@ def _compiled(
     if machine is None or (project if soft is not None else machine.dependent):
         return None
     poses, twists = machine.empty(samples)
-    tableau = Tableau(*TABLEAUS[order], NODES[order])
-    if machine.march(tableau, 1 if project else 0, spacing / every, every, 0, poses, twists) < samples:
+    iterations = PROJECTION_ITERATIONS if project else 0
+    if machine.march(TABLEAUS[order], iterations, spacing / every, every, 0, poses, twists) < samples:
         return None
     reactions, _ = machine.reactions(spacing, poses, twists)
     if not np.all(np.isfinite(reactions)) or machine.status(SMALLEST) < RANK_TOLERANCE:
@@ -187,13 +132,12 @@ def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Softness) 
     if machine is None:
         return None
     poses, twists = machine.empty(samples * PARTS)
-    tableau, length = Tableau(*TABLEAUS[4], NODES[4]), spacing / PARTS
-    unit = np.tile(mechanism.pose_unit, len(mechanism.bodies) + 1)
+    length, unit = spacing / PARTS, np.tile(mechanism.pose_unit, len(mechanism.bodies) + 1)
     taken, steps = 0, 1
 
     def stepped(part: int, count: int) -> tuple[Array, Array] | None:
         own = poses[: part + 2], twists[: part + 2]
-        done = machine.march(tableau, 0, length / count, count, part, *own)
+        done = machine.march(RK4, 0, length / count, count, part, *own)
         return (own[0][-1].copy(), own[1][-1].copy()) if done > part else None
 
     for part in range(samples * PARTS):
@@ -221,33 +165,27 @@ def in_numpy(
     every: int,
     soft: Softness | None = None,
     project: bool = False,
-    least: float = REDUNDANT,
+    least: float = LEAST_INVERSE_INERTIA,
 ) -> Trajectory:
-    """A mechanism's motion from its start, samples `spacing` [s] apart, by the steps of this module alone.
+    """A mechanism's motion from its start, samples `spacing` [s] apart, by steps in numpy alone.
 
     Order 1, which compiled steps have not, is the semi-implicit Euler method: poses move with the velocities after.
     """
-    (stages, weights), nodes = TABLEAUS[order], NODES[order]
-    dt = spacing / every
+    dt, dynamics = spacing / every, dynamics_of(mechanism, soft, least)
+    step = semi_implicit_euler(dynamics) if order == 1 else runge_kutta(dynamics, TABLEAUS[order])
     poses = np.full((samples + 1, *mechanism.pose.shape), np.nan)
     twists, reactions = np.full_like(poses, np.nan), np.full((samples + 1, mechanism.row_count), np.nan)
     pose, twist = mechanism.pose, mechanism.twist
-    velocity = np.empty((len(weights), *pose.shape))
-    acceleration = np.empty_like(velocity)
-    for step in range(samples * every + 1):
-        t = step * dt
-        for i, node in enumerate(nodes):
-            velocity[i] = twist + dt * np.tensordot(stages[i, :i], acceleration[:i], 1)
-            at = pose + dt * np.tensordot(stages[i, :i], velocity[:i], 1)
-            acceleration[i], reaction = multipliers(mechanism, at, velocity[i], t + node * dt, soft, least)
-            if i == 0 and step % every == 0:
-                poses[step // every], twists[step // every], reactions[step // every] = pose, twist, reaction
-        twist = twist + dt * np.tensordot(weights, acceleration, 1)
-        pose = pose + dt * (twist if order == 1 else np.tensordot(weights, velocity, 1))
-        if project:
-            pose, twist = projected(mechanism, pose, twist, t + dt)
+    for number in range(samples * every + 1):
         if not (np.isfinite(pose).all() and np.isfinite(twist).all()):
             break
+        if number % every == 0:
+            poses[number // every], twists[number // every] = pose, twist
+            if mechanism.row_count:
+                reactions[number // every] = dynamics.reaction(pose, twist, number * dt)[1]
+        pose, twist = step(pose, twist, number * dt, dt)
+        if project:
+            pose, twist = dynamics.project(pose, twist, (number + 1) * dt)
     return Trajectory(np.arange(samples + 1, dtype=np.float64) * spacing, poses, twists, reactions)
 
 

@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 
 from engines import Engine, Promise, Unpromised
 from engines.lagrange import HELD, TRUTH
+from engines.lagrange.dynamics import inverse_inertia
 from engines.remembered import by_identity
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
-from reports.gate.judge import TABLEAUS, giving_way, in_numpy, own_inertia
+from reports.gate.judge import TABLEAUS, giving_way, in_numpy
 from reports.search.law import (
     MARGIN,
     Errors,
@@ -270,7 +271,7 @@ class _Case:
         try:
             right = judged_as(1.0)
             products = [(rows / mechanism.inertias.reshape(-1)) @ rows.T for rows in mechanism.rows(right.pose)]
-            share = np.array([own_inertia(product, gives, 0.0)[gives] for product in products])
+            share = np.array([inverse_inertia(product, gives, 0.0)[gives] for product in products])
             others = judged_as(1.0, 0.5), judged_as(float((share.max(axis=0) / share.min(axis=0)).max()))
         except ValueError:  # curves can't touch where it goes
             return {}

@@ -22,7 +22,7 @@ from reference.mechanism import Mechanism
 from reference.rolling.curves import Placed
 from reference.rolling.kinematics import Rolling
 from reports.gate.change import Altered
-from reports.gate.judge import projected
+from reports.gate.judge import dynamics_of
 from reports.model.tasks import Task, Values
 from reports.search import relations
 from reports.search.mechanisms import RUN, SHAPES
@@ -81,7 +81,7 @@ class Misbuilt(Mechanism):
         """With the start closed again: poses next to the right ones, and twists next to these (bodies, 3), by mass."""
         pose = allowed = self.right.pose
         for _ in range(CLOSING_STEPS):
-            pose, allowed = projected(self, pose, twist, 0.0)
+            pose, allowed = dynamics_of(self).project(pose, twist, 0.0)
         bodies = zip(self.bodies, pose.tolist(), allowed.tolist(), strict=True)
         return replace(self, bodies=tuple(replace(body, pose=tuple(p), twist=tuple(v)) for body, p, v in bodies))
 

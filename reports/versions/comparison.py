@@ -29,8 +29,8 @@ class Difference:
     quantity: str
     worse: bool
 
-    def told(self, row: Measurement) -> float | str:
-        """What the row says of the quantity; its outcome where that is what differs."""
+    def value(self, row: Measurement) -> float | str:
+        """The quantity in a row; its outcome where that is what differs."""
         return row.outcome if self.quantity == "outcome" else getattr(row, self.quantity)
 
     @property

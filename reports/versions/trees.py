@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, method_name
-from engines.constrained import constrained
+from engines.lagrange.dynamics import constrained_acceleration
 from reference.checks import Count, InvalidMechanism
 from reference.mechanism import Mechanism
 from reports.model.tasks import Task, Values
@@ -107,12 +107,6 @@ def _recipe(random: np.random.Generator, bodies: int, loops: int) -> Recipe:
     return Recipe(tuple(parts), tuple(links), (0, -10))
 
 
-def acceleration(mechanism: Mechanism, pose: Array, twist: Array) -> Array:
-    """The ideal accelerations (bodies, 3) [m/s^2, rad/s^2]: M a = f + J^T r, J a = -(dJ/dt) v."""
-    bias = mechanism.bias(pose, twist)
-    return constrained(mechanism.rows(pose), bias, mechanism.inertias, mechanism.free_fall).motion
-
-
 def miss(engine: Engine, mechanism: Mechanism) -> float:
     """The largest difference of the accelerations over the second step, relative to the largest ideal one.
 
@@ -120,9 +114,9 @@ def miss(engine: Engine, mechanism: Mechanism) -> float:
     """
     dt = STEP * mechanism.time_scale
     motion = engine.build(mechanism, dt)(STEPS, 1)
-    ideal = acceleration(mechanism, motion.pose[-1], motion.twist[-1])
+    ideal, _ = constrained_acceleration(mechanism, motion.pose[-1], motion.twist[-1])
     found = (motion.twist[-1] - motion.twist[-2]) / dt
-    scale = np.array([1.0, 1.0, mechanism.length_scale])
+    scale = mechanism.length_scale / mechanism.pose_unit
     if not np.all(np.isfinite(found)) or not np.all(np.isfinite(ideal)):
         return float("nan")
     return float(np.abs((found - ideal) * scale).max() / np.abs(ideal * scale).max())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import subprocess
 import sys
@@ -19,7 +18,9 @@ from reports.cli.commands import invoke
 from reports.model.ending import BadInput, Broken
 from reports.model.outcomes import Outcome
 from reports.run import installed as installation
-from reports.run.installed import built, distributions_in, installed, nearest_versions
+from reports.run.installed import built, distributions_in, installed
+from reports.versions import builds
+from reports.versions.builds import compare_builds
 from reports.versions.column import VersionRequest, column, modules_in
 from tests.toys import Disc
 
@@ -71,16 +72,14 @@ def here(tmp_path, monkeypatch):
 @pytest.fixture
 def once(monkeypatch):
     """Each build is run once a test, however often it is compared."""
-    from reports.versions import column as columns
-
-    asked, known = columns.column, {}
+    asked, known = builds.column, {}
 
     def column(label, request, *others):
         if request.place not in known:
             known[request.place] = asked(label, request, *others)
         return known[request.place]
 
-    monkeypatch.setattr(columns, "column", column)
+    monkeypatch.setattr(builds, "column", column)
 
 
 @pytest.mark.usefixtures("once")
@@ -108,7 +107,11 @@ def test_a_worse_build_is_told_and_a_dearer_one_where_a_limit_is_given_and_what_
     assert "is worse than" in document["message"]
     assert not list(here.rglob("left.txt"))
     assert not (here / "crosscheck-results").exists()  # a build may change: nothing is kept of it
-    # A toy tells the same cost whatever it takes.
+    found = compare_builds("1.0", "2.0", "adapter.py:ENGINE", scenes=[Disc()])  # as from a notebook
+    assert [column.trouble for column in found.columns] == ["", ""]
+    assert "is worse than toyengine 1.0" in found.complaint
+    assert compare_builds("1.0", "1.1", "adapter.py:ENGINE", scenes=[Disc()]).complaint == ""
+    # A toy has the same cost whatever it takes.
     assert invoke(["compare", "1.0", "1.1", *words, "--cost", "1.5"]) == 0
     with pytest.raises(Broken, match=r"toyengine default takes 1\.00 times the CPU time, and --cost is 0\.9"):
         invoke(["compare", "1.0", "1.1", *words, "--cost", "0.9"])
@@ -128,13 +131,6 @@ def test_a_folder_is_known_by_its_metadata_and_not_by_its_own_word(tmp_path):
     assert distributions_in(place) == {"toyengine": "7.0.0"}
     assert modules_in(place) == ("toyengine",)
     assert built(place) == place
-
-
-@pytest.mark.parametrize("version", ["", "--pre", "3 6", "latest", "-r x"])
-def test_what_is_no_version_is_refused_before_pip_sees_it(version, monkeypatch):
-    monkeypatch.setattr(subprocess, "run", lambda *_, **__: pytest.fail("pip was called"))
-    with pytest.raises(BadInput, match="is no version"):
-        installed(("pymunk",), version)
 
 
 class Pip:
@@ -170,24 +166,6 @@ def test_a_version_is_installed_once_under_the_first_name_that_has_it(here, monk
     assert [path.name for path in first.parents[1].iterdir()] == ["mujoco-3.6.0"]
 
 
-def test_of_versions_those_used_last_are_kept_and_one_that_can_not_be_had_leaves_no_folder(here, monkeypatch):
-    monkeypatch.setattr(subprocess, "run", Pip({"pymunk==9.9": none_of("pymunk==9.9", "none")}))
-    monkeypatch.setattr(installation, "MOST", 3)
-    folders = []
-    for minor in range(5):
-        folders.append(installed(("pymunk",), f"7.{minor}").parent)
-        os.utime(folders[-1], (minor, minor))
-        installed(("pymunk",), "7.0")
-    with pytest.raises(BadInput):
-        installed(("pymunk",), "9.9")
-    wheel = here / "broken.whl"
-    wheel.write_bytes(b"no wheel")
-    monkeypatch.setattr(subprocess, "run", Pip({str(wheel): "ERROR: no wheel\n"}))
-    with pytest.raises(BadInput, match="no wheel"):
-        built(wheel)
-    assert set(folders[0].parent.iterdir()) == {folders[0], *folders[-2:]}
-
-
 @pytest.mark.parametrize(
     ("said", "told"),
     [
@@ -211,6 +189,7 @@ def test_a_version_that_can_not_be_had_is_one_line(said, told, here, monkeypatch
     ("words", "told"),
     [
         (["versions"], "name an engine"),
+        (["versions", "pymunk", "--", "--pre"], "is no version"),
         (["versions", "pymonk", "7.0.0"], "did you mean 'pymunk'"),
         (["versions", "pymunk", "7.0.0", "--publish"], "--all"),
         (["compare", "nothing==1", "pymunk==7.0.0"], "no engine needs 'nothing'"),
@@ -221,11 +200,6 @@ def test_words_that_mean_nothing_are_one_line(words, told, here, monkeypatch):
     monkeypatch.setattr(subprocess, "run", lambda *_, **__: pytest.fail("pip was called"))
     with pytest.raises(BadInput, match=told):
         invoke(words)
-
-
-def test_the_nearest_versions_are_in_their_own_order():
-    offered = ["3.9.0", "3.10.0", "3.8.1", "3.11.0", "3.2.0", "4.0.0", "4.0.1", "3.7.0"]
-    assert nearest_versions("3.9.5", offered) == ["3.7.0", "3.8.1", "3.9.0", "3.10.0", "3.11.0", "4.0.0"]
 
 
 def wheel(folder: Path, version: str, error: float) -> Path:
@@ -242,7 +216,7 @@ def wheel(folder: Path, version: str, error: float) -> Path:
     return place
 
 
-def compare_builds(first: Path, second: Path) -> int:
+def status_of(first: Path, second: Path) -> int:
     return invoke(["compare", str(first), str(second), "--engine", "adapter.py:ENGINE", "--scenes", "scene.py:DISC"])
 
 
@@ -250,9 +224,9 @@ def compare_builds(first: Path, second: Path) -> int:
 def test_wheels_are_compared_and_a_worse_one_ends_with_status_1(here, capfd):
     first, second = wheel(here, "1.0", 1.0), wheel(here, "2.0", 50.0)
     with pytest.raises(Broken, match=r"toyengine 2\.0 \(wheel\) is worse than toyengine 1\.0 \(wheel\)") as refused:
-        compare_builds(first, second)
+        status_of(first, second)
     assert refused.value.status == 1
-    assert compare_builds(first, here / "built" / "1.0") == 0  # a wheel and a folder
+    assert status_of(first, here / "built" / "1.0") == 0  # a wheel and a folder
     assert "WORSE" in capfd.readouterr().out
 
 
@@ -260,24 +234,9 @@ def test_a_file_that_is_no_wheel_is_one_line_and_status_2(here):
     broken = here / "toyengine-3.0-py3-none-any.whl"
     broken.write_text("no archive")
     with pytest.raises(BadInput, match=r"toyengine-3\.0-py3-none-any\.whl can't be installed") as refused:
-        compare_builds(broken, broken)
+        status_of(broken, broken)
     assert refused.value.status == 2
     assert "\n" not in str(refused.value)
-
-
-def test_without_network_one_line_says_so_and_nothing_is_left(here, monkeypatch):
-    """By pip itself: an index at a port where nobody listens; what pip is told elsewhere is not asked."""
-    monkeypatch.setenv("PIP_CONFIG_FILE", os.devnull)
-    monkeypatch.setenv("no_proxy", "*")
-    for name in ("PIP_NO_INDEX", "PIP_FIND_LINKS", "PIP_EXTRA_INDEX_URL"):
-        monkeypatch.delenv(name, raising=False)
-    monkeypatch.setenv("PIP_INDEX_URL", "http://127.0.0.1:9/simple")
-    with pytest.raises(BadInput, match=r"pymunk 7\.2\.0 can't be fetched: no connection to a package index") as refused:
-        invoke(["compare", "pymunk==7.2.0", "pymunk==7.3.1", "--scenes", "free_four_bar"])
-    assert refused.value.status == 2
-    assert "\n" not in str(refused.value)
-    assert not list((here / "cache").rglob("pymunk*"))
-    assert not (here / "crosscheck-results").exists()
 
 
 @pytest.mark.slow

@@ -1,19 +1,14 @@
 """Rows of several versions of an engine: tables, what is worse or dearer between two, and the page of them."""
 
-# pyright: reportAttributeAccessIssue=false
-# MuJoCo's module has no list of its names.
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
 
-import mujoco
-import numpy as np
 import pytest
 
 from engines.lagrange import Lagrange
-from engines.mujoco import DEFAULT, TUNED
-from engines.mujoco.releases import full_inertia
+from engines.mujoco import DEFAULT
 from reports.cli import compare
 from reports.cli.terminal import Terminal
 from reports.model.cells import Cell
@@ -21,10 +16,11 @@ from reports.model.measure import blank
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.pages.versions import page
+from reports.versions.builds import BuildComparison, Side
 from reports.versions.catalogue import RELEASES, changes_between
-from reports.versions.column import TreesRow
+from reports.versions.column import VersionColumn
 from reports.versions.comparison import compared, steps
-from reports.versions.table import Entry, Table, as_csv, as_published, entries, merged, read
+from reports.versions.table import Entry, Table, as_csv, as_published, merged, read
 from reports.versions.trees import miss, trees
 from tests.toys import Disc
 
@@ -77,6 +73,12 @@ def row(angle, outcome=Outcome.FINISHED, every=1, cpu=1.0):
     return replace(made, angle=angle, cpu=cpu)
 
 
+def printed(before, after, form="text"):
+    sides = Side("old==1", "mujoco", Path(), False), Side("new==2", "mujoco", Path(), False)
+    columns = VersionColumn("1", tuple(before)), VersionColumn("2", tuple(after))
+    compare.print_comparison(Terminal(compare.WIDTH, form), BuildComparison(sides, columns, compared(before, after)))
+
+
 def ended(outcome):
     return [row(float("nan"), outcome)]
 
@@ -102,16 +104,14 @@ def test_worse_is_more_than_three_times_as_large_and_cost_and_orders_are_told():
     ],
 )
 def test_an_outcome_is_better_where_it_finishes_and_another_kind_of_end_is_none(capsys, before, after, verdict):
-    sides = [compare.Side(label, "mujoco", Path(), False) for label in ("old", "new")]
-    compare._print(Terminal(compare.WIDTH), compared(before, after), sides)
+    printed(before, after)
     line = next(line for line in capsys.readouterr().out.splitlines() if before[0].scene in line)
     assert verdict in line.split()[-1]
 
 
 def test_a_method_whose_numbers_stay_is_told_with_its_error_and_its_releases_and_units(capsys):
-    sides = [compare.Side(label, "mujoco", Path(), False) for label in ("old==1", "new==2")]
     both = [row(1e-3), row(1e-5, every=10)]
-    compare._print(Terminal(compare.WIDTH, "markdown"), compared(both, both), sides)
+    printed(both, both, "markdown")
     head, _, line, *_ = (line for line in capsys.readouterr().out.splitlines() if line.startswith("|"))
     told = dict(zip(head.split(" | "), line.split(" | "), strict=True))
     assert (told["what changed most"], told["old==1"], told["new==2"]) == ("angle [rad]", "1e-5", "1e-5")
@@ -126,16 +126,6 @@ def test_random_trees_tell_ideal_constraints_from_wrong_ones():
     assert max(miss(Lagrange("rk4"), each) for each in drawn) < 1e-3
     # As shipped a joint gives way by a tenth of what would hold it.
     assert min(miss(DEFAULT, each) for each in drawn) > 1e-2
-
-
-def test_trees_that_could_not_be_built_are_told():
-    answered = TreesRow("mujoco", "tuned", 12, 4, "finished", "", (1e-5, float("nan"), 0.5))
-    failed = TreesRow("mujoco", "extended", 12, 4, "failed", "AttributeError: no MjSpec")
-    from reports.versions.column import VersionColumn
-
-    found = entries("mujoco", VersionColumn("1", (), (answered, failed)), {})
-    assert [(each.outcome, each.error, each.sentence[:8]) for each in found[:1]] == [("finished", np.inf, "2 of 3 b")]
-    assert found[1].outcome == "unsupported"
 
 
 def test_the_page_reads_its_rows_and_names_their_steps(monkeypatch):
@@ -166,16 +156,6 @@ def test_a_published_number_keeps_its_text_within_rounding_and_a_time_within_a_t
     assert as_published(replace(before, entries=gone), before).entries == gone
 
 
-def test_the_published_rows_show_the_velocity_term_and_the_sparse_factor():
-    own = page.table()
-    found = [step for step in steps(own.entries) if step.after.engine == "mujoco"]
-    better = {(s.before.version, s.after.version) for s in found if not s.worse and s.after.scene == "free_four_bar"}
-    assert better == {("3.6.0", "3.7.0")}
-    sparse = [(s.after.version, s.worse) for s in found if s.after.variant == "extended, sparse"]
-    assert sparse == [("3.7.0", False), ("4.0.0", True), ("4.0.1", False)]
-    assert all("known to be wrong" in own.marks["mujoco", version] for version in ("3.6.0", "4.0.0"))
-
-
 def test_a_line_that_goes_to_and_fro_is_a_change_only_if_it_is_known_by_name(monkeypatch):
     nan = float("nan")
     edge = [("3.8.1", 0.015, "finished"), ("3.10.0", nan, "torn"), ("3.12.0", 0.015, "finished")]
@@ -187,22 +167,3 @@ def test_a_line_that_goes_to_and_fro_is_a_change_only_if_it_is_known_by_name(mon
     assert "edge" not in told["steps"]
     assert "3.17.0 to 4.0.0" in told["steps"]
     assert "4.0.0 to 4.0.1" in told["steps"]
-
-
-def test_tuned_mujoco_solves_the_softer_problem_of_the_worst_random_tree():
-    """The numbers below the list of trees on the page: what solimp adds to nearly dependent loops, and no fault."""
-    worst = max(trees(12, 4, 40), key=lambda tree: miss(TUNED, tree))
-    assert miss(TUNED, worst) == pytest.approx(0.233, abs=1e-3)
-    model = TUNED.model(worst, 1e-5 * worst.time_scale)
-    compiled, data = model.compiled, model.start()
-    mujoco.mj_forward(compiled, data)
-    rows = data.efc_J.reshape(data.nefc, compiled.nv)
-    held = np.abs(rows).sum(axis=1) > 0  # those in the plane
-    rows, soft = rows[held], data.efc_R[held]
-    mass = full_inertia(compiled, data)
-    felt = rows @ np.linalg.solve(mass, rows.T)
-    assert soft.max() / np.linalg.eigvalsh(felt)[0] == pytest.approx(0.71, abs=5e-3)
-    fall = np.linalg.solve(mass, data.qfrc_smooth)
-    force = np.linalg.solve(felt + np.diag(soft), data.efc_aref[held] - rows @ fall)
-    wanted = fall + np.linalg.solve(mass, rows.T @ force)
-    assert np.abs(wanted - data.qacc).max() < 1e-11 * np.abs(wanted).max()
