@@ -34,7 +34,9 @@ def lines(verdicts: Iterable[CaseVerdict]) -> list[list[str]]:
         if worst is None:
             out.append([finest.scene, finest.method, number(finest.step), "-", "-", "-", "-", "can't be built"])
             continue
-        error = next((check for check in verdict.theory if check.name == "error" and math.isfinite(check.bound)), None)
+        error = next(
+            (check for check in verdict.theory if check.quantity == "angle" and math.isfinite(check.bound)), None
+        )
         told = [number(error.measured), number(error.bound)] if error else ["-", "-"]
         near = f"{worst.name} ({worst.quantity})" if worst.quantity != worst.name else worst.name
         out.append(

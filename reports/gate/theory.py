@@ -57,15 +57,8 @@ def order(promise: Promise | Unpromised, rows: Sequence[Measurement]) -> tuple[C
     return (Check("order", "angle", short / BELOW if short > 0 else -short / ABOVE, 1.0, sentence=told),)
 
 
-# Check -> the quantities that it holds.
-HELD: dict[str, tuple[str, ...]] = {
-    "error": ("angle", "position"),
-    "rate": ("rate", "velocity"),
-    "gap": ("gap", "slip"),
-    "energy": ("energy",),
-    "reaction": ("reaction",),
-}
 ROUNDING = {quantity.name: quantity.rounding for quantity in QUANTITIES}
+CHECK_OF = {quantity.name: quantity.check for quantity in QUANTITIES}
 
 
 # Room above the judge's own error of the same order. Methods of one order differ in their constants: a spring of five
@@ -147,23 +140,24 @@ def theory(
         return ()
     checks = [Check("outcome", "outcome", 0.0 if outcome.comparable else math.inf, 1.0, sentence=f", {row.outcome}")]
     usable = [other for other in coarser if other.step > row.step and Outcome(other.outcome).comparable]
-    for name, quantities in HELD.items():
-        for quantity in quantities:
-            measured = getattr(row, quantity)
-            reason = _why_not(quantity, outcome, prediction, promise)
-            if reason and (math.isnan(measured) or not outcome.comparable):
-                checks.append(Check(name, quantity, 0.0, math.inf, sentence=f", {reason}"))
-                continue
-            if isinstance(promise, Unpromised):
-                bound, parts = _without_promise(quantity, prediction, [*usable, row])
-            else:
-                bound, parts = _promised(quantity, prediction, promise, softness, row, usable, as_soft)
-            told = ", no number: who can't tell it promises NaN of it" if math.isnan(measured) else ""
-            checks.append(Check(name, quantity, measured, bound, parts, told))
+    for quantity in (each.name for each in QUANTITIES):
+        name, measured = CHECK_OF[quantity], getattr(row, quantity)
+        reason = _reason_not_applicable(quantity, outcome, prediction, promise)
+        if reason and (math.isnan(measured) or not outcome.comparable):
+            checks.append(Check(name, quantity, 0.0, math.inf, sentence=f", {reason}"))
+            continue
+        if isinstance(promise, Unpromised):
+            bound, parts = _without_promise(quantity, prediction, [*usable, row])
+        else:
+            bound, parts = _promised(quantity, prediction, promise, softness, row, usable, as_soft)
+        sentence = ", no number: who can't tell it promises NaN of it" if math.isnan(measured) else ""
+        checks.append(Check(name, quantity, measured, bound, parts, sentence))
     return tuple(checks)
 
 
-def _why_not(quantity: str, outcome: Outcome, prediction: Prediction, promise: Promise | Unpromised) -> str:
+def _reason_not_applicable(
+    quantity: str, outcome: Outcome, prediction: Prediction, promise: Promise | Unpromised
+) -> str:
     """Why there need not be a number that a check could hold; "" where there has to be one."""
     if not outcome.comparable:
         return "the run can't be compared, so its outcome alone is held"

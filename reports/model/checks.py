@@ -7,9 +7,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from reports.model.outcomes import Outcome
+from reports.model.quantities import QUANTITIES
 
 # "change" stands apart: it is of a baseline, and no deviation excuses it.
-CHECKS = ("outcome", "error", "rate", "gap", "energy", "reaction", "order")
+CHECKS = ("outcome", *dict.fromkeys(quantity.check for quantity in QUANTITIES), "order")
 CHANGE = "change"
 BEGINNINGS = ("upstream:", "by design:", "ours:")
 # A deviation that becomes this many times as large as stated fails; one that has come back to this part of its bound is

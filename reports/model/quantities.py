@@ -14,30 +14,31 @@ DIGITS = 4  # of the numbers in a report's CSV files
 class Quantity:
     """`name` is the field of a Measurement; errors below `rounding` (in `unit`) carry no information on a model.
 
-    Rounding: positions and angles lose about 1e-16 a step over 1e5 steps, so 1e-11 has room for some ill-conditioning;
-    velocities are differences of those over a step, and reactions of those again.
+    `check`: the check of the gate of theory that holds it. Rounding: positions and angles lose about 1e-16 a step over
+    1e5 steps, so 1e-11 has room for some ill-conditioning; velocities are differences of those over a step, and
+    reactions of those again.
     """
 
     name: str
-    label: str
     unit: str
     rounding: float
+    check: str
 
     @property
-    def axis(self) -> str:
-        """The label of an axis with its errors."""
-        return f"{self.label} error [{self.unit}]"
+    def label(self) -> str:
+        return self.name
 
 
+# The order in which tables and checks have them.
 QUANTITIES = (
-    Quantity("position", "position", "m", 1e-11),
-    Quantity("angle", "angle", "rad", 1e-11),
-    Quantity("velocity", "velocity", "m/s", 1e-10),
-    Quantity("rate", "rate", "rad/s", 1e-10),
-    Quantity("gap", "gap", "m", 1e-12),
-    Quantity("slip", "slip", "m/s", 1e-11),
-    Quantity("energy", "energy", "relative", 1e-11),
-    Quantity("reaction", "reaction", "relative", 1e-9),
+    Quantity("position", "m", 1e-11, "error"),
+    Quantity("angle", "rad", 1e-11, "error"),
+    Quantity("velocity", "m/s", 1e-10, "rate"),
+    Quantity("rate", "rad/s", 1e-10, "rate"),
+    Quantity("gap", "m", 1e-12, "gap"),
+    Quantity("slip", "m/s", 1e-11, "gap"),
+    Quantity("energy", "relative", 1e-11, "energy"),
+    Quantity("reaction", "relative", 1e-9, "reaction"),
 )
 
 

@@ -8,10 +8,8 @@ import pytest
 
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
-from reference.numerics.calculus import Antiderivative
 from reference.numerics.integration import IntegrationFailed
 from reference.scene import NoMotion, Scene, with_settings
-from reference.scenes.four_bar.linkage import Unreachable
 from reference.trajectory import Trajectory
 from reports.model.catalogue import SCENES
 from reports.model.cells import Cell
@@ -107,13 +105,3 @@ def test_a_scene_whose_arithmetic_fails_refuses_its_mechanism_in_words():
 
     with pytest.raises(NoMotion, match=r"scene 'heavy': its numbers make no mechanism: .*out of range"):
         Heavy().mechanism()
-
-
-def test_where_a_crank_ends_is_a_refusal_of_the_numbers_and_no_failure_of_arithmetic():
-    assert issubclass(Unreachable, InvalidMechanism)
-    assert not issubclass(Unreachable, NoMotion)
-
-
-def test_an_integral_over_too_many_panels_is_refused_before_memory_is_taken():
-    with pytest.raises(OverflowError, match="too many"):
-        Antiderivative(np.cos, 1e-9)(1.0)

@@ -261,14 +261,6 @@ def test_every_reason_names_a_real_mistake_and_method() -> None:
     assert set(LARGER) <= {(trial.scene.name, trial.method) for trial in EVERYTHING}
 
 
-@pytest.mark.parametrize("engine", EXTENDED, ids=lambda engine: engine.name)
-def test_every_kind_of_number_is_tried_in_each_engine_and_two_in_each_scene_of_one(engine: Engine) -> None:
-    own = [trial for trial in REPRESENTATIVE if trial.engine == engine]
-    assert 2 * len(own) >= len(SCENES) - len(LONGER) - 1
-    assert {mistake.kind for trial in own for mistake in trial.mistakes} == set(KINDS)
-    assert all(len(trial.mistakes) == 2 for trial in own)
-
-
 SHORT = [scene for scene in SCENES if len(scene.mechanism().bodies) < 20]
 
 
