@@ -13,6 +13,7 @@ from engines.lagrange import HELD, TRUTH, Judge, Lagrange
 from engines.lagrange.dynamics import RK4, Dynamics, constrained_acceleration, inverse_inertia, runge_kutta
 from reference.joints import Drive, Pin, Rod, Slot
 from reference.mechanism import Body, Mechanism
+from reference.plane import rotation_acceleration
 from reference.trajectory import joint_gap, slip
 from tests.mechanisms import four_bar, pendulum
 from tests.present import present
@@ -35,6 +36,10 @@ def test_a_swinging_bar_agrees_with_elliptic_functions():
     run = TRUTH.build(pendulum(angle=-np.pi / 2 + 1.0), 0.01)(300, 1)
     # 3 s at a tolerance of 1e-13 a step: a few 1e-13.
     np.testing.assert_allclose(run.pose[:, 0, 2] + np.pi / 2, swinging_angle(run.t, 1.0), rtol=0, atol=2e-12)
+    angle, rate = run.pose[:, 0, 2], run.twist[:, 0, 2]
+    arm = 0.5 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    pull = rotation_acceleration(rate, -1.5 * 9.81 * np.cos(angle), arm) + np.array([0.0, 9.81])  # per kilogram
+    np.testing.assert_allclose(run.reaction, pendulum().bodies[0].mass * pull, rtol=0, atol=1e-10)
 
 
 @pytest.mark.parametrize(("tolerance", "resolved"), [(1e-13, True), (1e-6, False)])
