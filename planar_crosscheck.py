@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from reports.check.request import CheckReport
     from reports.model.measure import Measurement
     from reports.search.chunk import CaseResult
+    from reports.versions.builds import BuildComparison
+    from reports.versions.column import VersionColumn
 
 PACKAGES = ("reference", "engines", "reports")
 HERE = os.path.dirname(os.path.realpath(__file__))
@@ -154,6 +156,37 @@ def search(
 
     subjects = chosen_subjects(engine, variant)
     return run_search(Path(results) / SEARCH, subjects, cases, seed, seconds=seconds, workers=workers)[0]
+
+
+def versions(
+    engine: str, version: str, scenes: Sequence[str] = (), results: str | Path = "crosscheck-results"
+) -> VersionColumn:
+    """The rows of scenes, six short ones if none is named, in a release of an engine; pip installs it once.
+
+    Raises ValueError where there is no such release.
+    """
+    from reports.cli.options import STORE
+    from reports.versions.builds import run_release, scenes_named
+
+    return run_release(engine, version, scenes_named(scenes) if scenes else None, Path(results) / STORE)
+
+
+def build_comparison(
+    first: str,
+    second: str,
+    engine: str | None = None,
+    variants: Sequence[str] = (),
+    scenes: Sequence[str] = (),
+    results: str | Path = "crosscheck-results",
+) -> BuildComparison:
+    """Two builds of an engine, each NAME==VERSION, a wheel or a folder: their rows, and the differences.
+
+    Its `complaint` is a sentence if the second is worse, and empty otherwise. Raises ValueError.
+    """
+    from reports.versions.builds import compare_builds, scenes_named
+
+    chosen = scenes_named(scenes) if scenes else None
+    return compare_builds(first, second, engine, variants, chosen, Path(results))
 
 
 def linkage(

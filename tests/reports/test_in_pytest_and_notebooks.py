@@ -122,6 +122,15 @@ def test_models_are_read_as_files_and_as_objects(tmp_path):
         planar_crosscheck.check({})
 
 
+def test_releases_and_builds_that_are_not_there_are_refused():
+    for call in (
+        lambda: planar_crosscheck.versions("nonsense", "1.0"),
+        lambda: planar_crosscheck.build_comparison("nonsense==1.0", "pymunk==7.3.1"),
+    ):
+        with pytest.raises(ValueError, match="nonsense"):
+            call()
+
+
 def test_a_search_returns_the_cases_and_keeps_them_in_a_store(tmp_path, at_home):
     cases = planar_crosscheck.search("lagrange", "rk4 projection", cases=2, seed=1, results=tmp_path)
     assert [case.number for case in cases] == [0, 1]
