@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
+from subprocess import CalledProcessError
 from typing import Any
 
 import numpy as np
+from matplotlib import rc_context
+from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
-from PIL import Image
 
 from engines import Engine
 from reference.mechanism import Mechanism
@@ -171,53 +172,28 @@ def decades(errors: Sequence[Array]) -> tuple[int, int]:
 
 def film(shown: Shown, title: str, path: Path, theme: Theme = LIGHT) -> None:
     """Write the film to a path that ends in .gif or .mp4. Raises BadInput where ffmpeg is needed and not there."""
-    program = ffmpeg() if path.suffix == ".mp4" else None
-    frames = np.linspace(0, len(shown.t) - 1, int(RATE * SECONDS))
-    with settings():
+    program = ffmpeg() if path.suffix == ".mp4" else "ffmpeg"
+    with settings(), rc_context({"animation.ffmpeg_path": program}):
         figure, moving, growing = _figure(shown, title, theme, DOTS)
-        for line, *_ in (*moving, *growing):
-            line.set_animated(True)
-        stage, chart = figure.axes
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-        figure.set_layout_engine("none")  # once is enough: the panels stay where they are
-        still = canvas.copy_from_bbox(figure.bbox)
+        FigureCanvasAgg(figure)
 
-        def picture(frame: float) -> Image.Image:
-            """What stands still is drawn once; a pose between two samples is between theirs."""
-            canvas.restore_region(still)
+        def draw(frame: float) -> list[Line2D]:
+            """A pose between two samples is between theirs."""
             before, share = int(frame), frame % 1
             after = min(before + 1, len(shown.t) - 1)
             for line, points, pose in moving:
                 now = pose[before] + share * (pose[after] - pose[before])
                 line.set_data(*(rotated(now[2], points) + now[:2]).T)
-                stage.draw_artist(line)
             for line, error in growing:
                 line.set_data(shown.t[: after + 1], error[: after + 1])
-                chart.draw_artist(line)
-            return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
+            return []
 
-        pictures = map(picture, frames.tolist())
-        if program is None:
-            _gif(pictures, path)
-        else:
-            _mp4(pictures, program, path, canvas.get_width_height())
-
-
-def _gif(pictures: Iterator[Image.Image], path: Path) -> None:
-    """All frames share the colours of the first one that has everything in it, the last."""
-    held = list(pictures)
-    colours = held[-1].quantize(64, dither=Image.Dither.NONE)
-    first, *rest = (each.quantize(palette=colours, dither=Image.Dither.NONE) for each in held)
-    first.save(path, save_all=True, append_images=rest, duration=1000 // RATE, loop=0, optimize=False)
-
-
-def _mp4(pictures: Iterator[Image.Image], program: str, path: Path, size: tuple[int, int]) -> None:
-    words = [program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", "{}x{}".format(*size)]
-    words += ["-r", str(RATE), "-i", "-", "-pix_fmt", "yuv420p", "-preset", "veryfast", str(path)]
-    ended = subprocess.run(words, input=b"".join(each.tobytes() for each in pictures), capture_output=True)
-    if ended.returncode:
-        raise OSError(f"ffmpeg: {(ended.stderr.decode(errors='replace').strip().splitlines() or ['no reason'])[-1]}")
+        frames = np.linspace(0, len(shown.t) - 1, int(RATE * SECONDS)).tolist()
+        writer = FFMpegWriter(fps=RATE) if path.suffix == ".mp4" else PillowWriter(fps=RATE)
+        try:
+            FuncAnimation(figure, draw, frames).save(path, writer)
+        except CalledProcessError as reason:
+            raise OSError(f"ffmpeg ended with status {reason.returncode}") from None
 
 
 def ffmpeg() -> str:
