@@ -3,7 +3,8 @@
 With an engine alone, a program is a file `results/programs/<scene>_<method>.py`, other characters than letters and
 digits as "_". It says its `duration`, within the scene's horizon, and its `steps`, and ends with the place and angle of
 one body in `end`, which it prints. It is kept by hand but for its line of `steps`, which the method's own row gives.
-The methods without such a file are run by one block of the page, which calls this suite.
+There is one where `crosscheck export` can't write the method, since it needs code in each step. The others are run by
+one block of the page, which calls this suite.
 """
 
 from __future__ import annotations

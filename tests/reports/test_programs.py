@@ -84,6 +84,6 @@ def test_every_program_of_an_engine_alone_is_of_a_method_of_its_scene():
 
 
 def test_a_program_that_is_wrong_by_a_thousandth_is_noticed():
-    source = program("free_four_bar", "mujoco tuned")
+    source = program("free_four_bar", "mujoco extended")
     right, wrong = run(source)[0]["end"], run(source.replace('mass="0.4"', 'mass="0.4004"'))[0]["end"]
     assert max(abs(a - b) for a, b in zip(right, wrong, strict=True)) > 1e-6
