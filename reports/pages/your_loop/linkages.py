@@ -129,6 +129,28 @@ def driven_four_bar() -> Space:
     return space
 
 
+def parallelogram_wipers() -> Space:
+    space = new_space()
+    where = points(A=(0, 0), B=(20, 60), C=(140, 60), D=(120, 0), E=(30, 160), F=(150, 160))
+    assemble(space, where, "ABE BC CDF", "AD")
+    return space
+
+
+def watt_six_bar() -> Space:
+    space = new_space()
+    where = points(A=(0, 0), B=(0, 50), C=(120, 90), D=(110, 0), E=(90, 150), F=(200, 160), G=(220, 20))
+    assemble(space, where, "AB BC CDE EF FG", "ADG")
+    return space
+
+
+def stephenson_six_bar() -> Space:
+    space = new_space()
+    where = points(A=(0, 0), B=(0, 35), C=(130, 90), D=(120, 0), E=(60, 150), F=(230, 140), G=(230, 10))
+    bodies = assemble(space, where, "AB BCE CD EF FG", "ADG")
+    motor(space, space.static_body, bodies["AB"], 4.0)
+    return space
+
+
 def cylinder(space: Space, hip: Vec2d, crank: Body, knee: Vec2d, angle: float, rod: float) -> None:
     """A rod from the crank's pin to a head that slides along `angle` [rad] through the hip; the head can't turn."""
     along = Vec2d(cos(angle), sin(angle))
@@ -212,6 +234,57 @@ def walker(pairs: int) -> Space:
     return space
 
 
+def klann_points(angle: float, hip: Vec2d, side: int) -> dict[str, Vec2d]:
+    """Joe Klann's leg: a crank, a bent arm, two rockers on the frame, and a bent leg."""
+    upper, lower = hip + Vec2d(-70 * side, 185), hip + Vec2d(-177 * side, -53)
+    knee = hip + Vec2d(cos(angle), sin(angle)) * 80
+    elbow = meet(knee, 177, lower, 96, -side)
+    end = elbow + (elbow - knee).rotated(-0.22 * side) * 0.88
+    hinge = meet(end, 140, upper, 262, side)
+    foot = end + (end - hinge).rotated(0.5 * side) * 1.9
+    return {"O": hip, "Z": knee, "D": elbow, "E": end, "B": lower, "A": upper, "H": hinge, "F": foot}
+
+
+def klann_leg(space: Space, base: Body, hip: Vec2d, angle: float, rate: float, side: int) -> float:
+    where = klann_points(angle, hip, side)
+    bodies = assemble(space, where, "OZ ZDE BD AH HEF", "OBA", base)
+    motor(space, base, bodies["OZ"], rate)
+    return where["F"].y
+
+
+def klann() -> Space:
+    space = new_space()
+    klann_leg(space, space.static_body, Vec2d(0, 0), 0.7, 4.0, 1)
+    return space
+
+
+def klann_walker() -> Space:
+    space = new_space()
+    hip = Vec2d(0, 0)
+    chassis = box(space, hip, 20, (240, 30))
+    phases = [(0.7, 1), (0.7 + pi, 1), (0.7, -1), (0.7 + pi, -1)]
+    floor(space, min(klann_leg(space, chassis, hip, angle, 3.0, side) for angle, side in phases) - 8.5)
+    return space
+
+
+def chebyshev_walker() -> Space:
+    """Chebyshev's lambda leg, four of them in two pairs on a chassis on the ground."""
+    space = new_space()
+    hip = Vec2d(0, 0)
+    chassis = box(space, hip + Vec2d(0, 40), 10, (160, 30))
+    low = inf
+    for angle, side in ((pi / 2, 1), (-pi / 2, 1), (pi / 2, -1), (-pi / 2, -1)):
+        fixed = hip + Vec2d(-80 * side, 0)
+        knee = hip + Vec2d(cos(angle), sin(angle)) * 40
+        elbow = meet(knee, 100, fixed, 100, -side)
+        where = {"O": hip, "Z": knee, "B": fixed, "E": elbow, "F": elbow + (elbow - knee)}
+        bodies = assemble(space, where, "OZ ZEF BE", "OB", chassis)
+        motor(space, chassis, bodies["OZ"], 4.0)
+        low = min(low, where["F"].y, hip.y - 40)
+    floor(space, low - 12)
+    return space
+
+
 def ragdoll(contact: bool) -> Space:
     """Ten parts with pivots and limits of the angles; held by a hand, or dropped on the ground."""
     space = new_space()
@@ -251,6 +324,15 @@ def chain(count: int, ball_mass: float = 0.0) -> Space:
     return space
 
 
+def bridge() -> Space:
+    """A rope bridge between two banks, and a barrel that drops on it."""
+    space = new_space()
+    bars = row_of_bars(space, Vec2d(0, 100), Vec2d(20, 0), 16, density=0.05)
+    pin(space, bars[-1], space.static_body, Vec2d(320, 100))
+    ball(space, Vec2d(150, 160), 3.0, 15, group=2)
+    return space
+
+
 def car(suspended: bool) -> Space:
     """A chassis on two wheels with a motor on the ground; pivots, or grooves and springs."""
     space = new_space()
@@ -267,6 +349,30 @@ def car(suspended: bool) -> Space:
         else:
             pin(space, body, wheel, wheel.position)
         motor(space, body, wheel, -10.0)
+    return space
+
+
+def tow_truck() -> Space:
+    """A car that pulls a trailer by a PinJoint."""
+    space = car(suspended=False)
+    truck = next(iter(space.bodies))
+    trailer = box(space, Vec2d(-200, 50), 5, (100, 20))
+    wheel = ball(space, Vec2d(-200, 25), 1, 20)
+    pin(space, trailer, wheel, wheel.position)
+    space.add(PinJoint(truck, trailer, (-60, -10), (50, 0)))
+    return space
+
+
+def crane() -> Space:
+    """A luffing crane: a jib that a stay of bars holds, and a heavy load on a rope."""
+    space = new_space()
+    where = points(A=(0, 0), B=(0, 120), C=(180, 130), D=(90, 160))
+    bodies = assemble(space, where, "AC BD DC", "AB", density=0.05)
+    bars = row_of_bars(space, where["C"], Vec2d(6, -14), 6)
+    space.remove(*[joint for joint in bars[0].constraints if joint.a is space.static_body])
+    pin(space, bodies["AC"], bars[0], where["C"])
+    load = where["C"] + Vec2d(6, -14) * 6
+    pin(space, bars[-1], ball(space, load, 8.0, 12), load)
     return space
 
 
@@ -299,6 +405,16 @@ def excavator(stiffness: float = 3000.0) -> Space:
     return space
 
 
+def trebuchet() -> Space:
+    """An arm, a counterweight that hangs on it, and a sling with a stone."""
+    space = new_space()
+    where = points(A=(0, 100), B=(50, 140), C=(-150, -20), D=(50, 90), E=(-80, -20))
+    bodies = assemble(space, where, "BAC BD CE", "A", density=0.03)
+    pin(space, bodies["BD"], box(space, where["D"], 40, (40, 40)), where["D"])
+    pin(space, bodies["CE"], ball(space, where["E"], 0.8, 6), where["E"])
+    return space
+
+
 def scissor_lift(stages: int) -> Space:
     """Crossed bars above each other; one foot slides, and the whole sinks under a platform."""
     space = new_space()
@@ -317,6 +433,44 @@ def scissor_lift(stages: int) -> Space:
     platform = box(space, Vec2d(width / 2, stages * height + 8), 2.0, (width, 10))
     pin(space, feet[0], platform, Vec2d(0, stages * height))
     space.add(GrooveJoint(platform, feet[1], (-60, -8), (200, -8), feet[1].world_to_local((width, stages * height))))
+    return space
+
+
+def pantograph() -> Space:
+    space = new_space()
+    where = points(A=(0, 0), B=(80, 80), C=(160, 0), D=(40, 40), E=(120, 40), F=(80, 0))
+    assemble(space, where, "ADB BEC DF FE", "A")
+    return space
+
+
+def peaucellier() -> Space:
+    """Seven bars that draw a straight line."""
+    space = new_space()
+    a, b = 130.0, 80.0
+    near = Vec2d(40 + 40 * cos(0.6), 40 * sin(0.6))
+    turned = near.angle
+    # The rhombus: its far corner is at (a^2 - b^2) / |near| on the same ray.
+    far = near * ((a**2 - b**2) / near.length**2)
+    middle, half = (near + far) / 2, sqrt(b**2 - ((far - near).length / 2) ** 2)
+    normal = Vec2d(-sin(turned), cos(turned)) * half
+    where = {"A": Vec2d(0, 0), "M": Vec2d(40, 0), "N": near, "P": far, "U": middle + normal, "L": middle - normal}
+    assemble(space, where, "MN AU AL NU NL UP LP", "AM")
+    return space
+
+
+def pumpjack() -> Space:
+    """A motor, a beam with a heavy head, and a rod in a groove."""
+    space = new_space()
+    where = points(A=(0, 0), B=(-20, 30), C=(-30, 150), D=(80, 150), E=(200, 150))
+    bodies = assemble(space, where, "AB BC CDE", "AD", density=0.05)
+    motor(space, space.static_body, bodies["AB"], 2.0)
+    rod = Body(15.0, inf)
+    rod.position = 200, 70
+    space.add(rod)
+    hanger = link(space, where["E"], rod.position)
+    pin(space, bodies["CDE"], hanger, where["E"])
+    pin(space, hanger, rod, rod.position)
+    slide(space, space.static_body, rod, Vec2d(0, 1), 200.0)
     return space
 
 
@@ -341,6 +495,20 @@ def welded_beam() -> Space:
     return space
 
 
+def mobile() -> Space:
+    """A tree of hanging bars, knocked at one end."""
+    space = new_space()
+    where = points(
+        A=(0, 0), B=(0, -30), C=(-60, -30), D=(60, -30), E=(-60, -60), F=(60, -60), G=(-90, -60), H=(-30, -60),
+        K=(30, -60), L=(90, -60),
+    )  # fmt: skip
+    bodies = assemble(space, where, "AB CBD CE DF GEH KFL", "A")
+    for word, letter in (("GEH", "G"), ("GEH", "H"), ("KFL", "K"), ("KFL", "L")):
+        pin(space, bodies[word], ball(space, where[letter], 0.5, 6), where[letter])
+    space.gravity = (300, -850)  # the whole is let go askew
+    return space
+
+
 def tank_track() -> Space:
     """Twelve links in a closed loop around two wheels, let go on the ground."""
     space = new_space()
@@ -353,24 +521,83 @@ def tank_track() -> Space:
     return space
 
 
+def cyclist() -> Space:
+    """Two legs on pedals: four-bars that share a crank, with a motor."""
+    space = new_space()
+    crank = link(space, Vec2d(0, 20), Vec2d(0, -20))
+    pin(space, space.static_body, crank, Vec2d(0, 0))
+    hip = Vec2d(-30, 115)
+    for pedal in (Vec2d(0, 20), Vec2d(0, -20)):
+        knee = meet(pedal, 70, hip, 75, -1)
+        bodies = assemble(space, {"P": pedal, "K": knee, "H": hip}, "PK KH", "H", density=0.04)
+        pin(space, crank, bodies["PK"], pedal)
+    motor(space, space.static_body, crank, -5.0)
+    return space
+
+
+def folding_chair() -> Space:
+    """Two crossed legs and a seat in a groove, which collapse."""
+    space = new_space()
+    where = points(A=(0, 0), X=(50, 45), B=(100, 90), D=(0, 90))
+    foot = ball(space, Vec2d(100, 0), 0.5, 4)
+    slide(space, space.static_body, foot, Vec2d(1, 0), 200.0)
+    bodies = assemble(space, where, "AXB", "A", density=0.03)
+    other = link(space, Vec2d(100, 0), where["D"], density=0.03)
+    pin(space, bodies["AXB"], other, where["X"])
+    pin(space, foot, other, Vec2d(100, 0))
+    seat = box(space, Vec2d(50, 90), 3.0, (100, 8))
+    pin(space, other, seat, where["D"])
+    space.add(GrooveJoint(seat, bodies["AXB"], (-40, 0), (150, 0), bodies["AXB"].world_to_local((100, 90))))
+    return space
+
+
+def double_rocker_swing() -> Space:
+    """A swing on two ropes of bars with a child that hangs below."""
+    space = new_space()
+    where = points(A=(0, 200), B=(40, 100), C=(100, 100), D=(60, 200), E=(70, 60))
+    bodies = assemble(space, where, "AB BCE CD", "AD")
+    pin(space, bodies["BCE"], ball(space, where["E"], 5.0, 10), where["E"])
+    return space
+
+
 LINKAGES: Mapping[str, Callable[[], Space]] = {
     "four-bar": four_bar,
     "four-bar with a motor": driven_four_bar,
+    "pair of wipers (parallelogram)": parallelogram_wipers,
+    "six-bar of Watt": watt_six_bar,
+    "six-bar of Stephenson with a motor": stephenson_six_bar,
+    "piston in a groove": lambda: engine(1, 0.0),
     "piston in a groove with a motor": lambda: engine(1, 8.0),
     "radial engine of three pistons": lambda: engine(3, 8.0),
     "Jansen's leg with a motor": lambda: jansen((1,)),
     "two legs of Jansen on a crank": lambda: jansen((1, -1)),
+    "Strandbeest of two legs on the ground": lambda: walker(1),
     "Strandbeest of six legs on the ground": lambda: walker(3),
+    "Klann's leg with a motor": klann,
+    "walker of four legs of Klann": klann_walker,
+    "walker of four legs of Chebyshev": chebyshev_walker,
     "ragdoll that hangs by a hand": lambda: ragdoll(contact=False),
     "ragdoll that falls": lambda: ragdoll(contact=True),
     "rope of twenty links": lambda: chain(20),
     "wrecking ball, fifty times a link": lambda: chain(8, 10.0),
+    "rope bridge with a barrel": bridge,
     "car with a motor": lambda: car(suspended=False),
     "car on grooves and springs": lambda: car(suspended=True),
+    "car with a trailer": tow_truck,
+    "crane with a load on a rope": crane,
     "crane with a load on a PinJoint": cable_crane,
     "excavator": excavator,
+    "trebuchet": trebuchet,
+    "scissor lift of one stage": lambda: scissor_lift(1),
     "scissor lift of three stages": lambda: scissor_lift(3),
+    "pantograph": pantograph,
+    "Peaucellier's linkage": peaucellier,
+    "pumpjack": pumpjack,
     "geared five-bar": geared_mixer,
     "beam of welds": welded_beam,
+    "mobile": mobile,
     "tank track on the ground": tank_track,
+    "cyclist": cyclist,
+    "folding chair": folding_chair,
+    "swing on two ropes": double_rocker_swing,
 }
