@@ -28,6 +28,11 @@ class Quantity:
     def label(self) -> str:
         return self.name
 
+    @property
+    def axis(self) -> str:
+        """The label of an axis with its errors."""
+        return f"{self.label} error [{self.unit}]"
+
 
 # The order in which tables and checks have them.
 QUANTITIES = (
