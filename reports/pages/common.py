@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from engines import Engine, mujoco, pymunk
@@ -105,20 +106,21 @@ def read_answers(
     ]
 
 
-Found = Mapping[str, Mapping[tuple[str, str], Mapping[str, float] | Outcome]]
+@cache
+def _written_deviations() -> dict[str, list[dict[str, Any]]]:
+    return tomllib.loads(Path(__file__).with_name("deviations.toml").read_text(encoding="utf-8"))
 
 
-def deviations(found: Found, rounded: Found = MappingProxyType({})) -> dict[tuple[str, str, str], Deviation]:
-    """Known deviations: reason -> (scene, method) -> the factor of each check, or the outcome.
-
-    Those of `rounded` are made of roundings that the motion amplifies.
-    """
+def deviations(page: str) -> dict[tuple[str, str, str], Deviation]:
+    """The known deviations of a page, from `deviations.toml`."""
     known: dict[tuple[str, str, str], Deviation] = {}
-    for reasons, rounding in ((found, False), (rounded, True)):
-        for reason, methods in reasons.items():
-            for (scene, method), factors in methods.items():
-                if isinstance(factors, Outcome):
-                    known[scene, method, "outcome"] = Deviation(reason, outcome=factors)
+    for entry in _written_deviations()[page]:
+        scenes = dict(entry)
+        reason, rounding = scenes.pop("reason"), scenes.pop("rounding", False)
+        for scene, methods in scenes.items():
+            for method, factors in methods.items():
+                if isinstance(factors, str):
+                    known[scene, method, "outcome"] = Deviation(reason, outcome=Outcome(factors))
                     continue
                 for check, factor in factors.items():
                     known[scene, method, check] = Deviation(reason, factor, rounding=rounding)

@@ -200,20 +200,6 @@ def compared(scene: Scene, engine: Engine) -> bool:
     return engine in VARIANTS or engine not in ENGINES or scene.name == ADVISED
 
 
-# Where a method is known to fall short of theory on the four-bar, and where this motion asks for another promise.
-SOFT = "by design: as shipped a loop is a spring of 0.02 s, whatever the step; its softness leaves a plateau"
-DRIFT = "by design: nothing closes the gap that a first-order method opens"
-
-KNOWN = deviations(
-    {
-        SOFT: {
-            ("driven_four_bar", "mujoco default"): {"order": 2.5},
-            ("free_four_bar", "mujoco RK4 alone"): {"order": 10},
-        },
-        DRIFT: {("free_four_bar", "lagrange euler none"): {"gap": 1.2}},
-    }
-)
-
 PAGE = Page(
     name="four_bar",
     title="The four-bar linkage",
@@ -225,6 +211,6 @@ PAGE = Page(
     failures=FAILURES,
     figures=figures,
     words=words,
-    known=KNOWN,
+    known=deviations("four_bar"),
     tasks=(*map(Motion, POSED.values()), *MOVED),
 )

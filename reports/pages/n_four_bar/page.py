@@ -93,103 +93,6 @@ def words(material: Material) -> Mapping[str, Any]:
     return {**asked, "failed": failed, "soft": soft, "exact": exact}
 
 
-# Where a method is known to fall short on the N-four-bar, each with its reason.
-SWEPT = (
-    "by design: near the singular position the forces have no limit and sweeps do not converge; what they leave is "
-    "corrected in the next step"
-)
-SHIPPED = (
-    "by design: as shipped a joint closes a tenth of its gap in a sixtieth of a second, which loses the energy to pass "
-    "the top again"
-)
-EXTRAPOLATED = (
-    "by design: with forty loops the steps are a tenth of a second and more, too long for a series in the step"
-)
-SPRING = (
-    "by design: as shipped a loop is a spring of 0.02 s, soft enough for each crank to find its own way in the line"
-)
-STEP = "by design: near the singular position the loop's force, and the gap it leaves, depend on where the samples fall"
-SPRUNG = "by design: near the singular position a loop's spring pulls with its gap over a singular value"
-COARSER = "by design: the run of half as many steps, which tells the error, starts anew at the first singular position"
-EULER = "by design: a first-order method gains enough energy to turn over faster and faster"
-LARGE = "by design: the reset comes at the first singular position, at a step of 0.02 s with 41 cranks"
-
-# Measured with two cranks, for 1 to 4 steps in a hundredth of a second: rounding over that square is 2e-9, 2e-8, 2e-6
-# and 2e-3, the errors are 1e-8, 2e-9, 2e-5 and 2e-3 rad, compiled and in numpy.
-RANK = (
-    "by design: where a stage meets the singular position, a rounded pose turns the way that rows leave open by its "
-    "rounding over the square of their smallest singular value"
-)
-
-KNOWN = deviations(
-    {
-        SHIPPED: {
-            ("n_four_bar_2", "pymunk default"): Outcome.SATURATED,
-            ("n_four_bar_10", "pymunk default"): Outcome.SATURATED,
-            ("n_four_bar_40", "pymunk default"): Outcome.TORN,
-        },
-        SWEPT: {
-            ("n_four_bar_2", "pymunk extended"): Outcome.UNRESOLVED,
-            ("n_four_bar_10", "pymunk tuned"): Outcome.SATURATED,
-            ("n_four_bar_10", "pymunk extended"): Outcome.TORN,
-            ("n_four_bar_40", "pymunk tuned"): Outcome.TORN,
-            ("n_four_bar_2", "pymunk tuned"): {"gap": 4.1e6, "reaction": 2.7},
-        },
-        SPRING: {
-            ("n_four_bar_2", "mujoco default"): Outcome.BRANCH_FLIP,
-            ("n_four_bar_10", "mujoco default"): Outcome.BRANCH_FLIP,
-            ("n_four_bar_40", "mujoco default"): Outcome.BRANCH_FLIP,
-        },
-        SPRUNG: {
-            ("n_four_bar_2", "mujoco tuned"): {"reaction": 14},
-            ("n_four_bar_10", "mujoco tuned"): {"reaction": 37},
-        },
-        STEP: {
-            ("n_four_bar_2", "mujoco extended"): {"error": 14, "rate": 26, "gap": 3.4, "energy": 2.8, "reaction": 220}
-        },
-        EULER: {
-            ("n_four_bar_2", "lagrange euler projection"): Outcome.SATURATED,
-            ("n_four_bar_10", "lagrange euler projection"): Outcome.SATURATED,
-            ("n_four_bar_40", "lagrange euler projection"): Outcome.SATURATED,
-        },
-        EXTRAPOLATED: {("n_four_bar_40", "pymunk extended"): Outcome.TORN},
-        LARGE: {("n_four_bar_40", "mujoco tuned"): Outcome.RESET},
-        COARSER: {("n_four_bar_40", "mujoco extended"): Outcome.UNRESOLVED},
-    },
-    {
-        RANK: {
-            ("n_four_bar_2", "lagrange rk4 projection"): {
-                "error": 390,
-                "rate": 310,
-                "energy": 2.6,
-                "reaction": 97,
-                "order": 10,
-            },
-            ("n_four_bar_2", "lagrange dop853 projection"): {
-                "error": 1.9e4,
-                "rate": 1.3e4,
-                "energy": 96,
-                "reaction": 2.5e4,
-                "order": 11,
-            },
-            ("n_four_bar_10", "lagrange dop853 projection"): {
-                "error": 8.3e4,
-                "rate": 3.9e4,
-                "energy": 9300,
-                "reaction": 3800,
-                "order": 20,
-            },
-            ("n_four_bar_40", "lagrange dop853 projection"): {
-                "error": 6200,
-                "rate": 4100,
-                "energy": 66,
-                "reaction": 590,
-                "order": 7.8,
-            },
-        }
-    },
-)
-
 PAGE = Page(
     name="n_four_bar",
     title="N four-bars side by side",
@@ -199,5 +102,5 @@ PAGE = Page(
     failures=FAILURES,
     figures=figures,
     words=words,
-    known=KNOWN,
+    known=deviations("n_four_bar"),
 )

@@ -17,7 +17,6 @@ from reference.numerics.calculus import derivative
 from reference.scenes.many_links import SpinningRing
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
-from reports.model.outcomes import Outcome
 from reports.model.page import FEATURED, Failure, Material, Observation, Page
 from reports.model.tasks import Task, Values
 from reports.pages.common import ALL, PUBLIC, cells, described, deviations, sweeps
@@ -221,48 +220,6 @@ def words(material: Material) -> Mapping[str, Any]:
     return {**lookups(material, SCENES), "answers": answers(), "numbers": numbers}
 
 
-# Where a method is known to fall short on the pendulums, each with its reason.
-# At any step: one link's angle is 1.2 to 1.3 times its bound from 3e-4 s down to 1e-5 s.
-EULER = (
-    "ours: what order 1 costs is drawn from the judge's orders 2 and 4, up to 1.7 times too little for these motions"
-)
-SOFT = "by design: as shipped every equality is a spring of 0.02 s, and their softness adds up along the chain"
-LONG = (
-    "by design: the grid's steps over 2000 s are a tenth of a second or larger, too large for 845 periods; the page "
-    "looks at finer ones among its experiments"
-)
-HUNDRED = "by design: 300 sweeps do not converge on a hundred links, which leaves errors of no power of the step"
-SPRING = "by design: with every joint a spring, its own motion adds to the link's"
-
-
-KNOWN = deviations(
-    {
-        SPRING: {("pendulum_1", "mujoco extended, free, sparse Newton"): {"error": 4.1}},
-        SOFT: {
-            ("pendulum_2", "mujoco default, free coordinates"): {"order": 2.5},
-            ("pendulum_100", "mujoco default, free coordinates"): {"error": 2.3},
-        },
-        HUNDRED: {
-            ("pendulum_100", "pymunk tuned"): {"energy": 2.6},
-            ("pendulum_100", "pymunk extended"): Outcome.UNRESOLVED,
-        },
-        LONG: {
-            ("point_pendulum", "pymunk default"): Outcome.SATURATED,
-            ("point_pendulum", "pymunk tuned"): Outcome.SATURATED,
-            ("point_pendulum", "pymunk extended"): Outcome.SATURATED,
-            ("point_pendulum", "mujoco tuned"): Outcome.SATURATED,
-            ("point_pendulum", "mujoco extended"): Outcome.SATURATED,
-            ("point_pendulum", "lagrange euler projection"): Outcome.SATURATED,
-            ("point_pendulum", "lagrange rk4 projection"): Outcome.SATURATED,
-        },
-        EULER: {
-            ("pendulum_1", "lagrange euler projection"): {"error": 1.3, "rate": 1.3, "reaction": 1.4},
-            ("pendulum_100", "mujoco default"): {"energy": 1.2},
-            ("pendulum_100", "lagrange euler projection"): {"energy": 1.7},
-        },
-    }
-)
-
 PAGE = Page(
     name="pendulum",
     title="Pendulums of 1, 2, 10 and 100 links",
@@ -275,5 +232,5 @@ PAGE = Page(
     featured=lambda row: row.variant in SHOWN,
     figures=figures,
     words=words,
-    known=KNOWN,
+    known=deviations("pendulum"),
 )

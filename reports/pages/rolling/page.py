@@ -19,7 +19,6 @@ from reference.scenes.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
-from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.common import deviations
 from reports.pages.rolling import drawings
@@ -79,54 +78,6 @@ def words(material: Material) -> Mapping[str, Any]:
     return {**lookups(material, SCENES), "at": at, "polygons": polygons, "hill": HILL}
 
 
-# Where a method is known to fall short of theory in rolling.
-POLYGON = "by design: a body that is not round is a polygon here, and rolls from corner to corner in blows"
-SOFT = "by design: as shipped the contact is a spring of 0.02 s, whatever the step"
-CHATTER = "upstream: a contact without the velocity term is let go and caught again; its force is right on average"
-BARELY = "by design: pins already hold the gears apart, so that only softness lets them press and rub"
-
-
-KNOWN = deviations(
-    {
-        POLYGON: {
-            ("rolling_ellipse", "pymunk default"): Outcome.SATURATED,
-            ("rolling_ellipse", "pymunk tuned"): {"error": 1.2, "reaction": 17},
-            ("rolling_cam", "pymunk default"): Outcome.SATURATED,
-            ("rolling_cam", "pymunk tuned"): {"error": 11, "rate": 4.8, "energy": 1.3, "reaction": 75},
-            ("rolling_incline", "pymunk default"): {
-                "error": 15,
-                "rate": 6.3,
-                "gap": 4.5,
-                "energy": 5.1,
-                "reaction": 480,
-            },
-            ("rolling_incline", "pymunk tuned"): {"error": 2.3, "rate": 1.1, "energy": 1.2, "reaction": 120},
-            ("elliptic_gears", "pymunk default"): {"reaction": 9.2},
-            ("elliptic_gears", "pymunk tuned"): {"reaction": 2.3},
-        },
-        SOFT: {
-            ("rolling_ellipse", "mujoco default"): {"order": 2.5},
-            ("rolling_disc", "mujoco default"): {"order": 2.5},
-            ("rolling_on_circle", "mujoco default"): {"order": 2.5},
-        },
-        CHATTER: {
-            ("rolling_ellipse", "mujoco tuned"): {"reaction": 3.8},
-            ("rolling_ellipse", "mujoco contact, stiff Euler"): {"reaction": 4.9},
-            ("rolling_disc", "mujoco tuned"): {"reaction": 44},
-            ("rolling_incline", "mujoco default"): {"reaction": 1.6, "order": 2.5},
-            ("rolling_incline", "mujoco tuned"): {"reaction": 31},
-            ("rolling_on_circle", "pymunk default"): {"reaction": 16},
-            ("rolling_on_circle", "pymunk tuned"): {"reaction": 16},
-            ("rolling_on_circle", "mujoco default"): {"reaction": 2.8},
-            ("rolling_on_circle", "mujoco tuned"): {"reaction": 61},
-        },
-        BARELY: {
-            ("elliptic_gears", "mujoco default"): {"order": 2.5},
-            ("elliptic_gears", "mujoco tuned"): {"reaction": 4},
-        },
-    }
-)
-
 PAGE = Page(
     name="rolling",
     title="Rolling of bodies that are not round",
@@ -137,5 +88,5 @@ PAGE = Page(
     compared=compared,
     figures=figures,
     words=words,
-    known=KNOWN,
+    known=deviations("rolling"),
 )

@@ -259,40 +259,9 @@ def words(material: Material) -> Mapping[str, Any]:
     }
 
 
-# Where a construction of a skate is known to fall short of theory, each with its reason.
 # Another body's motion has no order; here it is held to an ideal row's all the same, so that by how much it misses that
 # stays known.
 ORDERS = {("sleigh_backwards", "pymunk default"): Promise(1, differences=1)}
-
-ANOTHER_BODY = "by design: the velocity across is set without the turning that a force at the blade brings"
-STRAIGHT = "by design: it never turns round, a naive zeroing makes a stable vehicle of an unstable one"
-SOFT = "by design: a contact as shipped is a spring of 0.02 s and gives way, whatever the step"
-LATE = "by design: a row at the old heading has no slip to stop in the first step, so its first force is none"
-
-KNOWN = deviations(
-    {
-        ANOTHER_BODY: {
-            ("sleigh", "pymunk default"): Outcome.SATURATED,
-            ("sleigh", "pymunk skate: centre's velocity zeroed"): Outcome.SATURATED,
-            ("sleigh", "pymunk skate: point's velocity zeroed"): Outcome.SATURATED,
-        },
-        SOFT: {
-            ("sleigh", "mujoco default"): {"order": 2.5},
-            ("sleigh_backwards", "mujoco default"): {"error": 1.6, "rate": 1.7, "energy": 3300, "order": 2.5},
-        },
-        LATE: {("sleigh", "mujoco friction blade"): {"reaction": 5.9}},
-        STRAIGHT: {
-            ("sleigh_backwards", "pymunk default"): {
-                "error": 140,
-                "rate": 98,
-                "gap": 1.3,
-                "energy": 18,
-                "reaction": 43,
-                "order": 2.5,
-            }
-        },
-    }
-)
 
 PAGE = Page(
     name="skate",
@@ -306,6 +275,6 @@ PAGE = Page(
     figures=figures,
     words=words,
     orders=ORDERS,
-    known=KNOWN,
+    known=deviations("skate"),
     tasks=tuple(Motion(cell) for _, _, cells in PATHS for cell in cells.values()),
 )

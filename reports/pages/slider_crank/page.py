@@ -16,7 +16,6 @@ from engines.mujoco.methods import SLOTS
 from engines.registry import VARIANTS
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank, RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
-from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation, Page
 from reports.model.tasks import Task, Values
 from reports.pages.common import ALL, cells, described, deviations, read_answers, refusals
@@ -127,20 +126,6 @@ def words(material: Material) -> Mapping[str, Any]:
     return {**lookups(material, SCENES), **formulas}
 
 
-# Where a method is known to fall short on the slider-crank, each with its reason.
-EULER = "by design: a first-order method loses two turns of a free crank at the steps that are run here"
-SOFT = "by design: as shipped a loop is a spring of 0.02 s, whatever the step; its softness is the error that stays"
-
-KNOWN = deviations(
-    {
-        SOFT: {("driven_slider_crank", "mujoco default"): {"order": 2.5}},
-        EULER: {
-            ("free_slider_crank", "pymunk default"): Outcome.SATURATED,
-            ("free_slider_crank", "lagrange euler projection"): Outcome.SATURATED,
-        },
-    }
-)
-
 PAGE = Page(
     name="slider_crank",
     title="The slider-crank",
@@ -151,5 +136,5 @@ PAGE = Page(
     failures=FAILURES,
     figures=figures,
     words=words,
-    known=KNOWN,
+    known=deviations("slider_crank"),
 )

@@ -17,7 +17,6 @@ from reference.scenes.wheels.cart import Cart, Casters
 from reference.scenes.wheels.tractrix import Tow
 from reference.scenes.wheels.trailers import CarWithTrailers
 from reports.model.cells import Cell
-from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation, Page
 from reports.model.tasks import Motion, Task, Values
 from reports.pages.common import ENGINES_ALONE, cells_to_rounding, described, deviations, steps_for
@@ -295,22 +294,6 @@ def words(material: Material) -> Mapping[str, Any]:
     return {"counted": counted(shown, (*(scene.name for scene in SCENES), *doubled))}
 
 
-# Where a method is known to fall short of theory on ideal wheels, each with its reason.
-ANOTHER_VEHICLE = "by design: the velocity across is set without the turning that a force at the wheel brings"
-SOFT = "by design: contacts as shipped are springs of 0.02 s and give way, whatever the step"
-CARRIED = "ours: what a step rounds of an aimed groove is carried 66 times by the extrapolation"
-
-KNOWN = deviations(
-    {
-        ANOTHER_VEHICLE: {
-            ("car_and_trailer", "pymunk default"): Outcome.SATURATED,
-            ("cart", "pymunk default"): Outcome.SATURATED,
-        },
-        SOFT: {("car_and_trailer", "mujoco default"): {"order": 2.5}},
-    },
-    {CARRIED: {("car_and_trailer", "pymunk extended"): {"error": 2.8}}},
-)
-
 PAGE = Page(
     name="wheels",
     title="Ideal wheels",
@@ -321,6 +304,6 @@ PAGE = Page(
     quantity="position",
     figures=figures,
     words=words,
-    known=KNOWN,
+    known=deviations("wheels"),
     tasks=tuple(Motion(cell) for _, _, cells in COASTING for cell in cells.values()),
 )
