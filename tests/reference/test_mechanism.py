@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import tracemalloc
 from contextlib import nullcontext
 from dataclasses import replace
@@ -19,7 +18,7 @@ from engines.lagrange import TRUTH
 from engines.registry import ENGINES
 from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot
+from reference.joints import Drive, Pin, Rod, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.numerics.calculus import derivative
 from reference.plane import components, from_complex, perpendicular, rotated, rotation_acceleration, rotation_velocity
@@ -30,13 +29,12 @@ from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.many_links import LongPendulum
 from reference.scenes.n_four_bar import NFourBar, TenFourBars
 from reference.scenes.pendulum.chain import Chain
-from reference.scenes.pendulum.link import Pendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import Trajectory, energy, joint_gap, slip
-from tests.all_elements import ALL, ALONE, DAMPED, DAMPERS, GRAVITY, PUSHES, SPRINGS
+from tests.all_elements import ALL, ALONE, DAMPED, DAMPERS, PUSHES, SPRINGS
 from tests.mechanisms import four_bar, pendulum
 
 RANDOM = np.random.default_rng(20)
@@ -108,11 +106,6 @@ def test_reactions_read_from_accelerations_obey_newtons_law(driven):
     np.testing.assert_allclose(driven.reaction(driven.pose, acceleration), reaction, atol=1e-12)
 
 
-def test_a_hanging_bar_at_rest_loads_its_pin_with_its_weight_upwards():
-    mechanism = pendulum(angle=-np.pi / 2)
-    np.testing.assert_allclose(mechanism.reaction(mechanism.pose, np.zeros((1, 3))), [0, 9.81], atol=1e-14)
-
-
 def test_an_engine_with_other_masses_and_gravity_has_applied_other_reactions():
     mechanism = pendulum()
     resting = np.zeros((1, 3))
@@ -139,14 +132,6 @@ def test_scales_come_from_the_description():
     assert four_bar().length_scale == pytest.approx(0.8 * np.sqrt(2))
     assert four_bar(10.0, drive=10.0).time_scale == pytest.approx(0.1)
     assert Mechanism((Body("still", 1, 1, (0, 0, 0)),), ()).time_scale == 1.0
-
-
-def test_a_body_that_only_slides_sets_the_time_scale_by_its_length():
-    # 3 and 4 m/s along a blade whose point is 2 m ahead: the length is 2 m, the speed 5 m/s.
-    body = Body("sled", 1, 1, (0, 0, math.atan2(4, 3)), (3, 4, 0))
-    sliding = Mechanism((body,), (Skate("blade", None, "sled", (2.0, 0.0)),))
-    assert sliding.length_scale == 2
-    assert sliding.time_scale == pytest.approx(2 / 5)
 
 
 @pytest.mark.parametrize(("miss", "taken"), [(1e-11, True), (1e-8, False), (1e-6, False)])
@@ -212,10 +197,6 @@ RANDOM = np.random.default_rng(5)
 POSES, TWISTS = RANDOM.normal(size=(2, 20, 4, 3))
 
 
-def one_body(*forces, mass=2.0, inertia=0.5, pose=(0.0, 0.0, 0.0), twist=(0.0, 0.0, 0.0), gravity=(0.0, 0.0)):
-    return Mechanism((Body("b", mass, inertia, pose, twist),), (), gravity, forces)
-
-
 def truth(mechanism: Mechanism, spacing: float, samples: int = 20):
     return TRUTH.build(mechanism, spacing)(samples, 1)
 
@@ -258,35 +239,6 @@ def test_what_acts_between_two_bodies_neither_pushes_nor_turns_both_together(for
         np.testing.assert_allclose(total.sum(axis=-1), 0, atol=1e-12)
 
 
-@pytest.mark.parametrize("turning", [False, True])
-def test_a_damped_oscillation_dies_out_as_its_exponential_says(turning):
-    # x'' + 2 c x' + f^2 x = 0 with f = 3 and c = 1, of an inertia of 2.
-    if turning:
-        forces = (TorsionSpring("s", None, "b", 18.0), TorsionDamper("d", None, "b", 4.0))
-        mechanism, column = one_body(*forces, inertia=2.0, pose=(0.0, 0.0, 0.2)), 2
-    else:
-        far = (-1.0, 0.0)
-        forces = (Spring("s", None, "b", far, (0.0, 0.0), 18.0, 1.0), Damper("d", None, "b", far, (0.0, 0.0), 4.0))
-        mechanism, column = one_body(*forces, pose=(0.2, 0.0, 0.0)), 0
-    motion, rate = truth(mechanism, 0.1), math.sqrt(8.0)
-    expected = 0.2 * np.exp(-motion.t) * (np.cos(rate * motion.t) + np.sin(rate * motion.t) / rate)
-    np.testing.assert_allclose(motion.pose[:, 0, column], expected, atol=1e-12)
-
-
-def test_the_energy_stays_without_dampers_and_falls_by_what_they_take():
-    kept = truth(ALL, 0.05)
-    span = np.ptp(np.sum(ALL.inertias * kept.twist**2, axis=(1, 2))) / 2
-    assert np.ptp(energy(ALL, kept)) < 1e-11 * span
-    fine = truth(DAMPED, 0.0025, 400)
-    taken = np.sum(DAMPED.applied.on(fine.pose, fine.twist) * fine.twist, axis=(1, 2))
-    others = replace(DAMPED, forces=ALL.forces).applied.on(fine.pose, fine.twist)
-    power = taken - np.sum(others * fine.twist, axis=(1, 2))
-    work = np.sum(power[:-2:2] + 4 * power[1:-1:2] + power[2::2]) * 0.0025 / 3  # Simpson's, of order 4
-    lost = energy(DAMPED, fine)[-1] - energy(DAMPED, fine)[0]
-    assert work < -0.1
-    assert lost == pytest.approx(work, rel=1e-7)
-
-
 def test_reactions_are_told_with_the_forces_that_act_beside_them():
     motion = truth(DAMPED, 0.05, 4)
     forces = DAMPED.applied.on(motion.pose, motion.twist)
@@ -298,37 +250,6 @@ def test_reactions_are_told_with_the_forces_that_act_beside_them():
     np.testing.assert_allclose(told, motion.reaction, atol=1e-9 * np.abs(motion.reaction).max())
     with pytest.raises(InvalidMechanism, match="twist is None; dampers need it"):
         DAMPED.reaction(motion.pose, acceleration)
-
-
-def test_a_body_on_a_rod_is_a_point_pendulum():
-    # The rod holds its centre of mass, so that nothing turns it.
-    length, angle = 0.8, 1.1
-    place = (length * np.sin(angle), -length * np.cos(angle))
-    body = Body("b", 2.0, 0.3, (*place, 0.0))
-    mechanism = Mechanism((body,), (Rod("r", None, "b", (0.0, 0.0), (0.0, 0.0), length),), GRAVITY)
-    motion = TRUTH.build(mechanism, 0.1)(20, 1)
-    exact, _ = Pendulum(np.sqrt(9.81 / length), angle).motion(motion.t)[:2]
-    np.testing.assert_allclose(motion.pose[:, 0, 0], length * np.sin(exact), atol=1e-11)
-    np.testing.assert_allclose(motion.pose[:, 0, 1], -length * np.cos(exact), atol=1e-11)
-    np.testing.assert_allclose(motion.pose[:, 0, 2], 0.0, atol=1e-14)
-    # It pulls, which is negative, by weight and centripetal force.
-    rate = motion.twist[:, 0, :2]
-    pull = 2.0 * (9.81 * np.cos(exact) + np.sum(rate**2, axis=1) / length)
-    np.testing.assert_allclose(motion.reaction[:, 0], -pull, rtol=1e-9)
-
-
-def test_a_gear_pair_has_one_freedom_and_the_inertia_of_both():
-    inertias, ratio, torque = (0.3, 0.2), -2.5, 1.7
-    bodies = tuple(Body(n, 1.0, i, (x, 0.0, 0.0)) for n, i, x in (("a", inertias[0], 0.0), ("b", inertias[1], 1.0)))
-    pins = tuple(Pin(n.upper(), None, n, (x, 0.0), (0.0, 0.0)) for n, x in (("a", 0.0), ("b", 1.0)))
-    mechanism = Mechanism(bodies, (*pins, Gear("g", "a", "b", ratio)), (0.0, 0.0), (Torque("t", None, "a", torque),))
-    assert mechanism.degrees_of_freedom() == (1, 1)
-    motion = TRUTH.build(mechanism, 0.1)(10, 1)
-    gain = torque / (inertias[0] + ratio**2 * inertias[1])
-    np.testing.assert_allclose(motion.pose[:, 0, 2], gain * motion.t**2 / 2, atol=1e-12)
-    np.testing.assert_allclose(motion.pose[:, 1, 2], ratio * gain * motion.t**2 / 2, atol=1e-12)
-    # The torque on the second body; the first feels -ratio times as much.
-    np.testing.assert_allclose(motion.reaction[:, -1], inertias[1] * ratio * gain, rtol=1e-11)
 
 
 @pytest.mark.parametrize(

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 import random
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pytest
 
 from reference.checks import InvalidMechanism
-from reference.mechanism import Body, Mechanism
 from reference.numerics.roots import solve_increasing
 from reference.rolling.closed_curves import Cam, Ellipse
 from reference.rolling.curves import Circle, Line, Placed, Ring, Side
@@ -105,41 +103,9 @@ def unit(angle):
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
-def test_a_point_of_a_wheels_rim_draws_a_cycloid_to_minus_x():
-    theta = np.linspace(-20, 20, 101)
-    rolling = Rolling.at_angle(Circle(0.5), Line())
-    cycloid = np.stack([-0.5 * (theta - np.sin(theta)), 0.5 * (1 - np.cos(theta))], axis=-1)
-    np.testing.assert_allclose(rolling.position(theta, (0.0, -0.5)), cycloid, atol=ROUNDING)
-
-
 def test_the_chapters_rate_for_a_hypocycloid():
     # Erratum 4: 3/7 with a ring's negative curvature, 0.2308 with a positive one.
     assert float(Rolling.at_arcs(Circle(0.3), Ring(1.0)).contact(1.0).rate) == pytest.approx(3 / 7, abs=1e-15)
-
-
-def test_the_heights_of_an_ellipses_foci_multiply_to_the_square_of_its_minor_axis():
-    ellipse, theta = Ellipse(0.5, 0.3), np.linspace(-30, 30, 500)
-    rolling = Rolling.at_angle(ellipse, Line(), 0.4)
-    heights = [rolling.position(theta, focus)[:, 1] for focus in ellipse.foci]
-    np.testing.assert_allclose(heights[0] * heights[1], 0.3**2, rtol=ROUNDING)
-
-
-def test_a_parabola_on_its_twin_draws_the_directrix_and_a_cissoid():
-    theta = np.linspace(-2.6, 2.6, 101)
-    rolling = Rolling.at_arcs(Parabola(0.3), Placed(Parabola(0.3), turn=math.pi))
-    np.testing.assert_allclose(rolling.position(theta, (0.0, 0.3))[:, 1], 0.3, rtol=1e-12)
-    x, y = rolling.position(theta).T
-    np.testing.assert_allclose(y * (x**2 + y**2), 0.6 * x**2, rtol=1e-11, atol=1e-15)
-
-
-def test_the_pole_of_a_spiral_runs_on_a_straight_line():
-    rolling = Rolling.at_angle(LogSpiral(0.5, 0.3), Line(), 0.2)
-    x, y = rolling.position(np.linspace(-6, 6, 101)).T
-    # The contact is at arc r / cos(alpha) from where the spiral would end in its pole, tan(alpha) = 1 / growth; the
-    # pole stands r sin(alpha) above the ground, r cos(alpha) nearer: on a line of slope cot(alpha).
-    slope = 0.3
-    meets = rolling.ground.point(rolling.ground_arc + rolling.body_arc)[0]
-    np.testing.assert_allclose(y, slope * np.abs(x - meets), rtol=1e-12)
 
 
 def test_a_square_rolls_level_on_catenaries_and_stops_at_its_corners():
@@ -149,24 +115,6 @@ def test_a_square_rolls_level_on_catenaries_and_stops_at_its_corners():
     np.testing.assert_allclose(rolling.position(np.linspace(-quarter, quarter, 51))[:, 1], 0.0, atol=1e-15)
     with pytest.raises(InvalidMechanism, match="a curve ends"):
         rolling.pose(0.8)
-
-
-@dataclass(frozen=True)
-class PrincipalValueEllipse(Ellipse):
-    """The wrong model: an arc length that forgets the turns."""
-
-    def arc_of(self, p):
-        return super().arc_of(np.remainder(np.asarray(p) + np.pi, 2 * np.pi) - np.pi)
-
-
-def test_a_turn_advances_by_the_circumference_and_the_check_catches_a_principal_value():
-    turns = np.arange(-4, 5)
-    away = {}
-    for kind in (Ellipse, PrincipalValueEllipse):
-        rolling = Rolling.at_angle(kind(0.5, 0.3), Line(), 0.3)
-        away[kind] = rolling.advance(0.3 + 2 * np.pi * turns) - turns * rolling.body.length
-    assert np.abs(away[Ellipse]).max() < ROUNDING
-    assert np.abs(away[PrincipalValueEllipse]).max() > 1
 
 
 SPIRAL = LogSpiral(0.5, 0.3)
@@ -272,30 +220,6 @@ def test_the_rows_of_a_roll_are_the_derivative_of_its_gap_between_moving_bodies(
         np.testing.assert_allclose(roll.rows(first, second), derivative, atol=1e-11)
 
 
-def test_a_mechanism_of_two_rollers_has_a_freedom_each_and_its_bias_is_the_chapters_acceleration():
-    # The first stands on its flat side, so that weight and normal force are in line.
-    rollings = [Rolling.at_angle(Ellipse(0.5, 0.3), Line()), Rolling.at_angle(Circle(0.4, (0.15, 0.0)), Circle(2.0))]
-    rates, bodies = (3.0, -2.0), []
-    for name, rolling, rate in zip("ab", rollings, rates, strict=True):
-        velocity = rolling.velocity(rolling.theta, rate)
-        bodies.append(Body(name, 1.0, 0.1, tuple(rolling.pose(rolling.theta)), (*velocity, rate)))
-    joints = tuple(Roll(f"roll {name}", None, name, rolling) for name, rolling in zip("ab", rollings, strict=True))
-    mechanism = Mechanism(tuple(bodies), joints, (0.0, -9.81))
-    assert mechanism.degrees_of_freedom() == (2, 2)
-    growth = (1.5, -0.7)
-    acceleration = np.array(
-        [
-            [*rolling.acceleration(rolling.theta, rate, alpha), alpha]
-            for rolling, rate, alpha in zip(rollings, rates, growth, strict=True)
-        ]
-    )
-    bias = mechanism.bias(mechanism.pose, mechanism.twist)
-    np.testing.assert_allclose(mechanism.rows(mechanism.pose) @ acceleration.ravel(), bias, atol=1e-13)
-    # A normal force on the resting roller holds its weight up: the sign of the row.
-    reaction = mechanism.reaction(mechanism.pose, np.zeros((2, 3)))
-    np.testing.assert_allclose(reaction[:2], [0.0, 9.81], atol=1e-12)
-
-
 def test_the_incline_falls_to_minus_x_so_that_the_ellipse_goes_faster():
     scene = RollingDownhill()
     truth = scene.motion(np.array([0.0, scene.duration]))
@@ -309,38 +233,6 @@ def test_the_incline_falls_to_minus_x_so_that_the_ellipse_goes_faster():
 def disc(radius, ground, rate, theta=0.0, **more):
     rolling = Rolling.at_angle(Circle(radius), ground, theta, **more)
     return RollingBody(rolling, 1.0, radius**2 / 2, rate)
-
-
-def test_a_round_disc_downhill_accelerates_by_two_thirds_and_needs_a_third_of_the_slope():
-    slope = 0.3
-    law = disc(0.4, Line(math.pi + slope), 0.0)
-    t = np.linspace(0, 2, 21)
-    theta, _ = law.states(t)
-    np.testing.assert_allclose(theta, GRAVITY * math.sin(slope) / (1.5 * 0.4) * t**2 / 2, atol=1e-11)
-    np.testing.assert_allclose(law.required_friction(t), math.tan(slope) / 3, rtol=1e-11)
-    # Along e_t, downhill: friction holds back.
-    np.testing.assert_allclose(law.forces(t)[0], -GRAVITY * math.sin(slope) / 3, rtol=1e-11)
-    assert law.slip(0.99 * math.tan(slope) / 3, 2.0) == 0.0
-    assert law.slip(1.01 * math.tan(slope) / 3, 2.0) is None
-
-
-def test_a_round_disc_leaves_a_round_hill_where_the_textbook_says():
-    hill, radius, rate = 1.0, 0.25, 0.6
-    law = disc(radius, Circle(hill), rate, ground_arc=hill * math.pi / 2)
-    instant = law.hop(3.0)
-    assert instant is not None
-    x, y = law.rolling.position(law.states(instant)[0])[0]
-    # Energy 3/4 m v^2 and m v^2 / (R + r) = m g cos(angle) from the top: 4/7 from rest.
-    start = 0.75 * (radius * rate) ** 2 / (GRAVITY * (hill + radius))
-    assert y / math.hypot(x, y) == pytest.approx((1 + start) / 1.75, abs=1e-12)
-    assert law.forces(instant)[1] == pytest.approx(0.0, abs=1e-10)
-    assert np.all(law.forces(np.linspace(0, instant - 1e-6, 50))[1] > 0)
-    # It slips before it hops, whatever the friction, and the later the larger it is.
-    slips = [present(law.slip(mu, 3.0)) for mu in (0.2, 0.5, 2.0, 50.0)]
-    assert slips == sorted(slips)
-    assert slips[-1] < instant
-    for mu, at in zip((0.2, 0.5, 2.0), slips, strict=False):
-        assert law.required_friction(at)[0] == pytest.approx(mu, rel=1e-9)
 
 
 def test_a_scene_that_slips_and_hops_ends_its_horizon_there():

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -204,30 +203,3 @@ def test_a_motion_does_not_depend_on_the_other_instants_asked_for(each: Scene) -
     for name, size in (("pose", 1e-13), ("twist", 1e-12)):
         one, other = getattr(whole, name)[[2, 0, 3]], getattr(mixed, name)[:3]
         assert np.abs(one - other).max() <= size * (1 + np.abs(one).max())
-
-
-WRONG: dict[str, Callable[[Mechanism, Trajectory, np.ndarray], tuple[Mechanism, Trajectory, np.ndarray]]] = {
-    "forces of the other sign": lambda own, motion, change: (own, replace(motion, reaction=-motion.reaction), change),
-    "masses heavier by a thousandth": lambda own, motion, change: (heavier(own), motion, change),
-    "accelerations of the other sign": lambda own, motion, change: (own, motion, -change),
-}
-
-
-def heavier(own: Mechanism) -> Mechanism:
-    return replace(own, bodies=tuple(replace(body, mass=1.001 * body.mass) for body in own.bodies))
-
-
-@pytest.mark.parametrize("wrong", WRONG)
-@pytest.mark.parametrize("each", [each for each in SCENES if each.name != "pinned_body_free"], ids=name_of)
-def test_forces_of_another_mechanism_are_no_forces_of_the_scene(each: Scene, wrong: str) -> None:
-    mechanism, motion, _, change = known(each)
-    assert off_newton(*WRONG[wrong](mechanism, motion, change)) > 10 * NEWTON
-
-
-@pytest.mark.parametrize("each", SCENES, ids=name_of)
-def test_a_body_turned_or_sped_by_a_thousandth_is_seen_at_its_joints(each: Scene) -> None:
-    mechanism, motion, *_ = known(each)
-    turn = 1e-3 * np.array([0.0, 0.0, 1.0])
-    held = not np.isnan(joint_gap(mechanism, motion)).all()  # a skate has no gap
-    assert not held or off_the_joints(mechanism, replace(motion, pose=motion.pose + turn)) > 1e-5
-    assert off_the_joints(mechanism, replace(motion, twist=motion.twist + turn * fastest(mechanism, motion))) > 1e-5

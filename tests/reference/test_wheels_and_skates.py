@@ -30,33 +30,6 @@ from tests.mechanisms import four_bar
 from tests.present import present
 
 
-def test_the_joint_has_the_row_of_18_64_and_leaves_three_configurations_and_two_velocities():
-    for angle in (0.0, 0.7, -2.0):
-        body = Body("sledge", 2.0, 0.3, (0.4, 0.1, angle))
-        mechanism = Mechanism((body,), (Skate("skate", None, "sledge", (-0.5, 0.3)),))
-        printed = [-math.sin(angle), math.cos(angle), -0.5]  # the coordinate y' of C drops out
-        assert np.abs(mechanism.rows(mechanism.pose)[0] - printed).max() < 1e-15
-        assert mechanism.degrees_of_freedom() == (3, 2)
-        assert np.isnan(mechanism.gap(mechanism.pose, 0.0)).all()
-
-
-def test_a_blade_at_an_angle_and_on_another_body_stops_the_relative_velocity_across_it():
-    rng = np.random.default_rng(5)
-    poses, twists = rng.normal(size=(2, 2, 3))
-    point, angle = (0.3, -0.4), 0.9
-    bodies = tuple(Body(name, 1.0, 1.0, tuple(pose.tolist())) for name, pose in zip("ab", poses, strict=True))
-    mechanism = Mechanism(bodies, (Skate("blade", "a", "b", point, angle),))
-    turn = np.array([[math.cos(poses[1, 2]), -math.sin(poses[1, 2])], [math.sin(poses[1, 2]), math.cos(poses[1, 2])]])
-    place = poses[1, :2] + turn @ point
-
-    def at(body):
-        arm = place - poses[body, :2]
-        return twists[body, :2] + twists[body, 2] * np.array([-arm[1], arm[0]])
-
-    left = np.array([-math.sin(poses[1, 2] + angle), math.cos(poses[1, 2] + angle)])
-    assert mechanism.slip(poses, twists)[0] == pytest.approx((at(1) - at(0)) @ left, abs=1e-14)
-
-
 def test_any_pose_is_reached_from_any_other_by_turn_slide_turn():
     rng = np.random.default_rng(7)
     for start, goal in zip(rng.uniform(-9, 9, (50, 3)), rng.uniform(-9, 9, (50, 3)), strict=True):
@@ -121,18 +94,6 @@ def test_backwards_a_small_turning_grows_at_the_linear_rate_and_the_sleigh_turns
     assert speed[1] == pytest.approx(1.0, abs=1e-6)
     # Two turns of the heading's limit: pi k/|a| for a full reversal from a straight run.
     assert SleighBackwards().heading(200.0) == pytest.approx(math.pi * math.sqrt(0.4) / 0.5, rel=1e-3)
-
-
-def test_a_tow_on_a_circle_settles_or_goes_round_for_ever():
-    for radius in (3.0, -1.5):
-        tow = Tow(1.0, 2.0, radius)
-        assert tow.relative_angle(60.0) == pytest.approx(-math.asin(1.0 / radius), abs=1e-14)
-    slow = Tow(1.0, 0.0, 1.0)  # R = L: the wheel comes to the centre as 2 L^2 / s
-    assert (slow.relative_angle(1e6) + math.pi / 2) * 1e6 == pytest.approx(2, rel=1e-5)
-    round_and_round = Tow(1.0, 0.3, 0.5)
-    period = 2 * math.pi / math.sqrt(0.5**-2 - 1)  # psi falls by a full turn
-    turned = round_and_round.relative_angle([0.0, period, 7 * period, -period])
-    assert np.abs(turned - 0.3 + 2 * math.pi * np.array([0, 1, 7, -1])).max() < 1e-13
 
 
 def test_a_tow_started_straight_behind_or_folded_over_stays_so():
@@ -269,13 +230,6 @@ def test_a_row_with_a_part_along_the_plane_is_a_skate_and_never_integrable(row):
     assert growth(one_form(unit), place) == (2, 3)
 
 
-def test_a_row_of_turning_alone_is_no_skate_and_integrable():
-    assert skate_of((0.0, 0.0, -3.0)) is None
-    assert is_integrable(one_form((0.0, 0.0, -3.0)), np.array([0.3, -0.2, 0.8]))
-    with pytest.raises(InvalidMechanism, match="one of its three numbers must differ from zero"):
-        skate_of((0.0, 0.0, 0.0))
-
-
 @pytest.mark.parametrize(
     ("speed", "rate", "alpha"), [(1.3, 1.7, -0.6), (-2.0, 0.4, 5.0), (1e-6, -1e6, 0.0), (3, 1e-6, 0)]
 )
@@ -364,23 +318,3 @@ def test_freedoms_by_rank_and_by_brackets(mechanism, counted, bracketed):
     assert freedoms_by_brackets(mechanism) == bracketed
     assert bracketed[0] == counted[1]
     assert mechanism_is_integrable(mechanism) == (len(bracketed) == 1)
-
-
-def test_a_steered_car_reaches_four_configurations_with_two_velocities():
-    frame, wheel = Body("frame", 1.0, 1.0, (0.0, 0.0, 0.2)), Body("wheel", 1.0, 1.0, (np.cos(0.2), np.sin(0.2), 0.5))
-    joints = (
-        Skate("rear", None, "frame", (0.0, 0.0)),
-        Pin("fork", "frame", "wheel", (1.0, 0.0), (0.0, 0.0)),
-        Skate("front", None, "wheel", (0.0, 0.0)),
-    )
-    car = Mechanism((frame, wheel), joints)
-    assert car.degrees_of_freedom() == (4, 2)
-    assert freedoms_by_brackets(car) == (2, 3, 4)
-
-
-def test_two_skates_in_one_line_stop_turning_and_three_askew_stop_everything():
-    body = Body("body", 1.0, 1.0, (0.1, 0.2, 0.3))
-    first, second = Skate("a", None, "body", (0.5, 0.0)), Skate("b", None, "body", (-0.5, 0.0))
-    assert Mechanism((body,), (first, second)).degrees_of_freedom() == (3, 1)
-    askew = Skate("c", None, "body", (0.0, 0.5), np.pi / 2)
-    assert Mechanism((body,), (first, second, askew)).degrees_of_freedom() == (3, 0)
