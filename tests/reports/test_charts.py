@@ -23,18 +23,14 @@ from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.pages.centrodes.page import draw_centrodes, draw_rate
-from reports.pages.scaling.experiments import Point, Series
-from reports.pages.scaling.page import scaling_chart
 from reports.plots import looks as families
 from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
 from reports.plots.engines_compared import Compared, engines_compared
-from reports.plots.mechanisms import Strip, outline, path, stroboscope
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import LIGHT
-from tests.mechanisms import four_bar, pendulum
+from tests.mechanisms import four_bar
 from tests.rows import falling, row_of
-from tests.toys import Disc
 
 
 def points(line: Line2D) -> list[tuple[float, float]]:
@@ -192,35 +188,6 @@ def test_any_number_of_families_are_told_apart_and_those_of_the_registry_keep_th
     assert len(set(families.MARKS)) == 9
 
 
-def growth(method: str, *steps: float, errors=None) -> Series:
-    engine, variant = method.split(" ", 1)
-    errors = errors or [2 * step for step in steps]
-    sizes = (1, 10, 100, 1000)
-    return Series(
-        engine, variant, tuple(Point(n, s, e, "finished") for n, s, e in zip(sizes, steps, errors, strict=False))
-    )
-
-
-def test_a_scaling_chart_has_costs_in_microseconds_and_errors_over_the_number_of_links():
-    found = (
-        growth("pymunk default", 1e-6, 3e-6, 7e-5, math.nan),
-        growth("mujoco tuned", 2e-6, 5e-5, 5e-3, errors=[1e-3, math.nan, 0.0]),
-    )
-    figure = scaling_chart(found)
-    cost, error = figure.axes
-    entries = legend(figure)
-    assert set(entries) == {"pymunk default", "mujoco tuned"}
-    assert series(cost)[entries["pymunk default"]] == [pytest.approx(p) for p in ((1, 1.0), (10, 3.0), (100, 70.0))]
-    assert series(cost)[entries["mujoco tuned"]] == [pytest.approx(p) for p in ((1, 2.0), (10, 50.0), (100, 5000.0))]
-    assert series(error)[entries["pymunk default"]][:3] == [
-        pytest.approx(p) for p in ((1, 2e-6), (10, 6e-6), (100, 1.4e-4))
-    ]
-    assert series(error)[entries["mujoco tuned"]] == [pytest.approx((1, 1e-3))]
-    for panel, up in ((cost, "CPU time of a step [µs]"), (error, "largest angle error [rad]")):
-        assert (panel.get_xlabel(), panel.get_ylabel()) == ("links", up)
-        assert (panel.get_xscale(), panel.get_yscale()) == ("log", "log")
-
-
 def annotation(text: Text) -> Annotation:
     """A text that points at a place."""
     assert isinstance(text, Annotation)
@@ -260,17 +227,6 @@ def test_a_bodys_points_are_its_joints_turned_and_moved():
     crank = DrivenSliderCrank(offset=0.1).mechanism()
     assert any(isinstance(joint, Slot) and joint.first is None for joint in crank.joints)
     assert outlines.ground_points(crank) == pytest.approx(np.zeros((1, 2)))
-
-
-def test_a_method_is_visibly_off_by_its_worst_joint_and_never_where_it_is_not_finite():
-    mechanism = pendulum()
-    pose = mechanism.pose
-    shifted = pose + np.array([0.0, 0.01, 0.0])
-    assert drawings.visibly_off(mechanism, pose, shifted, 1.0)
-    assert not drawings.visibly_off(mechanism, pose, shifted, 3.0)  # a two-hundredth of the picture is 0.015 m there
-    assert not drawings.visibly_off(mechanism, pose, shifted * np.nan, 1e-9)
-    disc = Disc().mechanism()
-    assert not drawings.visibly_off(disc, disc.pose, disc.pose, 1.0)
 
 
 def test_configurations_have_each_pose_under_its_title_and_methods_over_them_where_they_differ():
@@ -342,17 +298,6 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
     assert total[:, 1] == pytest.approx(1 / (curves.space_curvature + curves.body_curvature))
     [missed] = lines(draw_rate(replace(curves, body=2 * own)).axes[1])
     assert missed[20, 1] > 0.1
-
-
-def test_an_outline_has_further_points_in_order_and_a_strip_its_poses_at_equal_times():
-    mechanism = pendulum(angle=math.pi / 2)  # from the origin straight up, one metre
-    found = outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
-    assert found == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
-    found = path(Disc(rate=2.0), "disc", (1.0, 0.5), np.array([0.0, math.pi / 4]))
-    assert found == pytest.approx(np.array([[1.0, 0.5], [-0.5, 1.0]]), abs=1e-12)
-    strip = Strip(Disc(duration=2.0), "Turning", 5, start=0.5, end=1.5, ends={"disc": ((1.0, 0.0),)})
-    assert strip.times() == pytest.approx([0.5, 0.75, 1.0, 1.25, 1.5])
-    assert [panel.get_title(loc="left") for panel in stroboscope([strip]).axes] == ["Turning: every 0.25 s"]
 
 
 @pytest.mark.parametrize("field", ["angle", "reaction"])

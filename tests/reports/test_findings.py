@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import math
 import re
 from dataclasses import replace
 from functools import cache
@@ -13,7 +12,7 @@ import numpy as np
 import pytest
 
 from reports.model.catalogue import PAGES
-from reports.model.outcomes import SATURATED, TORN, Outcome
+from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Answer, Task
 from reports.pages import findings as module
@@ -194,32 +193,11 @@ def test_every_symptom_leads_to_a_section_that_is_there():
 
 SETTINGS = GUIDES[2]
 BLOCK = re.compile(r"^```\w+\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-# What is no sentence: programs, settings to be pasted, addresses of links, and the last line, which names versions.
-NO_PROSE = (BLOCK, re.compile(r"`[^`\n]*`"), re.compile(r"(?<=\])\([^)]*\)"), re.compile(r"^---\n.*", re.DOTALL | re.M))
-MEASURED = re.compile(r"\d\.\d|\de-\d")
 
 
 def text_of(page, rows) -> str:
     (text,) = render_page(page, Material(rows), "the command").values()
     return text
-
-
-def measured(page, rows) -> list[str]:
-    text = text_of(page, rows)
-    for pattern in NO_PROSE:
-        text = pattern.sub("", text)
-    for threshold in (TORN, SATURATED):  # of the code, not measured
-        text = text.replace(f"more than {threshold:g} ", "")
-    assert not re.search(r"\b(nan|None|Unmeasured|not measured)\b", text)
-    return MEASURED.findall(text)
-
-
-def test_every_measured_number_of_a_guide_but_for_tables_measured_once_is_that_of_a_row():
-    assert all(measured(page, {}) == [] for page in GUIDES if page is not SETTINGS)
-    rows, once = page_rows(SETTINGS), measured(SETTINGS, {})
-    assert len(measured(SETTINGS, rows)) > len(once) + 20
-    unknown = {cell: replace(row, angle=math.nan, reaction=math.nan, cpu=math.nan) for cell, row in rows.items()}
-    assert measured(SETTINGS, unknown) == once
 
 
 def test_the_programs_of_the_settings_print_the_weight_of_the_hanging_body():

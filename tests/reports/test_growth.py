@@ -25,15 +25,12 @@ from reports.pages.centrodes.page import returned
 from reports.pages.scaling.experiments import (
     LAST,
     BandedChain,
-    Point,
-    Series,
     exponent,
     series_of,
 )
-from reports.pages.scaling.page import STEP, cost_table, crossing
-from reports.pages.skate.page import constructions
+from reports.pages.scaling.page import STEP
 from reports.write.rows import Rows
-from tests.rows import falling, row_of, table
+from tests.rows import row_of
 from tests.toys import Disc, Plain, Toy
 
 
@@ -84,9 +81,6 @@ def test_a_power_law_is_found_at_the_large_end_only():
     assert math.isnan(exponent([1, 2], [math.nan, 1.0])[0])
 
 
-SERIES = Series("pymunk", "tuned", tuple(Point(n, 1e-6 * n**2, 1e-3 * n, "finished") for n in (1, 10, 100)))
-
-
 @dataclass(frozen=True)
 class Chain(Disc):
     """A toy with a number of links."""
@@ -115,16 +109,6 @@ def test_a_point_of_a_series_is_its_own_cell():
     assert [p.error for p in tuned.points] == pytest.approx([1.1e-3, math.nan, 1.3e-3, math.nan, math.nan], nan_ok=True)
     assert [p.outcome for p in tuned.points] == ["finished", "torn", "finished", "finished", "saturated"]
     assert (other.points[0].step, other.points[0].error) == (pytest.approx(3.4e-4), 1.9e-3)
-
-
-def test_a_crossing_is_where_the_first_becomes_the_dearer():
-    def line(*costs):
-        return Series("e", "v", tuple(Point(10**n, cost, math.nan, "finished") for n, cost in enumerate(costs)))
-
-    flat = line(3, 3, 3)
-    found = [crossing(line(*costs), flat) for costs in ((1, 2, 9), (1, 4, 9), (9, 2, 1), (1, 1, 1), (9, 9, 9))]
-    assert found == [(10, 100), (1, 10), None, None, None]
-    assert crossing(None, flat) is None
 
 
 class Clock:
@@ -245,32 +229,3 @@ def test_the_row_of_a_step_is_the_nearest_by_ratio():
     near = {step: Rows(rows).near(step) for step in (1.9e-3, 5.1e-3, 2.9e-3, 3.3e-3)}
     assert [row.step if row else None for row in near.values()] == [1e-3, 1e-2, None, None]
     assert not Rows([]).near(1e-3)
-
-
-def test_a_cost_table_is_in_microseconds():
-    torn = replace(
-        SERIES, variant="torn", points=(Point(1, math.nan, math.nan, "torn"), Point(10, 3e-6, 0.1, "finished"))
-    )
-    assert table(cost_table((SERIES, torn))) == [
-        ["method", "1", "10", "100"],
-        ["pymunk tuned", "1", "100", "1e4"],
-        ["pymunk torn", "**torn**", "3", ""],
-    ]
-
-
-def test_constructions_are_told_at_the_compared_step_best_first():
-    rows = [
-        *falling("pymunk b", (3e-2, 3e-4, 3e-6), "position", cpu=7e-3),
-        *falling("pymunk a", (1e-2, 1e-4, 1e-6), "position"),
-        row_of("pymunk c", outcome=Outcome.UNSUPPORTED, position=math.nan),
-        row_of("pymunk d", step=1e-3, outcome=Outcome.TORN, position=2.0),
-    ]
-    head, *body = table(constructions(rows))
-    assert [line[:2] for line in body] == [
-        ["pymunk a", "1e-6"], ["pymunk b", "3e-6"], ["pymunk d", "**torn** 2"], ["pymunk c", "can't be built"],
-    ]  # fmt: skip
-    second = dict(zip(head, body[1], strict=True))
-    told = [second[name] for name in ("slip [m/s]", "energy [relative]", "reaction [relative]", "CPU [ms/s]")]
-    assert told == ["4.7e-3", "5.3e-3", "5.9e-3", "7"]
-    assert body[1][-1].startswith("2.00 (±")
-    assert body[2][-1] == "wrong at every step"

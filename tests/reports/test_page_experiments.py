@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,10 +26,10 @@ from reference.trajectory import energy, joint_gap, slip
 from reports.gate.prediction import all_tasks
 from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
-from reports.model.measure import Measurement, blank, measure, stopped_where_it_ends
+from reports.model.measure import Measurement, measure, stopped_where_it_ends
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material
-from reports.model.tasks import Answer, Motion, Task, trajectory_of
+from reports.model.tasks import Motion, trajectory_of
 from reports.pages import claims, common
 from reports.pages.centrodes import page as centrodes
 from reports.pages.engines.experiments import ASKED, Capabilities
@@ -43,8 +42,6 @@ from reports.pages.rolling import experiments as rolling
 from reports.pages.skate import experiments as skate
 from reports.pages.slider_crank import page as slider_crank
 from reports.pages.wheels import page as wheels
-from reports.write.experiments import told_remark
-from reports.write.unmeasured import MARK
 from tests.committed_rows import answer_to
 from tests.rows import falling
 
@@ -271,85 +268,6 @@ def test_what_is_read_from_motions_of_skates_and_wheels_agrees_with_the_referenc
     lines = {seen.method: seen.outcome for seen in wheels.folding(reference) if not seen.setting}
     assert lines["closed form, at an even speed"] == lines["the reference, driven at an even speed"]
     assert lines["the drawbar pushed along by that way"] == f"bent by {math.pi / 2:.4f} rad"
-
-
-def experiment(failures: tuple[Failure, ...], title: str) -> Failure:
-    return next(failure for failure in failures if failure.title == title)
-
-
-def remark(failure: Failure, material: Material) -> str:
-    return told_remark(failure, material.of(failure.cells), material)
-
-
-def of(variant: str, every: int = 1) -> Callable[[Cell], bool]:
-    return lambda cell: (cell.engine.variant, cell.every) == (variant, every)
-
-
-RING, LUCK = "A ring of a hundred links, closed by one joint", "Worse as the step shrinks"
-
-
-@pytest.mark.parametrize(
-    ("page", "title", "chosen", "name", "value", "words"),
-    [
-        (pendulum, RING, of("Newton, softening 1e-6"), "angle", 0.037, "right to 0.037 rad"),
-        (pendulum, RING, of("Newton, softening 1e-8"), "energy", 7.3, "(7.3 times as much)"),
-        (
-            pendulum,
-            "Beyond the horizon of the double pendulum",
-            lambda cell: cell.engine == pendulum.HIGHER_ORDER[-1] and cell.every == 10,
-            "angle",
-            7.3,
-            "to 7.3 rad or better",
-        ),
-        (
-            pendulum,
-            "A hundred links at large steps",
-            lambda cell: cell.engine == pymunk.TUNED and cell.samples == 20,
-            "gap",
-            7.3,
-            "by up to 7.3 times a link's",
-        ),
-        (four_bar, LUCK, of("default", 10), "angle", 0.037, "0.037 rad there, 0.5 rad"),
-        (four_bar, LUCK, of("default", 100), "angle", 7.3, "there, 7.3 rad at a tenth"),
-        (rolling, "Polygons", lambda cell: cell.every == 100, "angle", 0.037, "from 0.5 to 0.037 rad"),
-        (rolling, "Steps far too large", lambda cell: cell.samples == 20, "gap", 0.037, "by 0.037 m or more"),
-    ],
-)
-def test_a_number_of_a_remark_is_that_of_its_row_and_its_clause_vanishes_without_it(
-    page, title, chosen, name, value, words
-):
-    failure = experiment(page.FAILURES, title)
-
-    def invented(number: float) -> Material:
-        same = {cell: replace(measured, angle=0.5, gap=0.5, energy=0.5) for cell, measured in blank_rows(failure)}
-        return Material(
-            {cell: replace(each, **{name: number}) if chosen(cell) else each for cell, each in same.items()}
-        )
-
-    assert words in remark(failure, invented(value))
-    without = remark(failure, invented(math.nan))
-    assert " ".join(words.split()[:2]) not in without
-    assert MARK not in without
-
-
-def blank_rows(failure: Failure) -> list[tuple[Cell, Measurement]]:
-    return [(cell, blank(cell, Outcome.FINISHED)) for cell in failure.cells]
-
-
-def test_remarks_count_torn_runs_and_take_delays_from_answers():
-    failure = experiment(four_bar.FAILURES, "Steps far too large")
-    ends = [Outcome.TORN, Outcome.FINISHED, Outcome.TORN, Outcome.RESET, Outcome.TORN]
-    rows = {cell: replace(each, outcome=end) for (cell, each), end in zip(blank_rows(failure), ends, strict=False)}
-    assert "3 of these 5 runs end with finite numbers" in remark(failure, Material(rows))
-    assert "of these" not in remark(failure, Material({}))
-    failure = experiment(slider_crank.FAILURES, "A slider that has to start the crank, next to its dead centre")
-    answers: dict[Task, Answer] = {
-        task: Answer(Outcome.FINISHED, values={"when": np.asarray(when)})
-        for task, when in zip(slider_crank.LEAVING, (1.0, 2.0, 2.5), strict=True)
-    }
-    text = remark(failure, Material({}, answers))
-    assert "nearer leaves 0.5 s later" in text
-    assert "by e every 0.11 s" in text  # 0.5 s over log 100
 
 
 ROWS = [*falling("pymunk a", (8e-2, 4e-2, 1e-2)), *falling("pymunk b", (2e-2, 1.8e-2, 1.7e-2), outcome="torn")]

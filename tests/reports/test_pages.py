@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import cmath
 import contextlib
 import inspect
 import io
-import itertools
 import json
 import math
 import random
@@ -20,9 +18,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
-from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.check.picture_data import PictureData, Pose
 from reports.cli.drawing import drawn, material_of
 from reports.cli.selection import shown_cells
@@ -399,12 +395,6 @@ def test_every_block_of_code_on_a_page_runs_as_printed_and_prints_its_result(pag
             assert run(source)[1].strip()
 
 
-@named
-def test_no_method_is_told_by_its_settings_as_python_prints_them(page, undrawn):
-    for text in texts(page).values():
-        assert not re.search(r"\b(Pymunk|MuJoCo|Lagrange|Extended|Extrapolated)\(\w+=", text)
-
-
 def called(name: str) -> Disc:
     """A disc in a scene of this name."""
     return type("Named", (Disc,), {"name": name})()
@@ -459,38 +449,3 @@ def test_pages_of_workers_are_those_of_one_process(tmp_path: Path) -> None:
     alone = {page.name: render_page(page, given, "make report") for page, given in material.items()}
     assert set(made) == {page.name for page in pages}
     assert made == alone
-
-
-# --- what the chapter states and asks ---
-
-
-def text_of(name: str) -> str:
-    page = next(page for page in PAGES if page.name == name)
-    return render_page(page, Material({}), "made")[page.document]
-
-
-def test_the_two_problems_have_their_answers_and_the_derivative_agrees():
-    lines = re.findall(r"\| (18\.5\.[12]) ([abc]) \| \((\S+), (\S+)\) m/s²? \| (\S+) \|", text_of("pendulum"))
-    assert [(problem, part) for problem, part, *_ in lines] == [(f"18.5.{n}", part) for n in (1, 2) for part in "abc"]
-    assert all(float(miss) < 1e-14 for *_, miss in lines)
-    # By hand: l = 0.7 m, phi = (0.4, -1.1), rates (2, 3), and for 18.5.2 (-5, 0.6) rad/s^2.
-    velocity = 0.7 * (2 * cmath.exp(0.4j) + 3 * cmath.exp(-1.1j))
-    acceleration = 0.7 * ((-5 + 4j) * cmath.exp(0.4j) + (0.6 + 9j) * cmath.exp(-1.1j))
-    for line, by_hand in ((lines[2], velocity), (lines[5], acceleration)):
-        assert complex(float(line[2]), float(line[3])) == pytest.approx(by_hand, abs=1e-5)
-
-
-def test_both_assemblies_of_the_sample_are_those_that_a_search_over_all_angles_finds():
-    scene = DrivenFourBar()
-    crank = scene.crank * cmath.exp(1j * scene.start)
-
-    def too_long(beta: float) -> float:
-        return abs(crank + scene.coupler * cmath.exp(1j * beta) - complex(*scene.ground)) - scene.rocker
-
-    angles = np.linspace(-math.pi, math.pi, 721)
-    roots = [brentq(too_long, a, b) for a, b in itertools.pairwise(angles) if too_long(a) * too_long(b) < 0]
-    found = re.findall(r"\| [+-]1 \| 90\.00 \| (\S+) \| (\S+) \|", text_of("four_bar"))
-    assert sorted(float(beta) for beta, _ in found) == pytest.approx(
-        sorted(math.degrees(float(root)) for root in roots),  # type: ignore[arg-type]
-        abs=0.005,
-    )

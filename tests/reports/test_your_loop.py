@@ -32,7 +32,6 @@ from reports.pages.your_loop.page import (
     SLIDER,
     cell,
 )
-from reports.pages.your_model.page import MODELS
 from tests.committed_rows import committed_rows
 
 STEP = 1e-3
@@ -220,39 +219,3 @@ def test_before_and_after_compares_gaps_and_angles_of_a_linkage_without_contact(
     gap, angle = np.asarray(values["gap"]), np.asarray(values["angle"])
     assert gap[1] < gap[0] / 10
     assert angle[1] < angle[0] / 10
-
-
-PLAIN = (MODELS / "four_bar.xml").read_text(encoding="utf-8")
-
-
-def pasted_into(text: str):
-    return mujoco.MjModel.from_xml_string(text.replace("</mujoco>", f"{lines('options')}</mujoco>"))
-
-
-@pytest.mark.parametrize("says", ['<joint damping="0.1"/>', '<equality solref="0.03 1"/>'])
-def test_an_equality_of_a_class_keeps_the_values_that_its_class_began_with_as_the_page_says(says):
-    """Even if the class sets none for equalities: it has copied its parent's before the lines come."""
-    classy = PLAIN.replace("<worldbody>", f'<default><default class="own">{says}</default></default><worldbody>', 1)
-    classy = classy.replace("<connect ", '<connect class="own" ')
-    model = pasted_into(classy)
-    kept = 0.03 if "equality" in says else 0.02
-    assert model.eq_solref.tolist() == [[kept, 1.0]]
-    exec(lines("compiled"), {"model": model, "mujoco": mujoco})
-    assert model.eq_solref.tolist() == [[0.005, 1.0]]
-    told = " ".join((LINES.parent / "page.md").read_text(encoding="utf-8").split())
-    assert "or is of a class, even one that sets none, keeps" in told
-
-
-def test_a_model_that_is_attached_keeps_its_stiff_loop_and_gets_the_options_of_its_parent():
-    child = mujoco.MjSpec.from_string(PLAIN.replace("</mujoco>", f"{lines('options')}</mujoco>"))
-    child.option.gravity = [0, 0, -1.6]
-    parent = mujoco.MjSpec()
-    frame = parent.worldbody.add_frame()
-    parent.attach(child, prefix="a_", frame=frame)
-    with pytest.warns(UserWarning, match="Attach conflict"):
-        model = parent.compile()
-    usual = mujoco.MjSpec().compile()
-    assert model.eq_solref.tolist() == [[0.005, 1.0]]
-    for option in ("timestep", "integrator", "tolerance"):
-        assert getattr(model.opt, option) == getattr(usual.opt, option)
-    assert model.opt.gravity.tolist() == usual.opt.gravity.tolist()
