@@ -1,4 +1,4 @@
-"""The errata of the chapter in numbers, centrodes of known motions, and shapes."""
+"""Centrodes of known motions, and shapes."""
 
 from __future__ import annotations
 
@@ -18,32 +18,11 @@ from reference.chapter.centrodes import (
     from_poses,
     instant_centre,
 )
-from reference.chapter.errata.catalogue import ERRATA, Erratum
 from reference.chapter.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of
 from reference.scenes.four_bar.linkage import FourBar
 from reference.scenes.rolling.scenes import RollingDisc
 from reference.trajectory import Trajectory
 from tests.present import present
-
-IDS = [str(erratum.number) for erratum in ERRATA]
-
-
-@pytest.mark.parametrize("erratum", ERRATA, ids=IDS)
-def test_the_correction_is_the_derivative_and_the_printed_formula_is_not(erratum: Erratum) -> None:
-    values = erratum.values()
-    assert values.printed.shape == values.right.shape == values.decides.shape
-    # Numbers of the order of 1 to 10; Cauchy's integral divides rounding by radius^2 = 1/16.
-    assert np.abs(values.right - values.decides).max() < 1e-12
-    # The four-bar's slip is a claim of impossibility: what is printed instead is an integration, right to its
-    # tolerance.
-    least = 1e-3 if erratum.number == 19 else 0.1
-    assert np.abs(values.printed - values.decides).max() > least
-
-
-def test_every_computable_slip_of_class_e_is_there_once() -> None:
-    """Ten of the thirteen: 10 (names of curves exchanged) and 18 (a letter in a sentence) have nothing to compute."""
-    assert [erratum.number for erratum in ERRATA] == [1, 2, 11, 19, 23, 24, 25, 26, 27, 28]
-
 
 LINKAGE = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
 # The coupler's rate vanishes at theta = 2.8006 and 5.9406 rad; these arcs of the crank stay away from there.

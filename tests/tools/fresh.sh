@@ -42,7 +42,7 @@ import pkgutil
 
 for package in ("reference", "engines", "reports"):
     for module in pkgutil.walk_packages([str(importlib.import_module(package).__path__[0])], f"{package}."):
-        if ".snippets" in module.name or ".programs" in module.name:
+        if ".programs" in module.name:
             continue
         try:
             importlib.import_module(module.name)

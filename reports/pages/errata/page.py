@@ -1,4 +1,6 @@
-"""The errata's page: every slip of the chapter by number, what decides, what engines say, and a snippet to run.
+"""The errata's page: every slip of the chapter by number, what decides, and what engines say.
+
+A slip is a document, slips/NUMBER.md, with the printed formula, the right one, and a script whose numbers decide.
 
 Engines are referees: they know bodies, joints and forces and none of the chapter's formulas, so they may decide too.
 
@@ -8,21 +10,22 @@ but linear relations of positions is put in: the end of a bar is twice as far fr
 
 from __future__ import annotations
 
+import contextlib
+import io
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from engines import Engine, method_name, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.chapter.errata import linkages as pendulum
-from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS
-from reference.chapter.errata.erratum import Array, Erratum, Values
-from reference.chapter.errata.linkages import closed_form, integrated
-from reference.chapter.errata.linkages import rates as printed_rates
-from reference.chapter.errata.rolling_and_skates import acceleration_of_g, rolling_acceleration
+from reference.chapter import errata
+from reference.chapter.errata import Array, Values, acceleration_of_g, closed_form, integrated, rolling_acceleration
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
@@ -66,14 +69,14 @@ CONFIRMED = 0  # the key of (18.70) and (18.71), which are right as printed
 
 def double_pendulum() -> Mechanism:
     """Two uniform bars of the errata's lengths, angles and rates, 1 kg each, under gravity."""
-    chain = Chain((pendulum.BAR,) * 2, (1.0, 1.0))
-    angle, rate = np.array(pendulum.PHI), np.array(pendulum.PHI_RATE)
+    chain = Chain((errata.BAR,) * 2, (1.0, 1.0))
+    angle, rate = np.array(errata.PHI), np.array(errata.PHI_RATE)
     pose, twist, _ = chain.placement(angle, rate, np.zeros(2))
     bodies = tuple(
         Body(name, 1.0, float(chain.inertia[i]), tuple(pose[i].tolist()), tuple(twist[i].tolist()))
         for i, name in enumerate(("OA", "AB"))
     )
-    half = pendulum.BAR / 2
+    half = errata.BAR / 2
     joints = (Pin("O", None, "OA", (0.0, 0.0), (-half, 0.0)), Pin("A", "OA", "AB", (half, 0.0), (-half, 0.0)))
     return Mechanism(bodies, joints, (0.0, -chain.gravity))
 
@@ -87,9 +90,9 @@ def _pendulum(window: Window) -> dict[int, Values]:
     # The right side of the note is phi1'' itself; the angles, differentiated twice, decide.
     twice = np.atleast_1d(SECOND @ window.pose[:, 0, 2]) / SPACING**2
     found = {24: Values(rate[:1], turning[:1], twice)}
-    for slip, (bar, printed) in pendulum.PENDULUM_SLIPS.items():
-        state = pendulum.BarState(pendulum.BAR, float(angle[bar]), float(rate[bar]), float(turning[bar]))
-        found[slip] = Values(printed(state), pendulum.right(state), measured[bar])
+    for slip, (bar, printed) in errata.PENDULUM_SLIPS.items():
+        state = errata.BarState(errata.BAR, float(angle[bar]), float(rate[bar]), float(turning[bar]))
+        found[slip] = Values(printed(state), errata.right(state), measured[bar])
     return found
 
 
@@ -131,7 +134,7 @@ def _skate(window: Window) -> dict[int, Values]:
 def _four_bar(window: Window) -> dict[int, Values]:
     theta, beta, phi = (float(angle) for angle in window.pose[MIDDLE, :, 2])
     crank, *others = window.twist[MIDDLE, :, 2]
-    rates = crank * np.array(printed_rates(theta, beta, phi))
+    rates = crank * np.array(errata.rates(theta, beta, phi))
     return {
         19: Values(integrated(theta), np.array(closed_form(theta)), np.array([beta, phi])),
         CONFIRMED: Values(rates, rates, np.array(others)),
@@ -216,7 +219,71 @@ def rulings(answers: Iterable[tuple[Task, Answer]], lost: list[str] | None = Non
     return tuple(sorted(found, key=lambda ruling: ruling.number))
 
 
-SNIPPETS = "errata/snippets"
+SLIPS = Path(__file__).parent / "slips"
+FIELD = re.compile(r"^- ([\w ]+): (.*)$", re.MULTILINE)
+FORMULA = re.compile(r"```math\n(.*?)\n```", re.DOTALL)
+SCRIPT = re.compile(r"```python\n(.*?)```", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """One slip: its number in the list of errata, where it is, what is printed, what is right, and why.
+
+    quoted: the printed formula as the chapter sets it (LaTeX), or its words; corrected: the same without the slip.
+    deciding: what decides, in words. dimensions: whether they alone show that something is wrong; the size of the miss
+    then depends on the units. script: what computes the values; a slip in words has none.
+    """
+
+    number: int
+    where: str
+    printed: str
+    right: str
+    reason: str
+    unit: str
+    deciding: str
+    dimensions: bool
+    quoted: str
+    corrected: str
+    script: str
+
+    @cached_property
+    def names(self) -> Mapping[str, Any]:
+        """What the script computes, by name."""
+        names: dict[str, Any] = {}
+        with contextlib.redirect_stdout(io.StringIO()):
+            exec(compile(self.script, f"slip {self.number}", "exec"), names)
+        return names
+
+    @property
+    def values(self) -> Values:
+        """As printed, as it must be, and by what decides."""
+        return Values(self.names["printed"], self.names["right"], self.names["measured"])
+
+    @property
+    def by_tolerance(self) -> Mapping[float, float]:
+        """Where a claim is wrong and what is printed beside it is a right method whose tolerance the chapter does not
+        state: the method's miss at tolerances of ours. Else empty."""
+        return self.names.get("by_tolerance", {})
+
+
+def read_slip(path: Path) -> Erratum:
+    """The slip of a document."""
+    text = path.read_text("utf-8")
+    fields, formulas, script = dict(FIELD.findall(text)), FORMULA.findall(text), SCRIPT.search(text)
+    return Erratum(
+        number=int(path.stem),
+        where=text.splitlines()[0].partition(": ")[2],
+        **{name: fields.get(name, "") for name in ("printed", "right", "reason", "unit", "deciding")},
+        dimensions=fields.get("shown by") == "dimensions",
+        quoted=formulas[0] if formulas else "",
+        corrected=formulas[1] if formulas else "",
+        script=script[1] if script else "",
+    )
+
+
+SLIPS_OF_CHAPTER = tuple(map(read_slip, sorted(SLIPS.glob("*.md"))))
+ERRATA = tuple(slip for slip in SLIPS_OF_CHAPTER if slip.script)
+WORD_SLIPS = tuple(slip for slip in SLIPS_OF_CHAPTER if not slip.script)
 
 
 def digits(values: Iterable[float]) -> str:
@@ -227,14 +294,13 @@ def digits(values: Iterable[float]) -> str:
 
 def missed(erratum: Erratum, pattern: str, between: str) -> str:
     """By how much an integration misses at each of its tolerances; `pattern` has a miss and a tolerance."""
-    assert erratum.by_tolerance is not None
-    return between.join(pattern.format(number(miss), number(each)) for each, miss in erratum.by_tolerance().items())
+    return between.join(pattern.format(number(miss), number(each)) for each, miss in erratum.by_tolerance.items())
 
 
 def verdict(erratum: Erratum, values: Values, said: Sequence[Ruling]) -> str:
     """By how much the printed and the right formula miss the derivative that decides, and each engine's own motion."""
     misses = f"The printed formula misses it by {number(values.miss)}, the right one by {number(values.agreement)}."
-    if erratum.by_tolerance is not None:
+    if erratum.by_tolerance:
         at_each = missed(erratum, "{} at a relative tolerance of {}", " and ")
         misses = (
             f"The closed form misses it by {number(values.agreement)}. The integration misses it by {at_each}: the "
@@ -245,7 +311,7 @@ def verdict(erratum: Erratum, values: Values, said: Sequence[Ruling]) -> str:
         return told
     least, most = min(ruling.values.miss for ruling in said), max(ruling.values.agreement for ruling in said)
     methods, motions = (", ".join(dict.fromkeys(getattr(each, name) for each in said)) for name in ("method", "about"))
-    if erratum.by_tolerance is not None:
+    if erratum.by_tolerance:
         return f"{told} Engines ({methods}; {motions}): the closed form misses their motion by {number(most)} at most."
     return (
         f"{told} Engines ({methods}; {motions}): the printed one misses their motion by {number(least)} or more, "
@@ -255,24 +321,25 @@ def verdict(erratum: Erratum, values: Values, said: Sequence[Ruling]) -> str:
 
 def slip_rows() -> list[tuple[str, ...]]:
     """A row a slip by number: where, both formulas with their values, what decides, the verdict."""
-    found: dict[int, tuple[str, ...]] = {}
-    for erratum in ERRATA:
-        values = erratum.values()
-        misses = f"off by {number(values.miss)}, right by {number(values.agreement)}"
-        if erratum.by_tolerance is not None:
-            integrated = missed(erratum, "{} at rtol {}", ", ")
-            misses = f"the claim; integration off by {integrated} (ours); formula by {number(values.agreement)}"
-        found[erratum.number] = (
-            str(erratum.number),
-            erratum.where,
-            f"{erratum.printed}\n= {digits(values.printed)}",
-            f"{erratum.right}\n= {digits(values.right)}",
-            f"{digits(values.decides)}\n{erratum.unit}",
-            f"{misses}; {'dimensions show it' if erratum.dimensions else 'only numbers show it'}",
-        )
-    for slip in WORD_SLIPS:
-        found[slip.number] = (str(slip.number), slip.where, slip.printed, slip.right, "-", f"words: {slip.reason}")
-    return [found[key] for key in sorted(found)]
+    return [_slip_row(slip) for slip in SLIPS_OF_CHAPTER]
+
+
+def _slip_row(slip: Erratum) -> tuple[str, ...]:
+    if not slip.script:
+        return (str(slip.number), slip.where, slip.printed, slip.right, "-", f"words: {slip.reason}")
+    values = slip.values
+    misses = f"off by {number(values.miss)}, right by {number(values.agreement)}"
+    if slip.by_tolerance:
+        integration = missed(slip, "{} at rtol {}", ", ")
+        misses = f"the claim; integration off by {integration} (ours); formula by {number(values.agreement)}"
+    return (
+        str(slip.number),
+        slip.where,
+        f"{slip.printed}\n= {digits(values.printed)}",
+        f"{slip.right}\n= {digits(values.right)}",
+        f"{digits(values.decides)}\n{slip.unit}",
+        f"{misses}; {'dimensions show it' if slip.dimensions else 'only numbers show it'}",
+    )
 
 
 def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
@@ -295,10 +362,8 @@ def words(material: Material) -> Mapping[str, Any]:
     slips = [
         {
             "erratum": erratum,
-            "verdict": verdict(
-                erratum, erratum.values(), [ruling for ruling in said if ruling.number == erratum.number]
-            ),
-            "script": f"reports/pages/{SNIPPETS}/slip_{erratum.number:02}.py",
+            "verdict": verdict(erratum, erratum.values, [ruling for ruling in said if ruling.number == erratum.number]),
+            "script": f"reports/pages/errata/slips/{erratum.number:02}.md",
         }
         for erratum in ERRATA
     ]

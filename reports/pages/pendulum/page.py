@@ -12,7 +12,7 @@ from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import Hardened
 from engines.registry import VARIANTS
-from reference.chapter.errata import linkages
+from reference.chapter import errata
 from reference.numerics.calculus import derivative
 from reference.scenes.many_links import SpinningRing
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
@@ -200,10 +200,10 @@ def figures(material: Material) -> dict[str, str]:
 
 def answers() -> str:
     """Problems 18.5.1 and 18.5.2 at the errata's numbers: by the formula, and by the derivative of a position."""
-    length, angles, rates, turning = linkages.BAR, linkages.PHI, linkages.PHI_RATE, linkages.PHI_ACCELERATION
-    first = linkages.velocities(length, angles, rates)
-    second = linkages.accelerations(length, angles, rates, turning)
-    a, b_relative_to_a = ((lambda t, bar=bar: linkages.bar_end(t, bar)) for bar in (0, 1))
+    length, angles, rates, turning = errata.BAR, errata.PHI, errata.PHI_RATE, errata.PHI_ACCELERATION
+    first = errata.velocities(length, angles, rates)
+    second = errata.accelerations(length, angles, rates, turning)
+    a, b_relative_to_a = ((lambda t, bar=bar: errata.bar_end(t, bar)) for bar in (0, 1))
     positions = {"a": a, "b_relative_to_a": b_relative_to_a, "b": lambda t: a(t) + b_relative_to_a(t)}
     body = []
     for problem, found, order, unit in (("18.5.1", first, 1, "m/s"), ("18.5.2", second, 2, "m/s²")):
@@ -216,7 +216,7 @@ def answers() -> str:
 
 def words(material: Material) -> Mapping[str, Any]:
     """Rows by method, and the answers to the chapter's problems."""
-    numbers = (linkages.BAR, *linkages.PHI, *linkages.PHI_RATE, *linkages.PHI_ACCELERATION)
+    numbers = (errata.BAR, *errata.PHI, *errata.PHI_RATE, *errata.PHI_ACCELERATION)
     return {**lookups(material, SCENES), "answers": answers(), "numbers": numbers}
 
 

@@ -1,0 +1,200 @@
+"""Formulas that the chapter's slips are about, for any state: as printed and as they must be, and the right answers.
+
+The slips themselves stand in `reports/pages/errata/slips`, a document each with a script that decides. The formulas
+here are those that an engine's own motion decides.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from reference.checks import Positive, validated
+from reference.numerics.calculus import derivative
+from reference.plane import rotation_acceleration, rotation_velocity
+from reference.scenes.pendulum.link import direction_of
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Values:
+    """Three answers to one question, each (n,): as printed, as it must be, and by what decides."""
+
+    printed: Array
+    right: Array
+    decides: Array
+
+    @property
+    def miss(self) -> float:
+        """How far the printed formula is from what decides, the largest component, in the unit of the values."""
+        return float(np.abs(self.printed - self.decides).max())
+
+    @property
+    def agreement(self) -> float:
+        """The same of the right formula: rounding."""
+        return float(np.abs(self.right - self.decides).max())
+
+
+# Sample 18.15: l1, l2, l3, l4 [m], and theta, beta, phi [rad] at the start.
+BARS = (0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), 1.2)
+START = (math.pi / 2, math.pi / 4, 3 * math.pi / 4)
+
+
+@validated
+def rates(theta: float, beta: float, phi: float) -> tuple[float, float]:
+    """beta' and phi' (18.71), (18.70) for a unit rate of the crank, literally as printed; they are right."""
+    l1, l2, l3, _ = BARS
+    common = math.sin(beta - phi)
+    return l1 * math.sin(phi - theta) / (l2 * common), l1 * math.sin(beta - theta) / (l3 * common)
+
+
+@validated
+def closed_form(theta: float) -> tuple[float, float]:
+    """beta and phi [rad]: C is the intersection of the circle about B with the circle about D that lies left."""
+    l1, l2, l3, l4 = BARS
+    bx, by = l1 * math.cos(theta), l1 * math.sin(theta)
+    dx, dy = l4 - bx, -by
+    distance = math.hypot(dx, dy)
+    beta = math.atan2(dy, dx) + math.acos((distance**2 + l2**2 - l3**2) / (2 * distance * l2))
+    return beta, math.atan2(by + l2 * math.sin(beta), bx + l2 * math.cos(beta) - l4)
+
+
+@validated
+def integrated(theta: float, tolerance: Positive = 1e-3) -> Array:
+    """beta and phi (2,) [rad] by integration of the printed rates; the chapter states no tolerance, and 1e-3 is that of
+    the usual packages.
+    """
+    span, atol = (START[0], theta), 1e-3 * tolerance
+    return solve_ivp(lambda at, state: rates(at, *state), span, START[1:], rtol=tolerance, atol=atol).y[:, -1]
+
+
+def acceleration_of_g(
+    heading: float, speed: float, push: float, rate: float, angular_acceleration: float, arm: tuple[float, float]
+) -> tuple[Array, Array]:
+    """a_G (2,) [m/s^2] of a body on a skate, as printed and as it must be, for a heading [rad], v_C, vdot_C, thetadot,
+    thetaddot and C -> G.
+
+    The arm [m] is in the body's frame. d(j')/dt = -thetadot i', so the printed term points along the skate; the right
+    one, d(i')/dt = thetadot j', across it.
+    """
+    along = np.array([math.cos(heading), math.sin(heading)])
+    left = np.array([-along[1], along[0]])
+    span = arm[0] * along + arm[1] * left
+    rest = push * along + angular_acceleration * np.array([-span[1], span[0]]) - rate**2 * span
+    return rest - speed * rate * along, rest + speed * rate * left
+
+
+def rolling_acceleration() -> Values:
+    """Not a slip: the printed acceleration of O' under the convention of the list, beside the same with -e_n.
+
+    A circle rolls on the outside of a fixed one; it has turned by theta(t), and the contact stands at an angle
+    psi = theta b / (a + b) of the fixed circle.
+    """
+    fixed, rolling, theta, omega, alpha = 0.8, 0.5, 0.7, 1.7, -0.6  # radii a, b [m]; rad, rad/s, rad/s^2
+
+    def centre(t: Any) -> Any:
+        psi = (theta + omega * t + alpha * t * t / 2) * rolling / (fixed + rolling)
+        return (fixed + rolling) * np.stack([np.cos(psi), np.sin(psi)])
+
+    psi = theta * rolling / (fixed + rolling)
+    normal = np.array([math.cos(psi), math.sin(psi)])  # into the rolling body
+    arm = rolling * normal  # from the contact to the centre
+    pinned = alpha * np.array([-arm[1], arm[0]]) - omega**2 * arm
+    term = omega**2 / (1 / fixed + 1 / rolling) * normal
+    return Values(pinned - term, pinned + term, derivative(centre, 0.0, order=2))
+
+
+# Problem 18.5.2. Length of a bar [m]; angles, rates and accelerations [rad, rad/s, rad/s^2] of the two.
+BAR, PHI, PHI_RATE, PHI_ACCELERATION = 0.7, (0.4, -1.1), (2.0, 3.0), (-5.0, 0.6)
+
+
+def bar_end(t: Any, bar: int) -> Any:
+    """The end of a bar from its beginning (2, ...) [m] at times t (...) [s] about 0; analytic."""
+    angle = PHI[bar] + PHI_RATE[bar] * t + PHI_ACCELERATION[bar] * t * t / 2
+    return BAR * np.stack([np.sin(angle), -np.cos(angle)])
+
+
+@dataclass(frozen=True)
+class BarState:
+    """One bar of `length` [m]: its angle [rad] from the downward vertical, rate [rad/s], acceleration [rad/s^2]."""
+
+    length: float
+    angle: float
+    rate: float
+    angular_acceleration: float
+
+
+def right(bar: BarState) -> Array:
+    """l (phi'' cos phi - phi'^2 sin phi, phi'' sin phi + phi'^2 cos phi) (2,) [m/s^2]."""
+    return accelerations(bar.length, (bar.angle, 0.0), (bar.rate, 0.0), (bar.angular_acceleration, 0.0)).a
+
+
+def omega_in_the_first_term(bar: BarState) -> Array:
+    """omega x r + omega x (omega x r), as printed: a velocity added to an acceleration."""
+    return right(BarState(bar.length, bar.angle, bar.rate, bar.rate))
+
+
+def dot_missing_in_i(bar: BarState) -> Array:
+    """Only the i component is wrong: phi2dot for phi2ddot."""
+    return np.array([omega_in_the_first_term(bar)[0], right(bar)[1]])
+
+
+def exchanged_in_j(bar: BarState) -> Array:
+    """Only the j component is wrong: sine and cosine exchanged."""
+    second = bar.rate**2 * math.sin(bar.angle) + bar.angular_acceleration * math.cos(bar.angle)
+    return np.array([right(bar)[0], bar.length * second])
+
+
+# Which bar (0: OA, 1: AB) each slip is about, and what it makes of that bar's acceleration.
+PENDULUM_SLIPS: dict[int, tuple[int, Callable[[BarState], Array]]] = {
+    23: (0, omega_in_the_first_term),
+    25: (1, omega_in_the_first_term),
+    26: (1, omega_in_the_first_term),
+    27: (1, dot_missing_in_i),
+    28: (1, exchanged_in_j),
+}
+
+
+@dataclass(frozen=True)
+class TwoPoints:
+    """What problems 18.5.1 and 18.5.2 ask for, each (2,) in m/s or m/s^2: of A, of B relative to A, and of B."""
+
+    a: Array
+    b_relative_to_a: Array
+    b: Array
+
+
+@validated
+def velocities(length: Positive, angles: tuple[float, float], rates: tuple[float, float]) -> TwoPoints:
+    """Problem 18.5.1: A and B are the lower ends of the two bars of a double pendulum, each of `length` [m].
+
+    The angles phi are from the downward vertical, counter-clockwise: r_A = l (sin phi1, -cos phi1).
+    """
+    first, second = (
+        rotation_velocity(length * rate, direction_of(np.asarray(phi))) for phi, rate in zip(angles, rates, strict=True)
+    )
+    return TwoPoints(first, second, first + second)
+
+
+@validated
+def accelerations(
+    length: Positive,
+    angles: tuple[float, float],
+    rates: tuple[float, float],
+    angular_accelerations: tuple[float, float],
+) -> TwoPoints:
+    """Problem 18.5.2: a_A = l (phi1'' cos phi1 - phi1'^2 sin phi1, phi1'' sin phi1 + phi1'^2 cos phi1), B/A
+    likewise.
+    """
+    first, second = (
+        length * rotation_acceleration(rate, alpha, direction_of(np.asarray(phi)))
+        for phi, rate, alpha in zip(angles, rates, angular_accelerations, strict=True)
+    )
+    return TwoPoints(first, second, first + second)
