@@ -114,6 +114,10 @@ class Equations:
         rows = self._slopes(self._rows, q)
         return speed + root * np.linalg.lstsq(rows * root, wanted - rows @ speed, rcond=1e-11)[0]
 
+    def nearest_speeds(self) -> Array:
+        """The speeds that the joints allow, after the least impulse."""
+        return self._held(self.start, self.speed, self.rates)
+
     def accelerations(self, q: Array, speed: Array) -> Array:
         step = 1e-3 / (np.abs(speed[2::3]).max() + 1e-6)  # an angle of 1e-3: the stencil is good to 1e-12
 
@@ -129,7 +133,7 @@ class Equations:
         found = solve_ivp(
             lambda _, state: np.concatenate([state[count:], self.accelerations(*np.split(state, 2))]),
             (0.0, float(t[-1])),
-            np.concatenate([self.start, self._held(self.start, self.speed, self.rates)]),
+            np.concatenate([self.start, self.nearest_speeds()]),
             "DOP853",
             t_eval=t,
             rtol=1e-11,

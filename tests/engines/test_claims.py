@@ -20,14 +20,13 @@ from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.solver_check import _lost
 from engines.mujoco.stiffness import Hardened
 from reference.forces import Spring
-from reference.joints import Pin, Rod, Slot
+from reference.joints import Pin, Rod
 from reference.mechanism import Mechanism
 from reports.search.claims import CLAIMED, REACTIONS, REPORTED, compared, errors
 from reports.search.law import Errors, Skip
 from reports.search.mechanisms import mechanism
-from reports.search.parts import CLAIMS, EVERY, LINKS
+from reports.search.parts import EVERY, LINKS
 from reports.search.parts import FORCES as ELEMENTS
-from reports.search.subjects import Adapted
 from tests.engines.test_promised import QUICKLY, installed
 from tests.mechanisms import bar, pendulum
 from tests.present import present
@@ -114,14 +113,6 @@ def test_the_search_counts_a_silent_error_as_a_fault_and_a_report_of_a_right_mot
         assert bound == CLAIM
     assert compared(own, replace(right, unresolved_at=0.0), truth)[REPORTED] == (1.0, 1.0)
     assert REPORTED not in compared(own, wrong, truth)
-
-
-def test_claims_are_asked_of_methods_with_an_estimate_alone():
-    asked = Adapted(mujoco.EXTENDED), Adapted(mujoco.EXTENDED.within(pendulum()))
-    case = asked[0].draw(5, 1, ("pin", "spring", "toggle", "fold"), 0)
-    assert CLAIMED in asked[0].ask(case, 1, (CLAIMS,)).errors
-    assert "no estimate" in Adapted(replace(mujoco.EXTENDED, estimates=False)).ask(case, 1, (CLAIMS,)).skipped[0]
-    assert present(mujoco.EXTENDED.build(pendulum(), DT)(STEPS, 1).estimate).max() < CLAIM
 
 
 def test_an_error_of_a_force_is_counted_in_the_largest_force_and_not_in_that_of_a_stiff_spring_which_does_not_pull():
@@ -224,12 +215,6 @@ def test_mechanisms_that_were_difficult_are_right_or_unresolved(case: Known) -> 
         assert error < case.error
 
 
-def test_rows_on_which_no_number_of_sweeps_converges_get_a_warning():
-    # Three slots, two pins and a skate on four bodies: a sweep leaves all but 6e-6 of the slowest mode.
-    own = mechanism(22, 263, HELD)
-    assert any("not converged" in warning for warning in pymunk.EXTENDED.build(own, STEP)(1, 10).warnings)
-
-
 def test_in_mujoco_every_run_that_decides_or_estimates_is_part_of_the_stepping(monkeypatch: pytest.MonkeyPatch) -> None:
     # As many seconds as steps: 200 and, twice as long, 100; where these do not decide, 400 of half the length.
     stepped = MuJoCoRun._step
@@ -263,39 +248,6 @@ def test_rows_that_rounding_would_spoil_are_softer_and_a_softness_that_is_asked_
     shipped = replace(mujoco.EXTENDED, stiffness=Hardened(softening=1.0)).model(own, STEP).compiled
     assert np.allclose(asked.dof_invweight0, 1e-8 * shipped.dof_invweight0, rtol=1e-12, atol=0.0)
     assert np.all(eased.dof_invweight0 > 9 * asked.dof_invweight0)
-
-
-def test_every_slot_is_built_by_public_settings_and_halving_the_step_quarters_its_error() -> None:
-    halved = 0
-    for number in range(40):
-        own = mechanism(14, number, ("pin", "slot"))
-        if not any(isinstance(joint, Slot) for joint in own.joints):
-            continue
-        mujoco.DEFAULT.build(own, STEP)
-        model = mujoco.TUNED.model(own, STEP)
-        halved += bool(model.halves)
-        assert np.allclose(model.loads()[0], own.inertias, rtol=1e-14, atol=0.0)
-        if model.halves and halved < 4:
-            truth = TRUTH.build(own, 0.1)(2, 1)
-            coarse, fine = (
-                np.abs(mujoco.TUNED.build(own, step)(2, round(0.1 / step)).pose - truth.pose).max()
-                for step in (STEP / 2, STEP / 4)
-            )
-            assert fine < coarse / 3 or fine < 1e-9
-    assert halved > 5
-
-
-def test_drives_between_any_two_bodies_are_built() -> None:
-    drawn = [mechanism(15, number, ("pin", "drive")) for number in range(40)]
-    for number, own in enumerate(drawn):
-        for engine in mujoco.VARIANTS:
-            try:
-                engine.build(own, STEP)
-            except Unsupported as reason:
-                pytest.fail(f"{number}: {reason}")
-    geared = next(own for own in drawn if mujoco.TUNED._tree(own).geared)
-    with pytest.raises(Unsupported, match="drives single ones, take 'inertia'"):
-        replace(mujoco.TUNED, drive="overwrite").build(geared, STEP)
 
 
 # Joints of which the extras build most draws.

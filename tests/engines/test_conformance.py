@@ -84,14 +84,6 @@ def test_a_wrong_adapter_fails_the_check_of_its_mistake(mistake):
     assert ". Usually: " in sentence
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("mistake", WRONG)
-def test_no_earlier_check_fails_by_the_mistake(mistake):
-    check, engine = WRONG[mistake]
-    name, sentence = first_failure(cases(engine))
-    assert name == check, sentence
-
-
 def test_every_check_finds_a_mistake_and_the_right_engine_passes():
     assert {check for check, _ in WRONG.values()} == {check.name for check in CHECKS}
     assert failures(cast(Engine, Wrong("nothing"))) == []

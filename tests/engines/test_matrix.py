@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 
 from engines import Engine, method_name, mujoco, pymunk
-from engines.extrapolated import Extrapolated
 from engines.lagrange import TRUTH
 from engines.mujoco import Hardened
 from engines.mujoco.methods import SKATES, SLOTS
@@ -312,25 +311,3 @@ def test_a_construction_reaches_what_the_table_says_and_no_more(row: Row) -> Non
         if order is not None:
             assert np.log2(coarse / fine) / 2 == pytest.approx(order, abs=row.room)
     assert finer[0] > row.floor
-
-
-@pytest.mark.parametrize(
-    ("engine", "wrong", "least"),
-    [
-        (mujoco.EXTENDED, FreeFourBar(crank=FREE.crank * 1.001), 1e-5),
-        (mujoco.EXTENDED, RollingEllipse(along_x=RollingEllipse().along_x * 1.001), 1e-4),
-        (mujoco.EXTENDED, ChaplyginSleigh(offset=0.5005), 1e-4),
-        (pymunk.EXTENDED, FreeFourBar(crank=FREE.crank * 1.001), 1e-5),
-        (
-            Extrapolated(pymunk.LEAPFROG, "even", levels=(2, 3, 4, 6, 8), powers=(2, 4, 6, 8)),
-            FreeFourBar(rate=10.0),
-            1e-9,
-        ),
-    ],
-    ids=["crank", "ellipse", "sleigh", "crank in pymunk", "even powers only"],
-)
-def test_a_length_that_is_a_thousandth_off_would_be_noticed(engine: Engine, wrong: Scene, least: float) -> None:
-    run = engine.build(wrong.mechanism(), 1e-3)(50, 10)
-    right = wrong if isinstance(engine, Extrapolated) and engine.variant == "even" else type(wrong)()
-    moved = [each.pose - each.pose[0] for each in (run, right.motion(run.t))]
-    assert np.abs(moved[0] - moved[1]).max() > least

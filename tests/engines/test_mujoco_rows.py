@@ -26,10 +26,8 @@ from reference.scenes.rolling.scenes import RollingEllipse
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.scenes.wheels.cart import Cart
-from reference.trajectory import energy
 from tests import ROOT
-from tests.engines.test_matrix import blade_on_a_board
-from tests.mechanisms import bar, four_bar
+from tests.mechanisms import bar
 
 SLEIGH = ChaplyginSleigh()
 STIFFNESS, DAMPING = 5.0, 3.0
@@ -158,15 +156,6 @@ def test_without_numba_python_writes_the_same_rows() -> None:
     assert fast[-1][2] is not None
 
 
-def test_a_row_that_is_no_number_makes_the_reference_none() -> None:
-    model = EXTENDED.model(SLEIGH.mechanism(), 1e-3)
-    data = mujoco.MjData(model.compiled)
-    data.qvel[:] = 1e200  # its square is beyond all numbers
-    with model.hooked():
-        mujoco.mj_forward(model.compiled, data)
-    assert np.isnan(data.efc_aref).all()
-
-
 def test_the_callback_is_as_it_was_even_after_a_failure() -> None:
     assert mujoco.get_mjcb_control() is None
     run = EXTENDED.build(SLEIGH.mechanism(), 1e-2)
@@ -187,23 +176,3 @@ def test_the_callback_is_as_it_was_even_after_a_failure() -> None:
 def test_rows_are_not_written_where_the_solver_would_not_read_them(setting: dict[str, Any]) -> None:
     with pytest.raises(Unsupported, match="dense"):
         replace(EXTENDED, **setting).build(SLEIGH.mechanism(), 1e-3)
-
-
-def test_rows_work_beside_loops_and_drives() -> None:
-    """A skate that a four-bar's motion satisfies already changes nothing, though it shares every force."""
-    mechanism = four_bar(crank_rate=10.0)
-    crank = mechanism.bodies[0]
-    along = Skate("idle", None, "crank", (-crank.mass / 2, 0.0))  # at its pin, where nothing moves
-    both = replace(mechanism, joints=(*mechanism.joints, along))
-    plain, skated = EXTENDED.build(mechanism, 1e-3)(10, 10), EXTENDED.build(both, 1e-3)(10, 10)
-    # The row has no inertia to act on in the tree: rounding.
-    assert np.abs(plain.pose - skated.pose).max() < 1e-10
-
-
-def test_a_row_between_two_bodies_that_move_does_no_work() -> None:
-    mechanism = blade_on_a_board()
-    motion = EXTENDED.build(mechanism, 1e-3)(10, 50)
-    total = energy(mechanism, motion)
-    # RK4 over half a second of about two radians a second in steps of 1e-3 s: rounding, and 1e-12 of a soft row.
-    assert np.abs(mechanism.slip(motion.pose, motion.twist)).max() < 1e-10
-    assert np.abs(total - total[0]).max() < 1e-10 * total[0]

@@ -14,8 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from engines import Promise, Size, Unsupported, mjx, registry, sampling, single_run
-from engines.conformance.worlds import WORLDS
+from engines import Size, Unsupported, registry, single_run
 from engines.lagrange.engine import TRUTH
 from engines.pinocchio import Model
 from engines.units import counted_in
@@ -28,28 +27,14 @@ from reports.cli.selection import choose_engines
 from reports.model.ending import BadInput
 from reports.search import motions
 from reports.search.mechanisms import mechanism
-from reports.search.parts import EVERY, FORCES, LINKS
+from reports.search.parts import EVERY
 from reports.search.recipe import build
 from reports.search.subjects import Adapted
 from tests import mechanisms
 from tests.all_elements import ALONE
-from tests.engines.test_promised import QUICKLY, each_extra, installed, meshed, shipped
-from tests.present import present
+from tests.engines.test_promised import QUICKLY, installed, meshed, shipped
 
 NAMES = tuple(dict.fromkeys(engine.name for engine in QUICKLY))
-HANGING = present(next((world for world in WORLDS if world.name == "hanging bar"), None))
-
-
-@each_extra
-def test_reactions_carry_a_body_that_hangs(engine):
-    installed(engine)
-    run = engine.build(HANGING.mechanism, 1e-2)(20, 2)
-    told = run.reaction[1:]  # a change of velocity can't be told at the start
-    assert np.isfinite(told).all()
-    weight = HANGING.exact(run.t[1:]).reaction
-    # A soft joint that has just been loaded gives way a little; single precision is 1e-7 of 10 m/s over 1e-2 s.
-    exact = isinstance(engine.order(HANGING.mechanism), Promise)
-    assert np.abs(told - weight)[-1].max() < (1e-6 if exact else 2e-2) * np.abs(weight).max()
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -125,16 +110,6 @@ def test_accelerations_given_at_the_start_are_what_exudyns_reactions_need():
 
 
 UNITS = {"mass": 2.0**-40, "time": 2.0**40}  # kg, s: of powers of two, so that nothing is rounded
-
-
-def test_other_units_of_mass_and_time_leave_the_motion_as_it_is():
-    """Every kind of joint and of force has to be counted in them, or the judge moves it otherwise."""
-    for number in range(8):
-        own = mechanism(5, number, (*LINKS, *FORCES, "pin", "slot", "skate", "drive"))
-        other, span = counted_in(own, **UNITS), 0.1 * own.time_scale
-        right, found = TRUTH.build(own, span)(2, 1), TRUTH.build(other, span / UNITS["time"])(2, 1)
-        assert np.allclose(found.pose, right.pose, rtol=0.0, atol=1e-9 * own.length_scale)
-        assert np.allclose(found.twist / UNITS["time"], right.twist, rtol=1e-6, atol=1e-9 / own.time_scale)
 
 
 def test_exudyn_moves_alike_in_any_unit_but_as_shipped():
@@ -234,14 +209,6 @@ def test_a_missing_engine_is_refused_by_name_in_one_line(monkeypatch):
         choose_engines("pymunkk", None, registry.ENGINES)
 
 
-def test_whole_turns_are_taken_back_by_what_rates_predict():
-    t = np.arange(50) * 0.1
-    angle = (3.0 * np.sin(2 * t) + 50 * t)[:, None]
-    rate = (6.0 * np.cos(2 * t) + 50)[:, None]
-    wrapped = np.arctan2(np.sin(angle), np.cos(angle))
-    np.testing.assert_allclose(sampling.unwrapped(wrapped, rate, angle[0], 0.1), angle, atol=1e-12)
-
-
 def test_where_exudyn_gives_up_its_last_samples_are_no_numbers():
     engine = shipped("exudyn")
     # Coupler and rocker are 0.57 m each, and the crank's end would have to be 1.29 m from the rocker's pin.
@@ -276,27 +243,6 @@ def test_pinocchio_tells_no_inertia_of_bodies_that_are_welded_together():
     told = Model._inertias(model)  # type: ignore[arg-type]
     assert told[0] == pytest.approx([2.0, 2.0, 0.3])
     assert np.isnan(told[1:]).all()
-
-
-@pytest.mark.parametrize(("joint", "told"), [(None, False), (Rod("rod", None, "bob", (0, 0), (0, 0), 1.0), True)])
-def test_mjx_says_what_it_lacks_where_it_lacks_it(monkeypatch, joint, told):
-    """Without its compiler: what a run says is decided by the mechanism alone."""
-    still = SimpleNamespace(time=0.0, qpos=np.zeros(3), qvel=np.zeros(3), qacc=np.zeros(3))
-    device = SimpleNamespace(put_model=lambda model: model, put_data=lambda model, data: still)
-    still.qpos = still.qpos.view(Ready)
-    monkeypatch.setattr(mjx, "_programs", lambda: (device, lambda held, now, count: now, lambda held, now: now))
-    monkeypatch.setattr(mjx.Mjx, "require", lambda self: None)
-    monkeypatch.setattr(mjx, "_missed", lambda model, data, told: 0.0)
-    own = Mechanism((Body("bob", 1.0, 0.1, (1.0, 0.0, 0.0)),), (joint,) if joint else ())
-    run = mjx.DEFAULT.build(own, 1e-2)(2, 1)
-    assert run.warnings == ((mjx.NO_VELOCITY_TERM,) if told else ())
-
-
-class Ready(np.ndarray):
-    """An array of JAX that has been worked out."""
-
-    def block_until_ready(self) -> Ready:
-        return self
 
 
 @pytest.mark.parametrize(("first", "second"), [("a", "b"), ("b", "a")])

@@ -22,7 +22,7 @@ from engines.extrapolated import Extrapolated
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, bare_loop, methods
 from engines.pymunk.joints.roll import MovedPivot
 from engines.pymunk.methods import SKATES
-from reference.joints import Drive, Pin, Skate
+from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Line, Placed, Side
 from reference.rolling.kinematics import Rolling
@@ -163,7 +163,6 @@ print([each for each in gc.get_objects() if isinstance(each, (pymunk.Space, pymu
 
 ELLIPSE, DISC, RING, HILL = RollingEllipse(), RollingDisc(), RollingInRing(), RollingOnCircle()
 SLEIGH = ChaplyginSleigh()
-SLED = SLEIGH.mechanism()
 
 
 def run(engine, scene: Scene, every: int) -> Trajectory:
@@ -300,18 +299,6 @@ def test_the_first_force_of_a_contact_is_swept_until_its_points_agree(step):
 
 def slip(scene: Scene, found: Trajectory) -> float:
     return largest(scene.mechanism().slip(found.pose, found.twist))
-
-
-def test_a_blade_set_at_an_angle_is_turned_with_the_body():
-    turned = Mechanism(
-        (replace(SLED.bodies[0], twist=(np.cos(0.3), np.sin(0.3) + 0.0, 0.0)),),
-        (Skate("skate", None, "sleigh", (-0.5 * np.cos(0.3), -0.5 * np.sin(0.3)), 0.3),),
-    )
-    for engine in (TUNED, EXTENDED, methods.SKATE_PROJECTED):
-        trajectory = engine.build(turned, 1e-2)(50, 1)
-        # Without turning it slides straight along the blade.
-        path = trajectory.pose[:, 0, :2] - turned.pose[0, :2]
-        assert largest(path - trajectory.t[:, None] * [np.cos(0.3), np.sin(0.3)]) < 1e-12
 
 
 def test_a_skate_on_a_body_that_moves_is_held_by_rows_alone():

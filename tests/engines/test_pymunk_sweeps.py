@@ -12,11 +12,9 @@ from engines import Promise
 from engines.lagrange import TRUTH
 from engines.pymunk import DEFAULT, LEAPFROG, TUNED, Pymunk
 from engines.pymunk.contraction import (
-    LEFT,
     closing,
     contraction,
     contraction_at,
-    contractions,
     gain,
     growth,
     sweeps,
@@ -25,10 +23,7 @@ from engines.pymunk.expected import worst_contraction
 from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import FreeFourBar
-from reference.scenes.n_four_bar import NFourBar
 from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import energy, joint_gap
 from reports.search.mechanisms import mechanism
 from reports.search.parts import EVERY
@@ -117,18 +112,6 @@ def test_welds_and_motors_do_not_blow_up_however_short_steps_are_and_where_they_
     assert isinstance(DEFAULT.order(own), Promise) == (missed(DEFAULT, 640) < missed(DEFAULT, 160))
 
 
-@pytest.mark.parametrize("closed", [0.0, 1.0])
-def test_twice_as_much_left_is_stable_by_the_map_of_a_step_where_it_is_so_mode_by_mode(closed):
-    """Two derivations, of rows that all close their gaps, or none: the rule for modes, and the spectral radius."""
-    for number in range(40):
-        own = mechanism(77777, number, ("pin", "rod", "gear", "weld"))
-        count = sweeps(contraction(own), work=10**6)
-        of_gaps = np.full(own.row_count, closed)
-        assert count > 10**5 or growth(own, own.pose, count, of_gaps, 0.5 / LEFT) < 1 + 1e-6
-        if closed and 5 < count < 10**5:
-            assert growth(own, own.pose, count - 1, of_gaps, 0.5 / LEFT) > 1 + 1e-6
-
-
 @pytest.mark.parametrize(("seed", "number", "few"), [(*MOTOR, 30), (31, 655, 9), (31, 981, 8)])
 def test_impulses_grow_in_the_engine_as_the_map_of_a_step_says_where_motors_and_blades_close_no_gap(seed, number, few):
     own = mechanism(seed, number, EVERY)
@@ -167,14 +150,3 @@ def test_a_hundred_links_are_reported_as_not_converged_and_stay_together():
     assert any("not converged" in warning for warning in trajectory.warnings)
     assert largest(joint_gap(scene.mechanism(), trajectory)) < 1e-3  # m, of 1 m
     assert largest(trajectory.pose[:, -1, :2] - scene.motion(trajectory.t).pose[:, -1, :2]) < 1e-2
-
-
-@pytest.mark.parametrize(
-    "scene",
-    [FreeFourBar(), DrivenSliderCrank(offset=0.693), NFourBar(duration=0.5, horizon=0.5), CarAndTrailer()],
-    ids=lambda scene: scene.name,
-)
-def test_contractions_of_many_poses_are_those_of_each(scene):
-    own = scene.mechanism()
-    poses = scene.motion(np.linspace(0.0, scene.duration, 5)).pose
-    assert contractions(own, poses) == pytest.approx([contraction_at(own, pose) for pose in poses], abs=1e-12)

@@ -12,7 +12,7 @@ from engines import Unsupported
 from engines.mujoco.reading import read
 from engines.mujoco.reading.obstacles import positions
 from engines.mujoco.reading.settings import switch_off
-from engines.reading import Obstacle, Reading, left_out
+from engines.reading import Reading
 from reports.check.judging import apart, refuse_disagreement, soft_motion
 
 # Both sides solve small systems of equations whose numbers differ by a factor of a thousand at most.
@@ -273,26 +273,6 @@ def test_softness_as_declared_is_what_mujoco_does():
     stiffer = [replace(reading.model.give(np.zeros(8), reading.mechanism.pose), compliance=np.zeros((8, 8)))]
     wrong = soft_motion(reading.mechanism, lambda gap, pose: stiffer[0], run.t)
     assert apart(reading.mechanism, wrong, run.pose).max() > 1e-5
-
-
-def test_a_limit_and_a_contact_are_named_with_their_time():
-    limited = PENDULUM.replace('name="B"', 'name="B" limited="true" range="-.1 .1"')
-    model = mujoco.MjModel.from_xml_string(
-        f'<mujoco><compiler angle="radian"/><worldbody><geom name="floor" type="plane" size="1 1 1" pos="0 0 -5"/>'
-        f"{limited}</worldbody></mujoco>"
-    )
-    reading = read(model)
-    t = 0.02 * np.arange(41, dtype=np.float64)
-    without = read(model, None, ("limit",))
-    free = without.model.run(40, 10).pose
-    assert without.model.obstacles(t, free, np.zeros_like(free)) == []
-    met, *_ = reading.model.obstacles(t, free, np.zeros_like(free))
-    turned = free[:, 1, 2] - free[:, 0, 2]
-    sign = np.sign(reading.model.scene.data.xaxis[1] @ reading.model.scene.frame.normal)  # type: ignore[attr-defined]
-    beyond = (sign * turned > 0.1) | (sign * turned < -0.1)
-    assert met == Obstacle(t[int(np.argmax(beyond))], "joint 'B' reaches its limit", left_out("limit"))
-    assert met.t > 0
-    assert [note.element for note in without.notes] == ["contacts", "limit"]
 
 
 def test_a_contact_is_named_with_its_time_and_at_the_start_refused():

@@ -16,15 +16,12 @@ from pymunk.constraints import (
     PinJoint,
     PivotJoint,
     RatchetJoint,
-    RotaryLimitJoint,
     SimpleMotor,
-    SlideJoint,
 )
 
 from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.pymunk.reading import read
-from engines.reading import Obstacle, left_out
 from reports.check.judging import refuse_disagreement
 
 # Two small steps, extrapolated: what is left is of the order of the step squared, a hundred-millionth.
@@ -190,61 +187,6 @@ def test_names_and_static_bodies_are_kept():
     assert [body.name for body in reading.mechanism.bodies] == ["crank", "body 2"]
     assert reading.mechanism.joints[-1].first is None
     assert refuse_disagreement(reading) < STEPPED
-
-
-def test_a_shape_that_is_touched_on_the_way_is_named():
-    def floor(space, first, second):
-        space.add(pymunk.Segment(space.static_body, (-9, -1), (9, -1), 0.01), pymunk.Circle(second, 0.05))
-
-    space = space_of(floor)
-    reading = read(space, 0.01)
-    t = np.linspace(0, 1, 51)
-    poses = np.tile(reading.mechanism.pose, (51, 1, 1))
-    poses[:, 1, 1] = 0.4 - 0.5 * 9.81 * t**2
-    rest = np.zeros_like(poses)
-    (met,) = reading.model.obstacles(t, poses, rest)
-    assert met.words in (
-        "a shape of the ground touches one of body 2",
-        "a shape of body 2 touches one of the ground",
-    )
-    assert met.remedy == left_out("contact")
-    fallen = np.sqrt(2 * (0.4 + 1 - 0.06) / 9.81)
-    assert fallen <= met.t <= fallen + 0.02
-    for shape in space.shapes:
-        shape.filter = pymunk.ShapeFilter(group=1)
-    assert read(space, 0.01).model.obstacles(t, poses, rest) == []
-    for shape in space.shapes:
-        shape.filter = pymunk.ShapeFilter()
-    assert read(space, 0.01, ["contact"]).model.obstacles(t, poses, rest) == []
-
-
-def test_limits_are_noted_and_named_when_they_are_reached():
-    limits = (
-        lambda space, first, second: SlideJoint(first, second, (0, 0), (0, 0), 0.1, 1.0),
-        lambda space, first, second: RotaryLimitJoint(first, second, -2.0, 2.0),
-    )
-    reading = read(space_of(*limits), 0.01)
-    assert [note.element for note in reading.notes] == ["SlideJoint 1", "RotaryLimitJoint 1"]
-    poses = np.tile(reading.mechanism.pose, (3, 1, 1))
-    poses[1, 1, 2] = 2.5
-    poses[2, 1, 0] = 5.0
-    found = reading.model.obstacles(np.arange(3.0), poses, np.zeros_like(poses))
-    assert found == [
-        Obstacle(1.0, "RotaryLimitJoint 1 reaches its end", left_out("limit")),
-        Obstacle(2.0, "SlideJoint 1 reaches its end", left_out("limit")),
-    ]
-
-
-@pytest.mark.parametrize("x", [0.4, 1.6])
-def test_both_ends_of_a_groove_are_noticed(x):
-    def short(space, first, second):
-        return GrooveJoint(space.static_body, second, (0.5, second.position.y), (1.5, second.position.y), (0, 0))
-
-    reading = read(space_of(short, spin=0.0), 0.01)
-    pose = reading.mechanism.pose[None].copy()
-    pose[0, 1, 0] = x
-    (met,) = reading.model.obstacles(np.zeros(1), pose, np.zeros_like(pose))
-    assert met.words == "GrooveJoint 1 reaches its end"
 
 
 def test_the_users_own_space_is_run_and_never_changed():

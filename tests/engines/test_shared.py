@@ -129,15 +129,6 @@ def test_where_the_curves_end_there_is_no_place_and_no_contact() -> None:
             fast.contact(beyond)
 
 
-def test_models_of_one_mechanism_share_a_table_and_the_oldest_tables_are_forgotten() -> None:
-    first = rolling_of(RollingCam())
-    fast = rolled(first)
-    assert rolled(first) is fast
-    for number in range(20):
-        rolled(Rolling.at_angle(Circle(0.1 + number / 100), Line()))
-    assert rolled(first) is not fast
-
-
 # Random ones with every joint, and those of the scenes, where a slot's drive of rate zero keeps its block from turning.
 MECHANISMS = (
     *(random_mechanism(21, number, EVERY) for number in range(6)),
