@@ -1,43 +1,81 @@
-"""Every table and CSV file from rows by hand: each column takes its own field; and what is printed of versions."""
+"""Tables, CSV files and columns of engines from rows by hand, each with another number in every field.
+
+What is printed stands in tests/golden/tables.md; what it has to say, beside the rows that say it.
+"""
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import math
 import os
 import platform
-from dataclasses import fields
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from importlib import metadata
+from typing import Any
 
 import pytest
 
+from engines import Holder, Softness, mujoco, pymunk
 from engines.lagrange import loading
+from engines.pymunk.methods import SKATE_POINT
+from reference.joints import Joint
+from reference.mechanism import Mechanism
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reports.gate.prediction import COMPLIANCE, DAMPING, STIFFNESS, declared_error, soft_tasks
+from reports.model.cells import Cell
 from reports.model.convergence import Sweep, Verdict
-from reports.model.measure import TIMINGS, Measurement
+from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
+from reports.model.page import Failure, Material, Page
 from reports.model.quantities import quantity
+from reports.model.tasks import Answer, Task, answered
 from reports.pages.index import foot
+from reports.pages.skate.page import PAGE as SKATE
 from reports.write import csv_files, provenance, tables
+from reports.write.columns import equal_cost, equal_error, equal_step, error_within, lines, means, reached
+from reports.write.experiments import compared_only, told_experiment
+from reports.write.holders import Column, column_of, holders, told_rows, told_variant
+from reports.write.page_tables import advice, advice_table, compared_step, reliable, scene_table
 from reports.write.provenance import machine, still_installed, versions
+from tests.present import present
 from tests.rows import falling, row, row_of, table
+from tests.toys import Disc, Plain, Toy
 
 NAN = math.nan
+# Steps of the rows that `falling` makes, in place of those that people use.
+STEPS = {"coarse": 1e-1, "usual": 1e-2, "fine": 1e-3}
+POWER = (1e-2, 1e-4, 1e-6)
+VARIANTS = ("default", "tuned", "extended")
+KNOWN = {scene.name: scene for scene in SCENES}
+FREE, SLEIGH = KNOWN["free_four_bar"], KNOWN["sleigh"]
+
+
+@dataclass(frozen=True)
+class Held(Toy):
+    by: Holder = "engine"
+
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        return self.by
+
+
+class OtherDisc(Disc):
+    """Another scene."""
+
+    name = "other_disc"
+
+
+def page_of(*methods: Toy, **changes) -> Page:
+    engines = methods or tuple(Toy(variant, name=name) for name in ("pymunk", "mujoco") for variant in VARIANTS)
+    return replace(Page("base", "Discs", "One disc.", (Disc(),), engines), **changes)
 
 
 @pytest.mark.parametrize(
     ("value", "text", "digits"),
     [
-        (0.0, "0", 2),
-        (1.234e-7, "1.2e-7", 2),
-        (0.01, "0.01", 2),
-        (0.00999, "0.01", 2),
-        (99.6, "100", 2),
-        (100.0, "100", 2),
-        (9999.0, "9999", 2),
-        (math.nan, "-", 2),
-        (math.inf, "∞", 2),
-        (1.26e-4, "1e-4", 1),
+        *((0.0, "0", 2), (1.234e-7, "1.2e-7", 2), (0.01, "0.01", 2), (0.00999, "0.01", 2), (99.6, "100", 2)),
+        *((100.0, "100", 2), (9999.0, "9999", 2), (NAN, "-", 2), (math.inf, "∞", 2), (1.26e-4, "1e-4", 1)),
         (0.1256, "0.126", 3),
     ],
 )
@@ -45,74 +83,72 @@ def test_numbers_are_printed_with_as_many_digits_as_asked(value, text, digits):
     assert tables.number(value, digits) == text
 
 
-def test_a_text_table_is_aligned_by_the_width_on_a_terminal():
-    lines = tables.text_table(["case", "error"], [["四節", "1e-3"], ["θ", "12"]], 1, (" ┃ ", " │ "), ("━", "━╇━"))
-    assert lines == ["case ┃ error", "━━━━━╇━━━━━━", "四節 │  1e-3", "θ    │    12"]
-    assert tables.text_table(["a", "b"], [["wide", "-"]]) == ["a     b", "wide  -"]
-
-
-def test_an_error_table_has_each_quantity_under_its_name():
-    head, [line] = tables.ERROR_HEADER, tables.error_rows([row()])
-    assert dict(zip(head, line, strict=True)) == {
-        "method": "toy default",
-        "outcome": "finished",
-        "step": "11 ms",
-        "position [m]": "1.3e-3",
-        "angle [rad]": "1.9e-3",
-        "velocity [m/s]": "3.1e-3",
-        "rate [rad/s]": "3.7e-3",
-        "gap [m]": "4.1e-3",
-        "slip [m/s]": "4.7e-3",
-        "energy [relative]": "5.3e-3",
-        "reaction [relative]": "5.9e-3",
-        "CPU [ms/s]": "67",
-    }
-
-
 def sweep(verdict: Verdict, order: float = NAN, points: int = 0, plateau: float = NAN, best: float = 1.7e-5) -> Sweep:
     return Sweep("s", "toy", "default", quantity("angle"), verdict, order, points, 0.13, plateau, 1e-7, best, 1e-3)
 
 
-@pytest.mark.parametrize(
-    ("found", "words"),
-    [
-        (sweep(Verdict.FALLS, 1.994, 4), "1.99 (±0.13, 4 points)"),
-        (sweep(Verdict.FALLS), "falls, 1.7e-5"),
-        (sweep(Verdict.PLATEAU, 1.1, 3, 2.3e-5), "1.10 (±0.13, 3 points), plateau **2.3e-5**"),
-        (sweep(Verdict.ROUNDING, 3.9, 3), "3.90 (±0.13, 3 points), then rounding"),
-        (sweep(Verdict.LEVELS, 1.1, 3), "1.10 (±0.13, 3 points), **levels off at the finest step**"),
-        (sweep(Verdict.GROWS), "**grows as the step shrinks**"),
-        (sweep(Verdict.ERRATIC), "**erratic**"),
-        (sweep(Verdict.TOO_FEW, best=NAN), "-"),
-    ],
-)
-def test_a_sweep_is_told_in_words(found, words):
-    assert tables.sweep_words(found) == words
-    lost = tables.sweep_words(found, "torn")
-    assert lost.endswith("at the finest step **torn**") if math.isfinite(found.best) else lost == words
+def tuned(step: float, **changes):
+    return row_of("mujoco tuned", step=step, **changes)
 
 
-def test_an_outcome_grid_has_every_step_and_each_cell_under_its_own():
-    rows = [
-        row_of("a x", step=1e-3, angle=1.3e-5),
-        row_of("a x", step=1e-1, outcome=Outcome.TORN, gap=1.7e-2),
-        row_of("b x", step=1e-2, outcome=Outcome.SATURATED),
-        row_of("b x", step=1e-3, outcome=Outcome.TORN, gap=NAN),
-        row_of("b x", step=1e-1, outcome=Outcome.PLATEAU, angle=2.3e-4),
-    ]
-    assert table(tables.outcome_grid(rows)) == [
-        ["method", "100 ms", "10 ms", "1 ms"],
-        ["a x", "**torn** 0.017 m", "", "1.3e-5 rad"],
-        ["b x", "2.3e-4 rad", "**saturated**", "**torn**"],
-    ]
+def at_steps() -> Iterator[list[Measurement]]:
+    """Rows of MuJoCo's documented settings: what a cell of the table at equal step has to say of them."""
+    yield falling("mujoco tuned", POWER)
+    yield falling("mujoco tuned", (1e-2, 1e-13))  # falls to rounding
+    yield falling("mujoco tuned", (1e-2, 3e-5, 2e-5, 2e-5))
+    yield falling("mujoco tuned", (1e-2, 3e-5, 2.9e-5))  # levels off
+    yield falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3))  # least at 1 ms
+    # Two errors that cancel at the second step: the limit is told, and that what lies below it is luck.
+    yield falling("mujoco tuned", (1e-2, 1e-4, 1e-3, 1.1e-3, 1.11e-3))
+    # Luck is told only of errors that stand there.
+    yield falling("mujoco tuned", (1e-2, 2e-3, 1.6e-3, 1e-5, 1.4e-3, 1.5e-3, 1.5e-3))
+    # A row at a usual step leaves the order alone.
+    yield [*falling("mujoco tuned", POWER), tuned(1e-4, angle=0.3, purpose="usual")]
+    yield [*falling("mujoco tuned", POWER[:1]), tuned(1e-2, angle=1e-4, purpose="usual"), tuned(1e-3, angle=1e-6)]
+    # What fails says so in its place, and at the finest step; at all usual steps once.
+    yield [*falling("mujoco tuned", POWER[:2]), tuned(1e-3, outcome=Outcome.TORN)]
+    failed = [tuned(10.0**-i, outcome=Outcome.SATURATED) for i in (1, 2, 3)]
+    yield failed + [tuned(10.0**-i, angle=10.0 ** (2 - i)) for i in (4, 5, 6)]
+    yield [tuned(1e-2, outcome=outcome) for outcome in (Outcome.TORN, Outcome.TORN, Outcome.RESET)]
+    # No other step stands for one that was not run.
+    moved = [row for row in falling("mujoco tuned", (*POWER, 1e-8)) if row.step not in (1e-1, 1e-3)]
+    yield [*moved, tuned(9e-2, angle=7e-3), tuned(9.95e-4, angle=8e-6)]
 
 
-def test_two_rows_that_would_stand_in_one_place_are_refused():
-    with pytest.raises(ValueError, match=r"two rows of 'a x' at a step of 10 ms"):
-        tables.outcome_grid([row_of("a x", step=1e-2), row_of("a x", step=1e-2, angle=1.0)])
+def cell_of(rows: Iterable[Measurement]) -> str:
+    (text,) = equal_step([(page_of(), list(rows))], STEPS).values()
+    head, line = table(text)
+    return line[head.index("mujoco documented settings")]
 
 
-def test_a_summary_has_each_number_under_its_name():
+def printed() -> Iterator[str]:
+    """Everything that is printed of rows, in blocks."""
+    yield "## On a terminal"
+    yield "\n".join(
+        tables.text_table(["case", "error"], [["四節", "1e-3"], ["θ", "12"]], 1, (" ┃ ", " │ "), ("━", "━╇━"))
+    )
+    yield "\n".join(tables.text_table(["a", "b"], [["wide", "-"]]))
+    yield tables.markdown(["a", "b"], [["1|2", "3\n4"]], left=1)
+    yield "## Each quantity under its name"
+    yield tables.markdown(tables.ERROR_HEADER, tables.error_rows([row()]))
+    yield "## Sweeps, and those whose finest step is torn"
+    for each in (
+        *(sweep(Verdict.FALLS, 1.994, 4), sweep(Verdict.FALLS), sweep(Verdict.PLATEAU, 1.1, 3, 2.3e-5)),
+        *(sweep(Verdict.ROUNDING, 3.9, 3), sweep(Verdict.LEVELS, 1.1, 3), sweep(Verdict.GROWS)),
+        *(sweep(Verdict.ERRATIC), sweep(Verdict.TOO_FEW, best=NAN)),
+    ):
+        yield f"- {tables.sweep_words(each)} | {tables.sweep_words(each, 'torn')}"
+    yield "## Outcomes by step"
+    yield tables.outcome_grid(
+        [
+            row_of("a x", step=1e-3, angle=1.3e-5),
+            row_of("a x", step=1e-1, outcome=Outcome.TORN, gap=1.7e-2),
+            row_of("b x", step=1e-2, outcome=Outcome.SATURATED),
+            row_of("b x", step=1e-3, outcome=Outcome.TORN, gap=NAN),
+            row_of("b x", step=1e-1, outcome=Outcome.PLATEAU, angle=2.3e-4),
+        ]
+    )
+    yield "## Summary"
     rows = [
         *falling("toy default", (1e-2, 1e-4, 1e-6)),
         row_of("toy default", step=1e-4, angle=1e-9, outcome=Outcome.TORN),
@@ -120,54 +156,72 @@ def test_a_summary_has_each_number_under_its_name():
         *falling("toy exact", (1e-3, 1e-13)),
         row_of("toy lost", outcome=Outcome.DIVERGED),
     ]
-    lines = [dict(zip(tables.SUMMARY_HEADER, line, strict=True)) for line in tables.summary_rows(rows)]
-    assert lines[0] == {
-        "method": "toy default",
-        "angle error [rad]": "1e-6",
-        "at step": "1 ms",
-        "CPU [ms/s]": "100",
-        "order": "2.0 (3)",
-        "plateau [rad]": "-",
-        "outcomes": "finished, torn",
-    }
-    assert lines[1]["plateau [rad]"] == "3e-5"
-    assert lines[2]["plateau [rad]"] == "rounding"
-    assert list(lines[3].values()) == ["toy lost", "-", "-", "-", "-", "-", "diverged"]
-
-
-def read(text: str) -> list[dict[str, str]]:
-    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
-
-
-def test_each_column_of_the_errors_is_its_field_and_none_is_missing():
-    [found] = read(csv_files.as_csv([row()], timings=False))
-    told = {f.name for f in fields(Measurement)} - {"key", "limit", *TIMINGS}
-    assert set(found) == told
-    for name in told - set(csv_files.DESCRIPTIONS):
-        value = getattr(row(), name)
-        assert found[name] == (f"{value:.4g}" if isinstance(value, float) else str(value)), name
-    assert found["parameters"] == hashlib.sha256(b"Disc(rate=2.0)").hexdigest()[:8]
-    assert found["settings"] == hashlib.sha256(b"Toy(order=2.0)").hexdigest()[:8]
-
-
-def test_rows_stand_in_the_same_order_in_both_files_whatever_order_they_came_in():
+    yield tables.markdown(tables.SUMMARY_HEADER, tables.summary_rows(rows))
+    yield "## Scenes: plain, with holders, with what is declared (2e-5 of a, 1e-6 of b: marked)"
+    known: dict[str, Any] = {"gap": 1.7e-3, "slip": NAN, "reaction": NAN}
+    rows = [*falling("a x", POWER, **known), *falling("b y", (1e-2, 3e-5, 3e-5, 3e-5), **known)]
+    rows += [row_of("c z", step=1e-3, outcome=Outcome.TORN, **known)]
+    yield scene_table(rows, "angle")
+    yield scene_table(rows, "angle", {"a x": "engine", "b y": "ours"})
+    rows = [*falling("a soft", (1e-2, 3e-5, 3e-5, 3e-5)), *falling("b wrong", (1e-2, 3e-5, 3e-5, 3e-5))]
+    yield scene_table(rows, "angle", declared=lambda method, step: 2e-5 if method == "a soft" else 1e-6)
+    yield "## Advice: the second method costs three times as much"
+    rows = [
+        *falling("a slow", (1e-1, 1e-3, 1e-5)),
+        *[replace(row, cpu=3 * row.cpu) for row in falling("a fast", (1e-5, 1e-7, 1e-10))],
+        *falling("b only", (1e-1, 1e-2, 5e-3)),
+    ]
+    yield advice_table(advice(rows, "angle"), "angle", {"a fast": "ours"})
+    yield "## Cells at equal step"
+    yield "\n".join(f"- {cell_of(rows)}" for rows in at_steps())
+    yield "## Each engine its table, each column its method, each line its scene: another error in each of twelve cells"
+    rows = [
+        row_of(f"{engine} {variant}", scene=scene, step=1e-2, angle=(10 + 3 * j + i) * factor)
+        for scene, factor in (("disc", 1e-4), ("other_disc", 1e-6))
+        for j, engine in enumerate(("pymunk", "mujoco"))
+        for i, variant in enumerate(VARIANTS)
+    ]
+    yield from equal_step([(page_of(scenes=(Disc(), OtherDisc())), rows)], {"usual": 1e-2}, "folder/").values()
+    yield "## No such joint: the engine's own columns are empty where our code alone holds the joint"
+    naive = (Held("default", by="ours"), Held("tuned", by="engine, our rows"), Held("extended", by="engine, our rows"))
+    rows = [row for variant in VARIANTS for row in falling(f"toy {variant}", POWER)]
+    other = [replace(row, scene="other_disc") for row in rows]
+    beside = [*rows, *falling("other default", POWER)]
+    yield equal_cost([(page_of(*naive, Toy("default", name="other")), beside)])
+    yield equal_cost([(page_of(*naive), rows), (page_of(*map(Toy, VARIANTS), scenes=(OtherDisc(),)), other)])
+    yield "## Not built, and no such joint where the sentence names a place in the documentation"
+    for sentence in ("it has none: https://its.documentation", "not tried"):
+        unbuilt = [
+            replace(row, outcome=Outcome.UNSUPPORTED, sentence=sentence) for row in falling("toy default", POWER)
+        ]
+        yield equal_cost([(page_of(Toy("default")), unbuilt)])
+    yield "## Cost at equal error: of the cheapest method of a column"
+    rows = [*falling("toy default", (1.0, 0.5)), *falling("toy tuned", (1e-3, 1e-5))]
+    rows += [replace(row, cpu=0.05) for row in falling("toy extended", (1e-10,))]
+    yield equal_error([(page_of(Toy("default"), *naive[1:]), rows)])["toy"]
+    yield "## CSV: sorted, whatever order rows come in"
     rows = [row_of(f"{engine} x", scene=scene, every=every) for engine in "ba" for scene in "dc" for every in (3, 1)]
     for timings in (False, True):
-        text = csv_files.as_csv(rows, timings)
-        assert text == csv_files.as_csv(rows[::-1], timings)
-        found = [(r["scene"], r["engine"], r["every"]) for r in read(text)]
-        assert found == sorted((r.scene, r.engine, str(r.every)) for r in rows)
+        yield csv_files.as_csv(rows[::-1], timings, header="a date\na machine")
+        assert csv_files.as_csv(rows, timings) == csv_files.as_csv(rows[::-1], timings)
+    yield csv_files.descriptions_csv([row(), row(angle=1.0), row(settings="Toy(order=4.0)")])
 
 
-def test_descriptions_have_each_digest_once_with_its_text_and_what_it_is_of():
-    rows = [row(), row(angle=1.0), row(settings="Toy(order=4.0)")]
-    found = read(csv_files.descriptions_csv(rows))
-    assert [(line["of"], line["description"]) for line in found] == [
-        ("parameters", "Disc(rate=2.0)"),
-        ("settings", "Toy(order=2.0)"),
-        ("settings", "Toy(order=4.0)"),
-    ]
-    assert all(line["digest"] == csv_files.digest(line["description"], csv_files.SHORT) for line in found)
+def test_what_is_printed_of_rows_is_as_it_was(golden):
+    text = "\n\n".join(printed())
+    golden("tables.md", text)
+    for described in ("Disc(rate=2.0)", "Toy(order=2.0)"):
+        assert hashlib.sha256(described.encode()).hexdigest()[:8] in text
+
+
+def test_the_order_of_rows_changes_no_cell():
+    for rows in list(at_steps())[:-2]:  # outcomes alone stand in the order of their rows
+        assert cell_of(rows[::-1]) == cell_of(rows)
+
+
+def test_two_rows_that_would_stand_in_one_place_are_refused():
+    with pytest.raises(ValueError, match=r"two rows of 'a x' at a step of 10 ms"):
+        tables.outcome_grid([row_of("a x", step=1e-2), row_of("a x", step=1e-2, angle=1.0)])
 
 
 @pytest.fixture
@@ -190,7 +244,6 @@ def test_the_versions_are_those_of_the_packages_they_stand_beside(other_versions
     other_versions.setattr(platform, "python_version", lambda: "3.99")
     compiled = ", numba not installed" if loading.installed() else ""
     assert versions() == f"Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed{compiled}"
-    assert still_installed("Python 3.99, scipy 2.2")
     assert still_installed("Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed")
     assert not still_installed("Python 3.99, scipy 2.3")
     assert not still_installed("Python 3.99, scipy 2.2, another 1.0")
@@ -206,5 +259,121 @@ def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):
     assert "/" not in told.replace("w/", "")
 
 
-def test_bars_and_line_ends_do_not_break_a_table():
-    assert tables.markdown(["a", "b"], [["1|2", "3\n4"]], left=1) == "| a | b |\n| --- | --: |\n| 1\\|2 | 3 4 |"
+COLUMNS: tuple[tuple[str, Holder, Column], ...] = (
+    ("default", "engine", Column.SHIPPED),
+    ("default", "ours", Column.NAIVE),
+    ("tuned", "engine", Column.SETTINGS),
+    ("tuned", "engine, our rows", Column.CODE),
+    ("stiffer", "engine", Column.SETTINGS),
+    ("extended", "engine", Column.CODE),
+    ("extended", "ours", Column.NAIVE),
+)
+
+
+def test_who_holds_the_joints_decides_in_which_column_a_method_stands():
+    for variant, by, column in COLUMNS:
+        assert column_of(Disc(), Held(variant, by=by)) is column
+    cells = [Cell(FREE, Held("x", by="ours"), 1), Cell(FREE, Held("x"), 1), Cell(FREE, Held("x", by="ours"), 10)]
+    assert holders(cells) == {"toy x": "ours or engine"}
+
+
+def test_a_users_trick_does_not_bear_the_usual_name_of_an_engine_on_any_page():
+    assert [told_variant(scene, pymunk.DEFAULT) for scene in (FREE, SLEIGH)] == ["default", "naive"]
+    assert told_variant(SLEIGH, mujoco.DEFAULT) == "default"  # a contact of its own
+    tricks = [told_variant(SLEIGH, Held(variant, by="ours")) for variant in ("default", "tuned")]
+    assert tricks == ["naive", "naive, tuned"]  # rows of one name would be taken for one method
+    assert told_variant(SLEIGH, SKATE_POINT) == SKATE_POINT.variant
+    cell = Cell(SLEIGH, pymunk.DEFAULT, 1)
+    assert told_rows({cell: row_of("pymunk default")})[cell].method == "pymunk naive"
+    # A stand-in for documented settings is named, and a usual variant is not.
+    (line,) = (
+        line
+        for line in lines([(SKATE, falling("mujoco default", POWER, "position", scene="sleigh"))])
+        if line.engine == "mujoco"
+    )
+    assert means(line, Column.SETTINGS) == ", contact, *friction blade*"
+    assert means(line, Column.SHIPPED) == ", contact"
+    assert means(line, Column.CODE) == ""
+
+
+def test_within_a_cpu_time_the_least_error_counts_that_no_smaller_step_exceeds():
+    rows = falling("mujoco tuned", (1e-2, 1e-5, 1e-3, 1e-6))  # they cost 1, 10, 100 and 1000 ms; the second is luck
+    for cost, error in ((0.1, 1e-3), (0.01, 1e-3), (0.001, 1e-2), (0.0009, math.inf), (9.0, 1e-6)):
+        assert error_within(rows, "angle", cost) == error
+    torn = [*rows[:3], replace(rows[3], outcome=Outcome.TORN)]
+    assert error_within(torn, "angle", 9.0) == math.inf
+
+
+def test_a_line_of_the_picture_never_runs_backwards():
+    rough = falling("mujoco extended", (1e-2, 1e-5, 1e-7))
+    rough[0] = replace(rough[0], cpu=0.05)  # a rough run made the largest step dearer than the next
+    points = reached([rough, falling("mujoco tuned", (1e-1, 1e-3, 1e-3))], "angle")
+    assert points == sorted(points)
+    assert [error for _, error in points] == sorted((error for _, error in points), reverse=True)
+    assert min(error for _, error in points) == 1e-7
+
+
+def test_a_small_error_at_a_coarse_step_that_a_finer_one_does_not_keep_is_luck():
+    lucky = falling("a lucky", (1e-5, 1e-2, 1e-3))
+    assert [row.step for row in reliable(lucky, "angle", 1e-2)] == [1e-3, 1e-2, 1e-1]
+    assert [row.step for row in reliable(lucky, "angle", 5e-3)] == [1e-3]
+    assert reliable(lucky, "angle", 1e-4) == []
+    for change in ({"outcome": Outcome.TORN}, {"angle": NAN}):
+        assert reliable([*lucky[:2], replace(lucky[2], **change)], "angle", 1.0) == []
+
+
+def test_of_costs_that_are_equal_within_their_scatter_the_first_method_of_the_page_is_advised():
+    late, early = row_of("a late", angle=1e-10, cpu=1.0), row_of("a early", angle=1e-10, cpu=1.2)
+    for rows, order, expected in (
+        ((late, early), ("a early", "a late"), "a early"),
+        ((late, early), ("a late", "a early"), "a late"),
+        ((late, replace(early, cpu=1.3)), ("a early", "a late"), "a late"),
+    ):
+        (found,) = advice(rows, "angle", order)
+        assert present(found.row).method == expected
+    # Methods are compared at the step that is nearest by its ratio.
+    assert compared_step([row_of("a x", step=step) for step in (3e-4, 2.9e-3)]) == 2.9e-3
+
+
+def test_an_experiment_in_which_nothing_was_compared_says_so():
+    @dataclass(frozen=True)
+    class Ended(Disc):
+        @property
+        def comparable_until(self) -> float:  # type: ignore[override]
+            return 0.0
+
+    cell = Cell(Ended(), Toy(), 1, "failure")
+    row = row_of("toy default", angle=0.0)
+    assert math.isnan(compared_only(cell, row).angle)
+    assert compared_only(cell, row).gap == row.gap
+    assert compared_only(replace(cell, scene=Disc()), row) == row
+    told = told_experiment(Failure("T", "E", (cell,)), Material({cell: row}))
+    assert "- rad" in told.grid
+    assert "0 rad" not in told.grid
+
+
+@dataclass(frozen=True)
+class Soft(Plain):
+    name: str = "toy"
+    variant: str = "soft"
+    share: float = COMPLIANCE
+
+    def build(self, mechanism, dt):
+        raise NotImplementedError
+
+    def softness(self, mechanism, dt):
+        return Softness(STIFFNESS, DAMPING, self.share, (True,) * mechanism.row_count)
+
+
+def test_what_is_declared_is_in_proportion_to_the_judges_own_softness():
+    scene, engine = FreeFourBar(duration=0.1), Soft()
+    (task,) = soft_tasks(scene, (engine,))
+    answers: dict[Task, Answer] = {task: answered(task)}
+    own = answers[task].number("angle")
+    assert own > 0
+    assert declared_error(answers, scene, engine, "angle", 1e-3) == pytest.approx(own)
+    softer = replace(engine, share=3 * COMPLIANCE)
+    assert declared_error(answers, scene, softer, "angle", 1e-3) == pytest.approx(3 * own)
+    assert math.isnan(declared_error({}, scene, engine, "angle", 1e-3))
+    assert math.isnan(declared_error({task: Answer(Outcome.ABORTED)}, scene, engine, "angle", 1e-3))
+    assert declared_error({}, scene, Toy(), "angle", 1e-3) == 0
