@@ -9,6 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,15 +60,18 @@ class Task(ABC):
     An answer is stale when a file of ours changes.
     """
 
-    @property
-    @abstractmethod
-    def cost(self) -> float:
-        """About how long it takes [s]; an estimate, the same on every machine."""
+    seconds: ClassVar[float] = 1.0  # about how long it takes, where that does not depend on the fields
+    words: ClassVar[str] = "{0!r}"  # the label, a format of the task
 
     @property
-    @abstractmethod
+    def cost(self) -> float:
+        """About how long it takes [s]; an estimate, the same on every machine."""
+        return self.seconds
+
+    @property
     def label(self) -> str:
         """A few words for the line of progress."""
+        return self.words.format(self)
 
     @property
     def engine(self) -> Engine | None:

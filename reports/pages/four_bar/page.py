@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -40,15 +40,12 @@ class PrintedRates(Task):
 
     revolutions: int
     tolerance: float
+    words: ClassVar[str] = "printed rates over {0.revolutions} revolutions at {0.tolerance:g}"
 
     @property
     def cost(self) -> float:
         # About a hundred evaluations a revolution at 1e-3; a method of order 5 takes steps as the fifth root.
         return self.revolutions * 100 * (1e-3 / self.tolerance) ** 0.2 * EVALUATION
-
-    @property
-    def label(self) -> str:
-        return f"printed rates over {self.revolutions} revolutions at {self.tolerance:g}"
 
     def run(self) -> Values:
         """`error`: the largest of beta [rad]; `evaluations` of the rates; `stopped`: why, if before the end."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -33,14 +33,11 @@ class Neighbours(Task):
 
     scene: LinkPendulum
     times: tuple[float, ...]
+    words: ClassVar[str] = "neighbouring starts of {0.scene.name}"
 
     @property
     def cost(self) -> float:
         return 0.3 * max(self.times)  # measured on two links: three neighbours and the motion itself, for 12 s
-
-    @property
-    def label(self) -> str:
-        return f"neighbouring starts of {self.scene.name}"
 
     def run(self) -> Values:
         """`growth` (times,): how many times larger a small difference of the start has become."""

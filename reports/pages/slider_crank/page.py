@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -35,13 +35,8 @@ class Leaving(Task):
 
     angle: float
 
-    @property
-    def cost(self) -> float:
-        return 0.4  # measured
-
-    @property
-    def label(self) -> str:
-        return f"leaving a dead centre from {self.angle:g} rad"
+    seconds: ClassVar[float] = 0.4  # measured
+    words: ClassVar[str] = "leaving a dead centre from {0.angle:g} rad"
 
     def run(self) -> Values:
         """`when`: the first of INSTANTS over the scene's duration at which the crank is further than FAR [s]."""

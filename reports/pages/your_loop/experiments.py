@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from math import inf, nan, pi
-from typing import Any, cast
+from typing import Any, ClassVar, cast
 
 import numpy as np
 import pymunk
@@ -75,10 +75,7 @@ class Fresh(Task):
     method: Engine
     quantity: str = "angle"
     commit: str = COMMIT
-
-    @property
-    def cost(self) -> float:
-        return 20.0
+    seconds: ClassVar[float] = 20.0
 
     @property
     def label(self) -> str:
@@ -121,13 +118,8 @@ class BeforeAndAfter(Task):
     linkage: str
     lines: str
 
-    @property
-    def cost(self) -> float:
-        return 20.0
-
-    @property
-    def label(self) -> str:
-        return f"with the lines: {self.linkage}"
+    seconds: ClassVar[float] = 20.0
+    words: ClassVar[str] = "with the lines: {0.linkage}"
 
     def run(self) -> Values:
         """`gap` (2,) [px], as shipped and with the lines, and `angle` (2,) [rad] beside the exact solver, NaN where

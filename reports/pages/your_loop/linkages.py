@@ -1,14 +1,18 @@
 """Planar linkages as users of pymunk build them: in pixels, y up, mostly from rest; each function makes a new space.
 
 A linkage is written as points by letter and links as words of these letters: "BPQ" is one body of three thin bars, and
-a letter that two words share is a pivot. LINKAGES has all of them by name.
+a letter that two words share is a pivot. Those of bars alone are data, `linkages.toml`. LINKAGES has all by name.
 """
 
 from __future__ import annotations
 
 import itertools
+import tomllib
 from collections.abc import Callable, Mapping
+from functools import cache, partial
 from math import cos, hypot, inf, pi, sin, sqrt
+from pathlib import Path
+from typing import Any
 
 import pymunk
 from pymunk import Body, Space, Vec2d
@@ -85,22 +89,21 @@ def assemble(
     return bodies
 
 
-def ball(space: Space, at: Vec2d, mass: float, radius: float, group: int = 1) -> Body:
-    body = Body(mass, pymunk.moment_for_circle(mass, 0, radius))
+def _loose(space: Space, at: Vec2d, body: Body, shape: pymunk.Shape, group: int) -> Body:
     body.position = at
-    shape = pymunk.Circle(body, radius)
     shape.filter, shape.friction = pymunk.ShapeFilter(group=group), 1.0
     space.add(body, shape)
     return body
+
+
+def ball(space: Space, at: Vec2d, mass: float, radius: float, group: int = 1) -> Body:
+    body = Body(mass, pymunk.moment_for_circle(mass, 0, radius))
+    return _loose(space, at, body, pymunk.Circle(body, radius), group)
 
 
 def box(space: Space, at: Vec2d, mass: float, size: tuple[float, float], group: int = 1) -> Body:
     body = Body(mass, pymunk.moment_for_box(mass, size))
-    body.position = at
-    shape = pymunk.Poly.create_box(body, size)
-    shape.filter, shape.friction = pymunk.ShapeFilter(group=group), 1.0
-    space.add(body, shape)
-    return body
+    return _loose(space, at, body, pymunk.Poly.create_box(body, size), group)
 
 
 def floor(space: Space, height: float = 0.0) -> None:
@@ -115,39 +118,35 @@ def slide(space: Space, base: Body, head: Body, along: Vec2d, reach: float) -> N
     space.add(GrooveJoint(base, head, ends[0], ends[1], (0, 0)))
 
 
-def four_bar() -> Space:
-    space = new_space()
-    assemble(space, points(A=(0, 0), B=(0, 50), C=(120, 90), D=(110, 0)), "AB BC CD", "AD")
-    return space
+@cache
+def _plans() -> dict[str, dict[str, Any]]:
+    return tomllib.loads(Path(__file__).with_name("linkages.toml").read_text(encoding="utf-8"))
 
 
-def driven_four_bar() -> Space:
-    """A windscreen wiper: a crank turns and a rocker swings."""
-    space = new_space()
-    bodies = assemble(space, points(A=(0, 0), B=(0, 40), C=(150, 100), D=(140, 0)), "AB BC CD", "AD")
-    motor(space, space.static_body, bodies["AB"], 6.0)
-    return space
+def planned(*names: str) -> dict[str, Callable[[], Space]]:
+    """Linkages of `linkages.toml` by name."""
+    return {name: partial(_from_plan, name) for name in names}
 
 
-def parallelogram_wipers() -> Space:
-    space = new_space()
-    where = points(A=(0, 0), B=(20, 60), C=(140, 60), D=(120, 0), E=(30, 160), F=(150, 160))
-    assemble(space, where, "ABE BC CDF", "AD")
-    return space
-
-
-def watt_six_bar() -> Space:
-    space = new_space()
-    where = points(A=(0, 0), B=(0, 50), C=(120, 90), D=(110, 0), E=(90, 150), F=(200, 160), G=(220, 20))
-    assemble(space, where, "AB BC CDE EF FG", "ADG")
-    return space
-
-
-def stephenson_six_bar() -> Space:
-    space = new_space()
-    where = points(A=(0, 0), B=(0, 35), C=(130, 90), D=(120, 0), E=(60, 150), F=(230, 140), G=(230, 10))
-    bodies = assemble(space, where, "AB BCE CD EF FG", "ADG")
-    motor(space, space.static_body, bodies["AB"], 4.0)
+def _from_plan(name: str) -> Space:
+    plan, space = _plans()[name], new_space()
+    where = points(**plan["points"])
+    bodies = assemble(space, where, plan["links"], plan["ground"], density=plan.get("density", DENSITY))
+    bodies["ground"] = space.static_body
+    for load in plan.get("loads", ()):
+        at, mass = where[load["at"]], load["mass"]
+        hung = ball(space, at, mass, load["ball"]) if "ball" in load else box(space, at, mass, tuple(load["box"]))
+        pin(space, bodies[load["link"]], hung, at)
+    if "motor" in plan:
+        motor(space, space.static_body, bodies[plan["motor"]["link"]], plan["motor"]["rate"])
+    if "gear" in plan:
+        a, b = plan["gear"]["links"]
+        space.add(GearJoint(bodies[a], bodies[b], 0.0, plan["gear"]["ratio"]))
+    for spring in plan.get("springs", ()):
+        (a, b), (at, other) = (bodies[word] for word in spring["links"]), spring["ends"]
+        length = hypot(at[0] - other[0], at[1] - other[1])
+        space.add(DampedSpring(a, b, a.world_to_local(at), b.world_to_local(other), length, 3000.0, 20))
+    space.gravity = tuple(plan.get("gravity", GRAVITY))
     return space
 
 
@@ -387,34 +386,6 @@ def cable_crane() -> Space:
     return space
 
 
-def excavator(stiffness: float = 3000.0) -> Space:
-    """Boom, stick and bucket, the bucket on a four-bar, with springs for cylinders."""
-    space = new_space()
-    where = points(A=(0, 0), B=(120, 120), C=(200, 40), E=(215, 80), G=(190, 70), H=(225, 45), K=(240, 0))
-    bodies = assemble(space, where, "AB BCG GE EH CHK", "A", density=0.05)
-    boom, stick = bodies["AB"], bodies["BCG"]
-
-    def spring(a: Body, b: Body, at: tuple[float, float], other: tuple[float, float]) -> None:
-        ends = a.world_to_local(at), b.world_to_local(other)
-        length = hypot(at[0] - other[0], at[1] - other[1])
-        space.add(DampedSpring(a, b, *ends, length, stiffness, 20))
-
-    spring(space.static_body, boom, (60, -20), (80, 80))
-    spring(boom, stick, (60, 110), (150, 130))
-    spring(stick, bodies["GE"], (140, 100), (205, 76))
-    return space
-
-
-def trebuchet() -> Space:
-    """An arm, a counterweight that hangs on it, and a sling with a stone."""
-    space = new_space()
-    where = points(A=(0, 100), B=(50, 140), C=(-150, -20), D=(50, 90), E=(-80, -20))
-    bodies = assemble(space, where, "BAC BD CE", "A", density=0.03)
-    pin(space, bodies["BD"], box(space, where["D"], 40, (40, 40)), where["D"])
-    pin(space, bodies["CE"], ball(space, where["E"], 0.8, 6), where["E"])
-    return space
-
-
 def scissor_lift(stages: int) -> Space:
     """Crossed bars above each other; one foot slides, and the whole sinks under a platform."""
     space = new_space()
@@ -433,13 +404,6 @@ def scissor_lift(stages: int) -> Space:
     platform = box(space, Vec2d(width / 2, stages * height + 8), 2.0, (width, 10))
     pin(space, feet[0], platform, Vec2d(0, stages * height))
     space.add(GrooveJoint(platform, feet[1], (-60, -8), (200, -8), feet[1].world_to_local((width, stages * height))))
-    return space
-
-
-def pantograph() -> Space:
-    space = new_space()
-    where = points(A=(0, 0), B=(80, 80), C=(160, 0), D=(40, 40), E=(120, 40), F=(80, 0))
-    assemble(space, where, "ADB BEC DF FE", "A")
     return space
 
 
@@ -474,15 +438,6 @@ def pumpjack() -> Space:
     return space
 
 
-def geared_mixer() -> Space:
-    """Two wheels in gear; bars from both meet: a geared five-bar."""
-    space = new_space()
-    where = points(A=(0, 0), B=(0, 30), C=(60, 110), D=(140, 30), E=(120, 0))
-    bodies = assemble(space, where, "AB BC CD DE", "AE")
-    space.add(GearJoint(bodies["AB"], bodies["DE"], 0.0, -1.0))
-    return space
-
-
 def welded_beam() -> Space:
     """A cantilever of boxes that pivots and gears weld, with a weight at its end."""
     space = new_space()
@@ -492,20 +447,6 @@ def welded_beam() -> Space:
         pin(space, before, part, Vec2d(30 * number, 0))
         space.add(GearJoint(before, part, 0.0, 1.0))
         before = part
-    return space
-
-
-def mobile() -> Space:
-    """A tree of hanging bars, knocked at one end."""
-    space = new_space()
-    where = points(
-        A=(0, 0), B=(0, -30), C=(-60, -30), D=(60, -30), E=(-60, -60), F=(60, -60), G=(-90, -60), H=(-30, -60),
-        K=(30, -60), L=(90, -60),
-    )  # fmt: skip
-    bodies = assemble(space, where, "AB CBD CE DF GEH KFL", "A")
-    for word, letter in (("GEH", "G"), ("GEH", "H"), ("KFL", "K"), ("KFL", "L")):
-        pin(space, bodies[word], ball(space, where[letter], 0.5, 6), where[letter])
-    space.gravity = (300, -850)  # the whole is let go askew
     return space
 
 
@@ -551,21 +492,14 @@ def folding_chair() -> Space:
     return space
 
 
-def double_rocker_swing() -> Space:
-    """A swing on two ropes of bars with a child that hangs below."""
-    space = new_space()
-    where = points(A=(0, 200), B=(40, 100), C=(100, 100), D=(60, 200), E=(70, 60))
-    bodies = assemble(space, where, "AB BCE CD", "AD")
-    pin(space, bodies["BCE"], ball(space, where["E"], 5.0, 10), where["E"])
-    return space
-
-
 LINKAGES: Mapping[str, Callable[[], Space]] = {
-    "four-bar": four_bar,
-    "four-bar with a motor": driven_four_bar,
-    "pair of wipers (parallelogram)": parallelogram_wipers,
-    "six-bar of Watt": watt_six_bar,
-    "six-bar of Stephenson with a motor": stephenson_six_bar,
+    **planned(
+        "four-bar",
+        "four-bar with a motor",
+        "pair of wipers (parallelogram)",
+        "six-bar of Watt",
+        "six-bar of Stephenson with a motor",
+    ),
     "piston in a groove": lambda: engine(1, 0.0),
     "piston in a groove with a motor": lambda: engine(1, 8.0),
     "radial engine of three pistons": lambda: engine(3, 8.0),
@@ -586,18 +520,17 @@ LINKAGES: Mapping[str, Callable[[], Space]] = {
     "car with a trailer": tow_truck,
     "crane with a load on a rope": crane,
     "crane with a load on a PinJoint": cable_crane,
-    "excavator": excavator,
-    "trebuchet": trebuchet,
+    **planned("excavator", "trebuchet"),
     "scissor lift of one stage": lambda: scissor_lift(1),
     "scissor lift of three stages": lambda: scissor_lift(3),
-    "pantograph": pantograph,
+    **planned("pantograph"),
     "Peaucellier's linkage": peaucellier,
     "pumpjack": pumpjack,
-    "geared five-bar": geared_mixer,
+    **planned("geared five-bar"),
     "beam of welds": welded_beam,
-    "mobile": mobile,
+    **planned("mobile"),
     "tank track on the ground": tank_track,
     "cyclist": cyclist,
     "folding chair": folding_chair,
-    "swing on two ropes": double_rocker_swing,
+    **planned("swing on two ropes"),
 }
