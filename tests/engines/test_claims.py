@@ -16,7 +16,6 @@ import pytest
 from engines import CLAIM, Engine, Unpromised, Unsupported, bullet, exudyn, method_name, mujoco, pymunk
 from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts
 from engines.lagrange import TRUTH
-from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.solver_check import _lost
 from engines.mujoco.stiffness import Hardened
 from reference.forces import Spring
@@ -213,14 +212,6 @@ def test_mechanisms_that_were_difficult_are_right_or_unresolved(case: Known) -> 
         assert error < estimate < case.factor * error
     else:
         assert error < case.error
-
-
-def test_in_mujoco_every_run_that_decides_or_estimates_is_part_of_the_stepping(monkeypatch: pytest.MonkeyPatch) -> None:
-    # As many seconds as steps: 200 and, twice as long, 100; where these do not decide, 400 of half the length.
-    stepped = MuJoCoRun._step
-    monkeypatch.setattr(MuJoCoRun, "_step", lambda run, counts: (*stepped(run, counts)[:3], float(counts[-1])))
-    assert mujoco.EXTENDED.build(mechanism(11, 0, HELD), STEP)(2, 100).stepping == 300.0
-    assert mujoco.EXTENDED.build(mechanism(3, 134, EVERY), STEP)(2, 100).stepping == 700.0
 
 
 @pytest.mark.parametrize("number", [120, 134], ids=["usual", "unresolved"])

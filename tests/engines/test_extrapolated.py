@@ -110,16 +110,6 @@ def test_an_error_in_the_named_powers_vanishes_from_poses_twists_and_reactions()
         assert not any("no series" in words for each in told for words in each.warnings)
 
 
-def test_the_estimate_is_above_the_error_and_falls_with_the_step():
-    method = Extrapolated(Toy({2: 1.0, 3: -2.0, 4: 1.0}), "extended", (1, 2, 3), (2, 3))
-    coarse, fine = method.build(sledge(), 0.1)(10, 3), method.build(sledge(), 0.01)(10, 30)
-    for trajectory in (coarse, fine):
-        assert trajectory.estimate is not None
-        assert trajectory.estimate.shape == trajectory.pose.shape
-        assert errors(trajectory)[0] < trajectory.estimate.max()
-    assert present(fine.estimate).max() < 1e-2 * present(coarse.estimate).max()  # ten times finer, order three
-
-
 def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_on():
     # As if all but the finest had passed a singular position the other way at t = 2 s.
     turned = Extrapolated(Toy(turned_above=0.03), "extended", (1, 2, 3, 4), (2, 3, 4)).build(sledge(), 0.1)(10, 3)

@@ -110,18 +110,6 @@ def test_where_a_table_has_no_cell_numpy_goes_on(monkeypatch):
     np.testing.assert_array_equal(found.reaction, expected.reaction)
 
 
-@pytest.mark.parametrize("spacing", [0.01, 0.2])
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-10, 1e-13])
-def test_steps_of_their_own_size_hold_the_tolerance_at_samples_near_and_far(tolerance, spacing):
-    scene = FreeFourBar()
-    run = Lagrange(tolerance=tolerance).build(scene.mechanism(), spacing)(round(1 / spacing), 1)
-    truth = scene.motion(run.t)
-    # Some ten to a hundred steps, each with a tenth of the tolerance, in a motion that amplifies errors a few times.
-    assert np.max(np.abs(run.pose - truth.pose)) < 3 * tolerance
-    assert np.max(np.abs(scene.mechanism().gap(run.pose, run.t))) < 1e-14
-    assert run.warnings == ()
-
-
 @pytest.mark.parametrize("compiled", [True, False])
 def test_a_pendulum_that_no_step_can_follow_is_told_and_ends(compiled, monkeypatch):
     monkeypatch.setattr("engines.lagrange.dynamics.MOST_STEPS", 200)  # of the interpreted path: reached as well, sooner
