@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from reference.joints import Drive, Joint, Pin
 from reference.mechanism import Body, Mechanism
+from reference.rolling.curves import Circle
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
 from reference.scenes.four_bar.scenes import OverdrivenFourBar, Parallelogram
 from reference.scenes.many_links import LongPendulum, SpinningRing
 from reference.scenes.rolling.scenes import DiscInHole, SquareOnCatenaries
@@ -57,3 +62,13 @@ def pendulum(angle: float = -np.pi / 2 + 1.0, rate: float = 0.0, length: float =
     end = (length * np.cos(angle), length * np.sin(angle))
     body = bar("bar", (0.0, 0.0), end, rate=rate)
     return Mechanism((body,), (Pin("A", None, "bar", (0.0, 0.0), (-length / 2, 0.0)),), (0.0, -9.81))
+
+
+def rolling_disc(
+    rolling: Rolling, rate: float = 0.0, name: str = "disc", first: str | None = None
+) -> tuple[Body, Roll]:
+    """A disc of 1 kg whose circle rolls at `rate` [rad/s] on a curve of `first` or the ground; and its joint."""
+    x, y, angle = (float(value) for value in rolling.pose(rolling.theta))
+    vx, vy = (float(value) for value in rolling.velocity(rolling.theta, rate))
+    inertia = cast(Circle, rolling.body).radius ** 2 / 2
+    return Body(name, 1.0, inertia, (x, y, angle), (vx, vy, rate)), Roll(f"{name} rolls", first, name, rolling)

@@ -15,13 +15,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import Engine, method_name, mujoco, pymunk
+from engines import Engine, Unsupported, method_name, mujoco, pymunk
 from engines.lagrange import TRUTH
 from engines.mujoco import Hardened
-from engines.mujoco.methods import SKATES, SLOTS
+from engines.mujoco.methods import ROLLS, SKATES, SLOTS
 from engines.pymunk import methods
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
+from reference.rolling.curves import Circle, Line
+from reference.rolling.kinematics import Rolling
 from reference.scene import Scene
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.scenes.n_four_bar import NFourBar, TenFourBars
@@ -42,7 +44,7 @@ from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCr
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import Trajectory
-from tests.mechanisms import bar, four_bar
+from tests.mechanisms import bar, four_bar, rolling_disc
 
 SPACING = 1e-2  # s, between samples
 FREE_COORDINATES = replace(mujoco.EXTENDED, variant="free coordinates", coordinates="free")
@@ -185,7 +187,7 @@ def on(engine: Engine, subjects: Iterable[Scene | Mechanism], every: int = 10, *
 
 MOVING = four_bar(10.0)
 FREE, DRIVEN, SLIDER, SLEIGH = FreeFourBar(), DrivenFourBar(), DrivenSliderCrank(), ChaplyginSleigh()
-ROLLS = (RollingEllipse(), RollingDisc(), RollingInRing(), RollingOnCircle(), RollingCam(), RollingDownhill())
+ROLLING = (RollingEllipse(), RollingDisc(), RollingInRing(), RollingOnCircle(), RollingCam(), RollingDownhill())
 SLEIGHS = (*(ChaplyginSleigh(offset=offset) for offset in (0.5, -0.2, 0.0)), ChaplyginSleigh(turning_rate=-1.0))
 CHAINS = (PointPendulum(), TenLinks(), NFourBar(), TenFourBars(), TwoFeet(), SLIDER, FreeSliderCrank())
 OF_PYMUNK = (
@@ -201,8 +203,8 @@ OF_PYMUNK = (
     Row(pymunk.LEAPFROG, elbow(), pose=2e-5, reaction=1e-3, since=25),
     Row(pymunk.EXTENDED, elbow(), pose=1e-12, reaction=1e-7),
     # The first samples have what is left of the first steps, which is no series in the step.
-    *on(pymunk.EXTENDED, ROLLS, 3, pose=1e-11, reaction=1e-8, since=2),
-    *on(methods.ROLL_PIVOT, ROLLS[:2], order=(2,), room=0.2),
+    *on(pymunk.EXTENDED, ROLLING, 3, pose=1e-11, reaction=1e-8, since=2),
+    *on(methods.ROLL_PIVOT, ROLLING[:2], order=(2,), room=0.2),
     # 3e-11 here; 7e-10 if the contact is foreseen as on a ground that rests.
     Row(pymunk.EXTENDED, EllipticGears(), pose=1e-10, span=2.0),
     Row(methods.SKATE_PROJECTED, SLEIGH, order=(1,), span=3.0),
@@ -311,3 +313,44 @@ def test_a_construction_reaches_what_the_table_says_and_no_more(row: Row) -> Non
         if order is not None:
             assert np.log2(coarse / fine) / 2 == pytest.approx(order, abs=row.room)
     assert finer[0] > row.floor
+
+
+# ------------------------------------------------------------------------------------- what a construction can not do
+
+
+def disc_on_a_plank() -> Mechanism:
+    disc, roll = rolling_disc(Rolling.at_arcs(Circle(0.1), Line()), first="plank")
+    return Mechanism((Body("plank", 1.0, 1.0, (0.0, 0.0, 0.0)), disc), (roll,))
+
+
+def twice_driven(*pins: Pin) -> Mechanism:
+    drives = (Drive(name, None, "one", 1.0, 0.0) for name in ("first", "second"))
+    return Mechanism((Body("one", 1.0, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),), (*pins, *drives))
+
+
+HUB = Pin("A", None, "one", (0.0, 0.0), (0.0, 0.0))
+REFUSED = (
+    *((engine, RollingInRing(), "a Ring is hollow") for engine in (pymunk.DEFAULT, pymunk.TUNED)),
+    *((engine, RollingInRing(), "no hollow side") for engine in (mujoco.DEFAULT, mujoco.TUNED, *ROLLS)),
+    *((engine, RollingCam(), "no shape like a cam") for engine in (mujoco.DEFAULT, mujoco.TUNED, *ROLLS)),
+    (mujoco.DEFAULT, disc_on_a_plank(), "planes are fixed to the ground"),
+    *((engine, blade_on_a_board(), "on the ground only") for engine in (methods.SKATE_CENTRE, methods.SKATE_PROJECTED)),
+    *((engine, blade_on_a_board(), "runs on the body 'board'") for engine in (mujoco.DEFAULT, BLADE)),
+    # A crank, and a body that can only turn as driven.
+    *(
+        (pymunk.TUNED, twice_driven(*pins), "'second' joins two bodies whose motion is already")
+        for pins in ((HUB,), ())
+    ),
+    (mujoco.EXTENDED, twice_driven(HUB), "another drive turns already"),
+    (OVERWRITTEN, far_drive(), "'coupler' against the ground is a sum of coordinates"),
+    *(
+        (replace(mujoco.EXTENDED, **{setting: value}), SLEIGH, "dense")
+        for setting, value in (("jacobian", "auto"), ("jacobian", "sparse"), ("islands", True))
+    ),
+)
+
+
+@pytest.mark.parametrize(("engine", "subject", "sentence"), REFUSED, ids=lambda value: getattr(value, "variant", None))
+def test_what_a_construction_can_not_do_is_refused_in_a_sentence(engine, subject, sentence) -> None:
+    with pytest.raises(Unsupported, match=sentence):
+        engine.build(subject if isinstance(subject, Mechanism) else subject.mechanism(), 1e-3)

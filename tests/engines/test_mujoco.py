@@ -12,7 +12,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from engines import Unsupported
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, Hardened, MuJoCo, Shipped, TiedToStep
 from engines.mujoco.methods import SLOTS
 from engines.mujoco.releases import MARK, known_wrong
@@ -295,15 +294,6 @@ def test_a_reset_is_noticed_and_the_samples_after_it_are_not_numbers(tmp_path, m
     assert np.isnan(motion.reaction[1:]).all()
     assert any("QVEL" in warning for warning in motion.warnings)
     assert list(tmp_path.iterdir()) == []  # MuJoCo would write MUJOCO_LOG.TXT beside whatever it is run from
-
-
-def test_two_drives_of_one_joint_are_unsupported() -> None:
-    mechanism = four_bar(crank_rate=10.0, drive=10.0)
-    second = replace(mechanism.joints[-1], name="again")
-    with pytest.raises(Unsupported, match="another drive turns already"):
-        EXTENDED.build(replace(mechanism, joints=(*mechanism.joints, second)), 1e-3)
-    with pytest.raises(Unsupported, match="'coupler' against the ground is a sum of coordinates"):
-        replace(EXTENDED, drive="overwrite").build(far_drive(), 1e-3)
 
 
 @pytest.mark.parametrize(("version", "reason"), [("3.6.0", "velocity term"), ("4.0.0", "Hessian")])

@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import replace
 from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
 
-from engines import Unsupported
 from engines.mujoco import EXTENDED
 from engines.mujoco.construction import WrittenJoint
 from engines.mujoco.user_rows import RowWriter
@@ -170,9 +168,3 @@ def test_the_callback_is_as_it_was_even_after_a_failure() -> None:
     assert mujoco.get_mjcb_control() is None
     run(2, 1)
     assert mujoco.get_mjcb_control() is None
-
-
-@pytest.mark.parametrize("setting", [{"jacobian": "auto"}, {"jacobian": "sparse"}, {"islands": True}], ids=str)
-def test_rows_are_not_written_where_the_solver_would_not_read_them(setting: dict[str, Any]) -> None:
-    with pytest.raises(Unsupported, match="dense"):
-        replace(EXTENDED, **setting).build(SLEIGH.mechanism(), 1e-3)

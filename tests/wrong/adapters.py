@@ -12,7 +12,7 @@ import numpy as np
 from engines import Around, Engine, Run, Softness, Unpromised, Unsupported
 from engines.pymunk import LEAPFROG
 from reference.checks import Count, validated
-from reference.joints import Drive, Joint, Pin, Skate, Slot
+from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from tests.wrong.mistakes import Mistake
@@ -32,24 +32,19 @@ class Wrong(Around):
         building = {**MISTAKES, **SMALL}.get(self.variant, ("", right))[1]
         return building(self.engine, mechanism, dt)
 
-    def _answer(self, member: str, *arguments: Any) -> Any:
-        _, wrong, answer = ANSWERS.get(self.variant, ("", "", None))
-        return answer(*arguments) if answer and wrong == member else getattr(self.engine, member)(*arguments)
 
-    def order(self, mechanism: Mechanism) -> Any:
-        return self._answer("order", mechanism)
+def answer_of(member: str) -> Callable[..., Any]:
+    """The method that gives the right engine's answer, or the mistake's."""
 
-    def step_cost(self, mechanism: Mechanism) -> Any:
-        return self._answer("step_cost", mechanism)
+    def answer(self: Wrong, *arguments: Any) -> Any:
+        _, wrong, given = ANSWERS.get(self.variant, ("", "", None))
+        return given(*arguments) if given and wrong == member else getattr(self.engine, member)(*arguments)
 
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Any:
-        return self._answer("holder", joint, mechanism)
+    return answer
 
-    def softness(self, mechanism: Mechanism, dt: float) -> Any:
-        return self._answer("softness", mechanism, dt)
 
-    def steps_of_runs(self, mechanism: Mechanism) -> Any:
-        return self._answer("steps_of_runs", mechanism)
+for MEMBER in ("order", "step_cost", "holder", "softness", "steps_of_runs"):
+    setattr(Wrong, MEMBER, answer_of(MEMBER))
 
 
 class Spoiled:
