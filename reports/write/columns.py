@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from engines import Engine
 from engines.registry import method_name
@@ -89,11 +90,6 @@ def lines(entries: Iterable[Entry]) -> list[Line]:
 
 
 Cell = Callable[[Line, Column], str]
-Head = Callable[[Iterable[Line], Column], str]  # what is told of a whole column
-
-
-def _nothing(found: Iterable[Line], column: Column) -> str:
-    return ""
 
 
 def empty(line: Line, column: Column) -> str:
@@ -127,29 +123,31 @@ def means(line: Line, column: Column) -> str:
 
 
 def _table(
-    found: Iterable[Line], cell: Cell, folder: str, both: bool, head: Head = _nothing
+    found: Sequence[Line],
+    cell: Cell,
+    folder: str,
+    both: bool,
+    remarks: Mapping[tuple[str, Column], str] = MappingProxyType({}),
 ) -> Iterator[tuple[str, str]]:
-    """(engine, table), or one table of all engines under an empty name if `both`."""
-    found = list(found)
+    """(engine, table), or one table of all engines under an empty name if `both`; `remarks` stand in the header."""
     for engine in [""] if both else dict.fromkeys(line.engine for line in found):
         own = [line for line in found if engine in ("", line.engine)]
-        heads = dict.fromkeys(
-            (line.engine, place) for place in Column for line in own if place in line.columns
-        )  # an engine's columns together, in the order of Column
-        ordered = [head for name in dict.fromkeys(line.engine for line in own) for head in heads if head[0] == name]
+        engines = dict.fromkeys(line.engine for line in own)
+        heads = [
+            (name, place)
+            for name in engines
+            for place in Column
+            if any(line.engine == name and place in line.columns for line in own)
+        ]
         body = []
         for scene in dict.fromkeys((line.page.name, line.scene) for line in own):
             here = {line.engine: line for line in own if (line.page.name, line.scene) == scene}
             first = next(iter(here.values()))
             unit = quantity(first.name).unit
             name = f"[{first.scene.name.replace('_', ' ')}]({folder}{first.page.name}.md), {unit}"
-            told = [_told(here[each], place, cell) if each in here else NOTHING for each, place in ordered]
-            body.append([name, *told])
-        names = [
-            f"{each} {place}".strip() + head([line for line in own if line.engine == each], place)
-            for each, place in ordered
-        ]
-        yield engine, markdown(["scene", *names], body, len(ordered) + 1)
+            body.append([name, *(_told(here[each], place, cell) if each in here else NOTHING for each, place in heads)])
+        names = [f"{each} {place}".strip() + remarks.get((each, place), "") for each, place in heads]
+        yield engine, markdown(["scene", *names], body, len(heads) + 1)
 
 
 def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
@@ -218,28 +216,20 @@ def equal_step(entries: Iterable[Entry], steps: Mapping[str, float] = USUAL_STEP
 
     How many runs an answer takes stands in the heading where it is the same for all scenes.
     """
-    last = list(steps.values())[-1]
-
-    def runs(found: Iterable[Line], column: Column) -> set[str]:
-        return {runs_of(each.columns[column][-1][0], each.scene, last) for each in found if column in each.columns}
-
-    def head(found: Iterable[Line], column: Column) -> str:
-        told = runs(found, column)
-        return f" ({told.pop()})" if len(told) == 1 and told != {""} else ""
-
-    found = lines(entries)
-    alike = {
-        (line.engine, column): len(runs((each for each in found if each.engine == line.engine), column)) == 1
-        for line in found
-        for column in line.columns
-    }
+    last, found = list(steps.values())[-1], lines(entries)
+    runs: dict[tuple[str, Column], set[str]] = {}
+    for line in found:
+        for column, methods in line.columns.items():
+            runs.setdefault((line.engine, column), set()).add(runs_of(methods[-1][0], line.scene, last))
+    alike = {place: next(iter(words)) for place, words in runs.items() if len(words) == 1}
 
     def cell(line: Line, column: Column) -> str:
         engine, rows = line.columns[column][-1]  # of our code, what is extended furthest
-        own = "" if alike[line.engine, column] else runs_of(engine, line.scene, last)
+        own = "" if (line.engine, column) in alike else runs_of(engine, line.scene, last)
         return "; ".join(filter(None, (_at_steps(line, engine, rows, steps), own)))
 
-    return dict(_table(found, cell, folder, both=False, head=head))
+    remarks = {place: f" ({words})" for place, words in alike.items() if words}
+    return dict(_table(found, cell, folder, both=False, remarks=remarks))
 
 
 def _at_steps(line: Line, engine: Engine, members: Sequence[Measurement], steps: Mapping[str, float]) -> str:
