@@ -21,50 +21,33 @@ WIDTH = 9.2  # inches: GitHub shows about this much of a page without scaling
 
 @dataclass(frozen=True)
 class Theme:
-    """One colour for each role; no two roles share a colour, so that a stylesheet can tell them apart in an SVG."""
+    """One colour for each role, by default on light paper.
 
-    paper: str
-    ink: str
-    quiet: str
-    grid: str
-    first: str
-    second: str
-    third: str
-    fourth: str
-    fifth: str
-    sixth: str
-    seventh: str
-    eighth: str
-    exact: str
-    fine: str
-    good: str
-    fair: str
-    middling: str
-    bad: str
-    worse: str
+    No two roles share a colour, so that a stylesheet can tell them apart in an SVG.
+    """
+
+    paper: str = "#fdfdfc"
+    ink: str = "#1f2328"
+    quiet: str = "#5d6670"
+    grid: str = "#dfe3e8"
+    first: str = "#c2410c"
+    second: str = "#1d5fbf"
+    third: str = "#2f7d4f"
+    fourth: str = "#8b3fa0"
+    fifth: str = "#0b7a8f"
+    sixth: str = "#94610a"
+    seventh: str = "#b8336a"
+    eighth: str = "#55606e"
+    exact: str = "#eaf6ee"
+    fine: str = "#cfe9d7"
+    good: str = "#b3dcc0"
+    fair: str = "#c9cd66"
+    middling: str = "#e0ab3a"
+    bad: str = "#de8468"
+    worse: str = "#9f8ac6"
 
 
-LIGHT = Theme(
-    paper="#fdfdfc",
-    ink="#1f2328",
-    quiet="#5d6670",
-    grid="#dfe3e8",
-    first="#c2410c",
-    second="#1d5fbf",
-    third="#2f7d4f",
-    fourth="#8b3fa0",
-    fifth="#0b7a8f",
-    sixth="#94610a",
-    seventh="#b8336a",
-    eighth="#55606e",
-    exact="#eaf6ee",
-    fine="#cfe9d7",
-    good="#b3dcc0",
-    fair="#c9cd66",
-    middling="#e0ab3a",
-    bad="#de8468",
-    worse="#9f8ac6",
-)
+LIGHT = Theme()
 DARK = Theme(
     paper="#15191f",
     ink="#e6eaef",

@@ -1,8 +1,8 @@
 """Chains of many links: how costs and errors grow with their size, by exponents fitted to the large end of a series;
 the reference's own equations as a method among others, and how exact the truth of long chains is.
 
-The method is a banded solve for the joint forces, under RK4. It is no engine: it reads an open chain of uniform bars
-from a mechanism and can do nothing else. It stands beside the engines to say what an evaluation needs to cost.
+The method is a banded solve for the joint forces, under RK4. It is no engine: it takes the mechanism of a LongPendulum
+and no other. It stands beside the engines to say what an evaluation needs to cost.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from engines.sampling import sampled
 from reference.checks import Count, Positive, validated
 from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
-from reference.scenes.many_links import LongPendulum
+from reference.scenes.many_links import LongPendulum, OpenChain
 from reference.scenes.pendulum.chain import Array, Chain
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
@@ -40,9 +40,6 @@ class TruthError(Task):
     def run(self) -> Values:
         """`error`: the largest of an angle [rad]."""
         return {"error": self.scene.truth_error([self.scene.duration])[0]}
-
-
-ROUNDING = 1e-9  # relative: numbers that were made from one another
 
 
 @dataclass(frozen=True)
@@ -69,30 +66,15 @@ class BandedChain(Engine):
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> BandedRun:
-        """Raises Unsupported unless uniform bars hang on one another from a pin at the origin."""
         return BandedRun(mechanism, chain_of(mechanism), dt)
 
 
 def chain_of(mechanism: Mechanism) -> Chain:
-    """The chain that a mechanism is; raises Unsupported, saying why, if it is none."""
-    pins = [joint for joint in mechanism.joints if isinstance(joint, Pin)]
-    if not len(pins) == len(mechanism.bodies) == len(mechanism.joints):
-        raise Unsupported("the reference's chain has as many pins as bars, and no other joint")
-    if mechanism.gravity[0] != 0:
-        raise Unsupported("the reference's chain hangs in gravity along y")
-    lengths: list[float] = []
-    previous = None
-    for body, pin in zip(mechanism.bodies, pins, strict=True):
-        length = -2 * pin.second_point[0]
-        end = (lengths[-1] / 2, 0.0) if previous else (0.0, 0.0)
-        fits = pin.first == previous and pin.second == body.name and pin.second_point[1] == 0 and length > 0
-        if not (fits and math.dist(pin.first_point, end) <= ROUNDING * length):
-            raise Unsupported(f"pin {pin.name!r} does not hang bar {body.name!r} on the end of the one before it")
-        if abs(body.inertia - body.mass * length**2 / 12) > ROUNDING * body.inertia:
-            raise Unsupported(f"bar {body.name!r} is not uniform")
-        lengths.append(length)
-        previous = body.name
-    return Chain(tuple(lengths), tuple(body.mass for body in mechanism.bodies), -mechanism.gravity[1])
+    """The chain that a mechanism is; raises Unsupported for any but that of a LongPendulum."""
+    if not isinstance(mechanism, OpenChain):
+        raise Unsupported("the reference's chain is that of a LongPendulum alone")
+    lengths = tuple(-2 * joint.second_point[0] for joint in mechanism.joints if isinstance(joint, Pin))
+    return Chain(lengths, tuple(body.mass for body in mechanism.bodies), -mechanism.gravity[1])
 
 
 class BandedRun:
