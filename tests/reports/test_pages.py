@@ -22,7 +22,7 @@ import pytest
 from reports.check.picture_data import PictureData, Pose
 from reports.cli.drawing import drawn, material_of
 from reports.cli.selection import shown_cells
-from reports.gate.prediction import Softened, all_tasks
+from reports.gate.prediction import all_tasks
 from reports.gate.pytest_plugin import _engines
 from reports.model.catalogue import PAGES, _without_doubles, generic_page, with_scenes
 from reports.model.cells import Cell
@@ -31,9 +31,9 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_words
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task
-from reports.pages.engines.experiments import ASKED, Capabilities, VelocityTerm
+from reports.pages.engines.experiments import ASKED
 from reports.pages.errata import page as referees
-from reports.pages.faults.page import Offsets, Script
+from reports.pages.faults.page import Offsets
 from reports.pages.findings import findings
 from reports.pages.index import render_index, render_readme
 from reports.pages.pendulum.page import Neighbours
@@ -42,7 +42,7 @@ from reports.pages.rendering import render_page
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.skate import experiments as turning_round
 from reports.pages.wheels.page import Folding
-from reports.pages.your_loop.experiments import BeforeAndAfter, Fresh
+from reports.pages.your_loop.experiments import BeforeAndAfter
 from reports.pages.your_model.page import Walk
 from reports.plots import theme
 from reports.run.store import Store
@@ -266,27 +266,18 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"growth": np.ones(len(task.times))}
         case Offsets():
             values = {"across": np.full(len(task.offsets), -0.1)}
-        case Script():
-            values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
         case published.Newton():
             values = {name: np.full(len(published.NEWTON_STEPS), bound / 2) for name, bound in published.BOUNDS.items()}
         case published.Acrobot():
             values = dict.fromkeys(("drift", "rounded"), np.full(len(published.ACROBOT_STEPS), 1e-3))
         case Walk():
             values = {"found": json.dumps(WALKED), "shown": SHOWN.as_text()}
-        case Fresh():
-            values = {"error": np.full(3, 1e-3)}
         case BeforeAndAfter():
             values = {"gap": np.array([0.1, 0.01]), "angle": np.full(2, 0.1), "iterations": np.asarray(16.0)}
-        case VelocityTerm():
-            values = {"t": np.ones(2), "with": np.full(2, 0.5), "without": np.full(2, 1e-6)}
-        case Capabilities():
-            values = {**dict.fromkeys(ASKED, "yes"), "reactions": "yes", "width": "64 bits"}
-        case Softened():
-            values = {quantity.name: np.asarray(1e-3) for quantity in QUANTITIES}
         case _:
-            values = {"error": np.asarray(0.5), "evaluations": np.asarray(7.0), "stopped": "", "when": np.asarray(2.0)}
-            values |= {quantity.name: np.asarray(0.5) for quantity in QUANTITIES}
+            numbers = [*(quantity.name for quantity in QUANTITIES), "error", "expected", "found", "evaluations", "when"]
+            values = dict.fromkeys(numbers, np.asarray(0.5)) | dict.fromkeys(("t", "with", "without"), np.ones(2))
+            values |= dict.fromkeys((*ASKED, "reactions", "width", "version", "stopped"), "yes")
     if lost and isinstance(task, (Motion, referees.Refereed)):
         for name in ("pose", "twist"):
             values[name][len(values[name]) // 2 :] = np.nan

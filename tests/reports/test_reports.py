@@ -30,7 +30,6 @@ from reports.pages.rendering import render_all, render_page
 from reports.pages.your_loop.page import ASKED, FRESH
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.plots.theme import DARK
-from reports.write.provenance import machine
 from reports.write.rows import lookups
 from reports.write.templates import marks
 from reports.write.unmeasured import UNMEASURED
@@ -203,18 +202,12 @@ def test_the_readme_has_medians_of_fresh_mechanisms_and_is_the_same_after_a_run_
 def test_all_files_end_with_one_end_of_line_and_have_every_row_once():
     keyed = {cell: replace(r, key=str(i)) for i, (cell, r) in enumerate(CELLS.items())}
     files = render_all({DISCS: Material(keyed), replace(DISCS, title="Again"): Material(keyed)}, "the command")
-    assert {"index.md", "base.md", "errors.csv", "timings.csv", "descriptions.csv"} <= set(files)
-    for name, text in files.items():
-        assert text.endswith("\n"), name
-        assert not text.endswith("\n\n"), name
+    assert all(text.endswith("\n") and not text.endswith("\n\n") for text in files.values())
     for name in ("errors.csv", "timings.csv"):
-        lines = [line for line in files[name].splitlines() if not line.startswith("#")]
-        found = list(csv.DictReader(lines))
+        found = csv.DictReader(line for line in files[name].splitlines() if not line.startswith("#"))
         assert sorted((r["scene"], r["variant"], r["every"]) for r in found) == sorted(
             (r.scene, r.variant, str(r.every)) for r in CELLS.values()
         )
-    assert "angle" not in files["timings.csv"].splitlines()[-1]
-    assert all(words in files["timings.csv"] for words in ("the command", machine()))
 
 
 def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
