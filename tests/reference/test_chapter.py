@@ -12,7 +12,6 @@ import pytest
 
 from engines.lagrange import Lagrange
 from reference.chapter.centrodes import (
-    Centrodes,
     centrode_error,
     centrodes,
     from_poses,
@@ -81,24 +80,6 @@ def test_rolling_the_couplers_curves_gives_its_motion_back(arc):
         # point carried back is wrong by less, for the errors of the two curves are the same.
         np.testing.assert_allclose(found, between, rtol=0, atol=1e-11)
         assert 0 < motion.error < 1e-8
-
-
-def test_the_round_trip_catches_a_body_curve_a_thousandth_too_large():
-    t, pose, twist = coupler(*ARCS["coupler forward"], 401)
-    right = centrodes(t, pose, twist)
-    wrong = Centrodes(right.pose, right.space, right.body * 1.001, right.error)
-    assert np.abs(wrong.rolling().pose(pose[50:-50, 2]) - pose[50:-50]).max() > 1e-5
-
-
-@pytest.mark.parametrize("arc", ARCS)
-def test_the_centres_way_per_radian_is_one_over_the_sum_of_the_curvatures(arc):
-    motion = centrodes(*coupler(*ARCS[arc], 801))
-    inner = slice(10, -10)
-    total = motion.space_curvature + motion.body_curvature
-    # Curvatures are second derivatives of a spline: its error 1e-12 over the spacing squared.
-    np.testing.assert_allclose(motion.rate[inner] * total[inner], 1, atol=1e-8)
-    assert np.abs(motion.rate * (motion.space_curvature - motion.body_curvature) - 1).max() > 0.1
-    np.testing.assert_allclose(motion.space_arc, motion.body_arc, atol=1e-12)
 
 
 def test_an_engines_centrodes_are_wrong_by_its_velocity_error_over_its_rate():

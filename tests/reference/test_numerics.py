@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reference.numerics import integration, windows
+from reference.numerics import windows
 from reference.numerics.integration import IntegrationFailed
-from reference.scenes.pendulum.scenes import LinkPendulum
 
 EXTENDED = np.finfo(np.longdouble).eps < 1e-18
 FAST = np.longdouble(700)
@@ -35,26 +34,6 @@ def test_a_fast_oscillation_beside_a_slow_one_is_exact_at_all_times():
     assert np.abs(found(t) - oscillations(t))[:, 2:].max() < 1e-15 * 700
     # Windows of about a third of a period: an explicit method takes twenty steps for that.
     assert len(found.times) < 2 * 700
-
-
-@pytest.mark.skipif(not EXTENDED, reason="numpy.longdouble is the ordinary double here: windows are short then")
-@pytest.mark.parametrize("stages", [8, 32])
-def test_few_stages_are_as_exact_as_many(stages):
-    t = np.linspace(0, 0.5, 50)
-    found = windows.integrate(pull, [1.0, 1.0], [0.0, 1.0], 0.5, 1.0, stages)
-    assert np.abs(found(t) - oscillations(t))[:, 2:].max() < 1e-15 * 700
-
-
-def test_a_heavy_tip_moves_as_by_the_explicit_method():
-    scene = LinkPendulum(links=3, tip=200.0, duration=0.3)
-    chain, start = scene.chain, np.repeat([scene.angle, 0.0], 3)
-    t = np.linspace(0, 0.3, 40)
-    unit = integration.units_of_motion(chain.rates, start)
-    other = integration.integrate(chain.rates, start, 0.3, unit=unit)(t)
-    stated = integration.error_of(chain.rates, start, t, unit=unit).max()
-    own = scene.truth_error(t).max()
-    assert np.abs(np.concatenate(scene.states(t), axis=1) - other).max() < stated + own
-    assert own < 1e-12
 
 
 def circle(state: np.ndarray) -> np.ndarray:

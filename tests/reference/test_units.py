@@ -15,7 +15,6 @@ import pytest
 from reference.joints import Drive
 from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
-from reference.scenes.rolling.scenes import RollingDisc
 from tests.mechanisms import SCENES_OF_LIMITS
 
 # Exponents of length, time and mass of each field's unit; what is not here has none.
@@ -119,8 +118,3 @@ def test_a_scene_in_other_units_is_the_same_scene(scene: Scene, scale: str) -> N
     # of costly ones grows tenfold and more up to the horizon.
     allowed = 1e-11 if scene.name == "pendulum_100" else 1e-12  # joint forces of a hundred links sum more roundings
     assert difference(scene, SCALES[scale]) < allowed
-
-
-def test_a_number_left_in_its_old_unit_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(UNITS, "gravity", LENGTH)
-    assert difference(RollingDisc(), (1.0, 2.0**-30, 1.0)) > 1e-3  # it hardly falls
