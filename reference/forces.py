@@ -28,18 +28,34 @@ AnyArray = NDArray[Any]
 
 
 @dataclass(frozen=True)
-class Spring(Valid):
-    """A linear massless spring between a point of each body: it pulls by stiffness (distance - rest length).
-
-    stiffness [N/m]; rest_length [m], which may be zero; points [m] are in the bodies' own frames, from the centre of
-    mass, on the ground (None) world coordinates. Shorter than its rest length it pushes.
-    """
+class _ForceOfTwo(Valid):
+    """What all elements between two bodies share."""
 
     dissipates: ClassVar[bool] = False
 
     name: Name
     first: Name | None
     second: Name | None
+
+
+class _Dissipative(_ForceOfTwo):
+    """What takes energy and stores none."""
+
+    dissipates: ClassVar[bool] = True
+
+    def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
+        """Zero (...) [J]."""
+        return np.zeros_like(first[..., 2] + second[..., 2])
+
+
+@dataclass(frozen=True)
+class Spring(_ForceOfTwo):
+    """A linear massless spring between a point of each body: it pulls by stiffness (distance - rest length).
+
+    stiffness [N/m]; rest_length [m], which may be zero; points [m] are in the bodies' own frames, from the centre of
+    mass, on the ground (None) world coordinates. Shorter than its rest length it pushes.
+    """
+
     first_point: Vector
     second_point: Vector
     stiffness: Positive
@@ -62,17 +78,12 @@ class Spring(Valid):
 
 
 @dataclass(frozen=True)
-class Damper(Valid):
+class Damper(_Dissipative):
     """A linear damper between a point of each body: damping times the rate at which their distance grows.
 
     damping [N s/m]; points [m] as of a Spring. With a spring of the same points it is what engines call a damped one.
     """
 
-    dissipates: ClassVar[bool] = True
-
-    name: Name
-    first: Name | None
-    second: Name | None
     first_point: Vector
     second_point: Vector
     damping: Positive
@@ -83,24 +94,15 @@ class Damper(Valid):
         rate = np.sum(row[..., :3] * first_twist + row[..., 3:] * second_twist, axis=-1)
         return -(np.asarray(self.damping) * rate)[..., None] * row
 
-    def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
-        """Zero (...) [J]."""
-        return np.zeros_like(first[..., 2] + second[..., 2])
-
 
 @dataclass(frozen=True)
-class TorsionSpring(Valid):
+class TorsionSpring(_ForceOfTwo):
     """A linear torsion spring between two bodies: stiffness times (relative angle - rest angle).
 
     stiffness [N m/rad]; rest_angle [rad] of the second body against the first, the difference of the poses' angles, not
     wrapped.
     """
 
-    dissipates: ClassVar[bool] = False
-
-    name: Name
-    first: Name | None
-    second: Name | None
     stiffness: Positive
     rest_angle: float = 0.0
 
@@ -118,34 +120,20 @@ class TorsionSpring(Valid):
 
 
 @dataclass(frozen=True)
-class TorsionDamper(Valid):
+class TorsionDamper(_Dissipative):
     """A linear torsion damper between two bodies: damping [N m s/rad] times their relative rate of turning."""
 
-    dissipates: ClassVar[bool] = True
-
-    name: Name
-    first: Name | None
-    second: Name | None
     damping: Positive
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
         """Generalised force (..., 6) [N, N, N m]: torques alone."""
         return _couple(-np.asarray(self.damping) * (second_twist[..., 2] - first_twist[..., 2]))
 
-    def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
-        """Zero (...) [J]."""
-        return np.zeros_like(first[..., 2] + second[..., 2])
-
 
 @dataclass(frozen=True)
-class Torque(Valid):
+class Torque(_ForceOfTwo):
     """A constant torque [N m] on the second body, and its opposite on the first."""
 
-    dissipates: ClassVar[bool] = False
-
-    name: Name
-    first: Name | None
-    second: Name | None
     torque: float
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:

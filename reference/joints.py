@@ -90,10 +90,16 @@ def distance(first: AnyArray, second: AnyArray, first_point: Any, second_point: 
     return length, row
 
 
-class _AtRest(Valid):
-    """A joint that prescribes no motion: J v = 0."""
+@dataclass(frozen=True)
+class _JointOfTwo(Valid):
+    """What all joints of two bodies share; they are at rest, J v = 0, unless they say otherwise."""
 
-    size: ClassVar[int]
+    size: ClassVar[int] = 1
+    holonomic: ClassVar[bool] = True
+
+    name: Name
+    first: Name | None
+    second: Name | None
 
     @property
     def rate(self) -> tuple[float, ...]:
@@ -101,7 +107,7 @@ class _AtRest(Valid):
 
 
 @dataclass(frozen=True)
-class Pin(_AtRest):
+class Pin(_JointOfTwo):
     """An ideal hinge (18.62): the point `first_point` of the first body and `second_point` of the second coincide.
 
     Points [m] are in the body's own frame, from its centre of mass; on the ground (None) they are world coordinates.
@@ -109,12 +115,8 @@ class Pin(_AtRest):
     """
 
     size: ClassVar[int] = 2
-    holonomic: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("x", "y")
 
-    name: Name
-    first: Name | None
-    second: Name | None
     first_point: Vector
     second_point: Vector
 
@@ -128,20 +130,15 @@ class Pin(_AtRest):
 
 
 @dataclass(frozen=True)
-class Drive(Valid):
+class Drive(_JointOfTwo):
     """A prescribed relative rotation: the second body turns against the first at a constant `turning_rate` [rad/s].
 
     `offset` [rad] is the relative angle at t = 0. Row: omega of the second minus omega of the first. Reaction: torque
     on the second body [N m].
     """
 
-    size: ClassVar[int] = 1
-    holonomic: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("torque",)
 
-    name: Name
-    first: Name | None
-    second: Name | None
     turning_rate: float
     offset: float
 
@@ -163,7 +160,7 @@ class Drive(Valid):
 
 
 @dataclass(frozen=True)
-class Slot(_AtRest):
+class Slot(_JointOfTwo):
     """A straight slot in the first body, in which the point `second_point` of the second slides.
 
     The line passes through `first_point` [m] of the first body at `line_angle` [rad] in its frame; points are from the
@@ -172,13 +169,8 @@ class Slot(_AtRest):
     relative to the first body's material there. Reaction: force across the line on the second body [N].
     """
 
-    size: ClassVar[int] = 1
-    holonomic: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("across",)
 
-    name: Name
-    first: Name | None
-    second: Name | None
     first_point: Vector
     line_angle: float
     second_point: Vector
@@ -208,7 +200,7 @@ class Slot(_AtRest):
 
 
 @dataclass(frozen=True)
-class Skate(_AtRest):
+class Skate(_JointOfTwo):
     """An ideal skate or massless wheel (18.64): a point of the second body can't move across the blade.
 
     `second_point` [m] is where the blade touches, in the second body's own frame from its centre of mass, and `angle`
@@ -217,13 +209,9 @@ class Skate(_AtRest):
     configuration, so the gap is NaN. Reaction: force across the blade, to its left, on the second body [N].
     """
 
-    size: ClassVar[int] = 1
     holonomic: ClassVar[bool] = False
     labels: ClassVar[tuple[str, ...]] = ("across",)
 
-    name: Name
-    first: Name | None
-    second: Name | None
     second_point: Vector
     angle: float = 0.0
 
@@ -248,7 +236,7 @@ class Skate(_AtRest):
 
 
 @dataclass(frozen=True)
-class Rod(_AtRest):
+class Rod(_JointOfTwo):
     """A massless rigid rod: the distance of a point of each body stays `length` [m].
 
     `first_point` and `second_point` [m] are in the bodies' own frames, from the centre of mass; on the ground (None)
@@ -256,13 +244,8 @@ class Rod(_AtRest):
     from the first point to the second [N], positive where the rod pushes.
     """
 
-    size: ClassVar[int] = 1
-    holonomic: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("along",)
 
-    name: Name
-    first: Name | None
-    second: Name | None
     first_point: Vector
     second_point: Vector
     length: Positive
@@ -278,7 +261,7 @@ class Rod(_AtRest):
 
 
 @dataclass(frozen=True)
-class Gear(_AtRest):
+class Gear(_JointOfTwo):
     """A pair of gears on fixed axles, or a belt: second angle = `ratio` times first angle + `phase` [rad].
 
     Angles are those of the poses, counted in the world and not wrapped; the ground's (None) is zero. A negative ratio
@@ -287,13 +270,8 @@ class Gear(_AtRest):
     so that the frame, which is not in the equations, takes the rest.
     """
 
-    size: ClassVar[int] = 1
-    holonomic: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("torque",)
 
-    name: Name
-    first: Name | None
-    second: Name | None
     ratio: Ratio
     phase: float = 0.0
 
@@ -310,7 +288,7 @@ class Gear(_AtRest):
 
 
 @dataclass(frozen=True)
-class Weld(_AtRest):
+class Weld(_JointOfTwo):
     """Two bodies as one: a point of each coincide, and the second stands at `angle` [rad] to the first.
 
     Points [m] are in the bodies' own frames, from the centre of mass; on the ground (None) world coordinates. The angle
@@ -320,12 +298,8 @@ class Weld(_AtRest):
     """
 
     size: ClassVar[int] = 3
-    holonomic: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("x", "y", "torque")
 
-    name: Name
-    first: Name | None
-    second: Name | None
     first_point: Vector
     second_point: Vector
     angle: float = 0.0

@@ -16,7 +16,7 @@ from scipy.special import ellipe, ellipeinc, elliprd, elliprf
 
 from reference.checks import InvalidMechanism, Positive, kept
 from reference.numerics.roots import solve_increasing
-from reference.rolling.curves import Array, Curve, Vector, along
+from reference.rolling.curves import Array, Curve, along
 
 GUESSES = 257  # known places in half a turn: between them a cubic is right to 1e-9 and better unless it is very flat
 
@@ -50,13 +50,6 @@ class Ellipse(Curve):
     def curvature_range(self) -> tuple[float, float]:
         flat, sharp = sorted((self.along_y / self.along_x**2, self.along_x / self.along_y**2))
         return (flat, sharp)
-
-    @property
-    def foci(self) -> tuple[Vector, Vector]:
-        """Both foci [m], that at negative coordinates first."""
-        excess = self.along_x**2 - self.along_y**2
-        c = math.sqrt(abs(excess))
-        return ((-c, 0.0), (c, 0.0)) if excess >= 0 else ((0.0, -c), (0.0, c))
 
     def speed_of(self, p: ArrayLike) -> Array:
         u = along(p)

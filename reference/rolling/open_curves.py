@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from reference.checks import InvalidMechanism, Positive
 from reference.numerics.roots import solve_increasing
-from reference.rolling.curves import Array, ByArc, Curve, Vector, along, within
+from reference.rolling.curves import Array, ByArc, Curve, along, within
 
 
 def _slope(owner: str, angle: ArrayLike) -> Array:
@@ -31,10 +31,6 @@ class Parabola(Curve):
     @property
     def curvature_range(self) -> tuple[float, float]:
         return (0.0, 1 / (2 * self.focal))
-
-    @property
-    def focus(self) -> Vector:
-        return (0.0, self.focal)
 
     def parameter(self, arc: ArrayLike) -> Array:
         """asinh(slope), in which arc = focal (p + sinh(2p)/2)."""

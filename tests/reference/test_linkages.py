@@ -16,7 +16,7 @@ from reference.scenes.four_bar.scenes import (
     OverdrivenFourBar,
     Parallelogram,
 )
-from reference.scenes.slider_crank.linkage import SliderCrank
+from reference.scenes.slider_crank.scenes import SliderCrank
 from tests.present import present
 from tests.reference.laws.linkages import closed
 from tests.reference.test_scenes import TRIPLE_ROCKER

@@ -258,17 +258,6 @@ class Chain(Valid):
         return np.sqrt(squares), shapes
 
     @validated
-    def energy(self, angle: ArrayLike, rate: ArrayLike) -> Array:
-        """Kinetic and potential energy (...) [J] by Lagrange's constants; zero potential at the pin."""
-        angle, rate = self._alike(angle, rate)
-        sine, cosine = np.sin(angle) * rate, np.cos(angle) * rate
-        kinetic = 0.5 * (
-            np.einsum("...i,ij,...j", cosine, self.inertia_matrix, cosine)
-            + np.einsum("...i,ij,...j", sine, self.inertia_matrix, sine)
-        )
-        return kinetic - np.sum(self.stiffness * np.cos(angle), axis=-1)
-
-    @validated
     def placement(self, angle: ArrayLike, rate: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations of the centres of mass (..., links, 3), the body's x axis down the link."""
         angle, rate, acceleration = self._alike(angle, rate, acceleration)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from reference.checks import InvalidMechanism, Positive, Valid, kept, sample_times, validated
 from reference.numerics import windows
 from reference.numerics.integration import IntegrationFailed, units_of_motion
-from reference.numerics.roots import first_below, root
+from reference.numerics.roots import first_below
 from reference.plane import rotation_acceleration
 from reference.rolling.curves import Array, Vector
 from reference.rolling.kinematics import Contact, Rolling
@@ -56,14 +56,6 @@ class RollingBody(Valid):
         half_slope = -self.mass * contact.rate * np.sum(arm * contact.tangent, axis=-1)
         pull = self.mass * (arm[..., 0] * self.gravity[1] - arm[..., 1] * self.gravity[0])
         return (pull - half_slope * rate**2) / inertia
-
-    @validated
-    def energy(self, theta: ArrayLike, rate: ArrayLike) -> Array:
-        """Kinetic plus gravitational energy (...) [J], zero potential at the world's origin."""
-        contact = self.rolling.contact(theta)
-        inertia = self.inertia + self.mass * np.sum(contact.arm**2, axis=-1)
-        place = contact.point + contact.arm
-        return 0.5 * inertia * np.asarray(rate) ** 2 - self.mass * (place @ np.asarray(self.gravity))
 
     def _rates(self, state: Array) -> Array:
         """NaN beyond the rotations at which the body can roll: a step with a stage there is then taken shorter."""
@@ -200,21 +192,6 @@ class RollingBody(Valid):
         theta, _ = self.start
         mass = self.inertia + self.mass * float(np.sum(self.rolling.contact(theta).arm ** 2))
         return math.sqrt(abs(float(self.stiffness(theta))) / mass)
-
-    @validated
-    def equilibrium(self, near: float, within: Positive = 0.5) -> float:
-        """The rotation [rad] within `within` of `near` at which the body can rest; InvalidMechanism without one."""
-        low, high = near - within, near + within
-
-        def pull(theta: float) -> float:
-            return float(self.angular_acceleration(theta, 0.0))
-
-        if pull(low) * pull(high) > 0:
-            raise InvalidMechanism(
-                f"rolling body: gravity doesn't change its sense between {low:.6g} and {high:.6g} rad, so it "
-                "can't rest there"
-            )
-        return root(pull, low, high)
 
     @validated
     def stiffness(self, theta: ArrayLike) -> Array:

@@ -106,11 +106,6 @@ class CarAndTrailer(Scene):
         per_way = self._per_way(self._headings(np.asarray(way, dtype=float)))
         return np.sum(self._weights * per_way**2, axis=(-2, -1))
 
-    @property
-    def energy(self) -> float:
-        """Kinetic energy, constant [J]."""
-        return 0.5 * float(self.apparent_mass(0.0)) * self.speed**2
-
     @cached_property
     def _stretch(self) -> Antiderivative:
         """int sqrt(M/M(0)) over the distance gone [m]."""
@@ -118,18 +113,15 @@ class CarAndTrailer(Scene):
         shortest = min(self.length, 1 / (abs(self.curvature) + 1e-9))
         return Antiderivative(lambda r: np.sqrt(self.apparent_mass(sign * r) / first), shortest)
 
-    def way(self, t: ArrayLike) -> Array:
-        """The rear axle's way s (times,) [m], backwards negative."""
-        return self._way(self.times(t))
-
     def _way(self, times: Array) -> Array:
+        """The rear axle's way s (times,) [m], backwards negative."""
         sign, first = math.copysign(1.0, self.speed), float(self.apparent_mass(0.0))
         goal = abs(self.speed) * times
 
         def stretch(way: Array) -> tuple[Array, Array]:
             return self._stretch(way), np.sqrt(self.apparent_mass(sign * way) / first)
 
-        return sign * solve_increasing(stretch, goal, goal, 1.0, (0.0, math.inf))
+        return sign * solve_increasing(stretch, goal, goal, self.wheelbase, (0.0, math.inf))
 
     def mechanism(self) -> Mechanism:
         start = self._moving(np.zeros(1), np.array([self.speed]))

@@ -9,7 +9,7 @@ import mpmath as mp
 import numpy as np
 
 from reference.scenes.four_bar.linkage import FourBar
-from reference.scenes.slider_crank.linkage import SliderCrank
+from reference.scenes.slider_crank.scenes import SliderCrank
 from tests.reference.laws.law import Law, Outside, angle, decades
 
 
