@@ -114,15 +114,13 @@ def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str,
 def publishable(material: Materials, missing: str) -> Materials:
     """The material, with published digits of rows that are as before. Raises BadInput if it may not be published."""
     from reports.pages.claims import contradicted
-    from reports.write import kept_numbers
+    from reports.write.csv_files import as_published, read_published
 
-    before = kept_numbers.read(published())
+    before = read_published(published())
     refuse_without(before.engines)
     if missing:
         raise BadInput(f"nothing is published, {missing}")
-    material = {
-        page: replace(stored, rows=kept_numbers.as_published(stored.rows, before)) for page, stored in material.items()
-    }
+    material = {page: replace(stored, rows=as_published(stored.rows, before)) for page, stored in material.items()}
     if wrong := contradicted(material):
         raise BadInput(f"nothing is published, since rows contradict these claims of pages: {'; '.join(wrong)}")
     return material

@@ -27,7 +27,7 @@ from reports.write.columns import runs_of
 from reports.write.csv_files import as_csv, descriptions_csv
 from reports.write.experiments import told_experiment
 from reports.write.holders import holders, told_rows
-from reports.write.programs import advised_programs
+from reports.write.page_tables import advised_programs
 from reports.write.provenance import machine, row_versions, today, versions
 from reports.write.templates import inert_page, template_of
 

@@ -12,8 +12,7 @@ from engines import method_name
 from reports.model.convergence import judged
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.write.page_tables import advice
-from reports.write.programs import KEPT, Program, advised_programs, file_of, program
+from reports.write.page_tables import KEPT, Program, advice, advised_programs, file_of, program
 from tests.committed_rows import page_rows
 from tests.reports.test_pages import FENCED, MECHANISMS, named, run, texts, undrawn
 

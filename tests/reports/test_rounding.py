@@ -26,9 +26,8 @@ from reports.model.ending import BadInput
 from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome
 from reports.model.quantities import OF, QUANTITIES, agrees, quantity
-from reports.write import csv_files, kept_numbers
-from reports.write.csv_files import IDENTITY, as_csv
-from reports.write.kept_numbers import ERRORS, NOISE, as_published, kept
+from reports.write.csv_files import ERRORS, IDENTITY, NOISE, Published, as_csv, as_published, kept, read_published
+from reports.write.csv_files import told as cell_text
 from reports.write.provenance import machine
 from tests import ROOT
 from tests.rows import ROW
@@ -112,7 +111,7 @@ def before(tmp_path: Path) -> dict[str, str]:
     """The published texts of a row."""
     (tmp_path / "errors.csv").write_text(as_csv([ROW], timings=False))
     (tmp_path / "timings.csv").write_text(as_csv([ROW], timings=True, header=f"a date\n{machine()}"))
-    found = kept_numbers.read(tmp_path)
+    found = read_published(tmp_path)
     assert (found.machine, found.engines) == (machine(), ("toy",))
     (texts,) = found.rows.values()
     return dict(texts)
@@ -131,7 +130,7 @@ def test_a_time_is_kept_within_noise_and_on_the_same_machine(name, noise, before
     published = getattr(ROW, name)
     within, beyond = (replace(ROW, **{name: published * factor}) for factor in (0.99 * noise, 1.01 * noise))
     for where, same in ((machine(), True), ("another machine", False)):
-        of_run = kept_numbers.Published({tuple(csv_files.told(ROW, column) for column in IDENTITY): before}, where)
+        of_run = Published({tuple(cell_text(ROW, column) for column in IDENTITY): before}, where)
         assert (getattr(as_published({CELLS[0]: within}, of_run)[CELLS[0]], name) == published) == same
     assert getattr(kept(beyond, before, True), name) != published
 
@@ -146,5 +145,5 @@ def test_nothing_is_kept_of_another_outcome_or_of_a_row_that_is_new(before):
 def test_a_file_that_is_no_table_of_rows_is_named(tmp_path):
     (tmp_path / "errors.csv").write_text("scene,engine\na,b\n")
     with pytest.raises(BadInput, match=r"errors\.csv has no column 'variant'"):
-        kept_numbers.read(tmp_path)
-    assert not kept_numbers.read(tmp_path / "nowhere").rows
+        read_published(tmp_path)
+    assert not read_published(tmp_path / "nowhere").rows

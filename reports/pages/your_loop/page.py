@@ -20,7 +20,7 @@ from reports.model.quantities import quantity
 from reports.pages.versions.page import table as versions
 from reports.pages.your_loop.experiments import COMMIT, COUNT, EVERY, BeforeAndAfter, Fresh
 from reports.pages.your_loop.linkages import LINKAGES
-from reports.write.programs import program
+from reports.write.page_tables import program
 from reports.write.tables import NOTHING, error_words, markdown, milliseconds, number
 from reports.write.unmeasured import UNMEASURED
 
