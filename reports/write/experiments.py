@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from reference.trajectory import Trajectory
@@ -79,6 +80,17 @@ def observe(material: Material, cell: Cell, setting: str, say: Callable[[Traject
         return ()
     told = _read(trajectory_of(answer), say) if answer.finished else answer.told
     return (Observation(f"{cell.engine.name} {told_variant(cell.scene, cell.engine)}", setting, told),)
+
+
+def observe_each(
+    material: Material, cells: Iterable[Cell], say: Callable[[Cell, Trajectory], str]
+) -> list[Observation]:
+    """The lines of several cells, each under its step."""
+    return [
+        line
+        for cell in cells
+        for line in observe(material, cell, f"step {tables.number(cell.step)} s", partial(say, cell))
+    ]
 
 
 def _read(run: Trajectory, say: Callable[[Trajectory], str]) -> str:

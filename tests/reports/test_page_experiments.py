@@ -38,7 +38,7 @@ from reports.pages.four_bar import page as four_bar
 from reports.pages.n_four_bar import page as n_four_bar
 from reports.pages.pendulum import page as pendulum
 from reports.pages.person import page as person
-from reports.pages.rolling import experiments as rolling
+from reports.pages.rolling import page as rolling
 from reports.pages.skate import experiments as skate
 from reports.pages.slider_crank import page as slider_crank
 from reports.pages.wheels import page as wheels

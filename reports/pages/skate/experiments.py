@@ -22,7 +22,7 @@ from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
 from reports.pages.common import ENGINES_ALONE, cells_to_rounding, described
-from reports.write.experiments import observe
+from reports.write.experiments import observe, observe_each
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
@@ -66,14 +66,11 @@ def backwards(material: Material) -> list[Observation]:
     """The growth of a small turning and the time of turning round, in each method."""
     t = np.linspace(0, BACKWARDS.duration, BACKWARDS.samples + 1)
     truth = BACKWARDS.motion(t).twist[:, 0, 2]
-    found = [
+    return [
         Observation("linearised exact motion", "", rf"grows as $e^{{{BACKWARDS.growth_rate():.4g}\,t}}$"),
         Observation("exact motion", "", _grown(t, truth)),
+        *observe_each(material, TURNING_ROUND, lambda cell, run: _grown(run.t, run.twist[:, 0, 2])),
     ]
-    for cell in TURNING_ROUND:
-        setting = f"step {number(cell.step)} s"
-        found += observe(material, cell, setting, lambda run: _grown(run.t, run.twist[:, 0, 2]))
-    return found
 
 
 def _grown(t: np.ndarray, rate: np.ndarray) -> str:

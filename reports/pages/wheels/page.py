@@ -24,9 +24,8 @@ from reports.pages.skate.experiments import known
 from reports.pages.skate.page import counted
 from reports.plots.plane_panels import Blades, Panel, Path, paths
 from reports.plots.theme import svg
-from reports.write.experiments import observe
+from reports.write.experiments import observe_each
 from reports.write.holders import told_variant
-from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
 
@@ -85,9 +84,7 @@ def folding(material: Material) -> list[Observation]:
     if answer := material.answers.get(REFERENCE):
         coasting = _folded(answer.array("t"), answer.array("pose")) if reference else answer.told
         found.append(Observation("the reference, coasting", "", coasting))
-    for cell in RUNS:
-        found += observe(material, cell, f"step {number(cell.step)} s", lambda run: _folded(run.t, run.pose))
-    return found
+    return [*found, *observe_each(material, RUNS, lambda cell, run: _folded(run.t, run.pose))]
 
 
 def lateness(material: Material) -> dict[str, Any]:
