@@ -29,8 +29,9 @@ from reports.plots import work_precision as charts
 from reports.plots.engines_compared import Compared, engines_compared
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import LIGHT
-from tests.mechanisms import four_bar
+from tests.mechanisms import four_bar, pendulum
 from tests.rows import falling, row_of
+from tests.toys import Disc
 
 
 def points(line: Line2D) -> list[tuple[float, float]]:
@@ -314,3 +315,11 @@ def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slope
         assert annotation(text).xy == (pytest.approx(right), pytest.approx(top))
     assert [text.get_text() for text in panel.texts] == ["1", "2", "4"]
     assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
+
+
+def test_an_outline_has_further_points_in_order_and_a_strip_its_poses_at_equal_times():
+    mechanism = pendulum(angle=math.pi / 2)  # from the origin straight up, one metre
+    found = drawings.outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
+    assert found == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
+    strip = drawings.Strip(Disc(duration=2.0), "Turning", 5, start=0.5, end=1.5)
+    assert strip.times() == pytest.approx([0.5, 0.75, 1.0, 1.25, 1.5])

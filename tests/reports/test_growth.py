@@ -25,12 +25,14 @@ from reports.pages.centrodes.page import returned
 from reports.pages.scaling.experiments import (
     LAST,
     BandedChain,
+    Point,
+    Series,
     exponent,
     series_of,
 )
-from reports.pages.scaling.page import STEP
+from reports.pages.scaling.page import STEP, cost_table, crossing
 from reports.write.rows import Rows
-from tests.rows import row_of
+from tests.rows import row_of, table
 from tests.toys import Disc, Plain, Toy
 
 
@@ -222,3 +224,15 @@ def test_the_row_of_a_step_is_the_nearest_by_ratio():
     near = {step: Rows(rows).near(step) for step in (1.9e-3, 5.1e-3, 2.9e-3, 3.3e-3)}
     assert [row.step if row else None for row in near.values()] == [1e-3, 1e-2, None, None]
     assert not Rows([]).near(1e-3)
+
+
+def test_a_cost_table_is_in_microseconds_and_a_crossing_is_where_the_first_becomes_the_dearer():
+    def line(*costs):
+        return Series("e", "v", tuple(Point(10**n, cost, 0.1, "torn") for n, cost in enumerate(costs)))
+
+    assert table(cost_table((line(1e-6, 1e-4, math.nan),))) == [
+        ["method", "1", "10", "100"],
+        ["e v", "1", "100", "**torn**"],
+    ]
+    found = [crossing(line(*costs), line(3, 3, 3)) for costs in ((1, 2, 9), (1, 4, 9), (9, 2, 1), (1, 1, 1), (9, 9, 9))]
+    assert found == [(10, 100), (1, 10), None, None, None]
