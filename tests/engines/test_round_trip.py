@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from engines import Unsupported
+from engines.conformance.same import relabelled
 from engines.lagrange import TRUTH
 from engines.mujoco import DEFAULT, TUNED
 from engines.mujoco.model import Model
@@ -40,32 +41,7 @@ WITHOUT_JOINT = (Skate, Roll)
 IDEAL = [scene for scene in SCENES if not any(isinstance(joint, WITHOUT_JOINT) for joint in scene.mechanism().joints)]
 OTHERS = [scene for scene in SCENES if scene not in IDEAL]
 assert len(IDEAL) >= 18
-
-
-def of_forces(welded: bool = True) -> Mechanism:
-    """Springs, dampers, a gear, and perhaps a weld, with everything in motion."""
-    rate = 7 / 9  # rad/s: no number of few digits
-    bodies = (
-        Body("a", 1.0, 0.1, (0.5, 0.0, 0.3), (0.0, 0.5 * rate, rate)),
-        Body("b", 2.0, 0.2, (2.0, 0.0, 0.0), (0.0, 0.0, 2 * rate)),
-        Body("c", 0.5, 0.1, (2.0, 1.0, 0.2), (-2 * rate, 0.0, 2 * rate)),
-    )
-    cosine, sine = np.cos(0.3), np.sin(0.3)
-    joints = (
-        Pin("A", None, "a", (0.0, 0.0), (-0.5 * cosine, 0.5 * sine)),
-        Pin("B", None, "b", (2.0, 0.0), (0.0, 0.0)),
-        Gear("g", "a", "b", 2.0, -0.6),
-        Weld("w", "b", "c", (0.0, 1.0), (0.0, 0.0), 0.2),
-    )
-    forces = (
-        Spring("s", "a", "c", (0.1, 0.0), (0.2, 0.1), 15.0, 0.7),
-        Damper("d", None, "a", (0.0, 3.0), (0.2, 0.1), 0.6),
-        TorsionSpring("t", "a", "b", 2.0, 0.4),
-        TorsionDamper("u", None, "b", 0.3),
-    )
-    if not welded:
-        return Mechanism(bodies[:2], joints[:3], (0.3, -9.81), (replace(forces[0], second="b"), *forces[1:]))
-    return Mechanism(bodies, joints, (0.3, -9.81), forces)
+ELASTIC = ("pin", "gear", "spring", "damper", "torsion-spring", "torsion-damper")
 
 
 def same(mechanism: Mechanism, again: Mechanism, but: tuple[str, ...] = ()) -> None:
@@ -147,8 +123,9 @@ def test_a_constant_force_off_the_centre_of_mass_has_no_script():
 
 
 def test_a_constant_force_at_the_centre_and_a_torque_between_two_bodies_come_back_from_a_script(tmp_path):
-    mechanism = of_forces()
-    pushes = (Force("push", "a", (0.0, 0.0), (0.3, -1 / 3)), Torque("twist", "a", "b", 0.7))
+    mechanism = random_mechanism(31, 6, (*ELASTIC, "weld"))
+    first, second = (body.name for body in mechanism.bodies[:2])
+    pushes = (Force("push", first, (0.0, 0.0), (0.3, -1 / 3)), Torque("twist", first, second, 0.7))
     pushed = replace(mechanism, forces=(*mechanism.forces, *pushes))
     again = from_script(script(PYMUNK, pushed, 1e-3), tmp_path)
     same(pushed, again)
@@ -179,12 +156,16 @@ def test_a_slot_that_no_groove_joint_is_has_no_script():
 
 
 def test_springs_dampers_gears_and_welds_come_back(tmp_path):
-    mechanism = of_forces()
-    same(mechanism, from_script(script(PYMUNK, mechanism, 1e-3), tmp_path))
-    # In MuJoCo a welded body is one with its parent: there is no third body to come back.
-    assert len(from_mjcf(TUNED.text(mechanism, 1e-3)).bodies) == 2
-    mechanism = of_forces(welded=False)
-    same(mechanism, from_mjcf(TUNED.text(mechanism, 1e-3)))
+    kinds = set()
+    for number in range(5, 14):
+        mechanism = random_mechanism(31, number, (*ELASTIC, "weld"))
+        same(mechanism, from_script(script(PYMUNK, mechanism, 1e-3), tmp_path))
+        kinds |= {type(part) for part in (*mechanism.joints, *mechanism.forces)}
+        # In MuJoCo a welded body is one with its parent: there is no other body to come back.
+        mechanism, _ = relabelled(random_mechanism(31, number, ELASTIC))  # the file keeps "body 1" for itself
+        same(mechanism, from_mjcf(TUNED.text(mechanism, 1e-3)))
+        kinds |= {type(part) for part in (*mechanism.joints, *mechanism.forces)}
+    assert kinds == {Pin, Gear, Weld, Spring, Damper, TorsionSpring, TorsionDamper}
 
 
 @pytest.mark.parametrize("name", ["pinned_body_free", "pendulum_1", "pendulum_2", "pendulum_10", "person_one_foot"])
