@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import runpy
 from dataclasses import replace
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -14,7 +13,6 @@ from engines import Unsupported
 from engines.conformance.same import relabelled
 from engines.lagrange import TRUTH
 from engines.mujoco import DEFAULT, TUNED
-from engines.mujoco.model import Model
 from engines.mujoco.reading import read as read_mujoco
 from engines.mujoco.writers import urdf
 from engines.pymunk import DEFAULT as PYMUNK
@@ -26,7 +24,7 @@ from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Roll, Skate, Weld
 from reference.mechanism import Body, Mechanism
-from reference.scenes.catalogue import SCENES
+from reference.scenes.catalogue import SCENES, scene
 from reports.check.judging import accelerations
 from reports.search.mechanisms import mechanism as random_mechanism
 from tests.all_elements import ALONE
@@ -104,14 +102,13 @@ def test_a_scene_with_a_skate_or_a_roll_has_no_file_or_one_that_is_refused(scene
 
 
 def test_a_drive_comes_back_from_mjcf_as_a_drive_and_an_armature_that_is_only_large_as_an_inertia():
-    scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
-    mechanism = scene.mechanism()
+    mechanism = scene("driven_four_bar").mechanism()
     again = from_mjcf(DEFAULT.text(mechanism, 1e-3))
     ours, found = ([joint for joint in each.joints if isinstance(joint, Drive)] for each in (mechanism, again))
     told = [[(joint.first, joint.second, joint.turning_rate) for joint in each] for each in (ours, found)]
     assert told[0] == told[1]
     assert len(ours) == 1
-    text = replace(DEFAULT, armature=1e5).text(scene.mechanism(), 1e-3)
+    text = replace(DEFAULT, armature=1e5).text(mechanism, 1e-3)
     assert not any(isinstance(joint, Drive) for joint in from_mjcf(text).joints)
 
 
@@ -134,15 +131,15 @@ def test_a_constant_force_at_the_centre_and_a_torque_between_two_bodies_come_bac
 
 
 def test_an_exported_script_with_a_constant_torque_moves_as_the_engine_does(tmp_path):
-    scene = next(scene for scene in SCENES if scene.name == "andrews")
-    text = script(PYMUNK, scene.mechanism(), 1e-5)
+    mechanism = scene("andrews").mechanism()
+    text = script(PYMUNK, mechanism, 1e-5)
     (tmp_path / "andrews.py").write_text(text)
     made = runpy.run_path(str(tmp_path / "andrews.py"))
     space = made["make"]()
     for _ in range(200):
         made["push"](space)
         space.step(1e-5)
-    run = PYMUNK.build(scene.mechanism(), 1e-5)(1, 200)
+    run = PYMUNK.build(mechanism, 1e-5)(1, 200)
     own = read_pymunk(made["make"](), 1e-5).model.run(1, 200)
     angles = [body.angle for body in space.bodies]
     # The same steps of the same engine; the run turns half-step velocities into poses of whole steps by no rounding.
@@ -170,7 +167,7 @@ def test_springs_dampers_gears_and_welds_come_back(tmp_path):
 
 @pytest.mark.parametrize("name", ["pinned_body_free", "pendulum_1", "pendulum_2", "pendulum_10", "person_one_foot"])
 def test_a_tree_comes_back_from_urdf_at_rest(name):
-    mechanism = next(scene for scene in SCENES if scene.name == name).mechanism()
+    mechanism = scene(name).mechanism()
     resting = tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in mechanism.bodies)
     still = replace(mechanism, bodies=resting, gravity=(0.5, -2.0))
     model = mujoco.MjModel.from_xml_string(urdf(still))  # type: ignore[attr-defined]
@@ -191,52 +188,34 @@ def test_a_weld_is_a_fixed_joint_of_urdf_and_the_file_moves_as_the_mechanism():
     np.testing.assert_allclose(data.qpos, [turned[0], turned[1] - turned[0]], rtol=0, atol=1e-7)
 
 
-def moves_alike(mechanism: Mechanism, own: Model, steps: int = 20, least: float = 1e-9) -> Any:
-    """The model of the exported file, which was seen to move as the engine's own, within `least` [m, rad]."""
+IN_HALVES = random_mechanism(3, 2, ("pin", "slot"))  # a loop, in which half a body and a weld hold a slot
+BY_CONTACT = ("sleigh", "cart", "rolling_ellipse")
+
+
+@pytest.mark.parametrize("name", ["in halves", "free_four_bar", "driven_slider_crank", "n_four_bar_2", *BY_CONTACT])
+def test_an_exported_model_moves_as_the_engines_and_its_bars_go_through_the_joints(name):
+    mechanism = IN_HALVES if name == "in halves" else scene(name).mechanism()
+    own = DEFAULT.model(mechanism, 1e-3)
     shown = mujoco.MjModel.from_xml_string(DEFAULT.text(mechanism, 1e-3))  # type: ignore[attr-defined]
     data, start = mujoco.MjData(shown), own.start()  # type: ignore[attr-defined]
     mujoco.mj_resetDataKeyframe(shown, data, 0)  # type: ignore[attr-defined]
-    for _ in range(steps):
+    for _ in range(60):
         mujoco.mj_step(shown, data)  # type: ignore[attr-defined]
         mujoco.mj_step(own.compiled, start)  # type: ignore[attr-defined]
-    # The engine counts masses in a power of two of its own; a tolerance of the solver is told apart from rounding.
-    np.testing.assert_allclose(data.qpos, start.qpos, rtol=0, atol=least)
-    return shown
-
-
-def test_a_body_in_halves_goes_the_same_way_as_a_file():
-    """A slot in a loop of moving bodies is held by half a body and a weld, which the file has to name."""
-    mechanism = random_mechanism(3, 2, ("pin", "slot"))
-    own = DEFAULT.model(mechanism, 1e-3)
-    assert own.halves
-    moves_alike(mechanism, own)
-
-
-@pytest.mark.parametrize("name", ["free_four_bar", "driven_slider_crank", "n_four_bar_2"])
-def test_bars_that_show_an_exported_model_go_through_the_joints_and_change_no_step(name):
-    """They are in the file alone: the engine's own model has none, and both go the same way."""
-    scene = next(scene for scene in SCENES if scene.name == name)
-    mechanism = scene.mechanism()
-    own = DEFAULT.model(mechanism, 1e-3)
-    assert own.compiled.ngeom == 0
-    model = moves_alike(mechanism, own)
-    assert not model.geom_contype.any()
-    assert not model.geom_conaffinity.any()
-    if name != "free_four_bar":
+    # The engine counts masses in a power of two of its own; a tolerance of the solver is told apart from rounding. A
+    # blade's shape is pressed into the plane after the model is compiled, and one that is not is 3e-7 m and more off.
+    np.testing.assert_allclose(data.qpos, start.qpos, rtol=0, atol=1e-8)
+    assert bool(own.halves) == (name == "in halves")
+    if name in BY_CONTACT:
         return
-    data = mujoco.MjData(model)  # type: ignore[attr-defined]
-    mujoco.mj_resetDataKeyframe(model, data, 0)  # type: ignore[attr-defined]
-    mujoco.mj_kinematics(model, data)  # type: ignore[attr-defined]
-    for name, wanted in outlines.body_points(mechanism, mechanism.pose).items():
-        geom = int(model.body(name).geomadr[0])
-        along = model.geom_size[geom][1] * data.geom_xmat[geom].reshape(3, 3)[:, 2]
-        ends = sorted((data.geom_xpos[geom] + side * along)[:2].tolist() for side in (1, -1))
-        np.testing.assert_allclose(ends, sorted(wanted.tolist()), rtol=0, atol=1e-12)
-
-
-@pytest.mark.parametrize("name", ["sleigh", "cart", "rolling_ellipse"])
-def test_an_exported_contact_moves_as_the_engines(name):
-    """A blade's shape is pressed into the plane after the model is compiled: the file has it there too."""
-    mechanism = next(scene for scene in SCENES if scene.name == name).mechanism()
-    # Of the solver's tolerance; a blade that is pressed otherwise is 3e-7 m and more off.
-    moves_alike(mechanism, DEFAULT.model(mechanism, 1e-3), steps=60, least=1e-8)
+    assert own.compiled.ngeom == 0  # bars are in the file alone
+    assert not shown.geom_contype.any()
+    assert not shown.geom_conaffinity.any()
+    if name == "free_four_bar":
+        mujoco.mj_resetDataKeyframe(shown, data, 0)  # type: ignore[attr-defined]
+        mujoco.mj_kinematics(shown, data)  # type: ignore[attr-defined]
+        for body, wanted in outlines.body_points(mechanism, mechanism.pose).items():
+            geom = int(shown.body(body).geomadr[0])
+            along = shown.geom_size[geom][1] * data.geom_xmat[geom].reshape(3, 3)[:, 2]
+            ends = sorted((data.geom_xpos[geom] + side * along)[:2].tolist() for side in (1, -1))
+            np.testing.assert_allclose(ends, sorted(wanted.tolist()), rtol=0, atol=1e-12)
