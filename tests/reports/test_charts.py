@@ -11,9 +11,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
-from matplotlib.text import Annotation, Text
 
 from reference import trajectory as outlines
 from reference.chapter.centrodes import Centrodes
@@ -189,17 +187,10 @@ def test_any_number_of_families_are_told_apart_and_those_of_the_registry_keep_th
     assert len(set(families.MARKS)) == 9
 
 
-def annotation(text: Text) -> Annotation:
-    """A text that points at a place."""
-    assert isinstance(text, Annotation)
-    return text
-
-
-def handles(legend: Legend) -> list[Any]:
-    """A legend's pieces: lines, which have a colour, or patches, which have a face and a hatch."""
-    found: list[Any] = [handle for handle in legend.legend_handles if handle is not None]
-    assert len(found) == len(legend.legend_handles)
-    return found
+def words_at(panel: Axes) -> list[tuple[str, Any]]:
+    """Texts with the places at which they point."""
+    texts: list[Any] = list(panel.texts)
+    return [(text.get_text(), text.xy) for text in texts]
 
 
 def lines(panel: Axes) -> list[np.ndarray]:
@@ -259,19 +250,17 @@ def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_c
     second = Panel(
         "second", [Path([[1.0, 1e-3], [2.0, 1e-1]], "truth")], plane=False, across="time [s]", up="m", logarithmic=True
     )
-    left, right = paths([first, second], columns=2).axes
+    figure = paths([first, second], columns=2)
+    left, right = figure.axes
     assert [panel.get_title(loc="left") for panel in (left, right)] == ["first", "second"]
     assert has(left, near)
     assert has(left, [[0.0, 0.0], [9.0, 8.0]])
     assert has(left, [[9.0, 8.0]])  # the dot at its end
     assert has(left, [[0.5, 0.4], [0.5, 0.6]])  # a blade of 0.2 m upright about its middle
-    assert [(text.get_text(), annotation(text).xy) for text in left.texts] == [("here", (0.25, 1.5))]
+    assert words_at(left) == [("here", (0.25, 1.5))]
     assert (right.get_xlabel(), right.get_ylabel(), right.get_yscale()) == ("time [s]", "m", "log")
     assert has(right, [[1.0, 1e-3], [2.0, 1e-1]])
-    assert [to_hex(handle.get_color()) for handle in handles(left.figure.legends[0])] == [
-        to_hex(LIGHT.ink),
-        to_hex(LIGHT.first),
-    ]
+    assert legend(figure) == {"truth": (to_hex(LIGHT.ink), "-"), "wrong": (to_hex(LIGHT.first), "--")}
     # What is not framed does not stretch the picture.
     assert left.get_xlim()[1] < 2
     assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
@@ -310,9 +299,9 @@ def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slope
     assert (low, high) == (pytest.approx(1e-16), pytest.approx(quantity(field).rounding))
     guides = [points(line) for line in panel.get_lines() if line.get_marker() in (None, "None", "")]
     assert len(guides) == 3
-    for text, ((left, bottom), (right, top)) in zip(panel.texts, guides, strict=True):
-        assert math.log(top / bottom) / math.log(right / left) == pytest.approx(float(text.get_text()))
-        assert annotation(text).xy == (pytest.approx(right), pytest.approx(top))
+    for (slope, place), ((left, bottom), (right, top)) in zip(words_at(panel), guides, strict=True):
+        assert math.log(top / bottom) / math.log(right / left) == pytest.approx(float(slope))
+        assert place == (pytest.approx(right), pytest.approx(top))
     assert [text.get_text() for text in panel.texts] == ["1", "2", "4"]
     assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
 
