@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import isfinite
+from math import isfinite, nan
 from typing import Any
 
 import numpy as np
@@ -31,6 +31,7 @@ from reports.pages.published.experiments import ACROBOT_STEPS, BOUNDS, NEWTON_ST
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.rows import lookups
+from reports.write.tables import milliseconds
 
 # Angles of one body against another, as the test set has them, by the names of the bodies.
 ANGLES = ("K1", "K2 - K1", "K3", "K4 - K5", "K5", "K6 - K7", "K7")
@@ -98,35 +99,14 @@ ACROBOTS = tuple(Acrobot(engine) for engine in VARIANTS)
 NEWTONS = tuple(Newton(engine) for engine in VARIANTS)
 
 
-@dataclass(frozen=True)
-class Scored:
-    """A method in one problem: of its rows within a tolerance [rad], for each tolerance, the cheapest; None without."""
-
-    rows: tuple[Measurement | None, ...]
-    duration: float  # s, of the problem
-    run: bool  # whether any row is there
-
-    @property
-    def costs(self) -> list[float | None]:
-        """CPU time of the whole problem [s] for each tolerance, None where none was reached."""
-        return [None if row is None else row.cpu * self.duration for row in self.rows]
-
-
-def scored(rows: Iterable[Measurement], scene: Scene, engines: Iterable[Engine]) -> list[Scored]:
-    """Every engine in a scene, by the cells that were run."""
-    own = [row for row in rows if row.scene == scene.name]
-    found = []
-    for engine in engines:
-        mine = [row for row in own if (row.engine, row.variant) == (engine.name, engine.variant)]
-        timed = [row for row in mine if isfinite(row.cpu) and not _wrong(row)]
-        within = [[row for row in timed if row.angle < tolerance] for tolerance in TOLERANCES]
-        cheapest = tuple(min(rows, key=lambda row: row.cpu, default=None) for rows in within)
-        found.append(Scored(cheapest, scene.duration, bool(mine)))
-    return found
-
-
-def _wrong(row: Measurement) -> bool:
-    return Outcome(row.outcome).wrong
+def costs(rows: Iterable[Measurement], scene: Scene, engine: Engine) -> list[str]:
+    """CPU time of the whole problem [ms] by an engine's cheapest row in a scene, for each tolerance [rad], in words."""
+    own = [row for row in rows if (row.scene, row.engine, row.variant) == (scene.name, engine.name, engine.variant)]
+    if not own:
+        return ["not run"] * len(TOLERANCES)
+    timed = [row for row in own if isfinite(row.cpu) and not Outcome(row.outcome).wrong]
+    least = [min((row.cpu for row in timed if row.angle < tolerance), default=nan) for tolerance in TOLERANCES]
+    return [milliseconds(cpu * scene.duration, unknown="\N{EN DASH}") for cpu in least]
 
 
 def largest_step(answer: Answer, name: str) -> float | None:
@@ -141,46 +121,38 @@ def largest_step(answer: Answer, name: str) -> float | None:
 
 def bounds(material: Material) -> list[dict[str, Any]]:
     """Of every method that was run, the largest step within each of Newton's bounds."""
-    found = []
-    for task in NEWTONS:
-        answer = material.finished(task)
-        if answer is not None:
-            found.append(
-                {"method": method_name(task.method), "steps": {name: largest_step(answer, name) for name in BOUNDS}}
-            )
-    return found
+    return [
+        {"method": method_name(task.method), "steps": {name: largest_step(answer, name) for name in BOUNDS}}
+        for task in NEWTONS
+        if (answer := material.finished(task)) is not None
+    ]
 
 
 def drifts(material: Material) -> list[dict[str, Any]]:
     """Acrobot's loss of energy at its three steps: of RK4 by hand, of the same seen in 32 bits, of every method."""
-    found = []
-    hand = material.finished(BY_HAND)
-    if hand is not None:
-        found.append({"method": "RK4 in the two angles", "drift": hand.array("drift")})
-        found.append({"method": "the same, seen in 32 bits", "drift": hand.array("rounded")})
-    for task in ACROBOTS:
-        answer = material.finished(task)
-        if answer is not None and task.method is not None:
-            found.append({"method": method_name(task.method), "drift": answer.array("drift")})
-    return found
+    named = [("RK4 in the two angles", BY_HAND, "drift"), ("the same, seen in 32 bits", BY_HAND, "rounded")]
+    named += [(method_name(engine), Acrobot(engine), "drift") for engine in VARIANTS]
+    return [
+        {"method": words, "drift": answer.array(name)}
+        for words, task, name in named
+        if (answer := material.finished(task)) is not None
+    ]
 
 
 def figures(material: Material) -> dict[str, str]:
     """Stroboscopic pictures of the truth: the crank's first half turn, and a whole turn when it is fast."""
     scene = Andrews()
-    strips = (
-        Strip(scene, "From rest", 7, end=0.012),
-        Strip(scene, "Fast", 7, start=0.04, end=0.046),
-    )
+    strips = Strip(scene, "From rest", 7, end=0.012), Strip(scene, "Fast", 7, start=0.04, end=0.046)
     return {"stroboscope": svg(stroboscope(strips), "Andrews' squeezing mechanism in motion")}
 
 
 def words(material: Material) -> Mapping[str, Any]:
     """Published numbers beside ours; `by_method`: the costs of three benchmarks by tolerance; `bounds`."""
     rows = [*material.sweep(SCENES), *material.of(BORROWED)]
-    problems = [scored(rows, scene, VARIANTS) for scene in (PointPendulum(), NFourBar(), SCENES[0])]
+    problems = (PointPendulum(), NFourBar(), SCENES[0])
     by_method = [
-        {"method": method_name(engine), "problems": cells} for engine, *cells in zip(VARIANTS, *problems, strict=True)
+        {"method": method_name(engine), "costs": [words for scene in problems for words in costs(rows, scene, engine)]}
+        for engine in VARIANTS
     ]
     return {
         **lookups(material, SCENES),
