@@ -191,13 +191,12 @@ def figures(material: Material) -> dict[str, str]:
             drawn[f"work_{field}"] = svg(
                 figure, f"Each engine as shipped and at its best: {field} error against CPU time"
             )
-    lines = {name: line_of(material, cells) for name, cells in CLOSING.items()}
-    lines = {name: points for name, points in lines.items() if points}
+    lines = {name: points for name, cells in CLOSING.items() if (points := line_of(material, cells))}
     if lines:
-        marked = {"as shipped": (SHARES[1], lines), "its usual erp": (0.2, lines)}
+        marked = ("as shipped", SHARES[1]), ("its usual erp", 0.2)
         shipped = {
             words: point
-            for (words, (share, _)), name in zip(marked.items(), CLOSING, strict=True)
+            for (words, share), name in zip(marked, CLOSING, strict=True)
             for point in lines.get(name, ())
             if point[0] == share
         }
@@ -207,10 +206,7 @@ def figures(material: Material) -> dict[str, str]:
 
 def _terms(material: Material) -> str:
     body = [
-        [
-            method_name(task.of),
-            *(number(float(answer.array(name).max())) for name in ("with", "without")),
-        ]
+        [method_name(task.of), *(number(float(answer.array(name).max())) for name in ("with", "without"))]
         for task in TERMS
         if (answer := material.finished(task)) is not None
     ]

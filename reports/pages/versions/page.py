@@ -94,9 +94,7 @@ def cost(entries: Sequence[Entry], versions: Sequence[str], theme: Theme = LIGHT
         figure = new_figure(3.0, theme)
         panel = figure.subplots()
         style_axes(panel, theme)
-        methods = [method for method in variants(entries) if ratios(entries, versions, method)]
-        for index, method in enumerate(methods):
-            found = ratios(entries, versions, method)
+        for index, (method, found) in enumerate(ratios_by_method(entries, versions).items()):
             places = [versions.index(version) + 0.12 * (index - 1) for version in found]
             low, middle, high = (np.array([np.percentile(v, share) for v in found.values()]) for share in (25, 50, 75))
             colour = getattr(theme, SERIES[index])
@@ -134,6 +132,11 @@ def ratios(entries: Sequence[Entry], versions: Sequence[str], method: str) -> di
         for version in versions
     }
     return {version: values for version, values in found.items() if values}
+
+
+def ratios_by_method(entries: Sequence[Entry], versions: Sequence[str]) -> dict[str, dict[str, list[float]]]:
+    """The same of every method that has any."""
+    return {method: found for method in variants(entries) if (found := ratios(entries, versions, method))}
 
 
 DATA = Path(__file__).parents[2] / "results" / "versions.csv"
@@ -202,13 +205,12 @@ def step_table(own: Table, engine: str) -> str:
 def cost_table(own: Table, engine: str) -> str:
     """The median of the scenes' CPU times over those of the newest version, a line a version."""
     entries, versions = [e for e in own.entries if e.engine == engine], own.versions(engine)
-    methods = [method for method in variants(entries) if ratios(entries, versions, method)]
-    found = {method: ratios(entries, versions, method) for method in methods}
+    found = ratios_by_method(entries, versions)
     body = [
-        [version, *(f"{np.median(found[m][version]):.2f}" if version in found[m] else "-" for m in methods)]
+        [version, *(f"{np.median(own[version]):.2f}" if version in own else "-" for own in found.values())]
         for version in versions
     ]
-    return markdown(["version", *methods], body) if methods else ""
+    return markdown(["version", *found], body) if found else ""
 
 
 def words(material: Material) -> Mapping[str, Any]:

@@ -53,7 +53,12 @@ class Walk(Task):
             setting.pop("front", None)
         # What is cheapest by the clock differs between machines; the largest step that is enough does not.
         coarsest = coarsest_enough(found)
-        told["advised"] = None if coarsest is None else {**_setting(coarsest)}
+        told["advised"] = coarsest and {
+            "words": coarsest.change.words,
+            "step": coarsest.change.dt,
+            "error": coarsest.error,
+            "lines": list(coarsest.change.lines),
+        }
         del told["next_decade"], told["over_time"]
         return {"found": json.dumps(told, sort_keys=True), "shown": shown_of(found, coarsest).as_text()}
 
@@ -62,11 +67,6 @@ def coarsest_enough(found: Checked) -> Tried | None:
     """The setting of the largest step within the tolerance, the first of equal ones."""
     enough = [each for each in found.table if each.error <= found.tolerance]
     return max(enough, key=lambda each: each.change.dt, default=None)
-
-
-def _setting(each: Tried) -> dict[str, object]:
-    change = each.change
-    return {"words": change.words, "step": change.dt, "error": each.error, "lines": list(change.lines)}
 
 
 def walk(file: str, name: str = "", **settings: float) -> Walk:
@@ -87,7 +87,6 @@ SOURCES = {
     "dm_control": "dm_control's suite",
     "pymunk": "pymunk's examples",
 }
-OTHERS_HEADER = ("from", "model", "what became of it")
 
 
 def rows() -> list[dict[str, str]]:
@@ -105,7 +104,7 @@ def other_models() -> dict[str, object]:
         "count": len(found),
         "as_is": sum(not row["without"] for row in read),
         "switched": sum(bool(row["without"]) for row in read),
-        "table": markdown(list(OTHERS_HEADER), body),
+        "table": markdown(["from", "model", "what became of it"], body),
     }
 
 
@@ -126,7 +125,6 @@ def _sentence(row: dict[str, str]) -> str:
 
 
 NAME = "your_model"
-HEADER = ("setting", "largest error", "reaction error")
 
 
 def found_of(material: Material, walk: Walk) -> dict[str, Any] | None:
@@ -153,20 +151,16 @@ def table(found: Mapping[str, Any]) -> str:
         [each["words"], *("gave up" if each[key] is None else number(each[key]) for key in ("error", "reaction"))]
         for each in found["tried"]
     ]
-    return markdown(list(HEADER), body)
+    return markdown(["setting", "largest error", "reaction error"], body)
 
 
 def words(material: Material) -> Mapping[str, Any]:
     """By a model's name what was found in it, its text and its table; None for one that was not run."""
-    told = {}
-    for walk in WALKS:
-        found = found_of(material, walk)
-        stem = walk.file.split(".")[0]
-        told[stem] = None if found is None else {**found, "table": table(found)}
+    told = {walk.file.split(".")[0]: found_of(material, walk) for walk in WALKS}
     return {
         "read": read_elements(),
         "others": other_models(),
-        "found": told,
+        "found": {stem: found and {**found, "table": table(found)} for stem, found in told.items()},
         "walks": {walk.file.split(".")[0]: walk for walk in WALKS},
     }
 
