@@ -319,11 +319,6 @@ class Rolling(Valid):
         return contact
 
     @validated
-    def advance(self, theta: ArrayLike) -> Array:
-        """s (...) [m]: how far the contact has moved along the ground since the start."""
-        return self.contact(theta).ground_arc - self.ground_arc
-
-    @validated
     def pose(self, theta: ArrayLike) -> Array:
         """Poses (..., 3) [m, m, rad] of the body's frame at rotations theta (...) [rad]."""
         contact = self.contact(theta)

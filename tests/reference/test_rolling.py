@@ -11,6 +11,7 @@ import pytest
 
 from reference.checks import InvalidMechanism
 from reference.numerics.roots import solve_increasing
+from reference.plane import rotated
 from reference.rolling.closed_curves import Cam, Ellipse
 from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
@@ -69,10 +70,8 @@ def test_nothing_jumps_over_many_turns(case):
 
 
 def test_a_placed_curve_is_moved_as_a_rigid_body():
-    curve, placed = Ellipse(0.5, 0.3), Placed(Ellipse(0.5, 0.3), (1.0, 2.0), 0.7)
-    arc = np.linspace(-5, 5, 50)
-    x, y = curve.point(arc).T
-    moved = np.stack([1 + np.cos(0.7) * x - np.sin(0.7) * y, 2 + np.sin(0.7) * x + np.cos(0.7) * y], axis=-1)
+    placed, arc = CASES["placed"], np.linspace(-5, 5, 50)
+    moved = np.array([1.0, 2.0]) + rotated(0.7, Ellipse(0.5, 0.3).point(arc))
     np.testing.assert_allclose(placed.point(arc), moved, atol=1e-15)
     np.testing.assert_allclose(placed.arc(placed.angle(arc)), arc, atol=1e-14)
 
@@ -97,10 +96,6 @@ def test_a_root_out_of_reach_is_an_error_and_not_a_number():
 
 # Poses are a few roundings of lengths near 1 m, times the turns.
 ROUNDING = 1e-13
-
-
-def unit(angle):
-    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
 def test_the_chapters_rate_for_a_hypocycloid():
@@ -155,14 +150,7 @@ def test_contact_is_common_tangent_and_equally_long_on_both(pair):
     touching = ground.angle(contact.ground_arc) + np.pi - theta - body.angle(contact.body_arc)
     touching = np.remainder(touching + np.pi, 2 * np.pi) - np.pi
     np.testing.assert_allclose(touching, 0, atol=ROUNDING)
-    own = body.point(contact.body_arc)
-    place = np.stack(
-        [
-            unit(theta)[:, 0] * own[:, 0] - unit(theta)[:, 1] * own[:, 1],
-            unit(theta)[:, 1] * own[:, 0] + unit(theta)[:, 0] * own[:, 1],
-        ],
-        axis=-1,
-    )
+    place = rotated(theta, body.point(contact.body_arc))
     np.testing.assert_allclose(rolling.position(theta) + place, ground.point(contact.ground_arc), atol=ROUNDING)
     # By central differences of the fifth order in a step of 1e-3 rad: rounding / step, and the step's fourth power.
     step = 1e-3
@@ -173,7 +161,7 @@ def test_contact_is_common_tangent_and_equally_long_on_both(pair):
 
     ones = np.ones_like(theta)
     np.testing.assert_allclose(slope(rolling.position), rolling.velocity(theta, ones), atol=1e-8)
-    np.testing.assert_allclose(slope(rolling.advance), contact.rate, atol=1e-7)
+    np.testing.assert_allclose(slope(lambda th: rolling.contact(th).ground_arc), contact.rate, atol=1e-7)
     np.testing.assert_allclose(
         slope(lambda th: rolling.contact(th).point), contact.rate[:, None] * contact.tangent, atol=1e-7
     )

@@ -99,18 +99,14 @@ def truth_error(each: Scene) -> Callable[[np.ndarray], np.ndarray] | None:
     return getattr(each, "truth_error", None) or getattr(getattr(each, "motion_law", None), "truth_error", None)
 
 
-def unit(mechanism: Mechanism) -> np.ndarray:
-    return mechanism.pose_unit
-
-
 def fastest(mechanism: Mechanism, motion: Trajectory) -> float:
     """1/s, of turning or of a length; of a mechanism that rests what its own time scale says."""
-    return max(float(np.abs(motion.twist / unit(mechanism)).max()), 1 / mechanism.time_scale)
+    return max(float(np.abs(motion.twist / mechanism.pose_unit).max()), 1 / mechanism.time_scale)
 
 
 def off_the_joints(mechanism: Mechanism, motion: Trajectory) -> float:
     """The largest gap and slip, in lengths and speeds of the motion."""
-    place = 1 + np.abs(motion.pose / unit(mechanism)).max()
+    place = 1 + np.abs(motion.pose / mechanism.pose_unit).max()
     length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
     gap = np.nanmax(np.abs(joint_gap(mechanism, motion) / length), initial=0.0) / place
     return max(gap, np.abs(slip(mechanism, motion) / length).max(initial=0.0) / fastest(mechanism, motion))
@@ -118,15 +114,15 @@ def off_the_joints(mechanism: Mechanism, motion: Trajectory) -> float:
 
 def off_newton(mechanism: Mechanism, motion: Trajectory, change: np.ndarray) -> float:
     """What M a = f + J^T r lacks, in the largest force; forces that rows leave undetermined are whatever fits best."""
-    inertias = mechanism.inertias / unit(mechanism)
+    inertias = mechanism.inertias / mechanism.pose_unit
     free = mechanism.unconstrained(motion.pose, motion.twist)
     columns = np.swapaxes(mechanism.rows(motion.pose), -1, -2)
     pulls = np.einsum("tcr,tr->tc", columns, np.nan_to_num(motion.reaction))
-    lacks = inertias * (change - free) - pulls.reshape(change.shape) / unit(mechanism)
+    lacks = inertias * (change - free) - pulls.reshape(change.shape) / mechanism.pose_unit
     for now, column, reaction in zip(lacks, columns, motion.reaction, strict=True):
-        left_open = column[:, np.isnan(reaction)] / np.tile(unit(mechanism), len(now))[:, None]
+        left_open = column[:, np.isnan(reaction)] / np.tile(mechanism.pose_unit, len(now))[:, None]
         now -= (left_open @ np.linalg.lstsq(left_open, now.ravel())[0]).reshape(now.shape)
-    usual = inertias * unit(mechanism) * fastest(mechanism, motion) ** 2
+    usual = inertias * mechanism.pose_unit * fastest(mechanism, motion) ** 2
     return float(np.abs(lacks).max() / max(np.abs(inertias * free).max(), usual.max()))
 
 
@@ -139,7 +135,7 @@ def test_the_motion_starts_as_the_mechanism_and_keeps_every_joint_and_the_freedo
         assert np.abs(found - own).max() < 3e-14 * (1 + np.abs(own).max())
     assert off_the_joints(mechanism, motion) < 1e-13
     # (w h)^8 / 630 with w h = 0.005 of the fastest turning, or some times that in between, and rounding / h.
-    assert np.abs((rate - motion.twist) / unit(mechanism)).max() < 1e-10 * fastest(mechanism, motion)
+    assert np.abs((rate - motion.twist) / mechanism.pose_unit).max() < 1e-10 * fastest(mechanism, motion)
     freedoms = FREEDOMS.get(each.name, (getattr(each, "links", 1),) * 2)
     assert mechanism.degrees_of_freedom() == freedoms
     assert set(np.abs(each.branch_of(motion.pose))) <= {0, 1}
@@ -161,8 +157,8 @@ def told(each: Scene, t: np.ndarray) -> np.ndarray | None:
 @pytest.mark.parametrize("each", [each for each in ALL if isinstance(each, FourBarScene | PlacedScene)], ids=name_of)
 def test_the_accelerations_of_a_scene_are_those_of_its_motion(each: Scene) -> None:
     mechanism, motion, _, change = known(each)
-    off = np.abs((present(told(each, motion.t)) - change) / unit(mechanism)).max()
-    assert off < 1e-9 * max(np.abs(change / unit(mechanism)).max(), fastest(mechanism, motion) ** 2)
+    off = np.abs((present(told(each, motion.t)) - change) / mechanism.pose_unit).max()
+    assert off < 1e-9 * max(np.abs(change / mechanism.pose_unit).max(), fastest(mechanism, motion) ** 2)
 
 
 @each_scene
@@ -183,7 +179,7 @@ def test_exact_multipliers_on_the_rows_alone_give_the_same_motion(each: Scene) -
     met = np.all(np.isfinite(run.pose), axis=(1, 2))  # they stop where a position is singular
     assert met[1]
     # Two integrations of a tolerance of 1e-13 a step, grown by what nearly straight knees make of a difference.
-    assert np.abs((run.pose - exact.pose) / unit(mechanism))[met].max() < 1e-10
+    assert np.abs((run.pose - exact.pose) / mechanism.pose_unit)[met].max() < 1e-10
     reaction = np.nan_to_num(np.abs(run.reaction - exact.reaction))[met]
     assert reaction.max(initial=0.0) <= 1e-8 * np.nanmax(np.abs(exact.reaction[met]), initial=0.0)
 

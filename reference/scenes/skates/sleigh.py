@@ -69,11 +69,6 @@ class ChaplyginSleigh(Scene):
         """c; only used when the sleigh turns."""
         return math.asinh(self.speed / (self._arm * abs(self.turning_rate)))
 
-    @property
-    def energy(self) -> float:
-        """Kinetic energy, constant [J]."""
-        return 0.5 * self.mass * self._top_speed**2
-
     def growth_rate(self) -> float:
         """The rate of exp(rate t) at which a small turning grows on the straight run at this speed [1/s].
 
