@@ -61,8 +61,10 @@ def test_a_module_whose_files_are_as_installed_may_call_itself_anything(tmp_path
     assert answer(tmp_path) == ""
 
 
-def test_a_build_of_a_release_is_of_that_release(tmp_path, answer):
-    distribution(tmp_path, NAME, "2.0.1+patched", "2.0.1")
+def test_a_build_is_of_its_release_and_what_adds_to_anothers_package_has_a_version_of_its_own(tmp_path, answer):
+    """As mujoco-mjx, installed without its requirements, adds mujoco/mjx to mujoco-core's package."""
+    distribution(tmp_path, NAME, "1.17.0", "2.0.1", listed="more/__init__.py")
+    distribution(tmp_path, "core", "2.0.1+patched", "2.0.1")
     (tmp_path / NAME / "__init__.py").write_text("__version__ = '2.0.1' \n")  # as the author changed it since
     assert answer(tmp_path) == ""
 
@@ -74,13 +76,6 @@ def test_files_of_another_distribution_over_its_own_are_reported_with_a_remedy(t
     assert "bundle 1.17.0" in sentence
     assert sentence.endswith(f"pip install --force-reinstall --no-deps {NAME}==2.0.1")
     assert "\n" not in sentence
-
-
-def test_a_distribution_that_adds_to_a_package_of_another_one_has_a_version_of_its_own(tmp_path, answer):
-    """As mujoco-mjx, installed without its requirements, adds mujoco/mjx to mujoco-core's package."""
-    distribution(tmp_path, NAME, "1.17.0", "2.0.1", listed="more/__init__.py")
-    distribution(tmp_path, "core", "2.0.1", "2.0.1")
-    assert answer(tmp_path) == ""
 
 
 def test_a_folder_on_the_path_that_hides_an_installation_is_reported_unless_it_is_a_build(tmp_path, answer):
