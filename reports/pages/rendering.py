@@ -23,10 +23,9 @@ from reports.pages.index import engines_of, render_index
 from reports.plots import work_precision as charts
 from reports.plots.theme import svg
 from reports.write import page_tables, unmeasured
-from reports.write.columns import runs_of
+from reports.write.columns import holders, runs_of, told_rows
 from reports.write.csv_files import as_csv, descriptions_csv
 from reports.write.experiments import told_experiment
-from reports.write.holders import holders, told_rows
 from reports.write.page_tables import advised_programs
 from reports.write.provenance import machine, row_versions, today, versions
 from reports.write.templates import inert_page, template_of

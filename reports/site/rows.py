@@ -7,8 +7,8 @@ from typing import Any
 
 from engines.lagrange import Lagrange
 from reports.plots.looks import family_of, role
+from reports.write.columns import VARIANTS
 from reports.write.csv_files import read_lines
-from reports.write.holders import VARIANTS
 
 COLUMNS = ("scene", "engine", "variant", "outcome", "settings", "step")
 NUMBERS = ("position", "angle", "velocity", "gap", "energy", "reaction")

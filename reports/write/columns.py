@@ -1,4 +1,6 @@
-"""What stands in a column of a table of engines, by who holds the joints; and the tables of all scenes.
+"""Who holds a mechanism's joints in a method, in a few words: a reader must not take our rows for an engine's own.
+
+And what stands in a column of a table of engines, by who holds the joints; and the tables of all scenes.
 
 A method's name does not decide: documented settings are such only where the engine itself holds every joint by them.
 """
@@ -7,24 +9,102 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from functools import cache
 from types import MappingProxyType
 
-from engines import Engine
+from engines import Engine, Holder
 from engines.registry import method_name
 from reference.joints import Skate
+from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.scene import Scene
-from reports.model.cells import mechanism_of
+from reports.model.cells import Cell, mechanism_of
 from reports.model.convergence import Sweep, Verdict, by_method, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.model.quantities import quantity
 from reports.model.usual_steps import USUAL_STEPS, is_run_at, is_step, usual_variants
-from reports.write.holders import VARIANTS, Column, column_of
 from reports.write.page_tables import SAME_COST, TARGETS, reliable
 from reports.write.tables import NOTHING, error_words, markdown, milliseconds, number, step_words
+
+
+class Column(StrEnum):
+    """The columns of a table of engines, and what stands in none."""
+
+    SHIPPED = "as shipped"
+    SETTINGS = "documented settings"
+    CODE = "with our code"
+    NAIVE = "naive"  # our code alone holds a joint that the engine does not have
+    WHOLE = ""  # of an engine that has no such variants
+
+
+VARIANTS = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Column.CODE}
+
+
+@cache
+def column_of(scene: Scene, engine: Engine) -> Column:
+    """Where a method stands for a scene; one that is neither as shipped nor extended has settings."""
+    mechanism = mechanism_of(scene)
+    held = {engine.holder(joint, mechanism) for joint in mechanism.joints}
+    if "ours" in held:
+        return Column.NAIVE
+    if "engine, our rows" in held or len(engine.steps_of_runs(mechanism)) > 1:
+        return Column.CODE
+    return VARIANTS.get(engine.variant, Column.SETTINGS)
+
+
+def told_variant(scene: Scene, engine: Engine) -> str:
+    """The variant as a page names it: an engine's usual name is not lent to a trick of a user's; no two share one."""
+    if engine.variant not in VARIANTS or column_of(scene, engine) is not Column.NAIVE:
+        return engine.variant
+    return str(Column.NAIVE) if engine.variant == "default" else f"{Column.NAIVE}, {engine.variant}"
+
+
+def told_rows(rows: Mapping[Cell, Measurement]) -> dict[Cell, Measurement]:
+    """Rows under the variants that pages name."""
+    return {cell: replace(row, variant=told_variant(cell.scene, cell.engine)) for cell, row in rows.items()}
+
+
+def held_by(engine: Engine, mechanism: Mechanism) -> str:
+    """'engine', 'ours', or 'engine; skate: ours' where joints are held by different ones.
+
+    Joints are named by kind; where those of one kind differ, by their own names.
+    """
+    holders: list[Holder] = [engine.holder(joint, mechanism) for joint in mechanism.joints]
+    if len({*holders}) <= 1:
+        return holders[0] if holders else "no joints"
+    kinds: dict[str, set[Holder]] = {}
+    for joint, holder in zip(mechanism.joints, holders, strict=True):
+        kinds.setdefault(_kind(joint), set()).add(holder)
+    found: dict[Holder, dict[str, None]] = {}
+    for joint, holder in zip(mechanism.joints, holders, strict=True):
+        name = _kind(joint) if len(kinds[_kind(joint)]) == 1 else joint.name
+        found.setdefault(holder, {})[name] = None
+    others = [f"{' and '.join(names)}: {holder}" for holder, names in sorted(found.items()) if holder != "engine"]
+    return "; ".join(["engine", *others] if "engine" in found else others)
+
+
+def _kind(joint: object) -> str:
+    return type(joint).__name__.lower()
+
+
+@cache
+def held_in(scene: Scene, engine: Engine) -> str:
+    """Who holds a scene's joints; kept, because a method asks its whole model about each of a hundred joints."""
+    return held_by(engine, mechanism_of(scene))
+
+
+def holders(cells: Iterable[Cell]) -> dict[str, str]:
+    """Who holds the joints in these cells, by method; several answers where the cells of a method differ."""
+    found: dict[str, dict[str, None]] = {}
+    for cell in cells:
+        method = f"{cell.engine.name} {told_variant(cell.scene, cell.engine)}"
+        found.setdefault(method, {}).setdefault(held_in(cell.scene, cell.engine))
+    return {method: " or ".join(told) for method, told in found.items()}
+
 
 # CPU seconds per simulated second at which methods stand side by side: a hundredth of real time.
 BUDGET = 1e-2
@@ -89,7 +169,7 @@ def lines(entries: Iterable[Entry]) -> list[Line]:
     return found
 
 
-Cell = Callable[[Line, Column], str]
+Words = Callable[[Line, Column], str]  # of a cell
 
 
 def empty(line: Line, column: Column) -> str:
@@ -103,7 +183,7 @@ def empty(line: Line, column: Column) -> str:
     return NO_JOINT if any("https://" in row.sentence for row in rows) else NOT_BUILT
 
 
-def _told(line: Line, column: Column, cell: Cell) -> str:
+def _told(line: Line, column: Column, cell: Words) -> str:
     """A cell: empty, with the reason, where the engine has no such joint or our adapter builds none."""
     if word := empty(line, column):
         return f"*{word}*"
@@ -124,7 +204,7 @@ def means(line: Line, column: Column) -> str:
 
 def _table(
     found: Sequence[Line],
-    cell: Cell,
+    cell: Words,
     folder: str,
     both: bool,
     remarks: Mapping[tuple[str, Column], str] = MappingProxyType({}),

@@ -17,7 +17,7 @@ from reports.model.page import Failure, Material, Observation
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Motion, trajectory_of
 from reports.write import tables
-from reports.write.holders import told_variant
+from reports.write.columns import told_variant
 from reports.write.rows import Rows
 from reports.write.templates import template
 

@@ -23,7 +23,7 @@ from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.gate.change import Altered
-from reports.write.holders import held_by
+from reports.write.columns import held_by
 from tests.mechanisms import four_bar
 from tests.toys import Toy
 

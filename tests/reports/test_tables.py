@@ -34,9 +34,21 @@ from reports.model.tasks import Answer, Task, answered
 from reports.pages.index import foot
 from reports.pages.skate.page import PAGE as SKATE
 from reports.write import csv_files, provenance, tables
-from reports.write.columns import equal_cost, equal_error, equal_step, error_within, lines, means, reached
+from reports.write.columns import (
+    Column,
+    column_of,
+    equal_cost,
+    equal_error,
+    equal_step,
+    error_within,
+    holders,
+    lines,
+    means,
+    reached,
+    told_rows,
+    told_variant,
+)
 from reports.write.experiments import compared_only, told_experiment
-from reports.write.holders import Column, column_of, holders, told_rows, told_variant
 from reports.write.page_tables import advice, advice_table, compared_step, reliable, scene_table
 from reports.write.provenance import machine, still_installed, versions
 from tests.present import present

@@ -28,7 +28,7 @@ from reports.pages.atlas.columns import FILE, Line, read
 from reports.pages.atlas.subjects import SUBJECTS, Subject
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
-from reports.write.holders import told_variant
+from reports.write.columns import told_variant
 from reports.write.tables import markdown, number, step_words
 
 FOLDER = Path(__file__).parents[2] / "results"

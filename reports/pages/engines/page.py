@@ -39,7 +39,7 @@ from reports.pages.engines.experiments import (
 )
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.plots.work_precision import work_precision
-from reports.write.holders import Column, column_of
+from reports.write.columns import Column, column_of
 from reports.write.provenance import told_versions
 from reports.write.tables import NOTHING, markdown, number
 

@@ -32,7 +32,7 @@ from reports.pages.skate.experiments import CONSTRUCTIONS, FAILURES, known
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import svg
 from reports.write import tables
-from reports.write.holders import holders
+from reports.write.columns import holders
 from reports.write.page_tables import COMPARED
 from reports.write.rows import Rows
 

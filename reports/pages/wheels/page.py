@@ -24,8 +24,8 @@ from reports.pages.skate.experiments import known
 from reports.pages.skate.page import counted
 from reports.plots.plane_panels import Blades, Panel, Path, paths
 from reports.plots.theme import svg
+from reports.write.columns import told_variant
 from reports.write.experiments import observe_each
-from reports.write.holders import told_variant
 from reports.write.unmeasured import UNMEASURED
 
 
