@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 from scipy.special import jn_zeros
 
-from reference.numerics.elliptic import incomplete, jacobi, quarter_period
 from reference.scenes.n_four_bar import NFourBar, TenFourBars
 from reference.scenes.pendulum.chain import Chain
-from reference.scenes.pendulum.link import BarPendulum, Pendulum, PointPendulum
+from reference.scenes.pendulum.link import BarPendulum, Pendulum, PointPendulum, incomplete, jacobi, quarter_period
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.scenes.person import (
     HEAD_ARMS_TRUNK,

@@ -24,8 +24,7 @@ from reference.scenes.skates.pinned_body import PinnedBody
 from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart, Casters
-from reference.scenes.wheels.tractrix import Tow
-from reference.scenes.wheels.trailers import CarWithTrailers
+from reference.scenes.wheels.trailers import CarWithTrailers, Tow
 from tests.mechanisms import four_bar
 from tests.present import present
 

@@ -1,7 +1,7 @@
 """A car with its steering held, and a trailer on a hitch, coasting: the whole motion but its timing in closed form.
 
 One freedom of velocity is left, the rear axle's speed v along a circle, so the energy M(s) v^2/2 gives the speed at
-every way s: the trailer's direction is a towed drawbar's (`tractrix.Tow`), its hitch on a circle of its own, and
+every way s: the trailer's direction is a towed drawbar's (`trailers.Tow`), its hitch on a circle of its own, and
 t(s) = int sqrt(M(s)/M(0)) ds / v(0) is inverted. No multiplier and no equation of motion is solved.
 """
 
@@ -22,8 +22,7 @@ from reference.numerics.calculus import Antiderivative
 from reference.numerics.roots import solve_increasing
 from reference.plane import COMPLEX_STEP
 from reference.scene import Scene
-from reference.scenes.wheels.tractrix import Tow
-from reference.scenes.wheels.trailers import towed
+from reference.scenes.wheels.trailers import Tow, towed
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]

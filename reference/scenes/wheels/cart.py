@@ -23,7 +23,7 @@ from reference.joints import Joint, Pin, Skate, Triple, Vector, bodies_of
 from reference.mechanism import Mechanism
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.plane import components
-from reference.scenes.wheels.tractrix import Tow
+from reference.scenes.wheels.trailers import Tow
 
 Array = NDArray[np.float64]
 Input = float | Callable[[Array], Array]

@@ -14,8 +14,7 @@ from engines import pymunk
 from engines.registry import VARIANTS
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart, Casters
-from reference.scenes.wheels.tractrix import Tow
-from reference.scenes.wheels.trailers import CarWithTrailers
+from reference.scenes.wheels.trailers import CarWithTrailers, Tow
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation, Page
 from reports.model.tasks import Motion, Task, Values

@@ -11,7 +11,7 @@ import numpy as np
 from reference.scenes.skates.pinned_body import PinnedBody
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.skates.slopes import SkateOnSlope
-from reference.scenes.wheels.tractrix import Tow
+from reference.scenes.wheels.trailers import Tow
 from tests.reference.laws.law import DIGITS, Law, Outside, angle, decades
 from tests.reference.laws.pendulums import swung
 
