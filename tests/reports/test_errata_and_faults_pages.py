@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from engines import single_run
+from reference.chapter import errata
 from reference.chapter.errata import Values
 from reports import __main__ as command_line
 from reports.cli.selection import page_tasks
@@ -119,6 +120,14 @@ def test_the_correction_is_the_derivative_and_the_printed_formula_is_not(erratum
     # Numbers of the order of 1 to 10; Cauchy's integral divides rounding by radius^2 = 1/16.
     assert values.agreement < 1e-12
     assert values.miss > LEAST.get(erratum.number, 0.1)
+
+
+def test_the_formulas_that_engines_rule_on_are_those_of_the_scripts():
+    by_number = {erratum.number: erratum.values for erratum in ERRATA}
+    for number, (bar, printed) in errata.PENDULUM_SLIPS.items():
+        state = errata.BarState(errata.BAR, errata.PHI[bar], errata.PHI_RATE[bar], errata.PHI_ACCELERATION[bar])
+        assert printed(state) == pytest.approx(by_number[number].printed, abs=1e-12), number
+        assert errata.right(state) == pytest.approx(by_number[number].right, abs=1e-12), number
 
 
 def test_every_slip_has_its_document_and_is_refereed_by_several_engines(said):
