@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import ellipkm1, elliprf
+from scipy.special import elliprf
 
 from reference.checks import LARGEST, NonNegative, Positive, Valid, require_room, validated
 from reference.joints import Pin
@@ -39,7 +39,8 @@ HALF_PRECISION = 1e-9
 
 def quarter_period(complement: float) -> float:
     """K [1], the complete integral of the first kind, for 0 <= n <= 1; infinite at n = 0."""
-    return float(ellipkm1(complement))
+    # The same function as `incomplete` has, so that a body let go from rest begins with a rate of exactly zero.
+    return float(elliprf(0.0, complement, 1.0))
 
 
 def incomplete(sine: ArrayLike, cosine: ArrayLike, complement: float) -> Array:
