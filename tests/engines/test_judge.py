@@ -11,11 +11,12 @@ from engines import Softness
 from engines.lagrange.loading import installed
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.scenes.n_four_bar import NFourBar
 from reference.scenes.pendulum.link import PointPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.gate import judge
-from reports.gate.judge import QUANTITY_NAMES, errors, errors_as_soft, in_numpy, integrate, refined
+from reports.gate.judge import QUANTITY_NAMES, errors, errors_as_soft, giving_way, in_numpy, integrate, refined
 from tests.toys import Disc
 
 SWINGING = LinkPendulum(duration=0.3, horizon=0.3)
@@ -133,3 +134,13 @@ def test_a_soft_motion_passes_a_singular_position_and_shorter_steps_change_it_li
 def test_a_soft_motion_that_takes_too_many_steps_is_lost(monkeypatch):
     monkeypatch.setattr(judge, "MOST", 100)
     assert errors_as_soft(THROUGH, spring(THROUGH.mechanism())) == dict.fromkeys(QUANTITY_NAMES, np.inf)
+
+
+def test_declared_rows_give_way_and_a_drive_by_a_compliance_alone():
+    mechanism = DrivenFourBar().mechanism()
+    driven = mechanism.rate != 0
+    declared = np.arange(mechanism.row_count) % 2 == 0
+    for compliance in (0.0, 1e-3):
+        gives = giving_way(mechanism, Softness(1e4, 2e2, compliance, tuple(declared.tolist())))
+        assert gives.tolist() == (declared & (~driven | (compliance > 0))).tolist()
+    assert driven.sum() == 1

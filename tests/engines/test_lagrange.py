@@ -9,12 +9,13 @@ import pytest
 from scipy.special import ellipj, ellipk
 
 from engines import Softness
+from engines.constrained import constrained
 from engines.lagrange import HELD, TRUTH, Judge, Lagrange
 from engines.lagrange.dynamics import RK4, Dynamics, constrained_acceleration, inverse_inertia, runge_kutta
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.plane import rotation_acceleration
-from reference.scenes.four_bar.scenes import OverdrivenFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar, OverdrivenFourBar
 from reference.trajectory import joint_gap, slip
 from tests.mechanisms import four_bar, pendulum
 from tests.present import present
@@ -157,3 +158,16 @@ def test_eulers_method_drifts_with_the_velocity_after_its_kick():
 def test_settings_that_do_not_exist_are_refused(settings):
     with pytest.raises(ValueError, match=r"must|tolerance"):
         Lagrange(*settings)
+
+
+@pytest.mark.parametrize("give", [None, 0.3])
+def test_a_constrained_motion_obeys_its_rows_and_newtons_law(give):
+    mechanism = FreeFourBar().mechanism()
+    state = mechanism.pose, mechanism.twist
+    rows, right, free = mechanism.rows(mechanism.pose), mechanism.bias(*state), mechanism.unconstrained(*state)
+    soft = None if give is None else give * np.eye(len(rows))[:, :3]
+    found = constrained(rows, right, mechanism.inertias, free, soft)
+    given = 0.0 if soft is None else soft @ soft.T @ found.force
+    assert rows @ found.motion.reshape(-1) == pytest.approx(right - given, abs=1e-11)
+    newton = mechanism.inertias * (found.motion - free)
+    assert newton.reshape(-1) == pytest.approx(rows.T @ found.force, abs=1e-11)
