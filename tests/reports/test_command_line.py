@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from contextlib import closing
@@ -47,6 +48,7 @@ def environment():
 
 
 def one_line(err):
+    err = re.sub(r"^compiling the judge's machine code.*\n", "", err)  # the first program of a new installation
     assert len(err.strip().splitlines()) == 1, err
     assert err.startswith("crosscheck: ")
     return err

@@ -63,6 +63,12 @@ class Page(HTMLParser):
         self._inside = ""
 
 
+def require_packages():
+    """Skip the test where a package of the extra `site` is missing."""
+    for name in NEEDED:
+        pytest.importorskip(name, reason=f"{name} is not installed: pip install '.[site]'")
+
+
 @pytest.fixture(scope="module")
 def source(tmp_path_factory):
     """The published pages, no motions, and no packages: npm is not asked."""
@@ -73,8 +79,7 @@ def source(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def files(source, tmp_path_factory):
-    for name in NEEDED:
-        pytest.importorskip(name, reason=f"{name} is not installed: pip install '.[site]'")
+    require_packages()
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PATH", str(tmp_path_factory.mktemp("nothing")))
         return build(source)
@@ -240,6 +245,7 @@ FREE = ("free_four_bar", "pymunk", "default")
 
 
 def test_the_reference_is_made_of_docstrings():
+    require_packages()
     names = ("reference/reference.mechanism.rst", "reference/index.rst")
     sources = {name: text for name, text in reference_sources().items() if name in names} | {"index.md": b"# Site\n"}
     pages, _ = build_html(Documents(sources, {}, {"lessons": ()}, lambda app: iter(())))
