@@ -50,8 +50,8 @@ def build_html(documents: Documents) -> tuple[dict[str, bytes], list[str]]:
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
         raise BadInput(f"the site needs packages that are not installed ({', '.join(missing)}): pip install '.[site]'")
-    from sphinx.application import Sphinx
-    from sphinx.util.docutils import docutils_namespace
+    from sphinx.application import Sphinx  # pyright: ignore[reportMissingImports]
+    from sphinx.util.docutils import docutils_namespace  # pyright: ignore[reportMissingImports]
 
     with TemporaryDirectory() as folder, docutils_namespace(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # deprecations of Sphinx that its theme and MyST still use
@@ -139,7 +139,7 @@ def colours() -> str:
 
 def visit_inline(translator: Any, node: Any) -> None:
     """Write a formula of a sentence, and nothing of its children."""
-    from docutils.nodes import SkipNode
+    from docutils.nodes import SkipNode  # pyright: ignore[reportMissingImports]
 
     translator.body.append(mathml(node.astext()))
     raise SkipNode
@@ -147,7 +147,7 @@ def visit_inline(translator: Any, node: Any) -> None:
 
 def visit_block(translator: Any, node: Any) -> None:
     """Write a displayed formula, and nothing of its children."""
-    from docutils.nodes import SkipNode
+    from docutils.nodes import SkipNode  # pyright: ignore[reportMissingImports]
 
     translator.body.append(f'<div class="math">{mathml(" ".join(node.astext().split()), True)}</div>')
     raise SkipNode
@@ -155,7 +155,7 @@ def visit_block(translator: Any, node: Any) -> None:
 
 def quote_section(app: Any, page: str, heading: str) -> str | None:
     """The HTML of a part of a results page, as a page in a folder beside `results` shows it; None without that part."""
-    from docutils import nodes
+    from docutils import nodes  # pyright: ignore[reportMissingImports]
 
     name = f"results/{page}"
     if name not in app.env.all_docs:

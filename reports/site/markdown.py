@@ -24,7 +24,7 @@ def mathml(formula: str, displayed: bool = False) -> str:
 def render_html(text: str) -> str:
     """A few sentences of Markdown as HTML."""
     from markdown_it import MarkdownIt
-    from mdit_py_plugins.dollarmath import dollarmath_plugin
+    from mdit_py_plugins.dollarmath import dollarmath_plugin  # pyright: ignore[reportMissingImports]
 
     reader = MarkdownIt("commonmark", {"html": True}).enable("table")
     dollarmath_plugin(
