@@ -92,7 +92,7 @@ def configure(extra: Path) -> dict[str, Any]:
         "html_math_renderer": "mathml",
         "html_sidebars": {"**": [f"sidebar/{part}.html" for part in SIDEBAR]},
         "html_favicon": str(HERE / "static" / "icon.svg"),
-        "html_static_path": [str(HERE / "static")],
+        "html_static_path": [str(HERE / "static"), str(HERE / "assets" / "tables.js")],
         "html_css_files": ["pages.css"],
         "html_js_files": [("tables.js", {"type": "module"})],
         "html_extra_path": [str(extra)],

@@ -1,7 +1,7 @@
 // @ts-check
 /** The stored rows as a chart with hover and a table; what the reader chooses stands in the link. */
 
-import { equip } from "./_static/tables.js";
+import { equip } from "./tables.js";
 
 const Plot = /** @type {any} */ (window).Plot;
 const form = /** @type {HTMLFormElement} */ (document.getElementById("choice"));
