@@ -36,6 +36,7 @@ def site(
     from reports.run.files import folder_for
     from reports.site.build import build
     from reports.site.folder import REMEDY, refuse_strangers, serve_folder, server, write_site
+    from reports.site.generator import require_packages
     from reports.site.lesson import Source
 
     if not 0 < port < 65536:
@@ -44,6 +45,7 @@ def site(
     if not (folder / "index.md").is_file():
         command = with_folder("crosscheck report", results)
         raise BadInput(f"{folder} has no index.md: write the pages first with {command}, or name --pages")
+    require_packages()
     refuse_strangers(output)
     folder_for(output.absolute().parent, REMEDY)  # before anything is run
     if serve:

@@ -102,7 +102,8 @@ def sources(name: str, version: str, folder: Path, *options: str) -> Path:
     if ended.returncode or not found:
         raise BadInput(f"pip could not fetch the source package of {name} {version}: {_reason(ended.stderr, 1)}")
     with tarfile.open(found[0], encoding="utf-8") as archive:
-        archive.extractall(folder, filter="data")
+        archive.extraction_filter = getattr(tarfile, "data_filter", None)  # Python before 3.11.4 has none
+        archive.extractall(folder)
     return folder / f"{name}-{version}"
 
 

@@ -45,11 +45,16 @@ class Documents:
     add_pages: Callable[[Any], Iterator[Extra]]  # of the Sphinx application, when all documents are written
 
 
-def build_html(documents: Documents) -> tuple[dict[str, bytes], list[str]]:
-    """The files of the site by name, and the warnings about our pages. Raises BadInput where a package is missing."""
+def require_packages() -> None:
+    """Raise BadInput with the packages of the extra `site` that are missing."""
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
         raise BadInput(f"the site needs packages that are not installed ({', '.join(missing)}): pip install '.[site]'")
+
+
+def build_html(documents: Documents) -> tuple[dict[str, bytes], list[str]]:
+    """The files of the site by name, and the warnings about our pages. Raises BadInput where a package is missing."""
+    require_packages()
     from sphinx.application import Sphinx  # pyright: ignore[reportMissingImports]
     from sphinx.util.docutils import docutils_namespace  # pyright: ignore[reportMissingImports]
 
