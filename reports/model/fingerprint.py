@@ -48,9 +48,16 @@ def _versions(modules: frozenset[str], packages: frozenset[str], folders: tuple[
             found[f"files of {module}"] = _content(files)
         else:
             distributions.update(_distributions().get(module, ()))
-    for name in sorted(with_required(distributions)):
+    for name in sorted(with_required(distributions | _rivals(packages))):
         found[name] = metadata.version(name)
     return {**found, "Python": platform.python_version(), "our source files": _our_files(folders)[:12]}
+
+
+def _rivals(packages: Iterable[str]) -> set[str]:
+    """Distributions with a module of one of these: a release that is first on the path may have another name."""
+    named = {normalised(name) for name in packages}
+    holders = [set(map(normalised, names)) for names in _distributions().values()]
+    return {name for names in holders if names & named for name in names}
 
 
 def _parts(values: Iterable[Any]) -> Iterator[Any]:

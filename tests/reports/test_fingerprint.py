@@ -174,3 +174,11 @@ def test_no_path_of_this_machine_is_in_a_key(tmp_path, monkeypatch):
         monkeypatch.setattr(fingerprint, "ROOT", Path(tmp_path / name))
         keys.append(key(Disc(), DEFAULT))
     assert keys[0] == keys[1]
+
+
+def test_a_release_of_another_name_changes_the_key_of_rows(monkeypatch):
+    """MuJoCo 3.6 is the distribution mujoco, 4.0 is mujoco-core, and both hold the package mujoco."""
+    known = dict(fingerprint._distributions())
+    monkeypatch.setattr(fingerprint, "_distributions", lambda: {**known, "mujoco": ["mujoco-core", "mujoco"]})
+    assert fingerprint._rivals(["mujoco_core"]) == {"mujoco-core", "mujoco"}
+    assert fingerprint._rivals(["nothing"]) == set()
