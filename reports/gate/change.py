@@ -65,7 +65,10 @@ class Baseline:
 
     @property
     def same_versions(self) -> bool:
-        """Whether numbers have to be the same: a file whose versions nobody says is taken at its word."""
+        """Whether `change` checks the rows; `drift` does where any version differs, Python's patch number included.
+
+        A file without versions is compared as one with the same versions.
+        """
         return self.versions == "" or still_installed(self.versions)
 
 
@@ -275,8 +278,11 @@ def _has_numbers(now: str, before: str) -> bool:
 
 
 def drift(row: Measurement, old: Old) -> tuple[Check, ...]:
-    """The checks of a row that was made with other versions: no error more than WORSE times as large, none unknown that
-    was a number, and no other outcome; but for a run that can be compared by now."""
+    """The checks of a row that was made with other versions.
+
+    No error is more than WORSE times as large, no number has become NaN, and the outcome is the same one, unless the
+    run can be compared now and could not before: that is an improvement, which `known_by_now` reports.
+    """
     if not (Outcome(row.outcome).comparable and old.outcome.comparable):
         return (_outcome(row, old, row.outcome == old.outcome or Outcome(row.outcome).comparable),)
     out = []

@@ -15,7 +15,7 @@ import pytest
 
 from engines import Engine, method_name, registry
 from engines.loading import is_reference
-from reports.gate.change import BadBaseline, Baseline, mixed, read_baseline
+from reports.gate.change import WORSE, BadBaseline, Baseline, mixed, read_baseline
 from reports.gate.theory import Case, idle
 from reports.gate.walk import CaseVerdict, grown, remarks, walk
 from reports.model.ending import FileTrouble
@@ -69,7 +69,10 @@ def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
     out = [told] if (told := mixed(baseline)) else []
     out += [f"The baseline has no column {name!r}: this quantity is not compared." for name in baseline.unmeasured]
     if not baseline.same_versions:
-        out.append(f"The baseline was made with {baseline.versions}; here are {versions()}.")
+        out.append(
+            f"The baseline was made with {baseline.versions}; here are {versions()}. So errors may be up to "
+            f"{WORSE:g} times as large, and a run that can be compared now and could not before is a remark."
+        )
         for verdict in verdicts:
             found = [check for check in verdict.change if "baseline" in dict(check.terms)]
             other = [
@@ -81,7 +84,8 @@ def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
     new = sum(verdict.new for verdict in verdicts)
     if new:
         named = ", ".join(verdict.case.label for verdict in verdicts if verdict.new)
-        out.append(f"{new} cells are not in the baseline: {named}.")
+        reason = "a report leaves out fine steps where rounding is reached"
+        out.append(f"{new} cells are not in the baseline ({reason}): {named}.")
     return out
 
 
