@@ -19,7 +19,7 @@ from engines.mujoco.writers import MJCF
 from engines.pymunk.written_script import SCRIPT
 from reference.scene import Scene
 from reports.pages.your_loop.experiments import EVERY, Fresh, draw, run_lines
-from reports.pages.your_loop.linkages import LINKAGES, jansen
+from reports.pages.your_loop.linkages import LINKAGES
 from reports.pages.your_loop.page import (
     BUILT,
     CHAIN,
@@ -156,12 +156,13 @@ def test_with_the_lines_no_linkage_opens_more_than_as_shipped(linkage, step):
 
 
 def test_eight_iterations_tear_a_walking_linkage_which_the_lines_see():
-    step, torn = 1e-3, jansen((1, -1))
-    names = run_lines(jansen((1, -1)), PASTED.replace("print(choose(space, 1e-3))", ""))
+    step, jansen = 1e-3, LINKAGES["two legs of Jansen on a crank"]
+    torn = jansen()
+    names = run_lines(jansen(), PASTED.replace("print(choose(space, 1e-3))", ""))
     names["close"](torn, step, 8)
-    shipped = worst_gap(jansen((1, -1)), names["gaps"], step, 1.0)
+    shipped = worst_gap(jansen(), names["gaps"], step, 1.0)
     assert worst_gap(torn, names["gaps"], step, 1.0) > 100 * shipped
-    chosen = jansen((1, -1))
+    chosen = jansen()
     assert names["choose"](chosen, step) == chosen.iterations >= 100
     assert worst_gap(chosen, names["gaps"], step, 1.0) < shipped / 4
 
