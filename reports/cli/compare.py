@@ -96,7 +96,7 @@ def print_comparison(console: Terminal, builds: BuildComparison) -> None:
         (
             "Order of the angle's error",
             ("scene", "method", first, second),
-            [[turn.scene, turn.method, turn.before, turn.after] for turn in found.turns],
+            [[turn.scene, turn.method, turn.before, turn.after] for turn in found.orders],
         ),
     ]
     for title, header, body in tables:
@@ -125,7 +125,7 @@ def _cells(difference: Difference) -> list[str | float]:
     from reports.model.quantities import quantity
 
     name = difference.quantity
-    label = name if name == "outcome" else f"{name} [{quantity(name).unit}]"
+    label = name if name in ("outcome", "reaction_rows") else f"{name} [{quantity(name).unit}]"
     return [label, difference.after.step, difference.value(difference.before), difference.value(difference.after)]
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from reports.versions.table import Table
 
 WIDTH = 150  # into a file or a pipe
-DATA = "versions.csv"
 USUAL = "Only these scenes (repeatable, or with commas); six short ones if none is named."
 
 
@@ -51,7 +49,7 @@ def versions(
     from reports.cli.terminal import telling
     from reports.run.files import write_whole
     from reports.versions.builds import SCENES
-    from reports.versions.table import as_csv, as_published, catalogued, merged, read
+    from reports.versions.table import DATA, as_csv, as_published, merged, read, released
 
     if publish:
         refuse_outside_a_checkout()
@@ -63,7 +61,7 @@ def versions(
     rows: list[Measurement] = []
     with telling(WIDTH, as_json, as_markdown) as console, kept() as check:
         run = _runner(console, check, chosen, results / STORE, fresh, everything and not scenes)
-        table = catalogued(read(Path(results) / DATA)) if everything else None
+        table = released(Path(results) / DATA.name) if everything else None
         for name, numbers in wanted.items():
             columns = []
             for number in numbers:
@@ -78,12 +76,12 @@ def versions(
                 rows += columns[-1].rows
                 if table is not None:
                     table = merged(table, _table(name, columns[-1:]))
-                    write_whole({Path(results) / DATA: as_csv(table)}, "what is stored is kept")
+                    write_whole({Path(results) / DATA.name: as_csv(table)}, "what is stored is kept")
             _print(console, _table(name, columns), name)
         if publish and table is not None and not wrong:
-            renewed = as_published(table, read(published() / DATA))
-            write_whole({published() / DATA: as_csv(renewed)}, "the file that was there stays as it was")
-            console.say(f"{published() / DATA} is renewed")
+            renewed = as_published(table, read(published() / DATA.name))
+            write_whole({published() / DATA.name: as_csv(renewed)}, "the file that was there stays as it was")
+            console.say(f"{published() / DATA.name} is renewed")
         refuse_nothing_but_failures(rows)
     if wrong:
         raise BadInput(f"{len(wrong)} of the versions could not be run, the others are stored; the first: {wrong[0]}")
@@ -127,20 +125,18 @@ def progress_of(console: Terminal, check: Callable[[], None]) -> Progress:
 
 def installed_once(words: Iterable[str]) -> None:
     """Install releases, NAME==VERSION, unless they are there. Raises BadInput."""
-    from engines.registry import VARIANTS
     from reports.run.installed import installed
-    from reports.versions.catalogue import distributions
+    from reports.versions.catalogue import distributions, engines_named
 
     for name, _, number in (word.partition("==") for word in words):
-        installed(distributions(VARIANTS, name), number)
+        installed(distributions(engines_named(name)[0]), number)
 
 
 def _versions_by_engine(
     engine: str | None, numbers: list[str] | tuple[str, ...], everything: bool
 ) -> dict[str, tuple[str, ...]]:
     """Engine -> versions. Raises BadInput for words that don't go together, or are not known."""
-    from engines.registry import OTHERS, VARIANTS
-    from reports.versions.catalogue import compared_versions, distributions
+    from reports.versions.catalogue import compared_versions, engines_named
 
     if everything:
         if engine is not None:
@@ -148,7 +144,7 @@ def _versions_by_engine(
         return compared_versions()
     if engine is None:
         raise BadInput("name an engine and versions, such as: crosscheck versions mujoco 3.6.0 4.0.1; or give --all")
-    distributions((*VARIANTS, *OTHERS), engine)
+    engines_named(engine)
     if not numbers:
         known = " ".join(compared_versions().get(engine, ()))
         raise BadInput(f"name versions of {engine}" + (f", such as {known}" if known else ""))
@@ -182,21 +178,18 @@ def _table(name: str, columns: list[VersionColumn]) -> Table:
 def _print(console: Terminal, table: Table, name: str) -> None:
     """Errors at a usual step, a line a scene and method, a column a version; outcomes where there is no error."""
     from reports.cli.terminal import print_table
-    from reports.versions.comparison import change
-    from reports.versions.comparison import lines as lines_of
-    from reports.versions.table import unit
+    from reports.versions.table import changes
 
     numbers = table.versions(name)
     lines: dict[tuple[str, str, str], dict[str, str | float]] = {}
     for entry in table.entries:
-        key = entry.scene, entry.variant, f"{entry.quantity} [{unit(entry)}]"
+        key = entry.scene, entry.variant, f"{entry.quantity} [{entry.unit}]"
         lines.setdefault(key, {})[entry.version] = entry.error if entry.comparable else entry.outcome
-    changes = {
-        key[1:]: "; ".join(f"{b.version} {word}" for a, b in pairwise(members) if (word := change(a, b)))
-        for key, members in lines_of(table.entries).items()
-    }
+    words: dict[tuple[str, str], list[str]] = {}
+    for _, after, word in changes(table.entries):
+        words.setdefault((after.scene, after.variant), []).append(f"{after.version} {word}")
     rows = [
-        [*key, *(found.get(each, "-") for each in numbers), changes.get(key[:2]) or "nothing changed"]
+        [*key, *(found.get(each, "-") for each in numbers), "; ".join(words.get(key[:2], ["nothing changed"]))]
         for key, found in sorted(lines.items())
     ]
     if rows:

@@ -23,11 +23,10 @@ from reports.model.quantities import quantity
 from reports.model.tasks import Answer, Task
 from reports.model.usual_steps import is_step
 from reports.pages.faults.page import OFFSETS, SCRIPTS, is_right
-from reports.pages.versions.page import ratios, table
 from reports.plots.looks import colour
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.versions.catalogue import COST_ROSE_IN
-from reports.versions.table import ACCELERATION, Entry
+from reports.versions.table import ACCELERATION, Entry, relative_cost, released
 from reports.write.page_tables import COMPARED, advice
 from reports.write.rows import Rows, own_rows
 from reports.write.templates import template
@@ -294,16 +293,15 @@ def forces(sources: Sources) -> Evidence:
 
 def releases(sources: Sources) -> Evidence:
     """The cure of MuJoCo 3.7.0, by the rows of the releases; and how the cost of a step as shipped has grown."""
-    entries = [entry for entry in table().entries if entry.engine == "mujoco"]
-    versions = table().versions("mujoco")
+    entries, versions = released().of("mujoco"), released().versions("mujoco")
     lines = {
         scene: [entry for entry in entries if (entry.scene, entry.variant) == (scene, "tuned")]
         for scene in ("free_four_bar", "spinning_four_bar", "driven_slider_crank")
     }
     error = {entry.version: entry.error for entry in lines["free_four_bar"]}
     old, new, newest = (error.get(version, math.nan) for version in ("3.6.0", "3.7.0", versions[-1]))
-    cost = ratios(entries, versions, "default")
-    oldest, later = (float(np.median(cost[each])) if each in cost else math.nan for each in (versions[0], "3.3.7"))
+    cost = relative_cost(entries, versions, "default")
+    oldest, later = (cost.get(version, math.nan) for version in (versions[0], "3.3.7"))
     return Evidence(
         {"old": old, "new": new, "oldest": oldest, "later": later, "first": versions[0], "rose_in": COST_ROSE_IN},
         3e3 < old / new < 3e4 and later / oldest > 1.4 and newest < 1.1 * new,
@@ -315,8 +313,8 @@ def releases(sources: Sources) -> Evidence:
 
 def trees(sources: Sources) -> Evidence:
     """Random trees with loops across, in MuJoCo with the stiffest documented settings and with stiffer rows of ours."""
-    newest = table().versions("mujoco")[-1]
-    entries = [entry for entry in table().entries if (entry.engine, entry.quantity) == ("mujoco", ACCELERATION)]
+    newest = released().versions("mujoco")[-1]
+    entries = [entry for entry in released().of("mujoco") if entry.quantity == ACCELERATION]
     tuned, ours = ([entry for entry in entries if entry.variant == variant] for variant in ("tuned", "extended"))
     last = {entry.variant: entry for entry in entries if entry.version == newest}
     many, _, rest = last["tuned"].sentence.partition(" of ") if "tuned" in last else ("0", "", "")

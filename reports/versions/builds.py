@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from engines import Engine
-from engines.loading import is_reference
-from engines.registry import OTHERS, VARIANTS, load
+from engines.registry import OTHERS, VARIANTS
 from reference.scene import Scene
 from reports.model.catalogue import SCENES as ALL_SCENES
 from reports.model.cells import QUICK
@@ -18,7 +17,7 @@ from reports.model.ending import BadInput, nearest
 from reports.model.measure import Measurement
 from reports.run.files import temporary_folder
 from reports.run.installed import built, distributions_in, installed
-from reports.versions.catalogue import distributions, engine_of
+from reports.versions.catalogue import distributions, engine_of, engines_named
 from reports.versions.column import VersionColumn, VersionRequest, cells_of, column, modules_in
 from reports.versions.comparison import Comparison, compared
 
@@ -29,13 +28,13 @@ LONGEST_CELL = 1.0  # s by the engine's formula: longer ones are left out of a c
 
 Done = Callable[[Measurement], None]
 Watch = Callable[[Sequence[str]], None]
-# (label, how many cells) -> a context with a function for each row, and one for the labels of what is running.
+# (label, how many cells) -> a context with a function for each row, and one for the labels of running cells.
 Progress = Callable[[str, int], AbstractContextManager[tuple[Done, Watch]]]
 
 
 @contextmanager
 def no_progress(label: str, count: int) -> Iterator[tuple[Done, Watch]]:
-    """Progress that nobody sees."""
+    """Progress that is not shown."""
     yield (lambda row: None), (lambda labels: None)
 
 
@@ -60,12 +59,12 @@ class BuildComparison:
     @property
     def complaint(self) -> str:
         """One sentence if the second is worse; empty otherwise."""
-        found = self.comparison
-        if not (found.worse or found.grown):
+        worse, grown = self.comparison.worse, self.comparison.grown
+        if not (worse or grown):
             return ""
-        grown = f", and {len(found.grown)} errors over all scenes" if found.grown else ""
-        labels = self.sides[1].label, self.sides[0].label
-        return f"{labels[0]} is worse than {labels[1]} in {len(found.worse)} numbers or outcomes{grown}"
+        also = f", and {len(grown)} errors over all scenes" if grown else ""
+        before, after = (side.label for side in self.sides)
+        return f"{after} is worse than {before} in {len(worse)} numbers or outcomes{also}"
 
 
 def scenes_named(names: Sequence[str] = SCENES) -> tuple[Scene, ...]:
@@ -89,27 +88,29 @@ def compare_builds(
     store for rows of releases. `announce` is called with what pip is about to install. Raises BadInput.
     """
     engines = (*VARIANTS, *OTHERS) if engine is None else engines_named(engine)
-    sides = [side_of(word, engine, engines, announce) for word in (first, second)]
-    if sides[0].engine != sides[1].engine:
-        raise BadInput(f"{first} is of {sides[0].engine}, and {second} of {sides[1].engine}; give two of one engine")
-    if sides[0].label == sides[1].label:
-        sides = [replace(side, label=f"{letter}: {side.label}") for letter, side in zip("AB", sides, strict=True)]
-    known = [each for each in engines if engine is not None or each.name == sides[0].engine]
+    a, b = (side_of(word, engine, engines, announce) for word in (first, second))
+    if a.engine != b.engine:
+        raise BadInput(f"{first} is of {a.engine}, and {second} of {b.engine}; give two of one engine")
+    if a.label == b.label:
+        a, b = replace(a, label=f"A: {a.label}"), replace(b, label=f"B: {b.label}")
+    methods = [method for method in engines if engine is not None or method.name == a.engine]
+    known = dict.fromkeys(method.variant for method in methods)
     for word in variants:
-        if word not in {each.variant for each in known}:
-            raise nearest("variant", word, dict.fromkeys(each.variant for each in known))
-    known = [each for each in known if not variants or each.variant in variants]
-    chosen = scenes_named() if scenes is None else tuple(scenes)
-    terms: dict[str, Any] = {"every": QUICK, "variants": tuple(dict.fromkeys(each.variant for each in known))}
-    columns = []
+        if word not in known:
+            raise nearest("variant", word, known)
+    methods = [method for method in methods if not variants or method.variant in variants]
+    terms: dict[str, Any] = {"every": QUICK, "variants": tuple(dict.fromkeys(method.variant for method in methods))}
     with temporary_folder() as folder:
-        for index, side in enumerate(sides):
-            store = (results if side.stored else folder / str(index)) / STORE
-            request = request_of(engine or side.engine, side.place, chosen, store, most=LONGEST_CELL, **terms)
-            columns.append(run_column(side.label, side.label, request, known, progress))
+
+        def run(side: Side, number: str) -> VersionColumn:
+            store = (results if side.stored else folder / number) / STORE
+            request = _request(engine or side.engine, side.place, scenes, store, most=LONGEST_CELL, **terms)
+            return run_column(side.label, side.label, request, methods, progress)
+
+        columns = run(a, "1"), run(b, "2")
     if columns[0].trouble:
-        raise BadInput(f"nothing can be compared with {sides[0].label}: {columns[0].trouble}")
-    return BuildComparison((sides[0], sides[1]), (columns[0], columns[1]), compared(columns[0].rows, columns[1].rows))
+        raise BadInput(f"nothing can be compared with {a.label}: {columns[0].trouble}")
+    return BuildComparison((a, b), columns, compared(columns[0].rows, columns[1].rows))
 
 
 def run_release(
@@ -127,14 +128,14 @@ def run_release(
     """
     engines = engines_named(name)
     announce(f"{name} {version}")
-    place = installed(distributions(engines, name), version)
-    request = request_of(name, place, scenes_named() if scenes is None else tuple(scenes), store, **terms)
-    return run_column(f"{name} {version}", version, request, engines, progress)
+    place = installed(distributions(engines[0]), version)
+    return run_column(f"{name} {version}", version, _request(name, place, scenes, store, **terms), engines, progress)
 
 
-def request_of(engine: str, place: Path, scenes: tuple[Scene, ...], store: Path, **terms: Any) -> VersionRequest:
+def _request(engine: str, place: Path, scenes: Sequence[Scene] | None, store: Path, **terms: Any) -> VersionRequest:
     """The request for the version or build that lies in `place`; `terms`: further fields."""
-    return VersionRequest(scenes, engine, modules_in(place), place, store.absolute(), folder=Path.cwd(), **terms)
+    chosen = scenes_named() if scenes is None else tuple(scenes)
+    return VersionRequest(chosen, engine, modules_in(place), place, store.absolute(), folder=Path.cwd(), **terms)
 
 
 def run_column(
@@ -145,42 +146,28 @@ def run_column(
         return column(version, request, engines, watch, done)
 
 
-def engines_named(word: str) -> tuple[Engine, ...]:
-    """The engines of a name or of a reference. Raises BadInput."""
-    if is_reference(word):
-        try:
-            return load(word)
-        except ValueError as error:
-            raise BadInput(str(error)) from None
-    every = (*VARIANTS, *OTHERS)
-    found = tuple(engine for engine in every if engine.name == word)
-    if not found:
-        raise nearest("engine", word, dict.fromkeys(engine.name for engine in every))
-    return found
-
-
 def side_of(word: str, engine: str | None, engines: Sequence[Engine], announce: Callable[[str], None]) -> Side:
     """The build that a word means. Raises BadInput."""
     name, equals, version = word.partition("==")
     if equals:
-        known = engine_of(engines, [name])
-        if known is None and engine is None:
-            names = ", ".join(dict.fromkeys(each.name for each in engines))
+        method = engine_of(engines, [name])
+        if method is None and engine is None:
+            names = ", ".join(dict.fromkeys(method.name for method in engines))
             raise BadInput(f"{word}: no engine needs {name!r}; there are {names}")
         announce(word)
-        places = distributions(engines, known) if known is not None else (name,)
-        return Side(word, engine or known or name, installed(places, version), True)
+        places = distributions(method) if method is not None else (name,)
+        return Side(word, engine or (method.name if method else name), installed(places, version), True)
     if Path(word).exists():
         announce(word)
     place = built(Path(word))
     versions = distributions_in(place)
-    held = [*versions, *modules_in(place)]
-    known = engine_of(engines, held)
-    if known is None and engine is None:
-        if not held:
+    contents = [*versions, *modules_in(place)]
+    method = engine_of(engines, contents)
+    if method is None and engine is None:
+        if not contents:
             raise BadInput(f"{word} holds no package; give NAME==VERSION, a wheel or a folder with one")
-        raise BadInput(f"{word} holds {', '.join(held[:5])}, which no engine needs; name the engine with --engine")
-    packages = ", ".join(f"{each} {number}" for each, number in versions.items())
+        raise BadInput(f"{word} holds {', '.join(contents[:5])}, which no engine needs; name the engine with --engine")
+    packages = ", ".join(f"{package} {number}" for package, number in versions.items())
     # A wheel's name repeats what is in it, with forty letters of platforms.
     name = "wheel" if Path(word).suffix == ".whl" else Path(word).absolute().name
-    return Side(f"{packages} ({name})" if packages else name, engine or known or "", place, False)
+    return Side(f"{packages} ({name})" if packages else name, engine or (method.name if method else ""), place, False)

@@ -6,7 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from engines import Engine
-from reports.model.ending import nearest
+from engines.loading import is_reference
+from engines.registry import OTHERS, VARIANTS, load
+from reports.model.ending import BadInput, nearest
 from reports.model.fingerprint import normalised
 from reports.run.installed import numbers
 
@@ -16,14 +18,12 @@ SPARSE = "https://github.com/google-deepmind/mujoco/issues/3767"
 
 @dataclass(frozen=True)
 class Release:
-    """`changed`: a clause about a change that is known by name, "loops got their velocity term", with its `source`, an
-    address; `worse`: whether errors became larger by it. No page looks for a step here: rows show it."""
+    """`changed`: a clause about a change that is known by name, with its `source`, an address."""
 
     engine: str
     version: str
     changed: str = ""
     source: str = ""
-    worse: bool = False
 
 
 # About one release of every minor series, and all about which something is known, oldest first.
@@ -49,7 +49,6 @@ RELEASES = (
         "4.0.0",
         "the sparse Cholesky factor of Newton's Hessian became wrong for some trees that branch and close across",
         SPARSE,
-        worse=True,
     ),
     Release("mujoco", "4.0.1", "that factor was mended", SPARSE),
     Release("pymunk", "7.0.0"),
@@ -67,36 +66,38 @@ FORMERLY: Mapping[str, tuple[str, ...]] = {"mujoco-core": ("mujoco",)}
 
 def compared_versions() -> dict[str, tuple[str, ...]]:
     """Engine -> its versions that are compared."""
-    return {
-        engine: tuple(each.version for each in RELEASES if each.engine == engine)
-        for engine in dict.fromkeys(each.engine for each in RELEASES)
-    }
+    engines = dict.fromkeys(release.engine for release in RELEASES)
+    return {name: tuple(release.version for release in RELEASES if release.engine == name) for name in engines}
 
 
-def changes_between(engine: str, before: str, after: str, worse: bool) -> tuple[Release, ...]:
-    """Releases after the one up to the other with a change for the worse, or for the better, that is known by name."""
-    return tuple(
-        each
-        for each in RELEASES
-        if (each.engine, each.worse) == (engine, worse)
-        and each.changed
-        and numbers(before) < numbers(each.version) <= numbers(after)
-    )
+def changes_between(engine: str, before: str, after: str) -> tuple[Release, ...]:
+    """Releases after the one up to the other with a change that is known by name."""
+    of_engine = [release for release in RELEASES if release.engine == engine and release.changed]
+    return tuple(each for each in of_engine if numbers(before) < numbers(each.version) <= numbers(after))
 
 
-def distributions(engines: Sequence[Engine], name: str) -> tuple[str, ...]:
-    """The distributions in which versions of an engine come, newest name first. Raises BadInput for another engine."""
-    own = [engine for engine in engines if engine.name == name]
-    if not own:
-        raise nearest("engine", name, dict.fromkeys(engine.name for engine in engines))
-    return tuple(each for package in own[0].packages for each in (package, *FORMERLY.get(package, ())))
+def engines_named(word: str) -> tuple[Engine, ...]:
+    """The engines of a name or of a reference. Raises BadInput."""
+    if is_reference(word):
+        try:
+            return load(word)
+        except ValueError as error:
+            raise BadInput(str(error)) from None
+    engines = tuple(engine for engine in (*VARIANTS, *OTHERS) if engine.name == word)
+    if not engines:
+        raise nearest("engine", word, dict.fromkeys(engine.name for engine in (*VARIANTS, *OTHERS)))
+    return engines
 
 
-def engine_of(engines: Sequence[Engine], names: Sequence[str]) -> str | None:
-    """The engine whose numbers depend on one of these distributions or modules; None if none of the engines does."""
-    asked = {normalised(name) for name in names}
+def distributions(engine: Engine) -> tuple[str, ...]:
+    """The distributions in which versions of an engine come, the newest name first."""
+    return tuple(name for package in engine.packages for name in (package, *FORMERLY.get(package, ())))
+
+
+def engine_of(engines: Sequence[Engine], names: Sequence[str]) -> Engine | None:
+    """The first engine whose numbers depend on one of these distributions or modules."""
+    wanted = {normalised(name) for name in names}
     for engine in engines:
-        known = {engine.name, *engine.packages, *(old for each in engine.packages for old in FORMERLY.get(each, ()))}
-        if asked & {normalised(each) for each in known}:
-            return engine.name
+        if wanted & {normalised(name) for name in (engine.name, *distributions(engine))}:
+            return engine
     return None

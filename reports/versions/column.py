@@ -1,4 +1,4 @@
-"""One version's column: a process of its own with the version first on its path, and what it said of every cell."""
+"""The rows of one version: run in a process of its own that has the version's folder first on its path."""
 
 from __future__ import annotations
 
@@ -7,29 +7,42 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from engines import Engine
+from engines import Engine, registry
+from engines.imported_release import other_release
+from engines.loading import describe, is_reference
 from reference.scene import Scene
 from reports.model.cells import Cell, estimated_cost
 from reports.model.ending import BadInput
 from reports.model.fingerprint import ROOT
 from reports.model.measure import Measurement, blank
-from reports.model.outcomes import Outcome, describe_exit
+from reports.model.outcomes import Loss, Outcome, describe_exit
+from reports.model.tasks import Answer
 from reports.run.files import temporary_folder
 from reports.run.installed import environment
-from reports.run.running import TIME_LIMIT
+from reports.run.running import TIME_LIMIT, missing, run_into
+from reports.run.store import Store
+from reports.run.supervisor import WorkersLost
+from reports.versions.trees import Trees, engines_for_trees
+
+MARK = "known to be wrong"  # adapters put it into the sentence of every row of such a release
+# Exceptions of Python for a missing name: what our adapter calls is newer than the version.
+LACKING = ("AttributeError:", "ImportError:", "ModuleNotFoundError:")
+LONGEST = 300  # characters of the last line that a process printed
+
+Watch = Callable[[Sequence[str]], None]
 
 
 @dataclass(frozen=True)
 class VersionRequest:
-    """Which scenes, in which engine at how many steps a sample; what is stored already is not run again.
+    """Which scenes, in which engine at how many steps a sample; stored rows are not run again.
 
-    engine: a registered name, or a reference (`engines.loading`) that counts from `folder`; its variants of all scenes
-    are run, or those named. modules: top-level packages that have to come from `place`, the version's own folder.
-    most: a cell is left out whose run would take longer by its engine's formula [s].
-    store: where rows are kept, as in every run.
+    engine: a registered name, or a reference (`engines.loading`) relative to `folder`; all its variants are run, or
+    those named. modules: top-level packages that have to come from `place`, the version's own folder. most: a cell is
+    left out whose run would take longer by its engine's formula [s].
     """
 
     scenes: tuple[Scene, ...]
@@ -47,63 +60,19 @@ class VersionRequest:
 
 
 @dataclass(frozen=True)
-class Running:
-    """Still alive; what it is at."""
-
-    labels: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Trouble:
-    """The version can't be used at all: one sentence. `lacks`: it is the version, that has not what is called;
-    `mislabelled`: its code is not of the version that it is called by.
-    """
-
-    sentence: str
-    lacks: bool = True
-    mislabelled: bool = False
-
-
-@dataclass(frozen=True)
-class TreesRow:
-    """What an engine made of random trees (`reports.versions.trees`)."""
-
-    engine: str
-    variant: str
-    bodies: int
-    loops: int
-    outcome: str
-    sentence: str
-    miss: tuple[float, ...] = ()
-
-
-@dataclass(frozen=True)
-class Finished:
-    """All that was asked for was said."""
-
-
-MARK = "known to be wrong"  # the word of adapters for such a release, in the sentence of every row
-# Exceptions of Python for a name that is not there: what our adapter calls is newer than the version.
-LACKING = ("AttributeError:", "ImportError:", "ModuleNotFoundError:")
-LONGEST = 300  # letters of last words
-
-Watch = Callable[[Sequence[str]], None]
-
-
-@dataclass(frozen=True)
 class VersionColumn:
-    """All rows of one version; `trouble`: why there are none of its own, a sentence."""
+    """All rows of one version, and its answers on random trees; `trouble`: a sentence on why it can't be used."""
 
     version: str
     rows: tuple[Measurement, ...]
-    trees: tuple[TreesRow, ...] = ()
+    trees: tuple[tuple[Trees, Answer], ...] = ()
     trouble: str = ""
 
     @property
     def mark(self) -> str:
         """Why this version's numbers are known to be wrong, in the words of its rows; empty if they aren't."""
-        told = (part for row in self.rows for part in row.sentence.split("; ") if MARK in part)
-        return next(told, "").removeprefix("ours: ")
+        parts = (part for row in self.rows for part in row.sentence.split("; ") if MARK in part)
+        return next(parts, "").removeprefix("ours: ")
 
 
 def column(
@@ -113,48 +82,46 @@ def column(
     watch: Watch = lambda labels: None,
     done: Callable[[Measurement], None] = lambda row: None,
 ) -> VersionColumn:
-    """Run a version's column. Whatever becomes of its process is told in rows, and nothing is raised for it; BadInput
-    where its code is of another version than its metadata say.
+    """Run a version. If its process fails, rows say so; BadInput if its code is of another version than its metadata.
 
     engines: as they are in this process, for the rows of a version that can't be used. `watch` is called a few times a
-    second, and may raise: then the process is ended; the rows so far are in the store. `done`: with each row.
+    second with the labels of running cells, and may raise: then the process is ended; the rows so far are in the store.
+    `done` is called with each row.
     """
     rows: list[Measurement] = []
-    trees: list[TreesRow] = []
-    trouble: Trouble | None = None
+    trees: list[tuple[Trees, Answer]] = []
+    loss = None
     for message in _messages(request):
         match message:
             case Measurement():
-                rows.append(_told(message, version))
+                rows.append(_unsupported_if_lacking(message, version))
                 done(rows[-1])
-            case TreesRow():
-                trees.append(message)
-            case Trouble(mislabelled=True):
+            case (Trees() as task, answer):
+                trees.append((task, answer))
+            case list():
+                watch(message)
+            case Loss(Outcome.REFUSED):
                 raise BadInput(message.sentence)
-            case Trouble():
-                trouble = message
-            case Running(labels):
-                watch(labels)
-    if trouble is None:
+            case Loss():
+                loss = message
+    if loss is None:
         return VersionColumn(version, tuple(rows), tuple(trees))
-    there = {(row.scene, row.variant, row.every) for row in rows}
-    outcome = Outcome.UNSUPPORTED if trouble.lacks else Outcome.ABORTED
+    finished = {(row.scene, row.variant, row.every) for row in rows}
     rows += [
-        blank(cell, outcome, trouble.sentence)
+        blank(cell, loss.outcome, loss.sentence)
         for cell in cells_of(request, engines)
-        if (cell.scene.name, cell.engine.variant, cell.every) not in there
+        if (cell.scene.name, cell.engine.variant, cell.every) not in finished
     ]
-    return VersionColumn(version, tuple(rows), tuple(trees), trouble.sentence)
+    return VersionColumn(version, tuple(rows), tuple(trees), loss.sentence)
 
 
 def cells_of(request: VersionRequest, engines: Sequence[Engine]) -> list[Cell]:
-    """What is asked for, of these engines."""
+    """The requested cells of these engines."""
     cells = [Cell(scene, engine, every) for every in request.every for scene in request.scenes for engine in engines]
     return [cell for cell in cells if estimated_cost(cell) <= request.most]
 
 
-def _told(row: Measurement, version: str) -> Measurement:
-    """The row; an outcome of its own for what the version has not got."""
+def _unsupported_if_lacking(row: Measurement, version: str) -> Measurement:
     if row.outcome in (Outcome.FAILED, Outcome.LOST) and row.sentence.startswith(LACKING):
         sentence = f"{row.engine} {version} lacks what our adapter calls: {row.sentence.partition(': ')[2]}"
         return replace(row, outcome=Outcome.UNSUPPORTED, sentence=sentence)
@@ -162,9 +129,8 @@ def _told(row: Measurement, version: str) -> Measurement:
 
 
 def _messages(request: VersionRequest) -> Iterator[Any]:
-    """What the process says; a Trouble at the end if it ended too early."""
-    with temporary_folder() as folder:
-        # In a folder of its own: what an engine leaves behind goes with it, and what lies there hides no module.
+    """The messages of the process, see `answer`; a Loss at the end if it ended too early."""
+    with temporary_folder() as folder:  # what an engine leaves behind goes with it, and what lies there hides no module
         words = folder / "said.txt"
         with words.open("wb") as errors:
             process = subprocess.Popen(
@@ -178,17 +144,16 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
         assert process.stdin is not None
         assert process.stdout is not None
         try:
-            try:
-                for part in (tuple(path for path in sys.path if path), request):
-                    pickle.dump(part, process.stdin)
-                process.stdin.flush()
-                message: Any = None
-                while not isinstance(message, Finished | Trouble):
-                    message = pickle.load(process.stdout)
-                    yield message
-            except (EOFError, OSError, pickle.UnpicklingError):
-                code = process.wait()
-                yield Trouble(_last_words(words, code), lacks=False)
+            for part in ([path for path in sys.path if path], request):
+                pickle.dump(part, process.stdin)
+            process.stdin.flush()
+            while (message := pickle.load(process.stdout)) is not None:
+                yield message
+        except (EOFError, OSError, pickle.UnpicklingError):
+            code = process.wait()
+            lines = words.read_text(encoding="utf-8", errors="replace").split("\n")
+            last = next((line.strip()[:LONGEST] for line in reversed(lines) if line.strip()), "")
+            yield Loss(Outcome.ABORTED, ": ".join(filter(None, (describe_exit(code), last))))
         finally:
             process.kill()
             process.stdin.close()
@@ -196,10 +161,70 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
             process.wait()
 
 
-def _last_words(path: Path, code: int) -> str:
-    text = path.read_text(encoding="utf-8", errors="replace")
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    return ": ".join(filter(None, (describe_exit(code), lines[-1][:LONGEST] if lines else "")))
+def answer(request: VersionRequest, send: Callable[[Any], None]) -> Loss | None:
+    """In the process of a version: run the request and send each row, each (Trees, Answer) and, a few times a second,
+    the labels of what is running; at the end why it can't be used, or None."""
+    try:
+        engines = _usable_engines(request)
+    except ValueError as error:
+        return Loss(Outcome.UNSUPPORTED, str(error))
+    if sentence := _imported_elsewhere(request):
+        return Loss(Outcome.ABORTED, sentence)
+    if sentence := other_release(engines, elsewhere=False):
+        return Loss(Outcome.REFUSED, sentence)
+    try:
+        _run(request, engines, send)
+    except WorkersLost as error:
+        return Loss(Outcome.ABORTED, str(error))
+    return None
+
+
+def _usable_engines(request: VersionRequest) -> list[Engine]:
+    """The requested engines. Raises ValueError where they can't be used with this version."""
+    cant = "our adapter can't use it"
+    known = (*registry.VARIANTS, *registry.OTHERS)
+    try:
+        if is_reference(request.engine):
+            known = registry.load(request.engine, request.folder)
+    except ValueError as error:
+        raise ValueError(f"{cant}: {error}") from None
+    engines = [engine for engine in known if is_reference(request.engine) or engine.name == request.engine]
+    if not engines:
+        reasons = [line for line in registry.TROUBLES if request.engine in line]
+        raise ValueError(f"{cant}: {(reasons or ['it registers no engine'])[0]}")
+    if engines[0].missing:
+        raise ValueError(f"{cant}: {engines[0].missing}")
+    for module in engines[0].modules:  # extras import theirs when they build
+        try:
+            import_module(module)
+        except Exception as error:
+            raise ValueError(f"{module} can't be imported: {describe(error)}") from None
+    return [engine for engine in engines if not request.variants or engine.variant in request.variants]
+
+
+def _imported_elsewhere(request: VersionRequest) -> str:
+    """A sentence if a module was not imported from this version's place; empty if all were."""
+    place, imported = request.place, [name for name in request.modules if name in sys.modules]
+    for name in imported:
+        file = getattr(sys.modules[name], "__file__", None)
+        if file is None or place.resolve() not in Path(file).resolve().parents:
+            return f"{name} was imported from {file}, and not from {place}"
+    return "" if imported else f"the engine imports none of {', '.join(request.modules)}, which is what lies in {place}"
+
+
+def _run(request: VersionRequest, engines: Sequence[Engine], send: Callable[[Any], None]) -> None:
+    cells = cells_of(request, engines)
+    tasks = [Trees(engine) for engine in engines_for_trees(request.engine, engines)] if request.trees else []
+    with Store(request.store) as store:
+        if not request.fresh:
+            waiting = set(missing(cells, store, request.limit))
+            for row in store.get(cell for cell in cells if cell not in waiting).values():
+                send(row)
+        terms: dict[str, Any] = {"watch": lambda items: send([item.label for item in items])}
+        terms["done"] = lambda result: send(result) if isinstance(result, Measurement) else None
+        run_into(store, [*cells, *tasks], request.fresh, request.limit, **terms)
+        for task, found in store.answers(tasks).items():
+            send((task, found))
 
 
 def modules_in(folder: Path) -> tuple[str, ...]:

@@ -1,32 +1,40 @@
-"""What is kept of columns: one line a scene, method and version, as CSV; the page is written from it alone."""
+"""Rows of released versions as CSV, a line for each scene, method and version, and what changes along such a line."""
 
 from __future__ import annotations
 
 import csv
 import io
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields, replace
+from functools import cache
+from itertools import pairwise
 from pathlib import Path
+from statistics import median
 from typing import Any
 
+from reports.gate.change import WORSE
 from reports.model.outcomes import Outcome
 from reports.model.quantities import DIGITS, agrees, quantity
+from reports.model.tasks import Answer
 from reports.run.installed import numbers
 from reports.versions.catalogue import compared_versions
-from reports.versions.column import TreesRow, VersionColumn
+from reports.versions.column import VersionColumn
+from reports.versions.trees import Trees
 
-TREES = "random trees"
+DATA = Path(__file__).parents[1] / "results" / "versions.csv"
 ACCELERATION = "acceleration"
-WRONG = 0.01  # of the largest acceleration: a tree that is further off is counted
-ROUNDING = 1e-3  # of accelerations by a difference over a step: below this are that difference and the solver
-TENTH = 0.1  # of a time: what differs by less says nothing, since the machine did other work too
-LONGEST = 200  # letters of a sentence
+WRONG_TREE = 0.01  # error relative to the largest acceleration above which a tree is counted as wrong
+# Relative error of accelerations below which only the difference over a step and the solver's tolerance are seen.
+ACCELERATION_ROUNDING = 1e-3
+SAME_COST = 0.1  # relative difference of two CPU times that is noise: the machine did other work too
+LONGEST = 200  # characters of a sentence
 
 
 @dataclass(frozen=True)
 class Entry:
-    """`error` is the largest of the page's quantity (rad or m), of trees that of accelerations (relative)."""
+    """One scene in one method of one version. `error`: largest of `quantity` (of random trees relative to the largest
+    acceleration); NaN without one."""
 
     engine: str
     version: str
@@ -44,140 +52,171 @@ class Entry:
         return Outcome(self.outcome).comparable and not math.isnan(self.error)
 
     @property
-    def rounding(self) -> float:
-        """Errors below it are as good as none."""
-        return ROUNDING if self.quantity == ACCELERATION else quantity(self.quantity).rounding
+    def is_supported(self) -> bool:
+        """Whether the version can run this scene at all."""
+        return Outcome(self.outcome) not in (Outcome.UNSUPPORTED, Outcome.LOST)
 
+    @property
+    def unit(self) -> str:
+        return "1" if self.quantity == ACCELERATION else quantity(self.quantity).unit
 
-def unit(entry: Entry) -> str:
-    """Of its error."""
-    return "1" if entry.quantity == ACCELERATION else quantity(entry.quantity).unit
+    @property
+    def size(self) -> float:
+        """The error, at least the quantity's rounding; infinite where the run has no error that can be compared."""
+        rounding = ACCELERATION_ROUNDING if self.quantity == ACCELERATION else quantity(self.quantity).rounding
+        return max(self.error, rounding) if self.comparable else math.inf
+
+    @property
+    def identity(self) -> tuple[Any, ...]:
+        return self.engine, self.scene, self.variant, numbers(self.version)
 
 
 @dataclass(frozen=True)
 class Table:
-    """All entries, and by (engine, version) why its numbers are known to be wrong, or why it can't be used."""
+    """All entries; `marks`: by (engine, version) why its numbers are known to be wrong, or why it can't be used."""
 
     entries: tuple[Entry, ...]
     marks: Mapping[tuple[str, str], str]
-
-    def versions(self, engine: str) -> tuple[str, ...]:
-        """An engine's versions, oldest first."""
-        return tuple(sorted({e.version for e in self.entries if e.engine == engine}, key=numbers))
 
     @property
     def engines(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(entry.engine for entry in self.entries))
 
+    def versions(self, engine: str) -> tuple[str, ...]:
+        """An engine's versions, oldest first."""
+        return tuple(sorted({entry.version for entry in self.of(engine)}, key=numbers))
+
+    def of(self, engine: str) -> list[Entry]:
+        """The entries of one engine."""
+        return [entry for entry in self.entries if entry.engine == engine]
+
 
 def entries(engine: str, column: VersionColumn, quantities: Mapping[str, str]) -> list[Entry]:
-    """A column's lines; `quantities`: by which error a scene is compared, the angle's unless it is given."""
+    """The entries of a version; `quantities`: by which error a scene is compared, the angle's unless it is listed."""
     out = []
     for row in column.rows:
         name = quantities.get(row.scene, "angle")
         usable = Outcome(row.outcome).comparable
-        error = getattr(row, name) if usable else math.nan
-        sentence = "" if usable else _short(row.sentence)
-        out.append(
-            Entry(engine, column.version, row.scene, row.variant, row.step, name, error, row.outcome, row.cpu, sentence)
-        )
-    for trees in column.trees:
-        out.append(_of_trees(engine, column.version, trees))
-    return out
+        error, sentence = (getattr(row, name), "") if usable else (math.nan, _shortened(row.sentence))
+        method = (row.scene, row.variant, row.step, name)
+        out.append(Entry(engine, column.version, *method, error, row.outcome, row.cpu, sentence))
+    return out + [_entry_of_trees(engine, column.version, trees, answer) for trees, answer in column.trees]
 
 
-def _short(sentence: str) -> str:
+def _shortened(sentence: str) -> str:
     return " ".join(sentence.split())[:LONGEST]
 
 
-def _of_trees(engine: str, version: str, trees: TreesRow) -> Entry:
-    scene = f"{TREES} ({trees.bodies} bodies, {trees.loops} loops)"
-    wrong = sum(not miss <= WRONG for miss in trees.miss)
-    told = (
-        f"{wrong} of {len(trees.miss)} by more than {WRONG:g}"
-        if trees.miss
-        else " ".join(trees.sentence.split())[:LONGEST]
-    )
-    outcome = Outcome.UNSUPPORTED if "Error: " in trees.sentence else trees.outcome
-    largest = max((math.inf if math.isnan(miss) else miss for miss in trees.miss), default=math.nan)
-    return Entry(engine, version, scene, trees.variant, math.nan, ACCELERATION, largest, outcome, math.nan, told)
+def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> Entry:
+    outcome, error, sentence = answer.outcome, math.nan, _shortened(answer.sentence)
+    if answer.finished:
+        misses = answer.array("miss")
+        wrong = sum(not miss <= WRONG_TREE for miss in misses)
+        error = max((math.inf if math.isnan(miss) else float(miss) for miss in misses), default=math.nan)
+        sentence = f"{wrong} of {len(misses)} by more than {WRONG_TREE:g}"
+    elif "Error: " in answer.sentence:  # an exception of Python: the version lacks what the adapter calls
+        outcome = Outcome.UNSUPPORTED
+    scene = f"random trees ({trees.bodies} bodies, {trees.loops} loops)"
+    method = (scene, trees.method.variant, math.nan, ACCELERATION)
+    return Entry(engine, version, *method, error, outcome, math.nan, sentence)
 
 
 def as_csv(table: Table) -> str:
-    """The file: marks as comments on top, then a line an entry, sorted."""
+    """The file: marks as comments on top, then a line for each entry, sorted."""
     out = io.StringIO()
     for (engine, version), mark in table.marks.items():
         out.write(f"# {engine} {version}: {mark}\n")
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([field.name for field in fields(Entry)])
-    for entry in sorted(table.entries, key=_place):
-        writer.writerow([_cell(value) for value in astuple(entry)])
+    for entry in sorted(table.entries, key=lambda entry: entry.identity):
+        writer.writerow(map(_as_text, astuple(entry)))
     return out.getvalue()
 
 
-def _place(entry: Entry) -> tuple[object, ...]:
-    return entry.engine, entry.scene, entry.variant, numbers(entry.version)
-
-
-def _cell(value: object) -> str:
+def _as_text(value: Any) -> str:
     return f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)
 
 
 def read(path: Path) -> Table:
-    """Read such a file; an empty table where there is none. Raises ValueError for a file that is none of these."""
+    """Read such a file; an empty table where there is none. Raises ValueError for a file of another kind."""
     if not path.is_file():
         return Table((), {})
     lines = path.read_text(encoding="utf-8").splitlines()
-    marks: dict[tuple[str, str], str] = {}
-    for line in lines:
-        if line.startswith("# "):
-            engine, version, mark = line[2:].split(" ", 2)
-            marks[engine, version.removesuffix(":")] = mark
+    heads = [line[2:].partition(": ") for line in lines if line.startswith("# ")]
+    marks = {(name.split(" ")[0], name.split(" ")[-1]): mark for name, _, mark in heads}
     rows = csv.DictReader(line for line in lines if not line.startswith("#"))
+    types: dict[str, Any] = {field.name: float if field.type == "float" else str for field in fields(Entry)}
     try:
-        found = tuple(
-            Entry(**{field.name: _value(row[field.name], field.type) for field in fields(Entry)}) for row in rows
-        )
+        found = tuple(Entry(**{name: kind(row[name]) for name, kind in types.items()}) for row in rows)
     except (KeyError, TypeError, ValueError):
         raise ValueError(f"{path}: it is no table of versions; `crosscheck versions --all` writes one") from None
     return Table(found, marks)
 
 
-def as_published(table: Table, before: Table) -> Table:
-    """The lines, with the numbers of `before` where the new ones differ by rounding, or a time by less than TENTH."""
-    known = {_place(entry): entry for entry in before.entries}
-    return Table(tuple(_as_published(entry, known.get(_place(entry), entry)) for entry in table.entries), table.marks)
+@cache
+def released(path: Path = DATA) -> Table:
+    """The published table, without releases that the catalogue does not list any more."""
+    known, table = compared_versions(), read(path)
 
-
-def _as_published(now: Entry, before: Entry) -> Entry:
-    if (now.outcome, _cell(now.step)) != (before.outcome, _cell(before.step)):
-        return now
-    if now.quantity == ACCELERATION:
-        same = _cell(now.error) == _cell(before.error)
-    else:
-        same = agrees(now.quantity, now.error, before.error)
-    cpu = before.cpu if abs(now.cpu - before.cpu) < TENTH * before.cpu else now.cpu
-    return replace(now, error=before.error if same else now.error, cpu=cpu)
-
-
-def _value(text: str, kind: object) -> Any:
-    return float(text) if kind == "float" else text
-
-
-def catalogued(table: Table) -> Table:
-    """The lines of releases that are compared by now, and of engines of which none is named."""
-    known = compared_versions()
-
-    def there(engine: str, version: str) -> bool:
+    def is_listed(engine: str, version: str) -> bool:
         return version in known.get(engine, (version,))
 
-    marks = {key: mark for key, mark in table.marks.items() if there(*key)}
-    return Table(tuple(entry for entry in table.entries if there(entry.engine, entry.version)), marks)
+    listed = tuple(entry for entry in table.entries if is_listed(entry.engine, entry.version))
+    return Table(listed, {key: mark for key, mark in table.marks.items() if is_listed(*key)})
 
 
 def merged(old: Table, new: Table) -> Table:
-    """The new lines, and the old ones of other versions."""
+    """The new entries, and the old ones of other versions."""
     renewed = {(entry.engine, entry.version) for entry in new.entries}
-    kept = tuple(entry for entry in old.entries if (entry.engine, entry.version) not in renewed)
+    remaining = tuple(entry for entry in old.entries if (entry.engine, entry.version) not in renewed)
     marks = {key: mark for key, mark in old.marks.items() if key not in renewed}
-    return Table((*kept, *new.entries), {**marks, **new.marks})
+    return Table((*remaining, *new.entries), {**marks, **new.marks})
+
+
+def as_published(table: Table, before: Table) -> Table:
+    """The entries, with the numbers of `before` where only rounding, or noise of a CPU time, makes another of them."""
+    published = {entry.identity: entry for entry in before.entries}
+    renewed = tuple(_as_published(entry, published.get(entry.identity, entry)) for entry in table.entries)
+    return Table(renewed, table.marks)
+
+
+def _as_published(now: Entry, before: Entry) -> Entry:
+    if (now.outcome, _as_text(now.step)) != (before.outcome, _as_text(before.step)):
+        return now
+    if now.quantity == ACCELERATION:
+        same = _as_text(now.error) == _as_text(before.error)
+    else:
+        same = agrees(now.quantity, now.error, before.error)
+    cpu = before.cpu if abs(now.cpu - before.cpu) < SAME_COST * before.cpu else now.cpu
+    return replace(now, error=before.error if same else now.error, cpu=cpu)
+
+
+def change(before: Entry, after: Entry) -> str:
+    """From one version to the next: "better" or "WORSE" where one is more than three times as large, "other" where both
+    end without an error to compare; or empty."""
+    small, large = sorted((before.size, after.size))
+    if small < large and (math.isinf(large) or large > WORSE * small):
+        return "WORSE" if after.size > before.size else "better"
+    return "" if before.comparable or before.outcome == after.outcome else "other"
+
+
+def changes(entries: Iterable[Entry]) -> list[tuple[Entry, Entry, str]]:
+    """(before, after, `change`) of neighbouring versions of each scene and method that differ; runs that a version does
+    not support are left out."""
+    lines: dict[tuple[Any, ...], list[Entry]] = {}
+    for entry in sorted(entries, key=lambda entry: entry.identity):
+        if entry.is_supported:
+            lines.setdefault(entry.identity[:3], []).append(entry)
+    pairs = [pair for line in lines.values() for pair in pairwise(line)]
+    return [(before, after, word) for before, after in pairs if (word := change(before, after))]
+
+
+def relative_cost(entries: Iterable[Entry], versions: Sequence[str], variant: str) -> dict[str, float]:
+    """Version -> CPU time over that of the newest: the median of the scenes that ran to their end in both."""
+    timed = [entry for entry in entries if entry.variant == variant and entry.comparable and entry.cpu > 0]
+    newest = {entry.scene: entry.cpu for entry in timed if entry.version == versions[-1]}
+    ratios: dict[str, list[float]] = {version: [] for version in versions}
+    for entry in timed:
+        if entry.scene in newest:
+            ratios[entry.version].append(entry.cpu / newest[entry.scene])
+    return {version: median(values) for version, values in ratios.items() if values}

@@ -33,9 +33,8 @@ from reports.pages.findings import (
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import symptoms
 from reports.pages.rendering import render_page
-from reports.pages.versions.page import table
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
-from reports.versions.table import ACCELERATION, Entry
+from reports.versions.table import ACCELERATION, Entry, released
 from reports.write.page_tables import COMPARED
 from reports.write.rows import Rows
 from reports.write.templates import anchor, headings, link
@@ -134,11 +133,11 @@ def test_without_rows_findings_are_dropped_and_those_of_other_sources_stay():
 
 
 def test_findings_that_the_releases_contradict_are_dropped(monkeypatch):
-    whole = table()
+    whole = released()
 
     def entries(chosen, **changes):
         mended = tuple(replace(entry, **changes) if chosen(entry) else entry for entry in whole.entries)
-        monkeypatch.setattr(module, "table", lambda: replace(whole, entries=mended))
+        monkeypatch.setattr(module, "released", lambda: replace(whole, entries=mended))
 
     entries(lambda entry: (entry.version, entry.variant) == ("3.7.0", "tuned"), error=4e-3)
     assert not finding("releases", Sources(Rows())).is_sound

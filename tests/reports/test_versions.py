@@ -1,7 +1,12 @@
-"""Rows of several versions of an engine: tables, what is worse or dearer between two, and the page of them."""
+"""Releases and builds of an engine: installed apart, run in a process of their own, and compared; the page of them."""
 
 from __future__ import annotations
 
+import json
+import re
+import subprocess
+import sys
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,56 +15,72 @@ import pytest
 from engines.lagrange import Lagrange
 from engines.mujoco import DEFAULT
 from reports.cli import compare
+from reports.cli.commands import invoke
 from reports.cli.terminal import Terminal
 from reports.model.cells import Cell
+from reports.model.ending import BadInput, Broken
 from reports.model.measure import blank
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.pages.versions import page
-from reports.versions.builds import BuildComparison, Side
+from reports.run import installed as installation
+from reports.run.installed import built, distributions_in, installed
+from reports.versions import builds
+from reports.versions.builds import BuildComparison, Side, compare_builds
 from reports.versions.catalogue import RELEASES, changes_between
-from reports.versions.column import VersionColumn
-from reports.versions.comparison import compared, steps
-from reports.versions.table import Entry, Table, as_csv, as_published, merged, read
+from reports.versions.column import VersionColumn, VersionRequest, column, modules_in
+from reports.versions.comparison import compared
+from reports.versions.table import Entry, Table, as_csv, as_published, changes, merged, read, released
 from reports.versions.trees import miss, trees
 from tests.toys import Disc
+
+NAN = float("nan")
+ADAPTER = """
+from dataclasses import dataclass
+from tests.toys import Toy
+try:
+    import toyengine
+except ImportError:
+    toyengine = None
+
+@dataclass(frozen=True)
+class Mine(Toy):
+    name: str = "toyengine"
+
+    def build(self, mechanism, dt):
+        return Toy(factor=toyengine.error()).build(mechanism, dt)
+
+ENGINE = Mine("default")
+"""
+LOUD = "import os\nprint('noise')\nos.write(1, b'noise')\nopen('left.txt', 'w').write('x')\ndef error(): return 50.0\n"
+WITH_ADAPTER = ["--engine", "adapter.py:ENGINE", "--scenes", "scene.py:DISC"]
 
 
 def entry(version, error, scene="disc", outcome="finished", quantity="angle", engine="mujoco"):
     return Entry(engine, version, scene, "tuned", 1e-3, quantity, error, outcome, 0.01, "")
 
 
-def test_steps_are_found_in_the_errors_alone():
-    nan = float("nan")
-    line = [("3.9.0", 1e-3), ("3.10.0", 2.9e-3), ("4.0.0", 2.9e-2), ("4.0.1", 1e-3), ("3.1.0", nan)]
-    own = [entry(v, e, outcome="unsupported" if e != e else "finished") for v, e in line]
-    own += [entry("3.9.0", 1e-14, "exact"), entry("4.0.0", 9e-12, "exact")]  # both are rounding
-    own += [entry("3.9.0", 1e-3, "breaks"), entry("4.0.0", nan, "breaks", "torn")]
-    found = [(step.before.version, step.after.version, step.after.scene, step.worse) for step in steps(own)]
-    assert found == [
-        ("3.10.0", "4.0.0", "disc", True),
-        ("3.9.0", "4.0.0", "breaks", True),
-        ("4.0.0", "4.0.1", "disc", False),
+def test_changes_are_found_in_the_errors_alone():
+    line = [("3.9.0", 1e-3), ("3.10.0", 2.9e-3), ("4.0.0", 2.9e-2), ("4.0.1", 1e-3), ("3.1.0", NAN)]
+    entries = [entry(v, e, outcome="unsupported" if e != e else "finished") for v, e in line]
+    entries += [entry("3.9.0", 1e-14, "exact"), entry("4.0.0", 9e-12, "exact")]  # both are rounding
+    entries += [entry("3.9.0", 1e-3, "breaks"), entry("4.0.0", NAN, "breaks", "torn")]
+    assert [(before.version, after.version, after.scene, word) for before, after, word in changes(entries)] == [
+        ("3.9.0", "4.0.0", "breaks", "WORSE"),
+        ("3.10.0", "4.0.0", "disc", "WORSE"),
+        ("4.0.0", "4.0.1", "disc", "better"),
     ]
-
-
-def test_a_change_is_looked_up_between_two_versions():
-    assert [each.version for each in changes_between("mujoco", "3.6.0", "4.0.1", worse=False)] == ["3.7.0", "4.0.1"]
-    assert [each.version for each in changes_between("mujoco", "3.6.0", "4.0.1", worse=True)] == ["4.0.0"]
-    assert changes_between("mujoco", "3.7.0", "3.17.0", worse=False) == ()
-    assert changes_between("pymunk", "3.6.0", "4.0.0", worse=False) == ()
+    assert [each.version for each in changes_between("mujoco", "3.6.0", "4.0.1")] == ["3.7.0", "4.0.0", "4.0.1"]
+    assert changes_between("mujoco", "3.7.0", "3.17.0") == changes_between("pymunk", "3.6.0", "4.0.0") == ()
     assert all(each.source.startswith("https://") == bool(each.changed) for each in RELEASES)
 
 
 def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):
-    own = Table(
-        (entry("3.6.0", 0.25), entry("4.0.0", float("nan"), outcome="torn")), {("mujoco", "3.6.0"): "it is: old"}
-    )
+    table = Table((entry("3.6.0", 0.25), entry("4.0.0", NAN, outcome="torn")), {("mujoco", "3.6.0"): "it is: old"})
     path = tmp_path / "versions.csv"
-    path.write_text(as_csv(own))
+    path.write_text(as_csv(table))
     again = read(path)
-    assert as_csv(again) == as_csv(own)
-    assert again.marks == own.marks
+    assert (as_csv(again), again.marks) == (as_csv(table), table.marks)
     newer = merged(again, Table((entry("3.6.0", 0.5),), {}))
     assert [(each.version, each.error) for each in newer.entries if each.comparable] == [("3.6.0", 0.5)]
     assert newer.marks == {}
@@ -68,9 +89,29 @@ def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):
         read(path)
 
 
+def test_a_published_number_keeps_its_text_within_rounding_and_a_time_within_a_tenth():
+    known = [entry for entry in released().entries if entry.comparable and entry.quantity == "angle"][:20]
+    before = Table(tuple(known), {})
+    moved = tuple(replace(entry, error=entry.error + 1e-12, cpu=1.09 * entry.cpu) for entry in known)
+    assert as_csv(as_published(Table(moved, {}), before)) == as_csv(before)
+    changed = tuple(replace(entry, error=1.01 * entry.error + 1e-10, cpu=1.11 * entry.cpu) for entry in known)
+    assert as_published(Table(changed, {}), before).entries == changed
+    torn = tuple(replace(entry, outcome=Outcome.TORN) for entry in moved)
+    assert as_published(Table(torn, {}), before).entries == torn
+
+
 def row(angle, outcome=Outcome.FINISHED, every=1, cpu=1.0):
-    made = blank(Cell(Disc(), Lagrange(), every), outcome)
-    return replace(made, angle=angle, cpu=cpu)
+    return replace(blank(Cell(Disc(), Lagrange(), every), outcome), angle=angle, cpu=cpu)
+
+
+def test_worse_is_more_than_three_times_as_large_and_cost_and_orders_are_compared():
+    before = [row(1e-3), row(1e-4, every=10)]
+    assert not compared(before, [row(2.9e-3, cpu=2.0), row(1e-4, every=10, cpu=2.0)]).differences
+    comparison = compared(before, [row(3.1e-3, cpu=2.0), row(1e-5, every=10, cpu=2.0)])
+    assert [(each.quantity, each.worse) for each in comparison.differences] == [("angle", True), ("angle", False)]
+    assert (len(comparison.pairs), comparison.cost) == (2, 2.0)
+    orders = compared([row(1e-2), row(1e-4, every=10)], [row(1e-2), row(1e-3, every=10)]).orders
+    assert [(round(each.before), round(each.after)) for each in orders] == [(2, 1)]
 
 
 def printed(before, after, form="text"):
@@ -79,91 +120,238 @@ def printed(before, after, form="text"):
     compare.print_comparison(Terminal(compare.WIDTH, form), BuildComparison(sides, columns, compared(before, after)))
 
 
-def ended(outcome):
-    return [row(float("nan"), outcome)]
-
-
-def test_worse_is_more_than_three_times_as_large_and_cost_and_orders_are_told():
-    before = [row(1e-3), row(1e-4, every=10)]
-    assert not compared(before, [row(2.9e-3, cpu=2.0), row(1e-4, every=10, cpu=2.0)]).differences
-    found = compared(before, [row(3.1e-3, cpu=2.0), row(1e-5, every=10, cpu=2.0)])
-    assert [(each.quantity, each.worse) for each in found.differences] == [("angle", True), ("angle", False)]
-    assert (len(found.pairs), found.cost) == (2, 2.0)
-    orders = compared([row(1e-2), row(1e-4, every=10)], [row(1e-2), row(1e-3, every=10)])
-    assert [(round(turn.before), round(turn.after)) for turn in orders.turns] == [(2, 1)]
-
-
 @pytest.mark.parametrize(
     ("before", "after", "verdict"),
     [
-        (ended(Outcome.TORN), [row(1e-3)], "better"),
-        (ended(Outcome.TORN), ended(Outcome.RESET), "other"),
-        ([row(1e-3)], [row(1e-5)], "better"),
-        ([row(1e-3)], ended(Outcome.TORN), "WORSE"),
-        (ended(Outcome.TORN), ended(Outcome.ABORTED), "WORSE"),
+        (row(NAN, Outcome.TORN), row(1e-3), "better"),
+        (row(NAN, Outcome.TORN), row(NAN, Outcome.RESET), "other"),
+        (row(1e-3), row(1e-5), "better"),
+        (row(1e-3), row(NAN, Outcome.TORN), "WORSE"),
+        (row(NAN, Outcome.TORN), row(NAN, Outcome.ABORTED), "WORSE"),
+        (replace(row(1e-3), reaction_rows=2), row(1e-3), "WORSE"),
+        (row(1e-3), row(1e-3), "nothing changed"),
     ],
 )
-def test_an_outcome_is_better_where_it_finishes_and_another_kind_of_end_is_none(capsys, before, after, verdict):
-    printed(before, after)
-    line = next(line for line in capsys.readouterr().out.splitlines() if before[0].scene in line)
-    assert verdict in line.split()[-1]
-
-
-def test_a_method_whose_numbers_stay_is_told_with_its_error_and_its_releases_and_units(capsys):
-    both = [row(1e-3), row(1e-5, every=10)]
-    printed(both, both, "markdown")
+def test_the_verdict_on_a_method_follows_its_outcome_before_its_error(capsys, before, after, verdict):
+    printed([before], [after], "markdown")
     head, _, line, *_ = (line for line in capsys.readouterr().out.splitlines() if line.startswith("|"))
-    told = dict(zip(head.split(" | "), line.split(" | "), strict=True))
-    assert (told["what changed most"], told["old==1"], told["new==2"]) == ("angle [rad]", "1e-5", "1e-5")
-    assert "nothing changed" in line
+    cells = dict(zip(head.split(" | "), line.split(" | "), strict=True))
+    assert verdict in line.split(" | ")[-1]
+    if verdict == "nothing changed":
+        assert (cells["what changed most"], cells["old==1"], cells["new==2"]) == ("angle [rad]", "1e-3", "1e-3")
 
 
 def test_random_trees_tell_ideal_constraints_from_wrong_ones():
     drawn = trees(6, 2, 3)
-    assert drawn == trees(6, 2, 3)
-    assert len({each.pose.tobytes() for each in drawn}) == 3
+    assert len({tree.pose.tobytes() for tree in drawn}) == 3
     # Two formulations of the same law, apart by what a step of 1e-5 of the time scale costs.
-    assert max(miss(Lagrange("rk4"), each) for each in drawn) < 1e-3
+    assert max(miss(Lagrange("rk4"), tree) for tree in drawn) < 1e-3
     # As shipped a joint gives way by a tenth of what would hold it.
-    assert min(miss(DEFAULT, each) for each in drawn) > 1e-2
+    assert min(miss(DEFAULT, tree) for tree in drawn) > 1e-2
 
 
-def test_the_page_reads_its_rows_and_names_their_steps(monkeypatch):
-    own = (entry("3.6.0", 1e-2), entry("3.7.0", 1e-6), entry("4.0.1", 1e-6))
-    table = Table((*own, entry("7.0.0", 1e-2, engine="pymunk")), {("mujoco", "3.6.0"): "it is old"})
-    monkeypatch.setattr(page, "table", lambda: table)
-    told = page.words(Material({}))["engines"]
-    assert [each["name"] for each in told] == ["mujoco", "pymunk"]
-    assert "3.6.0 to 3.7.0" in told[0]["steps"]
-    assert "velocity term" in told[0]["steps"]
-    assert "4.0.1" not in told[0]["steps"]
-    assert told[1]["steps"] == ""
-    drawn = {f"{name}_{kind}" for name in ("mujoco", "pymunk") for kind in ("heat", "cost")}
-    assert set(page.figures(Material({}))) == drawn
-    monkeypatch.setattr(page, "table", lambda: Table((), {}))
+def test_the_page_counts_changes_and_names_those_that_are_known(monkeypatch):
+    entries = (entry("3.6.0", 1e-2), entry("3.7.0", 1e-6), entry("4.0.1", 1e-2))
+    table = Table((*entries, entry("7.0.0", 1e-2, engine="pymunk")), {("mujoco", "3.6.0"): "it is old"})
+    monkeypatch.setattr(page, "released", lambda: table)
+    mujoco, pymunk = page.words(Material({}))["engines"]
+    _, _, first, second, third = mujoco["table"].splitlines()
+    assert first == "| 3.6.0 | - | - | 1.00 | - |"
+    assert second.startswith("| 3.7.0 | 1 | - | 1.00 | `connect` and `weld` got the velocity term")
+    assert third.startswith("| 4.0.1 | - | **1** | 1.00 | the sparse Cholesky factor")
+    assert (pymunk["name"], len(pymunk["table"].splitlines())) == ("pymunk", 3)
+    assert set(page.figures(Material({}))) == {"mujoco_heat", "pymunk_heat"}
+    monkeypatch.setattr(page, "released", lambda: Table((), {}))
     assert page.words(Material({}))["engines"] == []
 
 
-def test_a_published_number_keeps_its_text_within_rounding_and_a_time_within_a_tenth():
-    before = read(page.DATA)
-    known = [entry for entry in before.entries if entry.comparable and entry.quantity == "angle"][:20]
-    before = replace(before, entries=tuple(known))
-    moved = tuple(replace(entry, error=entry.error + 1e-12, cpu=1.09 * entry.cpu) for entry in known)
-    assert as_csv(as_published(replace(before, entries=moved), before)) == as_csv(before)
-    changed = tuple(replace(entry, error=1.01 * entry.error + 1e-10, cpu=1.11 * entry.cpu) for entry in known)
-    assert as_published(replace(before, entries=changed), before).entries == changed
-    gone = tuple(replace(entry, outcome=Outcome.TORN) for entry in moved)
-    assert as_published(replace(before, entries=gone), before).entries == gone
+def toy(folder: Path, version: str, source: str) -> Path:
+    """A folder as pip makes it, with a version of an engine whose error is `error()` times the step squared."""
+    place = folder / version
+    (place / "toyengine").mkdir(parents=True)
+    (place / "toyengine" / "__init__.py").write_text(source)
+    (place / f"toyengine-{version}.dist-info").mkdir()
+    metadata = f"Metadata-Version: 2.1\nName: toyengine\nVersion: {version}\n"
+    (place / f"toyengine-{version}.dist-info" / "METADATA").write_text(metadata)
+    return place
 
 
-def test_a_line_that_goes_to_and_fro_is_a_change_only_if_it_is_known_by_name(monkeypatch):
-    nan = float("nan")
-    edge = [("3.8.1", 0.015, "finished"), ("3.10.0", nan, "torn"), ("3.12.0", 0.015, "finished")]
-    known = [("3.17.0", 1e-5, "finished"), ("4.0.0", 2.4, "finished"), ("4.0.1", 1e-5, "finished")]
-    own = [entry(v, e, "edge", o) for v, e, o in edge] + [entry(v, e, "trees", o) for v, e, o in known]
-    monkeypatch.setattr(page, "table", lambda: Table(tuple(own), {}))
-    told = page.words(Material({}))["engines"][0]
-    assert told["edges"] == ["edge, tuned"]
-    assert "edge" not in told["steps"]
-    assert "3.17.0 to 4.0.0" in told["steps"]
-    assert "4.0.0 to 4.0.1" in told["steps"]
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """A folder with an adapter and a scene, from which commands are given."""
+    (tmp_path / "adapter.py").write_text(ADAPTER)
+    (tmp_path / "scene.py").write_text("from tests.toys import Disc\nDISC = Disc()\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(installation.CACHE, str(tmp_path / "cache"))
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    for name in ("adapter", "scene"):  # of another test's folder
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    yield tmp_path
+    for name in ("adapter", "scene"):
+        sys.modules.pop(name, None)
+
+
+@pytest.fixture
+def once(monkeypatch):
+    """Each build is run once in a test, however often it is compared."""
+    run, known = builds.column, {}
+
+    def column(label, request, *others):
+        if request.place not in known:
+            known[request.place] = run(label, request, *others)
+        return known[request.place]
+
+    monkeypatch.setattr(builds, "column", column)
+
+
+@pytest.mark.usefixtures("once")
+def test_a_worse_build_is_reported_and_a_dearer_one_above_a_limit_and_its_output_is_contained(here, capfd):
+    toy(here, "1.0", "def error(): return 1.0\n")
+    toy(here, "2.0", LOUD)
+    with pytest.raises(Broken, match=r"2\.0 .*is worse than toyengine 1\.0 .*in 3 numbers"):
+        invoke(["compare", "1.0", "2.0", *WITH_ADAPTER])
+    out = capfd.readouterr().out
+    assert "noise" not in out
+    assert out.count("WORSE") == 1  # a line a method
+    assert len(re.findall(r"^disc .* angle \[rad\]", out.partition("outcomes that are worse")[2], re.MULTILINE)) == 3
+    with pytest.raises(Broken):
+        invoke(["compare", "1.0", "2.0", *WITH_ADAPTER, "--json"])
+    document = json.loads(capfd.readouterr().out)
+    (line,) = document["tables"][0]["rows"]
+    before, after = (next(line[key] for key in line if key.startswith(f"toyengine {version}")) for version in "12")
+    assert after == pytest.approx(50 * before)
+    assert (line["verdict"], document["status"]) == ("WORSE", 1)
+    assert "is worse than" in document["message"]
+    assert not list(here.rglob("left.txt"))
+    assert not (here / "crosscheck-results").exists()  # a build may change: nothing of it is stored
+    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # as from a notebook
+    assert [column.trouble for column in comparison.columns] == ["", ""]
+    assert comparison.complaint == ""
+    # A toy has the same cost whatever it takes.
+    assert invoke(["compare", "2.0", "1.0", *WITH_ADAPTER, "--cost", "1.5"]) == 0
+    with pytest.raises(Broken, match=r"toyengine default takes 1\.00 times the CPU time, and --cost is 0\.9"):
+        invoke(["compare", "2.0", "1.0", *WITH_ADAPTER, "--cost", "0.9"])
+
+
+def test_a_version_that_crashes_while_it_is_imported_gives_rows(here):
+    place = toy(here, "3.0", "import os\nos.abort()\n")
+    request = VersionRequest((Disc(),), "adapter.py:ENGINE", modules_in(place), place, here / "s.sqlite", folder=here)
+    result = column("3.0", request, [DEFAULT])
+    assert [row.outcome for row in result.rows] == [Outcome.ABORTED]
+    assert "aborted with signal" in result.trouble
+
+
+def test_a_folder_is_known_by_its_metadata_and_not_by_its_own_word(tmp_path):
+    place = toy(tmp_path, "7.0.0", "version = '2.0.0'\n")
+    assert distributions_in(place) == {"toyengine": "7.0.0"}
+    assert modules_in(place) == ("toyengine",)
+    assert built(place) == place
+
+
+class Pip:
+    """What pip would do, without network: it prints the text listed for a requirement, or makes the folder."""
+
+    def __init__(self, answers):
+        self.answers, self.calls = answers, []
+
+    def __call__(self, command, **_):
+        what = command[-1]
+        self.calls.append(what)
+        if what in self.answers:
+            return subprocess.CompletedProcess(command, 1, "", self.answers[what])
+        Path(command[command.index("--target") + 1]).mkdir()
+        return subprocess.CompletedProcess(command, 0, "", "")
+
+
+def none_of(name, offered):
+    return (
+        f"ERROR: Could not find a version that satisfies the requirement {name} (from versions: {offered})\n"
+        f"ERROR: No matching distribution found for {name}\n"
+    )
+
+
+def test_a_version_is_installed_once_under_the_first_name_that_has_it(here, monkeypatch):
+    pip = Pip({"mujoco-core==3.6.0": none_of("mujoco-core==3.6.0", "4.0.0, 4.0.1")})
+    monkeypatch.setattr(subprocess, "run", pip)
+    first = installed(("mujoco-core", "mujoco"), "3.6.0")
+    assert installed(("mujoco-core", "mujoco"), "3.6.0") == first
+    assert pip.calls == ["mujoco-core==3.6.0", "mujoco==3.6.0"]
+    assert first.is_relative_to(here / "cache")
+    assert first.name == "site-packages"  # so that rows depend on its version, and not on its files
+    assert [path.name for path in first.parents[1].iterdir()] == ["mujoco-3.6.0"]
+
+
+@pytest.mark.parametrize(
+    ("printed", "reason"),
+    [
+        (none_of("pymunk==7.2.5", "7.0.0, 7.1.0, 7.2.0, 7.3.0"), "there are 7.0.0, 7.1.0, 7.2.0, 7.3.0"),
+        (none_of("pymunk==7.2.5", "none"), "the package index knows none"),
+        ("WARNING: Retrying: NewConnectionError\n" + none_of("pymunk==7.2.5", "none"), "no connection"),
+        ("ERROR: No space left on device\n", "No space left"),
+    ],
+)
+def test_a_version_that_can_not_be_had_is_one_line(printed, reason, here, monkeypatch, capfd):
+    monkeypatch.setattr(subprocess, "run", Pip({"pymunk==7.2.5": printed}))
+    with pytest.raises(BadInput, match=reason) as refused:
+        invoke(["versions", "pymunk", "7.2.5", "--scenes", "free_four_bar"])
+    assert "\n" not in str(refused.value)
+    assert refused.value.status == 2
+    assert "pymunk 7.2.5: installed by pip" in capfd.readouterr().err  # before the wait
+    assert not (here / "crosscheck-results").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["versions"], "name an engine"),
+        (["versions", "pymunk", "--", "--pre"], "is no version"),
+        (["versions", "pymonk", "7.0.0"], "did you mean 'pymunk'"),
+        (["versions", "pymunk", "7.0.0", "--publish"], "--all"),
+        (["compare", "nothing==1", "pymunk==7.0.0"], "no engine needs 'nothing'"),
+        (["compare", "pymunk==7.0.0", "pymunk==7.1.0", "--cost", "0"], "--cost is 0; give a number above 0"),
+        (["compare", "broken.whl", "broken.whl", *WITH_ADAPTER], r"broken\.whl can't be installed: .*broken\.whl"),
+    ],
+)
+def test_words_that_mean_nothing_are_one_line(words, reason, here, monkeypatch):
+    (here / "broken.whl").write_text("no archive")
+    monkeypatch.setattr(subprocess, "run", Pip({str(here / "broken.whl"): "ERROR: broken.whl is no wheel"}))
+    with pytest.raises(BadInput, match=reason) as refused:
+        invoke(words)
+    assert "\n" not in str(refused.value)
+
+
+def wheel(folder: Path, version: str, error: float) -> Path:
+    """A wheel of the toy engine, as a build of it makes one."""
+    built = toy(folder / "built", version, f"def error(): return {error}\n")
+    info = built / f"toyengine-{version}.dist-info"
+    (info / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: by hand\nRoot-Is-Purelib: true\nTag: py3-none-any\n")
+    files = [path for path in sorted(built.rglob("*")) if path.is_file()]
+    (info / "RECORD").write_text("".join(f"{path.relative_to(built).as_posix()},,\n" for path in files))
+    place = folder / f"toyengine-{version}-py3-none-any.whl"
+    with zipfile.ZipFile(place, "w") as archive:
+        for path in [*files, info / "RECORD"]:
+            archive.write(path, path.relative_to(built).as_posix())
+    return place
+
+
+@pytest.mark.slow
+def test_wheels_are_compared_and_a_worse_one_ends_with_status_1(here, capfd):
+    first, second = str(wheel(here, "1.0", 1.0)), str(wheel(here, "2.0", 50.0))
+    with pytest.raises(Broken, match=r"toyengine 2\.0 \(wheel\) is worse than toyengine 1\.0 \(wheel\)") as refused:
+        invoke(["compare", first, second, *WITH_ADAPTER])
+    assert refused.value.status == 1
+    assert invoke(["compare", first, str(here / "built" / "1.0"), *WITH_ADAPTER]) == 0  # a wheel and a folder
+    assert "WORSE" in capfd.readouterr().out
+
+
+@pytest.mark.slow
+def test_real_versions_are_installed_and_differ_as_their_changelogs_say(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(installation.CACHE, str(tmp_path / "cache"))
+    with pytest.raises(Broken, match="is worse than"):
+        invoke(["compare", "mujoco==4.0.1", "mujoco==3.6.0", "--scenes", "free_four_bar"])
+    assert invoke(["compare", "pymunk==7.0.0", "pymunk==7.3.1", "--scenes", "free_four_bar"]) == 0
+    out = capfd.readouterr().out
+    assert "0 numbers are worse" in out
+    assert "mujoco==3.6.0: MuJoCo 3.6.0 is known to be wrong" in out
+    assert "free_four_bar" in out

@@ -23,9 +23,9 @@ from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation, Page
 from reports.model.tasks import Answer, Motion, Task, Values
 from reports.pages.common import ALL, cells, described, deviations, read_answers, refusals
-from reports.pages.versions.page import table
 from reports.plots import mechanisms as drawings
 from reports.plots.theme import svg
+from reports.versions.table import released
 from reports.write.rows import lookups
 from reports.write.tables import markdown, number, step_words
 from reports.write.unmeasured import UNMEASURED
@@ -180,7 +180,7 @@ def words(material: Material) -> Mapping[str, Any]:
     """Rows and sweeps by method, for sentences; what MuJoCo's regularisation yields, and how pymunk closes a gap."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
     before = [
-        e.error for e in table().entries if (e.version, e.scene, e.variant) == ("3.6.0", "free_four_bar", "tuned")
+        e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", "free_four_bar", "tuned")
     ]
     return {
         **lookups(material, SCENES),

@@ -1,11 +1,10 @@
-"""The page of versions: everything on it is read from one file of rows; steps are found in it, and then looked up."""
+"""The page of versions: a table and a heat map of each engine, from one file of rows."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import cache
-from pathlib import Path
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,13 +15,10 @@ from matplotlib.patches import Rectangle
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
-from reports.plots.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes, svg
+from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.versions.catalogue import COST_ROSE_IN, changes_between
-from reports.versions.comparison import Step, by_version, steps
-from reports.versions.table import ACCELERATION, Entry, Table, catalogued, read
-from reports.write.tables import markdown, number
-
-MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")
+from reports.versions.table import ACCELERATION, Entry, Table, changes, relative_cost, released
+from reports.write.tables import markdown
 
 
 def variants(entries: Sequence[Entry]) -> tuple[str, ...]:
@@ -88,169 +84,50 @@ def _legend(figure: Figure, entries: Sequence[Entry], theme: Theme) -> None:
     figure.legend(patches, list(colours), loc="outside lower center", ncols=4)
 
 
-def cost(entries: Sequence[Entry], versions: Sequence[str], theme: Theme = LIGHT) -> Figure:
-    """CPU time of stepping over that of the newest version: the median of the scenes, and the middle half of them."""
-    with settings():
-        figure = new_figure(3.0, theme)
-        panel = figure.subplots()
-        style_axes(panel, theme)
-        for index, (method, found) in enumerate(ratios_by_method(entries, versions).items()):
-            places = [versions.index(version) + 0.12 * (index - 1) for version in found]
-            low, middle, high = (np.array([np.percentile(v, share) for v in found.values()]) for share in (25, 50, 75))
-            colour = getattr(theme, SERIES[index])
-            panel.errorbar(
-                places,
-                middle,
-                yerr=[middle - low, high - middle],
-                color=colour,
-                marker=MARKS[index],
-                markersize=4.5,
-                linewidth=1.3,
-                elinewidth=0.8,
-                linestyle=("-", "--", ":")[index % 3],
-                label=method,
-            )
-        panel.axhline(1.0, color=theme.quiet, linewidth=0.8)
-        panel.set_ylim(bottom=0)
-        panel.set_xticks(range(len(versions)), versions, rotation=45, ha="right")
-        panel.set_ylabel(f"CPU time over that of {versions[-1]} [1]")
-        panel.set_xlabel("version")
-        figure.legend(loc="outside lower center", ncols=4)
-    return figure
-
-
-def ratios(entries: Sequence[Entry], versions: Sequence[str], method: str) -> dict[str, list[float]]:
-    """Version -> CPU time of each scene over that of the newest version, where both were run to their ends."""
-    own = {
-        (entry.version, entry.scene): entry.cpu
-        for entry in entries
-        if entry.variant == method and entry.comparable and entry.cpu > 0
-    }
-    scenes = {scene for version, scene in own if version == versions[-1]}
-    found = {
-        version: [own[version, scene] / own[versions[-1], scene] for scene in sorted(scenes) if (version, scene) in own]
-        for version in versions
-    }
-    return {version: values for version, values in found.items() if values}
-
-
-def ratios_by_method(entries: Sequence[Entry], versions: Sequence[str]) -> dict[str, dict[str, list[float]]]:
-    """The same of every method that has any."""
-    return {method: found for method in variants(entries) if (found := ratios(entries, versions, method))}
-
-
-DATA = Path(__file__).parents[2] / "results" / "versions.csv"
-EXAMPLES = 2  # of each kind of step that are told
-
-
-@cache
-def table(path: Path = DATA) -> Table:
-    """What was kept of all versions that are compared by now."""
-    return catalogued(read(path))
-
-
-def _told(entry: Entry) -> str:
-    return number(entry.error) if entry.comparable else f"**{entry.outcome}**"
-
-
-def _example(found: Sequence[Step]) -> str:
-    """'free four bar, tuned: 7.4e-4 to 9.6e-7' of the largest steps."""
-
-    def factor(step: Step) -> float:
-        if not (step.before.comparable and step.after.comparable):
-            return 1.0
-        return abs(np.log(max(step.after.error, 1e-300) / max(step.before.error, 1e-300)))
-
-    largest = sorted(found, key=factor, reverse=True)[:EXAMPLES]
-    return "; ".join(
-        f"{step.after.scene.replace('_', ' ')}, {step.after.variant}: {_told(step.before)} to {_told(step.after)}"
-        for step in largest
-    )
-
-
-def on_edge(found: Sequence[Step]) -> tuple[tuple[str, str], ...]:
-    """(scene, variant) of lines with steps for the better and for the worse, none of which is known by name."""
-    lines: dict[tuple[str, str], list[Step]] = {}
-    for step in found:
-        lines.setdefault((step.after.scene, step.after.variant), []).append(step)
-    return tuple(
-        line
-        for line, own in lines.items()
-        if len({step.worse for step in own}) == 2
-        and not any(changes_between(s.after.engine, s.before.version, s.after.version, s.worse) for s in own)
-    )
-
-
-def step_table(own: Table, engine: str) -> str:
-    """A line for every pair of neighbouring versions between which lines have steps; empty without any.
-
-    Lines that go to and fro without a known change stand on an edge between two outcomes, and are left out.
-    """
+def version_table(table: Table, engine: str) -> str:
+    """A line for each version: how many errors became better or worse with it, its cost, and its known changes."""
+    entries, versions = table.of(engine), table.versions(engine)
+    costs = {method: relative_cost(entries, versions, method) for method in variants(entries)}
+    costs = {method: ratios for method, ratios in costs.items() if ratios}
+    found = changes(entries)
     body = []
-    found_steps = steps([entry for entry in own.entries if entry.engine == engine])
-    edges = on_edge(found_steps)
-    kept = [step for step in found_steps if (step.after.scene, step.after.variant) not in edges]
-    for (_, before, after), found in by_version(kept).items():
-        for worse in (False, True):
-            own_way = [step for step in found if step.worse == worse]
-            if own_way:
-                known = changes_between(engine, before, after, worse)
-                told = "; ".join(f"{each.version}: {each.changed} ([source]({each.source}))" for each in known)
-                way = f"{len(own_way)} **worse**" if worse else f"{len(own_way)} better"
-                body.append([f"{before} to {after}", way, _example(own_way), told or "no change is known by name"])
-    header = ["between", "lines", "largest steps", "what is known of the newer version"]
-    return markdown(header, body, left=4) if body else ""
-
-
-def cost_table(own: Table, engine: str) -> str:
-    """The median of the scenes' CPU times over those of the newest version, a line a version."""
-    entries, versions = [e for e in own.entries if e.engine == engine], own.versions(engine)
-    found = ratios_by_method(entries, versions)
-    body = [
-        [version, *(f"{np.median(own[version]):.2f}" if version in own else "-" for own in found.values())]
-        for version in versions
-    ]
-    return markdown(["version", *found], body) if found else ""
+    for before, version in pairwise(("", *versions)):
+        words = [word for _, after, word in found if after.version == version]
+        known = changes_between(engine, before, version) if before else ()
+        change = "; ".join(f"{each.changed} ([source]({each.source}))" for each in known)
+        counts = (f"{words.count('better') or '-'}", f"**{words.count('WORSE')}**" if "WORSE" in words else "-")
+        ratios = [f"{costs[method][version]:.2f}" if version in costs[method] else "-" for method in costs]
+        body.append([version, *counts, *ratios, change or "-"])
+    return markdown(["version", "better", "worse", *(f"CPU time, {m}" for m in costs), "change known by name"], body)
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """A dictionary an engine; nothing else on the page has numbers."""
-    own = table()
-    told = []
-    for engine in own.engines:
-        entries = [entry for entry in own.entries if entry.engine == engine]
-        versions = own.versions(engine)
-        told.append(
+    """A dictionary for each engine."""
+    table, described = released(), []
+    for engine in table.engines:
+        entries, versions = table.of(engine), table.versions(engine)
+        newest = [entry for entry in entries if entry.version == versions[-1]]
+        described.append(
             {
                 "name": engine,
                 "versions": versions,
-                "steps": step_table(own, engine),
-                "edges": [f"{scene.replace('_', ' ')}, {variant}" for scene, variant in on_edge(steps(entries))],
-                "refused": sum(
-                    entry.outcome == Outcome.UNSUPPORTED for entry in entries if entry.version == versions[-1]
-                ),
-                "trees": [
-                    (entry.variant, entry.sentence, entry.error)
-                    for entry in entries
-                    if entry.quantity == ACCELERATION and entry.version == versions[-1]
-                ],
-                "cost": cost_table(own, engine),
-                "marks": [(version, mark) for (name, version), mark in own.marks.items() if name == engine],
-                "scenes": len({entry.scene for entry in entries}),
+                "table": version_table(table, engine),
+                "refused": sum(entry.outcome == Outcome.UNSUPPORTED for entry in newest),
+                "trees": [(e.variant, e.sentence, e.error) for e in newest if e.quantity == ACCELERATION],
+                "marks": [(version, mark) for (name, version), mark in table.marks.items() if name == engine],
                 "lines": len({(entry.scene, entry.variant) for entry in entries}),
             }
         )
-    return {"engines": told, "cost_rose_in": COST_ROSE_IN}
+    return {"engines": described, "cost_rose_in": COST_ROSE_IN}
 
 
 def figures(material: Material) -> Mapping[str, str]:
-    """A heat table and the cost of each engine, in the order of the page."""
-    own, out = table(), {}
-    for engine in own.engines:
-        entries, versions = [e for e in own.entries if e.engine == engine], own.versions(engine)
-        out[f"{engine}_heat"] = svg(heat_table(entries, versions), f"{engine}: errors of scenes by version")
-        out[f"{engine}_cost"] = svg(cost(entries, versions), f"{engine}: CPU time over versions")
-    return out
+    """A heat table of each engine, in the order of the page."""
+    table = released()
+    return {
+        f"{name}_heat": svg(heat_table(table.of(name), table.versions(name)), f"{name}: errors of scenes by version")
+        for name in table.engines
+    }
 
 
 PAGE = Page(

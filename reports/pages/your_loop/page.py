@@ -17,9 +17,9 @@ from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.pages.versions.page import table as versions
 from reports.pages.your_loop.experiments import COMMIT, COUNT, EVERY, BeforeAndAfter, Fresh
 from reports.pages.your_loop.linkages import LINKAGES
+from reports.versions.table import released
 from reports.write.page_tables import program
 from reports.write.tables import NOTHING, error_words, markdown, milliseconds, number
 from reports.write.unmeasured import UNMEASURED
@@ -145,7 +145,7 @@ def aimed(engine: str) -> str:
 def words(material: Material) -> Mapping[str, Any]:
     """The lines and tables; `reactions`: relative errors of the joints' forces on the loop, by engine; `fresh`: by
     engine the spreads as shipped and with the lines, of the closed linkage."""
-    old = [e.error for e in versions().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
+    old = [e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
     first = {"mujoco": MUJOCO[0], "pymunk": PYMUNK[0]}
     rows = {name: material.rows.get(cell(case, case.after)) for name, case in first.items()}
     counts = [answer.number("iterations") for answer in map(material.finished, BUILT) if answer is not None]
