@@ -12,7 +12,7 @@ import pytest
 from engines.mujoco.reading.settings import rewritten
 from engines.pymunk.reading.script import BEGIN, END
 from engines.reading import Change
-from reports.check.request import CheckReport, CheckRequest, Refused, answered
+from reports.check.request import CheckReport, CheckRequest, answered
 from tests.reports.test_check import FOUR_BAR, PENDULUM
 from tests.reports.test_command_line import call, here
 
@@ -47,23 +47,6 @@ def test_a_model_is_written_with_the_advised_settings_and_nothing_else_and_reach
     assert made == text
 
 
-def test_what_is_written_twice_is_the_same_file(tmp_path):
-    (tmp_path / "model.xml").write_text(FOUR_BAR)
-    (tmp_path / "swing.py").write_text(PENDULUM)
-    for word, new in (("model.xml", "new.xml"), ("swing.py:make", "new.py")):
-        checked(tmp_path, word, tolerance=1e-2, apply=new)
-        before = (tmp_path / new).read_bytes()
-        again = checked(tmp_path, word.replace(word.split(":")[0], new), tolerance=1e-2, apply=new)
-        assert again.data["met"]
-        assert (tmp_path / new).read_bytes() == before
-    assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == [
-        "model.xml",
-        "new.py",
-        "new.xml",
-        "swing.py",
-    ]
-
-
 @pytest.mark.parametrize(("text", "word"), [(LOOP, "x.py"), (LOOP, "x.py:space"), (INSIDE, "x.py:main")])
 def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_path, text, word):
     (tmp_path / "x.py").write_text(text)
@@ -84,14 +67,6 @@ def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_
         ]
         assert places[1] == pytest.approx(places[0], abs=0.1)  # ten steps of the first: they are of first order
         assert places[1] != places[0]
-
-
-def test_a_script_without_a_named_space_is_run_as_the_program_to_its_first_step(tmp_path):
-    (tmp_path / "x.py").write_text(f'{INSIDE}\nif __name__ == "__main__":\n    main()\n')
-    found = checked(tmp_path, "x.py", tolerance=1e-6, apply="y.py")
-    assert found.data["step"] == 0.01
-    assert "    world.step = in_parts" in (tmp_path / "y.py").read_text()
-    assert found.data["applied"]["error"] <= 1e-2
 
 
 def test_a_force_that_stands_on_a_body_pushes_in_every_part_of_a_step(tmp_path):
@@ -198,10 +173,3 @@ def test_a_folder_of_models_is_one_table_and_a_test_each(here, capfd, at_home):
     assert "| .models/a.xml | " in (here / "t.md").read_text()
     assert call("check", ".models", "--apply", "x.xml") == 2
     assert "--apply is for one model" in capfd.readouterr().err
-
-
-def test_a_script_of_two_spaces_has_to_be_told_which(tmp_path):
-    (tmp_path / "x.py").write_text("import pymunk\none, other = pymunk.Space(), pymunk.Space()\n")
-    found = answered(CheckRequest("x.py", str(tmp_path), 0.5))
-    assert isinstance(found, Refused)
-    assert "its spaces are one, other; give the name of the space" in found.sentence

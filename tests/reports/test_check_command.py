@@ -19,14 +19,13 @@ import numpy as np
 import pytest
 from pymunk import Space
 
-from engines import Unsupported
 from engines.lagrange import loading
 from engines.mujoco.reading.settings import switch_off as of_mujoco
 from engines.pymunk.reading.own_model import switch_off as of_pymunk
 from reports.check.checked import Plan, check, read
 from reports.check.request import CheckReport, CheckRequest, Refused, answered
 from reports.cli.check import SWITCHED_OFF
-from tests.reports.test_check import FOUR_BAR, PENDULUM, found_in
+from tests.reports.test_check import FOUR_BAR, PENDULUM
 from tests.reports.test_command_line import call, here
 
 __all__ = ["here"]
@@ -58,15 +57,8 @@ def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, 
             60,
             "its process was lost: aborted with signal 6 ... a second time. Failed condition: body->space != space",
         ),
-        (
-            "import pymunk\nclass Mine(pymunk.Space):\n    def step(self, dt):\n"
-            "        raise RuntimeError('no steps')\n"
-            "space, body = Mine(), pymunk.Body(1, 1)\nspace.add(body)\nbody.velocity = 1, 0",
-            60,
-            "the check ended with an exception, RuntimeError: no steps",
-        ),
     ],
-    ids=["endless", "aborted by Chipmunk", "raises in a step"],
+    ids=["endless", "aborted by Chipmunk"],
 )
 def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, text, limit, sentence):
     (here / "script.py").write_text(text)
@@ -184,8 +176,6 @@ BAD = {
         FOUR_BAR.replace("</mujoco>", '<keyframe><key qpos=".3 0 0"/></keyframe></mujoco>'),
         "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed",
     ),
-    "empty.xml": ("", "MuJoCo can't compile it"),
-    "no_robot.urdf": ("<robot name='x'/>", ""),
     "many.xml": (
         f"<mujoco><worldbody>{''.join(BODY.format(f'b{i}', i) for i in range(1_000))}</worldbody></mujoco>",
         "it has 1000 moving bodies; the judge takes up to 200",
@@ -197,32 +187,15 @@ BAD = {
     ),
     "raises.py:space": ("raise RuntimeError('no\\nspace')", "raises.py raised RuntimeError in line 1: no space"),
     "nothing.py:space": ("x = 1", "it has no 'space'"),
-    "unnamed.py": ("x = 1", "give the name of the space"),
     "drives.py:space": (
         "import pymunk\nspace = pymunk.Space()\nbody = pymunk.Body(1, 1)\nbody.angular_velocity = 1\n"
         "space.add(body, *[pymunk.SimpleMotor(space.static_body, body, rate) for rate in (1, 2)])",
         "no velocities satisfy SimpleMotor 1, SimpleMotor 2 together",
     ),
-    "early.py:make": (
-        "class Mine(BaseException):\n    pass\ndef make():\n    raise Mine('not today')",
-        "early.py raised Mine in line 4: not today",
-    ),
     "far.xml": (
         '<mujoco><worldbody><body name="a"><joint/><geom size=".1" pos=".2 0 0"/></body></worldbody>'
         '<keyframe><key qpos="1e300"/></keyframe></mujoco>',
         "a: its angle at t = 0 is 1e+300 rad; floating point numbers of that size tell no angle",
-    ),
-    "fast.py": (
-        "import pymunk\nspace, body = pymunk.Space(), pymunk.Body(1, 1)\nspace.add(body)\nbody.velocity = 1e200, 0",
-        "its velocity at t = 0 is 1e+200 m/s; its square",
-    ),
-    "binary.xml": (bytes(range(256)) * 40, "MuJoCo can't compile it"),
-    "binary.py:space": (b"\x00\x01\x02", "binary.py raised"),
-    "folder.xml": ("/", "it is a folder"),
-    "mesh.xml": (
-        '<mujoco><asset><mesh name="m" file="nowhere.stl"/></asset><worldbody><body><joint/><geom type="mesh" '
-        'mesh="m"/></body></worldbody></mujoco>',
-        "nowhere.stl",
     ),
     "not_a_number.xml": (
         '<mujoco><worldbody><body><joint/><geom size=".1" pos=".2 0 0"/></body></worldbody>'
@@ -234,7 +207,6 @@ BAD = {
         "the model's own step is 0 s; it must be a finite time above zero",
     ),
     "backwards.py": (f"{PENDULUM}\nspace = make()\nspace.step(-0.01)", "the model's own step is -0.01 s; it must be"),
-    "still.py:space": ("import pymunk\nspace = pymunk.Space()", "nothing in it can move"),
     "missing.xml": (None, "there is no such file"),
     "picture.png": (None, "is no model; give"),
 }
@@ -244,11 +216,7 @@ BAD = {
 def test_a_bad_model_is_one_sentence(tmp_path, word):
     text, sentence = BAD[word]
     file = tmp_path / word.split(":")[0]
-    if text == "/":
-        file.mkdir()
-    elif isinstance(text, bytes):
-        file.write_bytes(text)
-    elif text is not None:
+    if text is not None:
         file.write_text(text)
     answer = answered(CheckRequest(word, str(tmp_path), 0.5, 1e-4))
     assert isinstance(answer, Refused)
@@ -301,11 +269,6 @@ def test_what_is_left_out_is_known_by_its_word(tmp_path, element, sentence):
     else:
         assert isinstance(answer, CheckReport)
         assert answer.fine
-
-
-def test_a_step_longer_than_the_motion_is_refused(tmp_path):
-    with pytest.raises((ValueError, Unsupported), match="give a longer one"):
-        found_in(tmp_path, FOUR_BAR, duration=0.0004)
 
 
 @pytest.mark.parametrize(
