@@ -1,13 +1,15 @@
 """Findings that every user of pymunk or MuJoCo should know, each dropped where its rows contradict it.
 
-`findings.md` has the sentences; here are their numbers, a predicate for each, and a small picture for telephones.
+`findings.toml` has their sentences, the rows that these are about, the claims that must hold, and the lines of a small
+picture for telephones. What is no row, releases and answers of scripts, is read by the functions of FURTHER.
 """
 
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -29,7 +31,7 @@ from reports.versions.catalogue import COST_ROSE_IN
 from reports.versions.table import ACCELERATION, Entry, relative_cost, released
 from reports.write.page_tables import COMPARED, advice
 from reports.write.rows import Rows, own_rows
-from reports.write.templates import template
+from reports.write.templates import environment, template
 from reports.write.unmeasured import MARK, UNMEASURED
 
 # Inches, 360 pixels of a browser: a telephone shows it unscaled, so that the letters keep their size.
@@ -77,17 +79,10 @@ def draw(lines: Sequence[PlottedLine], x: str, y: str) -> Figure:
             if not line.points:
                 continue
             paint = colour(line.engine)
-            axes.plot(
-                *zip(*line.points, strict=True),
-                label=line.label,
-                color=paint,
-                linestyle=dashes,
-                marker=mark,
-                markerfacecolor=paint if filled else LIGHT.paper,
-                markeredgecolor=paint,
-                markersize=5,
-                linewidth=1.6,
-            )
+            face = paint if filled else LIGHT.paper
+            marks = {"marker": mark, "markersize": 5, "markerfacecolor": face, "markeredgecolor": paint}
+            shown = zip(*line.points, strict=True)
+            axes.plot(*shown, label=line.label, color=paint, linestyle=dashes, linewidth=1.6, **marks)
         axes.set_yscale("log")
         axes.set_xlabel(x)
         axes.set_ylabel(y)
@@ -120,29 +115,25 @@ class Sources:
 
 
 @dataclass(frozen=True)
-class Evidence:
-    """Values of a finding's sentences, whether the rows bear it out, and the lines and axes of its picture."""
-
-    words: Mapping[str, Any]
-    holds: bool
-    lines: tuple[PlottedLine, ...]
-    y: str
-    x: str = STEP
-
-    def figure(self) -> Figure:
-        """Its picture."""
-        return draw(self.lines, self.x, self.y)
-
-
-@dataclass(frozen=True)
 class Finding:
-    """`name`: that of the picture; `title` and `text`: Markdown, without the link to the page."""
+    """`title` and `text`: Markdown, without the link to the page; `lines`, `x`, `y`: of its picture.
+
+    contradicted: the claims that the rows do not bear out.
+    """
 
     name: str
     page: str
     title: str
     text: str
-    evidence: Evidence
+    contradicted: tuple[str, ...]
+    lines: tuple[PlottedLine, ...]
+    x: str
+    y: str
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the rows have its numbers and bear its claims out."""
+        return not self.contradicted and MARK not in self.text
 
     @property
     def picture(self) -> str:
@@ -152,146 +143,42 @@ class Finding:
     @property
     def alternative(self) -> str:
         """The picture in words, for who can't see it."""
-        return f"{self.evidence.y} against {self.evidence.x}: {'; '.join(line.label for line in self.evidence.lines)}"
+        return f"{self.y} against {self.x}: {'; '.join(line.label for line in self.lines)}"
 
-    @property
-    def is_sound(self) -> bool:
-        """Whether the rows have its numbers and bear its claims out."""
-        return self.evidence.holds and MARK not in self.title + self.text
+    def figure(self) -> Figure:
+        return draw(self.lines, self.x, self.y)
 
 
-def _against_steps(words: Mapping[str, Any], holds: bool, lines: Mapping[str, Rows], name: str = "angle") -> Evidence:
-    """Evidence whose picture has the errors of a quantity against the step."""
-    drawn = tuple(of_rows(label, rows, name) for label, rows in lines.items())
-    return Evidence(words, holds, drawn, quantity(name).axis)
+# --- the names of its expressions ---
 
 
-def spring(sources: Sources) -> Evidence:
-    """MuJoCo's loop as shipped: Euler and RK4 have the same limit; gain and cost of documented settings."""
-    rows = sources.rows.of("free_four_bar")
-    shipped, integrated, tuned = (rows.of(method=f"mujoco {each}") for each in ("default", "RK4 alone", "tuned"))
-    limit, same, wide, gap = shipped.sweep(), integrated.sweep(), shipped.sweep("gap"), integrated.sweep("gap")
-    before, after = shipped.at(COMPARED), tuned.at(COMPARED)
-    costs = after.cpu / before.cpu if before.cpu else UNMEASURED  # not timed
-    return _against_steps(
-        {"same": same, "gap": gap, "after": after, "costs": costs},
-        limit.verdict is same.verdict is gap.verdict is Verdict.PLATEAU
-        and abs(limit.plateau - same.plateau) < 0.1 * same.plateau
-        and abs(wide.plateau - gap.plateau) < 0.1 * gap.plateau
-        and after.angle < 1e-3 * same.plateau
-        and after.angle < shipped.at(TENTH).angle,
-        {"as shipped (Euler)": shipped, "as shipped, RK4": integrated, "RK4, stiff loop": tuned},
-    )
+def error_at(rows: Rows, step: float, name: str) -> float:
+    """The error of a quantity at a step [s], of a failed run too; NaN where there is none."""
+    return next((error for taken, error in rows.points(name) if is_step(taken, step)), math.nan)
 
 
-def luck(sources: Sources) -> Evidence:
-    """Two errors that cancel at one step."""
-    shipped, tuned = (sources.rows.of("spinning_four_bar", f"mujoco {each}") for each in ("default", "tuned"))
-    limit, best = shipped.sweep(), shipped.at(COMPARED)
-    return _against_steps(
-        {"limit": limit, "best": best},
-        limit.verdict is Verdict.PLATEAU
-        and limit.lucky
-        and best.angle == limit.best
-        and best.angle < limit.plateau / 5,
-        {"as shipped": shipped, "RK4, stiff loop": tuned},
-    )
+def least(rows: Rows, name: str) -> float:
+    """The least error of a quantity, of failed runs too; NaN where there is none."""
+    return min((error for _, error in rows.points(name)), default=math.nan)
 
 
-def crank(sources: Sources) -> Evidence:
-    """Overwriting the crank's state after each step, with the loop as shipped and tuned."""
-    rows, scene = sources.rows, "driven_four_bar"
-    soft, stiff = (rows.of(scene, f"mujoco {each}, overwritten crank", "failure") for each in ("default", "tuned"))
-    armature = rows.of(scene, "mujoco tuned")
-    coarse, fine, over, right = soft.at(COMPARED), soft.at(TENTH), stiff.at(COMPARED), armature.at(COMPARED)
-    return _against_steps(
-        {"coarse": coarse, "fine": fine, "over": over, "right": right},
-        fine.angle > 0.9 * coarse.angle and coarse.angle > over.angle > 1000 * right.angle,
-        {"overwritten, as shipped": soft, "overwritten, stiff loop": stiff, "armature, stiff loop": armature},
-    )
-
-
-def start(sources: Sources) -> Evidence:
-    """pymunk's loop as shipped, with all of its gap closed, and started half a step ahead."""
-    rows = sources.rows.of("free_four_bar")
-    shipped, plain, ahead = (rows.of(method=f"pymunk {each}") for each in ("default", "tuned", "leapfrog"))
-    first, second = plain.sweep(), ahead.sweep()
-    before, closed, after = (each.at(COMPARED) for each in (shipped, plain, ahead))
-    return _against_steps(
-        {"before": before, "closed": closed, "after": after, "first": first, "second": second},
-        abs(first.order - 1) < 0.1
-        and abs(second.order - 2) < 0.1
-        and after.angle < closed.angle / 5
-        and closed.angle < before.angle / 5,
-        {"as shipped": shipped, "error_bias = 0": plain, "and started half a step ahead": ahead},
-    )
-
-
-def _seconds(rows: Rows) -> float:
+def duration(rows: Rows) -> float:
     """How long their scene is [s]; NaN without any."""
     return next((row.samples * row.every * row.step for row in rows), math.nan)
 
 
-def energy(sources: Sources) -> Evidence:
-    """The pendulum that slows down, in both engines as shipped and set."""
-    rows = sources.rows.of("pendulum_1")
-    lines = {
-        "pymunk as shipped": rows.of(method="pymunk default"),
-        "pymunk, error_bias = 0": rows.of(method="pymunk tuned"),
-        "MuJoCo as shipped": rows.of(method="mujoco default"),
-        "MuJoCo's tree, RK4": rows.of(method="mujoco tuned"),
-    }
-    # A run whose angle is lost has an energy all the same.
-    lost, closed, euler, exact = (
-        next((error for step, error in each.points("energy") if is_step(step, COMPARED)), math.nan)
-        for each in lines.values()
-    )
-    words = {"seconds": _seconds(rows), "lost": lost, "closed": closed, "euler": euler, "exact": exact}
-    return _against_steps(words, lost > 10 * closed > 1e3 * exact and closed < 1.5 * euler, lines, "energy")
+NAMES: Mapping[str, Any] = {
+    "MS": COMPARED,
+    "TENTH": TENTH,
+    "PLATEAU": Verdict.PLATEAU,
+    "UNMEASURED": UNMEASURED,
+    "error_at": error_at,
+    "least": least,
+    "duration": duration,
+}
 
 
-def _person(sources: Sources, count: int) -> Rows:
-    """The person whose joints are swept so often in a step, with all of each gap closed."""
-    return sources.rows.of("person_one_foot", f"pymunk {count} sweeps, all of the gap", "failure")
-
-
-def iterations(sources: Sources) -> Evidence:
-    """Ten iterations and twenty, on a person that falls, with all of each gap closed in a step; and as shipped."""
-    five, ten, twenty = (_person(sources, count) for count in (5, 10, 20))
-    shipped = sources.rows.of("person_one_foot", "pymunk default")
-    coarse, fine, right = ten.at(1e-2), ten.at(COMPARED), twenty.at(COMPARED)
-    return _against_steps(
-        {"coarse": coarse, "fine": fine, "right": right, "shipped": shipped.at(COMPARED)},
-        fine.angle > 2 * coarse.angle
-        and right.angle < fine.angle / 20
-        and shipped.at(COMPARED).angle < shipped.at(1e-2).angle / 5,
-        {
-            "5 iterations, error_bias = 0": five,
-            "10 iterations, error_bias = 0": ten,
-            "20 iterations, error_bias = 0": twenty,
-            "10 iterations, as shipped": shipped,
-        },
-    )
-
-
-def forces(sources: Sources) -> Evidence:
-    """The same motion with 20 and with 100 iterations, but not the same reactions."""
-    few, many = (_person(sources, count) for count in (20, 100))
-    less, more = few.at(COMPARED), many.at(COMPARED)
-    return Evidence(
-        {"less": less, "more": more},
-        abs(less.angle - more.angle) < 0.02 * more.angle and less.reaction > 5 * more.reaction,
-        (
-            of_rows("forces, 20 iterations", few, "reaction"),
-            of_rows("forces, 100 iterations", many, "reaction"),
-            of_rows("motion [rad], 20 iterations", few, "angle"),
-            of_rows("motion [rad], 100 iterations", many, "angle"),
-        ),
-        "error [relative or rad]",
-    )
-
-
-def releases(sources: Sources) -> Evidence:
+def releases(sources: Sources) -> dict[str, Any]:
     """The cure of MuJoCo 3.7.0, by the rows of the releases; and how the cost of a step as shipped has grown."""
     entries, versions = released().of("mujoco"), released().versions("mujoco")
     lines = {
@@ -302,30 +189,23 @@ def releases(sources: Sources) -> Evidence:
     old, new, newest = (error.get(version, math.nan) for version in ("3.6.0", "3.7.0", versions[-1]))
     cost = relative_cost(entries, versions, "default")
     oldest, later = (cost.get(version, math.nan) for version in (versions[0], "3.3.7"))
-    return Evidence(
-        {"old": old, "new": new, "oldest": oldest, "later": later, "first": versions[0], "rose_in": COST_ROSE_IN},
-        3e3 < old / new < 3e4 and later / oldest > 1.4 and newest < 1.1 * new,
-        tuple(of_releases(scene.replace("_", " "), shown) for scene, shown in lines.items()),
-        quantity("angle").axis,
-        RELEASE,
-    )
+    numbers = {"old": old, "new": new, "newest": newest, "oldest": oldest, "later": later}
+    plotted = {scene: of_releases(scene, shown) for scene, shown in lines.items()}
+    return {**numbers, **plotted, "first": versions[0], "rose_in": COST_ROSE_IN}
 
 
-def trees(sources: Sources) -> Evidence:
+def trees(sources: Sources) -> dict[str, Any]:
     """Random trees with loops across, in MuJoCo with the stiffest documented settings and with stiffer rows of ours."""
     newest = released().versions("mujoco")[-1]
     entries = [entry for entry in released().of("mujoco") if entry.quantity == ACCELERATION]
-    tuned, ours = ([entry for entry in entries if entry.variant == variant] for variant in ("tuned", "extended"))
     last = {entry.variant: entry for entry in entries if entry.version == newest}
     many, _, rest = last["tuned"].sentence.partition(" of ") if "tuned" in last else ("0", "", "")
     soft, hard = (last[variant].error if variant in last else math.nan for variant in ("tuned", "extended"))
-    return Evidence(
-        {"newest": newest, "many": many, "all": rest.partition(" ")[0], "soft": soft, "hard": hard},
-        int(many) >= 10 and soft > 0.1 and hard < 1e-3,
-        (of_releases("documented settings", tuned), of_releases("with our code", ours)),
-        "error [relative]",
-        RELEASE,
-    )
+    plotted = {
+        variant: of_releases(variant, [entry for entry in entries if entry.variant == variant])
+        for variant in ("tuned", "extended")
+    }
+    return {"newest": newest, "many": int(many), "all": rest.partition(" ")[0], "soft": soft, "hard": hard, **plotted}
 
 
 # The fault that each script of the page of faults shows, in a few words.
@@ -338,7 +218,7 @@ FAULTS: Mapping[str, str] = {
 }
 
 
-def faults(sources: Sources) -> Evidence:
+def faults(sources: Sources) -> dict[str, Any]:
     """Faults of the installed releases at one instant, by the scripts that were run with them."""
     wrong, missing = [], 0
     for title in ("pymunk", "MuJoCo"):
@@ -354,112 +234,65 @@ def faults(sources: Sources) -> Evidence:
         wrong.append(f"{title} {release}: {'; '.join(words)}.")
     answer = sources.answers.get(OFFSETS)
     across = answer.array("across") if answer is not None and answer.finished else np.array([])
-    line = PlottedLine("pymunk's groove (ideal: 0)", "pymunk", tuple(zip(OFFSETS.offsets, -across, strict=False)))
-    return Evidence(
-        {"wrong": " ".join(wrong)},
-        not missing and len(line.points) > 3,
-        (line,),
-        "velocity across [m/s]",
-        "anchor's distance from the centre of mass [m]",
-    )
+    groove = PlottedLine("", "pymunk", tuple(zip(OFFSETS.offsets, -across, strict=False)))
+    return {"wrong": " ".join(wrong), "missing": missing, "groove": groove}
 
 
-def exact(sources: Sources) -> Evidence:
-    """The plain judge against both engines, by the CPU time that errors of four sizes cost."""
-    rows = sources.rows.of("free_four_bar")
-    least = {(each.engine, target): each.row for each in advice(rows, "angle") for target in each.targets}
-    cost = {key: row.cpu if row is not None and row.cpu > 0 else math.inf for key, row in least.items()}
-    targets = {target for _, target in least}
-    engines = {
-        "pymunk, half a step ahead": "pymunk leapfrog",
-        "MuJoCo, RK4, stiff loop": "mujoco tuned",
-        "exact multipliers, RK4": "lagrange rk4 none",
-        "pymunk, 5 runs extrapolated": "pymunk extended",
-    }
-    return Evidence(
-        {"fine": {engine: cost.get((engine, 1e-6), math.nan) for engine in ("lagrange", "mujoco", "pymunk")}},
-        len(targets) > 1
-        and all(
-            cost.get(("lagrange", target), math.nan) < cost.get((engine, target), math.nan)
-            for target in targets
-            for engine in ("mujoco", "pymunk")
-        ),
-        tuple(of_rows(label, rows.of(method=method), "angle", CPU) for label, method in engines.items()),
-        quantity("angle").axis,
-        CPU,
-    )
+def exact(sources: Sources) -> dict[str, Any]:
+    """CPU times of errors of four sizes: `fine`, of 1e-6 rad by engine; `wins`, whether the judge is cheaper."""
+    found = advice(sources.rows.of("free_four_bar"), "angle")
+    rows = {(each.engine, target): each.row for each in found for target in each.targets}
+    cost = {key: row.cpu if row is not None and row.cpu > 0 else math.inf for key, row in rows.items()}
+
+    def of(engine: str, target: float) -> float:
+        return cost.get((engine, target), math.nan)
+
+    targets = {target for _, target in rows}
+    wins = [of("lagrange", target) < of(engine, target) for target in targets for engine in ("mujoco", "pymunk")]
+    return {"fine": {engine: of(engine, 1e-6) for engine in ("lagrange", "mujoco", "pymunk")}, "wins": wins}
 
 
-def contact(sources: Sources) -> Evidence:
-    """An ellipse that rolls: as a polygon, as an ellipsoid, and by two rows."""
-    rows = sources.rows.of("rolling_ellipse")
-    polygon, ellipsoid = rows.of(method="pymunk tuned"), rows.of(method="mujoco default")
-    tuned, written = rows.of(method="mujoco tuned"), rows.of(method="mujoco extended")
-    corners, smooth = polygon.sweep(), ellipsoid.sweep()
-    stiff, exactly = tuned.at(COMPARED), written.at(COMPARED)
-    return _against_steps(
-        {"corners": corners, "smooth": smooth, "stiff": stiff, "exactly": exactly},
-        corners.verdict is smooth.verdict is Verdict.PLATEAU
-        and stiff.angle < 0.1 * smooth.plateau
-        and exactly.angle < 1e-6 * min(corners.plateau, smooth.plateau),
-        {
-            "pymunk, 512 corners": polygon,
-            "MuJoCo's contact as shipped": ellipsoid,
-            "MuJoCo's contact, stiff": tuned,
-            "MuJoCo with two rows of ours": written,
-        },
-    )
-
-
-def skate(sources: Sources) -> Evidence:
-    """The naive skate, which no step improves, and a groove."""
-    rows = sources.rows.of("sleigh")
-    naive, groove = rows.of(method="pymunk default"), rows.of(method="pymunk tuned")
-    least = min((error for _, error in naive.points("position")), default=math.nan)
-    better = groove.at(COMPARED)
-    return _against_steps(
-        {"seconds": _seconds(rows), "least": least, "better": better},
-        len(naive) >= 3 and least > 1.0 and better.position < 1e-3 * least,
-        {"centre's velocity zeroed": naive, "groove, aimed anew each step": groove},
-        "position",
-    )
-
-
-FINDINGS: Mapping[str, Callable[[Sources], Evidence]] = {
-    find.__name__: find
-    for find in (
-        spring, luck, crank, releases, faults, exact, start, energy, forces, iterations, trees, contact, skate,
-    )
-}  # fmt: skip
+FURTHER: Mapping[str, Callable[[Sources], dict[str, Any]]] = {
+    "releases": releases,
+    "trees": trees,
+    "faults": faults,
+    "exact": exact,
+}
+FINDINGS: Mapping[str, Mapping[str, Any]] = tomllib.loads(
+    Path(__file__).with_name("findings.toml").read_text(encoding="utf-8")
+)
 
 
 @cache
-def texts() -> Mapping[str, tuple[str, str, str]]:
-    """Page, title and text of each finding by its name."""
-    sections = Path(__file__).with_name("findings.md").read_text(encoding="utf-8").removeprefix("## ").split("\n## ")
-    found = {}
-    for section in sections:
-        heading, title, text = (" ".join(paragraph.split()) for paragraph in section.strip().split("\n\n"))
-        name, _, page = heading.partition(" on ")
-        found[name] = (page, title, text)
-    return found
+def _expression(text: str) -> Callable[..., Any]:
+    return environment().compile_expression(text, undefined_to_none=False)
 
 
 def finding(name: str, sources: Sources) -> Finding:
     """The finding of this name with its numbers from these rows."""
-    page, title, text = texts()[name]
-    evidence = FINDINGS[name](sources)
-    return Finding(name, page, title, template(text).render(**evidence.words), evidence)
+    plan = FINDINGS[name]
+    names = {**NAMES, **(FURTHER[name](sources) if name in FURTHER else {})}
+    names |= {word: sources.rows.of(*which) for word, which in plan.get("rows", {}).items()}
+    for word, expression in plan.get("let", {}).items():
+        names[word] = _expression(expression)(names)
+    compared, x = plan.get("quantity", "angle"), plan.get("x", STEP)
+    lines = []
+    for label, which in plan["lines"].items():
+        word, shown = (which, compared) if isinstance(which, str) else which
+        rows = names[word]
+        lines.append(of_rows(label, rows, shown, x) if isinstance(rows, Rows) else replace(rows, label=label))
+    text = template(" ".join(plan["text"].split())).render(names)
+    contradicted = tuple(claim for claim in plan["holds"] if not _expression(claim)(names))
+    y = plan.get("y", quantity(compared).axis)
+    return Finding(name, plan["page"], plan["title"], text, contradicted, tuple(lines), x, y)
 
 
 def findings(pages: Mapping[Page, Material]) -> list[Finding]:
-    """Those that these rows bear out and that one of these pages explains, in the order of FINDINGS."""
+    """Those that these rows bear out and that one of these pages explains, in the order of `findings.toml`."""
     sources, names = Sources.of(pages), {page.name for page in pages}
     return [each for name in FINDINGS if (each := finding(name, sources)).is_sound and each.page in names]
 
 
 def pictures(shown: Iterable[Finding]) -> dict[str, str]:
     """The SVG text of each finding's picture by file name."""
-    return {
-        each.picture: svg(draw(each.evidence.lines, each.evidence.x, each.evidence.y), each.title) for each in shown
-    }
+    return {each.picture: svg(each.figure(), each.title) for each in shown}

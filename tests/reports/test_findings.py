@@ -6,7 +6,8 @@ import contextlib
 import io
 import re
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
+from itertools import product
 
 import numpy as np
 import pytest
@@ -15,21 +16,10 @@ from reports.model.catalogue import PAGES
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Answer, Task
+from reports.model.usual_steps import is_step
 from reports.pages import findings as module
 from reports.pages.faults.page import OFFSETS, SCRIPTS
-from reports.pages.findings import (
-    CPU,
-    FINDINGS,
-    LOOKS,
-    STEP,
-    TENTH,
-    PlottedLine,
-    Sources,
-    draw,
-    finding,
-    findings,
-    of_rows,
-)
+from reports.pages.findings import CPU, FINDINGS, LOOKS, STEP, PlottedLine, Sources, draw, finding, findings, of_rows
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import symptoms
 from reports.pages.rendering import render_page
@@ -60,69 +50,47 @@ def changed(change):
 
 
 @cache
-def shown():
-    return {each.name: each for each in findings(changed(lambda row: row))}
+def sources() -> Sources:
+    return Sources.of(changed(lambda row: row))
 
 
-def times(factor, field, scene, method, steps=lambda step: True, purpose="sweep"):
-    """Rows of one method with an error multiplied."""
-
-    def change(row):
-        chosen = (row.scene, row.method, row.purpose) == (scene, method, purpose) and steps(row.step)
-        return replace(row, **{field: factor * getattr(row, field)}) if chosen else row
-
-    return change
+def times(factor, step, name, row):
+    """The row with an error multiplied, at one step [s] or at all."""
+    return replace(row, **{name: factor * getattr(row, name)}) if step is None or is_step(row.step, step) else row
 
 
-def falls(scene, method, field):
-    """Rows of one method with an error that falls with the step."""
-    return lambda row: replace(row, **{field: row.step}) if (row.scene, row.method) == (scene, method) else row
+def falls(name, row):
+    """The row with an error that is its step."""
+    return replace(row, **{name: row.step})
 
 
-def at(wanted):
-    return lambda step: abs(step - wanted) < 0.01 * wanted
+def changes(names):
+    """What may be wrong with the rows of one method."""
+    yield lambda rows: rows[:1]
+    for name in names:
+        yield partial(map, partial(falls, name))
+        for factor, step in product((1e-3, 0.5, 2.0, 1e3), (None, COMPARED, module.TENTH)):
+            yield partial(map, partial(times, factor, step, name))
 
 
-FREE, DRIVEN, PERSON, ELLIPSE = "free_four_bar", "driven_four_bar", "person_one_foot", "rolling_ellipse"
-TEN, TWENTY = (f"pymunk {count} sweeps, all of the gap" for count in (10, 20))
+@pytest.mark.parametrize("name", [name for name, plan in FINDINGS.items() if "rows" in plan])
+def test_every_claim_of_a_finding_can_be_contradicted_by_the_rows_of_one_method(name):
+    plan = FINDINGS[name]
+    methods = {word: sources().rows.of(*which) for word, which in plan["rows"].items()}
 
+    def contradicted(methods):
+        return set(finding(name, Sources(Rows(row for rows in methods.values() for row in rows))).contradicted)
 
-@pytest.mark.parametrize(
-    ("name", "wrong"),
-    [
-        ("spring", falls(FREE, "mujoco default", "angle")),
-        ("spring", falls(FREE, "mujoco RK4 alone", "gap")),
-        ("spring", times(1.2, "angle", FREE, "mujoco RK4 alone")),
-        ("spring", times(1.2, "gap", FREE, "mujoco RK4 alone")),
-        ("spring", times(100.0, "angle", FREE, "mujoco tuned")),
-        ("exact", times(0.01, "cpu", FREE, "pymunk leapfrog")),
-        ("luck", falls("spinning_four_bar", "mujoco default", "angle")),
-        ("luck", times(4.0, "angle", "spinning_four_bar", "mujoco default", at(COMPARED))),
-        ("start", falls(FREE, "pymunk leapfrog", "angle")),
-        ("start", times(10.0, "angle", FREE, "pymunk tuned")),
-        ("energy", times(0.1, "energy", "pendulum_1", "pymunk default")),
-        ("energy", times(0.1, "energy", "pendulum_1", "mujoco default")),
-        ("iterations", times(0.1, "angle", PERSON, TEN, at(COMPARED), "failure")),
-        ("iterations", times(10.0, "angle", PERSON, TWENTY, purpose="failure")),
-        ("iterations", times(30.0, "angle", PERSON, "pymunk default", at(COMPARED))),
-        ("forces", times(1.1, "angle", PERSON, TWENTY, purpose="failure")),
-        ("forces", times(0.2, "reaction", PERSON, TWENTY, purpose="failure")),
-        ("skate", times(1e-2, "position", "sleigh", "pymunk default", at(1e-4))),
-        ("skate", times(10.0, "position", "sleigh", "pymunk tuned")),
-        ("crank", times(0.1, "angle", DRIVEN, "mujoco default, overwritten crank", at(TENTH), "failure")),
-        ("crank", times(100.0, "angle", DRIVEN, "mujoco tuned")),
-        ("contact", falls(ELLIPSE, "pymunk tuned", "angle")),
-        ("contact", times(1e3, "angle", ELLIPSE, "mujoco extended")),
-        ("contact", times(10.0, "angle", ELLIPSE, "mujoco tuned")),
-    ],
-)
-def test_a_finding_that_its_rows_contradict_is_dropped(name, wrong):
-    assert shown()[name].is_sound
-    assert not finding(name, Sources.of(changed(wrong))).is_sound
+    assert not contradicted(methods)
+    unharmed = set(plan["holds"])
+    for word, change in product(methods, changes(("angle", "gap", "energy", "position", "reaction", "cpu"))):
+        if unharmed:
+            unharmed -= contradicted(methods | {word: change(methods[word])})
+    assert not unharmed
 
 
 def test_without_rows_findings_are_dropped_and_those_of_other_sources_stay():
-    left = findings(changed(lambda row: None if row.scene == FREE else row))
+    left = findings(changed(lambda row: None if row.scene == "free_four_bar" else row))
     assert {each.name for each in left} == set(FINDINGS) - {"spring", "start", "exact"}
     assert all(MARK not in each.title + each.text for each in left)
     assert findings({}) == []
@@ -166,9 +134,6 @@ def test_a_findings_picture_has_its_points_and_its_lines_differ_without_colours(
     assert [x for x, _ in dear.points] == pytest.approx([1.0, 10.0])  # ms a simulated second: `falling` costs step^-1
 
 
-# --- symptoms and guides ---
-
-
 def test_every_symptom_leads_to_a_section_that_is_there():
     files = {path.name: path.read_text(encoding="utf-8") for path in RESULTS.glob("*.md")}
     files |= render_page(YOUR_LOOP, Material({}), "the command")
@@ -178,19 +143,11 @@ def test_every_symptom_leads_to_a_section_that_is_there():
         assert not symptom.heading or place in {anchor(heading) for heading in headings(files[name])}, symptom
 
 
-SETTINGS = GUIDES[2]
-BLOCK = re.compile(r"^```\w+\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-
-
-def text_of(page, rows) -> str:
-    (text,) = render_page(page, Material(rows), "the command").values()
-    return text
-
-
 def test_the_programs_of_the_settings_print_the_weight_of_the_hanging_body():
-    for source in BLOCK.findall(text_of(SETTINGS, {}))[:2]:
-        said = io.StringIO()
-        with contextlib.redirect_stdout(said):
+    (text,) = render_page(GUIDES[2], Material({}), "the command").values()
+    for source in re.findall(r"^```\w+\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)[:2]:
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
             exec(compile(source, "a page", "exec"), {"__name__": "__main__"})
-        assert said.getvalue().count("19.62") == 2  # 2 kg at 9.81 m/s^2: by Newton's law, and by what the engine says
-        assert "-19.62" not in said.getvalue()
+        assert printed.getvalue().count("19.62") == 2  # 2 kg at 9.81 m/s^2: by Newton's law, and by the engine
+        assert "-19.62" not in printed.getvalue()
