@@ -1,10 +1,11 @@
-"""Walking the grid for a gate: the selected cases' cells in the pool, the judge beside them, and what came of it."""
+"""Run the grid for a gate: the judge and the cells of the selected cases in worker processes, then all checks."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 from engines import Softness
@@ -30,7 +31,7 @@ from reports.model.checks import CHANGE, Check, complaints, nearest
 from reports.model.measure import Measurement
 from reports.model.outcomes import Loss
 from reports.run.running import run_cells, worker_count
-from reports.run.supervisor import Answer, Supervise, supervise
+from reports.run.supervisor import supervise
 
 # The judge's largest scenes take this long [s] on a busy machine.
 JUDGE_LIMIT = 600.0
@@ -80,69 +81,31 @@ class CaseVerdict:
 
 
 @dataclass(frozen=True)
-class PredictionJob:
-    """A prediction to make: of a scene, for these kinds of softness."""
+class JudgeRun:
+    """A run of the judge: the prediction for a scene and kinds of softness, or its errors with a method's softness."""
 
     scene: Scene
-    soft: frozenset[SoftKind]
+    soft: frozenset[SoftKind] | Softness
 
-    @property
-    def label(self) -> str:
-        return f"the judge on {self.scene.name}"
-
-    def __call__(self) -> Prediction:
-        return prediction(self.scene, self.soft)
+    def __call__(self) -> Prediction | Mapping[str, float]:
+        own = isinstance(self.soft, Softness)
+        return errors_as_soft(self.scene, self.soft) if own else prediction(self.scene, self.soft)
 
 
-@dataclass(frozen=True)
-class SoftPredictionJob:
-    """A run of the judge to make: of a scene with a method's own softness."""
-
-    scene: Scene
-    softness: Softness
-
-    @property
-    def label(self) -> str:
-        return f"the judge on {self.scene.name}, as soft as a method"
-
-    def __call__(self) -> Mapping[str, float]:
-        return errors_as_soft(self.scene, self.softness)
+def call(job: JudgeRun) -> Any:
+    """The function that a worker applies."""
+    return job()
 
 
-Job = PredictionJob | SoftPredictionJob
-
-
-@dataclass(frozen=True)
-class CellOrJob:
-    """The function that a worker applies to a cell, or to a job of the judge."""
-
-    function: Callable[[Any], Any]
-
-    def __call__(self, item: Any) -> Any:
-        return item() if isinstance(item, Job) else self.function(item)
-
-
-@dataclass(frozen=True)
-class WithJobs:
-    """As `supervise`, with jobs of the judge before the cells; their results are put into `results`.
-
-    Raises RuntimeError where the judge fails.
-    """
-
-    jobs: tuple[Job, ...]
-    results: dict[Job, Any]
-
-    def __call__(
-        self, function: Callable[[Any], Any], items: Iterable[Any], limit: float, *terms: Any
-    ) -> Iterator[Answer]:
-        work = CellOrJob(function)
-        for item, result, note in supervise(work, [*self.jobs, *items], max(limit, JUDGE_LIMIT), *terms):
-            if not isinstance(item, Job):
-                yield item, result, note
-            elif isinstance(result, Loss):
-                raise RuntimeError(f"{item.label}: {result.sentence}")
-            else:
-                self.results[item] = result
+def run_judge(jobs: Iterable[JudgeRun], workers: int) -> dict[JudgeRun, Any]:
+    """The result of every job, in worker processes, many bodies first. Raises RuntimeError where the judge fails."""
+    ordered = sorted(set(jobs), key=lambda job: -len(mechanism_of(job.scene).bodies))
+    results: dict[JudgeRun, Any] = {}
+    for job, result, _ in supervise(call, ordered, JUDGE_LIMIT, workers):
+        if isinstance(result, Loss):
+            raise RuntimeError(f"the judge on {job.scene.name}: {result.sentence}")
+        results[job] = result
+    return results
 
 
 def walk(
@@ -154,44 +117,36 @@ def walk(
     Raises RuntimeError when the judge itself fails.
     """
     chosen, workers = tuple(chosen), workers or worker_count()
+    jobs = {scene: JudgeRun(scene, soft) for scene, soft in predictions(chosen).items()}
+    results = run_judge(jobs.values(), workers)
     cells = {case: case.cells() for case in chosen}
-    wanted = {scene: PredictionJob(scene, soft) for scene, soft in predictions(chosen).items()}
-    results: dict[Job, Any] = {}
-    rows = _measured(_all(cells.values()), workers, WithJobs(tuple(wanted.values()), results), dearest is not None)
-    judge = {scene: results[job] for scene, job in wanted.items()}
-    finished = {case: tuple(rows[cell] for cell in own) for case, own in cells.items()}
-    own_soft = {
-        case: SoftPredictionJob(case.scene, softness)
-        for case, own in finished.items()
-        if (softness := own_softness(case, own, judge[case.scene])) is not None
-    }
-    old = baseline.cells
+    rows = _measured(chain(*cells.values()), workers, dearest is not None)
+    measured = {case: tuple(rows[cell] for cell in of_case) for case, of_case in cells.items()}
+    judge = {case: results[jobs[case.scene]] for case in chosen}
+    softness = {case: own_softness(case, measured[case], judge[case]) for case in chosen}
+    soft_jobs = {case: JudgeRun(case.scene, soft) for case, soft in softness.items() if soft is not None}
+    results |= run_judge(soft_jobs.values(), workers)
+    before = {case: tuple(baseline.cells.get(identity(row)) for row in measured[case]) for case in chosen}
     doubtful = [
         cell
-        for case, own in cells.items()
-        for cell in own
-        if baseline.same_versions
-        and (before := old.get(identity(rows[cell]))) is not None
-        and moved(rows[cell], before, case.amplified)
+        for case in chosen
+        for cell, row, old in zip(cells[case], measured[case], before[case], strict=True)
+        if baseline.same_versions and old is not None and moved(row, old, case.amplified)
     ]
-    # Many bodies take longest, and begin first.
-    soft = sorted(set(own_soft.values()), key=lambda job: -len(mechanism_of(job.scene).bodies))
-    nudged = _measured(_all(map(nudged_cells, doubtful)), workers, WithJobs(tuple(soft), results))
+    nudged = _measured(chain(*map(nudged_cells, doubtful)), workers)
     out: dict[Case, CaseVerdict] = {}
-    for case, own in cells.items():
-        measured = finished[case]
-        before = tuple(old.get(identity(row)) for row in measured)
+    for case in chosen:
         changed: list[Check] = []
-        for cell, row, then in zip(own, measured, before, strict=True):
-            if then is not None and baseline.same_versions:
+        for cell, row, old in zip(cells[case], measured[case], before[case], strict=True):
+            if old is not None and baseline.same_versions:
                 others = [nudged[other] for other in nudged_cells(cell) if other in nudged]
-                changed += change(row, then, others, case.amplified)
-            elif then is not None:
-                changed += drift(row, then)
-        changed += vanished(case, before)
-        as_soft = results[own_soft[case]] if case in own_soft else None
-        theory = checks(case, measured, judge[case.scene], as_soft)
-        verdict = CaseVerdict(case, measured, theory, tuple(changed), before)
+                changed += change(row, old, others, case.amplified)
+            elif old is not None:
+                changed += drift(row, old)
+        changed += vanished(case, before[case])
+        as_soft = results[soft_jobs[case]] if case in soft_jobs else None
+        found = checks(case, measured[case], judge[case], as_soft)
+        verdict = CaseVerdict(case, measured[case], found, tuple(changed), before[case])
         if dearest is not None and not math.isnan(verdict.cost):
             costly = Check(CHANGE, "CPU time", verdict.cost, dearest, sentence=" times the baseline's")
             verdict = replace(verdict, change=(*verdict.change, costly))
@@ -237,13 +192,7 @@ def remarks(verdict: CaseVerdict) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*known, *dear]))
 
 
-def _all(groups: Iterable[Iterable[Cell]]) -> Iterator[Cell]:
-    return (cell for group in groups for cell in group)
-
-
-def _measured(
-    cells: Iterable[Cell], workers: int, supervised: Supervise, timed: bool = False
-) -> Mapping[Cell, Measurement]:
+def _measured(cells: Iterable[Cell], workers: int, timed: bool = False) -> Mapping[Cell, Measurement]:
     by_key = {cell.key: cell for cell in cells}
-    rows = {row.key: row for row in run_cells(by_key.values(), workers=workers, timed=timed, supervised=supervised)}
+    rows = {row.key: row for row in run_cells(by_key.values(), workers=workers, timed=timed)}
     return {cell: rows[key] for key, cell in by_key.items()}

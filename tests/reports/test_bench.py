@@ -26,17 +26,14 @@ def test_the_time_of_a_grid_is_counted_once_by_part_by_method_and_by_scene():
     assert sum(spent["part"].values()) == pytest.approx(sum(spent["method"].values()))
 
 
-@pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
-def test_the_judges_figures_are_of_runs_that_are_right():
-    errors = [value for name, value, _ in measure_judge(links=(3,), turns=1) if name.endswith("its error")]
-    # Of order 4 at 1e-3 s, of order 8 at 1e-2 s and half of it: less than a 2^8th, and rounding; and of a tolerance.
-    assert errors[0] < 1e-6
-    assert errors[1] < 1e-9
-    assert errors[2] < errors[1] / 20
-    assert errors[3] < 1e-12
-
-
-def test_the_judges_figures_need_numba(monkeypatch):
+def test_the_judges_figures_are_of_runs_that_are_right_and_need_numba(monkeypatch):
+    if loading.installed():
+        errors = [value for name, value, _ in measure_judge(links=(3,), turns=1) if name.endswith("its error")]
+        # Order 4 at 1e-3 s; order 8 at 1e-2 s and half of it: less than a 2^8th, and rounding; and a tolerance.
+        assert errors[0] < 1e-6
+        assert errors[1] < 1e-9
+        assert errors[2] < errors[1] / 20
+        assert errors[3] < 1e-12
     monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
     with pytest.raises(BadInput, match="the extra 'fast'"):
         measure_judge()

@@ -57,13 +57,20 @@ def panels(figure: Figure) -> list[Axes]:
     return [panel for panel in figure.axes if panel.get_visible()]
 
 
+METHODS = {
+    "pymunk default": (1.1e-2, 1.3e-3, 1.7e-4),
+    "mujoco tuned": (1.9e-2, 2.3e-3),
+    "mujoco extended": (3.7e-2, 4.1e-5),
+}
+FACTORS = {"one_scene": 1.0, "other": 7.0}
+
+
 def rows():
     """Two scenes and three methods, another number in each point; failures, maps and zeros that must not be drawn."""
     found = []
-    for scene, factor in (("one_scene", 1.0), ("other", 7.0)):
-        found += falling("pymunk default", (1.1e-2, 1.3e-3, 1.7e-4), scene=scene)
-        found += falling("mujoco tuned", (1.9e-2 * factor, 2.3e-3 * factor), scene=scene, position=5e-5)
-        found += falling("mujoco extended", (3.7e-2 * factor, 4.1e-5), scene=scene)
+    for scene, factor in FACTORS.items():
+        for method, errors in METHODS.items():
+            found += falling(method, tuple(factor * error for error in errors), scene=scene)
         found += falling("mujoco own", (2.9e-2, 3.1e-3), scene=scene)
         found.append(row_of("pymunk default", scene=scene, step=1e-4, angle=1e-9, outcome=Outcome.SATURATED))
         found.append(row_of("pymunk default", scene=scene, step=1e-5, angle=1e-9, purpose="map"))
@@ -75,20 +82,6 @@ def rows():
 
 def featured(row) -> bool:
     return row.variant != "own"
-
-
-def expected(scene: str, method: str, across: str) -> list[tuple[float, float]]:
-    engine, variant = method.split()
-    own = [
-        row
-        for row in rows()
-        if (row.scene, row.engine, row.variant) == (scene, engine, variant)
-        and row.purpose == "sweep"
-        and row.outcome == "finished"
-        and row.angle > 0
-    ]
-    own.sort(key=lambda row: -row.step)
-    return [(1e3 * getattr(row, across), row.angle) for row in own]
 
 
 @pytest.mark.parametrize(
@@ -103,17 +96,16 @@ def test_each_method_is_drawn_with_its_numbers_in_its_scenes_panel(draw, across,
     found = panels(figure)
     assert [panel.get_title(loc="left") for panel in found] == ["other", "one scene"]
     entries = legend(figure)
-    methods = ("pymunk default", "mujoco tuned", "mujoco extended")
     for panel, scene in zip(found, ("other", "one_scene"), strict=True):
-        drawn = series(panel)
-        assert drawn == {
-            entries[method]: [pytest.approx(point) for point in expected(scene, method, across)] for method in methods
+        expected = {
+            method: [(1e3 * getattr(row, across), FACTORS[scene] * row.angle) for row in falling(method, errors)]
+            for method, errors in METHODS.items()
         }
-        assert (panel.get_xscale(), panel.get_yscale()) == ("log", "log")
-        assert panel.get_xlabel() == label
-    assert found[0].get_ylabel() == "largest angle error [rad]"
-    assert found[1].get_ylabel() == ""  # it shares the axis of the one on its left
-    assert set(entries) - {"nothing is better and cheaper", "other methods", "rounding"} == set(methods)
+        drawn = series(panel)
+        assert drawn == {entries[method]: [pytest.approx(p) for p in points] for method, points in expected.items()}
+        assert (panel.get_xscale(), panel.get_yscale(), panel.get_xlabel()) == ("log", "log", label)
+    assert [panel.get_ylabel() for panel in found] == ["largest angle error [rad]", ""]  # the second shares the axis
+    assert set(entries) - {"nothing is better and cheaper", "other methods", "rounding"} == set(METHODS)
 
 
 def front(panel: Axes) -> list[tuple[float, float]]:
@@ -126,26 +118,20 @@ def dots(panel: Axes) -> list[tuple[float, float]]:
 
 
 def test_the_front_is_of_all_methods_and_those_not_featured_are_dots():
-    cheap = [
-        row_of("mujoco own", step=1e-2, angle=1e-3, cpu=2e-3),
-        row_of("mujoco own", step=1e-3, angle=5e-3, cpu=9e-3),
-    ]
-    shown = [
-        row_of("pymunk default", step=1e-2, angle=1e-2, cpu=1e-3),
-        row_of("pymunk default", step=1e-3, angle=1e-4, cpu=5e-3),
-    ]
-    never = [
-        row_of("mujoco own", step=1e-4, angle=1e-9, cpu=1e-4, purpose="map"),
-        row_of("mujoco own", step=1e-4, angle=1e-9, cpu=1e-4, outcome=Outcome.SATURATED),
-    ]
+    def of(method: str, *numbers: tuple[float, float, float], **changes: Any) -> list[Any]:
+        return [row_of(method, step=step, angle=angle, cpu=cpu, **changes) for step, angle, cpu in numbers]
+
+    shown = of("pymunk default", (1e-2, 1e-2, 1e-3), (1e-3, 1e-4, 5e-3))
+    cheap = of("mujoco own", (1e-2, 1e-3, 2e-3), (1e-3, 5e-3, 9e-3))
+    never = of("mujoco own", (1e-4, 1e-9, 1e-4), purpose="map")
+    never += of("mujoco own", (1e-4, 1e-9, 1e-4), outcome=Outcome.SATURATED)
     figure = charts.work_precision([*shown, *cheap, *never], featured)
     [panel] = panels(figure)
     assert front(panel) == [pytest.approx(point) for point in ((1.0, 1e-2), (2.0, 1e-3), (5.0, 1e-4))]
     assert dots(panel) == [pytest.approx(point) for point in ((2.0, 1e-3), (9.0, 5e-3))]
     assert {"nothing is better and cheaper", "other methods"} < set(legend(figure))
     figure = charts.work_precision(shown, featured)
-    assert dots(panels(figure)[0]) == []
-    assert "other methods" not in legend(figure)
+    assert (dots(panels(figure)[0]), "other methods" in legend(figure)) == ([], False)
     failed = [row_of("pymunk default", outcome=outcome) for outcome in Outcome if not outcome.comparable]
     for draw in (charts.work_precision, charts.error_against_step):
         assert all(not panel.get_lines() for panel in panels(draw(failed)))
@@ -155,7 +141,7 @@ def test_a_series_never_runs_backwards_in_cpu_time():
     steps = ((1e-2, 12.0), (3e-3, 9.0), (1e-3, 9.0), (3e-4, 30.0), (1e-4, 20.0))
     rough = [row_of("mujoco extended", step=step, angle=step, cpu=cpu) for step, cpu in steps]
     assert [row.step for row in charts.forwards(rough[::-1])] == [1e-3, 1e-4]
-    plain = falling("pymunk default", (1.1e-2, 1.3e-3, 1.7e-4))
+    plain = falling("pymunk default", METHODS["pymunk default"])
     assert charts.forwards(plain) == plain
 
 
@@ -241,28 +227,22 @@ def test_configurations_have_each_pose_under_its_title_and_methods_over_them_whe
 
 def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_colour():
     near = [[0.0, 0.0], [1.0, 2.0]]
-    wrong = [[0.0, 0.0], [math.nan, 0.0], [9.0, 8.0]]
+    wrong = Path([[0.0, 0.0], [math.nan, 0.0], [9.0, 8.0]], "wrong", "first", "--", framed=False, dot=True)
     blades = Blades([[0.5, 0.5, math.pi / 2]], 0.2, "quiet")
-    first = Panel(
-        "first", [Path(near, "truth"), Path(wrong, "wrong", "first", "--", framed=False, dot=True)], [blades],
-        [Note((0.25, 1.5), "here", "center")],
-    )  # fmt: skip
-    second = Panel(
-        "second", [Path([[1.0, 1e-3], [2.0, 1e-1]], "truth")], plane=False, across="time [s]", up="m", logarithmic=True
-    )
+    first = Panel("first", [Path(near, "truth"), wrong], [blades], [Note((0.25, 1.5), "here", "center")])
+    curve = [[1.0, 1e-3], [2.0, 1e-1]]
+    second = Panel("second", [Path(curve, "truth")], plane=False, across="time [s]", up="m", logarithmic=True)
     figure = paths([first, second], columns=2)
     left, right = figure.axes
     assert [panel.get_title(loc="left") for panel in (left, right)] == ["first", "second"]
-    assert has(left, near)
-    assert has(left, [[0.0, 0.0], [9.0, 8.0]])
-    assert has(left, [[9.0, 8.0]])  # the dot at its end
-    assert has(left, [[0.5, 0.4], [0.5, 0.6]])  # a blade of 0.2 m upright about its middle
+    # The path, what is finite of the wrong one, the dot at its end, and a blade of 0.2 m upright about its middle.
+    for points in (near, [[0.0, 0.0], [9.0, 8.0]], [[9.0, 8.0]], [[0.5, 0.4], [0.5, 0.6]]):
+        assert has(left, points)
     assert words_at(left) == [("here", (0.25, 1.5))]
     assert (right.get_xlabel(), right.get_ylabel(), right.get_yscale()) == ("time [s]", "m", "log")
-    assert has(right, [[1.0, 1e-3], [2.0, 1e-1]])
+    assert has(right, curve)
     assert legend(figure) == {"truth": (to_hex(LIGHT.ink), "-"), "wrong": (to_hex(LIGHT.first), "--")}
-    # What is not framed does not stretch the picture.
-    assert left.get_xlim()[1] < 2
+    assert left.get_xlim()[1] < 2  # what is not framed does not stretch the picture
     assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
 
 
@@ -290,19 +270,17 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
     assert missed[20, 1] > 0.1
 
 
-@pytest.mark.parametrize("field", ["angle", "reaction"])
-def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slopes_they_name(field):
-    errors = falling("pymunk default", (1e-2, 1e-3, 1e-4, 1e-5), field)
-    [panel] = panels(charts.error_against_step(errors, field=field))
+def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slopes_they_name():
+    errors = falling("pymunk default", (1e-2, 1e-3, 1e-4, 1e-5), "reaction")
+    [panel] = panels(charts.error_against_step(errors, field="reaction"))
     [band] = panel.patches
-    low, high = band.get_path().get_extents(band.get_patch_transform()).intervaly
-    assert (low, high) == (pytest.approx(1e-16), pytest.approx(quantity(field).rounding))
+    interval = band.get_path().get_extents(band.get_patch_transform()).intervaly
+    assert tuple(interval) == pytest.approx((1e-16, quantity("reaction").rounding))
     guides = [points(line) for line in panel.get_lines() if line.get_marker() in (None, "None", "")]
-    assert len(guides) == 3
+    assert [text.get_text() for text in panel.texts] == ["1", "2", "4"]
     for (slope, place), ((left, bottom), (right, top)) in zip(words_at(panel), guides, strict=True):
         assert math.log(top / bottom) / math.log(right / left) == pytest.approx(float(slope))
         assert place == (pytest.approx(right), pytest.approx(top))
-    assert [text.get_text() for text in panel.texts] == ["1", "2", "4"]
     assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
 
 

@@ -65,6 +65,9 @@ def of(found: tuple[Check, ...], quantity: str) -> Check:
 )
 def test_two_orders_tell_what_any_order_costs(order_of, expected):
     assert JUDGE.error("angle", order_of, FINE) == pytest.approx(expected, rel=1e-12)
+    # Of first order a position's time scale is no longer than the angle's.
+    drifting = replace(JUDGE, fourth={**JUDGE.fourth, "position": 1e-6})
+    assert order_of > 2 or drifting.error("position", order_of, FINE) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("quantity", NAMES)
@@ -73,14 +76,6 @@ def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
     found = theory(JUDGE, Promise(2), None, row(**alone(quantity, 1.1 * (ROOM * 1e-6 + 2e-9))))
     assert [check.quantity for check in found if not check.passed] == [quantity]
     assert all(check.passed for check in theory(JUDGE, Promise(2), None, row(**alone(quantity, 0.9 * ROOM * 1e-6))))
-
-
-def test_where_nothing_is_in_proportion_to_softness_its_own_run_bounds_a_row():
-    soft, tight = Softness(2500.0, 100.0, 0.01, (True, True)), [row(every=1), row(every=3)]
-    lost = replace(JUDGE, soft={((True, True), True): dict.fromkeys(NAMES, math.inf)})
-    own = dict.fromkeys(NAMES, 1e-5)
-    for error, passes in ((1.9e-5, True), (2.1e-5, False)):  # ROOM_SOFT
-        assert of(theory(lost, Promise(2), soft, row(angle=error), tight, own), "angle").passed is passes
 
 
 @pytest.mark.parametrize(
@@ -94,97 +89,81 @@ def test_where_nothing_is_in_proportion_to_softness_its_own_run_bounds_a_row():
     ],
 )
 def test_softness_costs_in_proportion_to_compliance_over_stiffness(gapped, change, give):
-    judge, soft = replace(JUDGE, gapped=(gapped, gapped)), Softness(2500.0, 100.0, 0.01, (True, True))
-    assert judge.give("angle", replace(soft, **change)) == pytest.approx(give, rel=1e-12)
+    judge = replace(JUDGE, gapped=(gapped, gapped))
+    assert judge.give("angle", replace(SOFT, **change)) == pytest.approx(give, rel=1e-12)
     assert judge.give("angle", None) == 0
 
 
-def test_of_first_order_a_positions_and_an_energys_time_scale_are_no_longer_than_the_angles():
-    drifting = replace(JUDGE, fourth={**JUDGE.fourth, "position": 1e-6})
-    assert drifting.error("position", 1, FINE) == pytest.approx(JUDGE.error("position", 1, FINE), rel=1e-12)
-    assert drifting.error("position", 2, FINE) == pytest.approx(JUDGE.error("position", 2, FINE), rel=1e-12)
+def coarser(quantity: str = "angle", **errors: float) -> list[Measurement]:
+    """Rows at larger steps: `at1=1e-7` is the error of one step in 1e-2 s."""
+    return [row(every=int(name[2:]), **{quantity: error}) for name, error in errors.items()]
+
+
+SOFT = Softness(2500.0, 100.0, 0.01, (True, True))
+UNKNOWN = Unpromised("nobody knows")
+WITHOUT_SOFT = replace(JUDGE, soft={((True, True), True): dict.fromkeys(NAMES, math.inf)})
+LOST = replace(JUDGE, second=dict.fromkeys(NAMES, math.inf), fourth=dict.fromkeys(NAMES, math.inf))
+WILD = replace(JUDGE, second=dict.fromkeys(NAMES, 1e3), fourth=dict.fromkeys(NAMES, 1e3))
+PRESCRIBED = replace(JUDGE, prescribed=True, earlier=dict.fromkeys(NAMES, 2.0))
+Given = tuple[Prediction, Promise | Unpromised, Softness | None, list[Measurement]]
+BOUNDS: dict[str, tuple[Given, str, float]] = {  # what is known of a row, a quantity, and its bound
+    "two coarser steps bound by the promised order": (
+        (JUDGE, Promise(2), None, coarser(at1=1e-7, at3=1e-8)), "angle", ROOM_OWN * 1e-9 + 1e-11),
+    "one coarser step may be luck": ((JUDGE, Promise(2), None, coarser(at1=1e-9)), "angle", ROOM * 1e-6 + 1e-11),
+    "one coarser step where the judge is lost": (
+        (LOST, Promise(2), None, coarser(at1=1e-7)), "angle", ROOM_OWN * 1e-9 + 1e-11),
+    "a promise of one quantity": (
+        (JUDGE, Promise(4, rate=2, gap=EXACT, reaction=0), None, []), "rate", ROOM * 1e-6 + 1e-10),
+    "a promise of all others": ((JUDGE, Promise(4, rate=2), None, []), "angle", ROOM * 1e-12 + 1e-11),
+    "an exact gap": ((JUDGE, Promise(4, gap=EXACT), None, []), "gap", 1e-12),
+    "a reaction of a single step without a promise": ((JUDGE, UNKNOWN, None, []), "reaction", 0.5),
+    # 2 rad/s^2 for half of a thousandth, whatever the coarser steps allow; a spring lags by its own time.
+    "the middle of a step": (
+        (PRESCRIBED, Promise(2, rate=1), None, coarser("rate", at1=1e-2, at3=3.3e-3)), "rate", 1.25e-3 + 1e-10),
+    # The coarsest would allow 1.25e-7, and with the room of a free motion 2.5e-7.
+    "prescribed, the next coarser step": (
+        (PRESCRIBED, Promise(2), None, coarser(at1=1e-5, at3=1e-7, at5=4e-8)), "angle", 1.25e-8 + 1e-11),
+    "free, all coarser steps": (
+        (JUDGE, Promise(2), None, coarser(at1=1e-5, at3=1e-7, at5=4e-8)), "angle", ROOM_OWN * 1e-7 + 1e-11),
+    **{f"no {name} above what the outcome refuses": ((WILD, Promise(1), None, []), name, most)
+       for name, most in {"angle": 0.5, "rate": 1.0, "slip": 1.0, "reaction": 1.0, "gap": 0.05}.items()},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BOUNDS)
+def test_a_row_passes_just_below_its_bound_and_fails_just_above_it(name):
+    (judge, promise, softness, coarse), quantity, bound = BOUNDS[name]
+    for part, passes in ((0.98, True), (1.03, False)):
+        errors = alone(quantity, part * bound)
+        assert of(theory(judge, promise, softness, row(**errors), coarse), quantity).passed is passes
+
+
+def test_where_nothing_is_in_proportion_to_softness_its_own_run_bounds_a_row():
+    own = dict.fromkeys(NAMES, 1e-5)
+    for error, passes in ((1.9e-5, True), (2.1e-5, False)):  # ROOM_SOFT
+        found = theory(WITHOUT_SOFT, Promise(2), SOFT, row(angle=error), [row(every=1), row(every=3)], own)
+        assert of(found, "angle").passed is passes
 
 
 def test_rounding_of_a_change_of_velocity_is_carried_by_a_combination_of_runs():
-    told = [
-        dict(of(theory(JUDGE, Promise(2, differences=8, amplified=carried), None, row()), "reaction").terms)["rounding"]
-        for carried in (1.0, 17.0)
-    ]
-    # 1e-10 m/s over 1/8000 s in parts of 10 m/s^2, above the 1e-9 of any reaction.
-    assert told == pytest.approx([8e-8 + 1e-9, 17 * 8e-8 + 1e-9], rel=1e-12)
+    for carried in (1.0, 17.0):
+        found = of(theory(JUDGE, Promise(2, differences=8, amplified=carried), None, row()), "reaction")
+        # 1e-10 m/s over 1/8000 s in parts of 10 m/s^2, above the 1e-9 of any reaction.
+        assert dict(found.terms)["rounding"] == pytest.approx(carried * 8e-8 + 1e-9, rel=1e-12)
 
 
-def test_one_coarser_step_may_be_luck_and_bounds_nothing_unless_the_judge_is_lost():
-    lucky = [row(every=1, angle=1e-9)]
-    assert of(theory(JUDGE, Promise(2), None, row(angle=1e-8), lucky), "angle").passed
-    lost = replace(JUDGE, second=dict.fromkeys(NAMES, math.inf), fourth=dict.fromkeys(NAMES, math.inf))
-    assert not of(theory(lost, Promise(2), None, row(angle=1e-8), [row(every=1, angle=1e-7)]), "angle").passed
-
-
-def test_a_promise_for_one_quantity_is_for_that_alone():
-    promise = Promise(4, rate=2, gap=EXACT, reaction=0)
-    named = ("angle", "position", "rate", "velocity", "gap", "slip", "energy", "reaction")
-    assert [promise.of(quantity) for quantity in named] == [4, 4, 2, 2, EXACT, 4, 4, 0]
-    assert of(theory(JUDGE, promise, None, row(rate=1e-6)), "rate").passed
-    assert not of(theory(JUDGE, Promise(4), None, row(rate=1e-6)), "rate").passed
-
-
-def test_where_nothing_is_promised_an_error_may_not_be_far_above_what_the_methods_own_steps_change_in_it():
-    nothing = Unpromised("nobody knows")
-    coarse = [row(every=1, angle=0.013), row(every=3, angle=0.011)]
-    assert of(theory(JUDGE, nothing, None, row(angle=0.01), coarse), "angle").passed
-    assert not of(
-        theory(JUDGE, nothing, None, row(angle=0.07), [row(1, angle=0.072), row(3, angle=0.071)]), "angle"
-    ).passed
-    assert not theory(JUDGE, nothing, None, row(outcome=Outcome.TORN))[0].passed
-    assert order(nothing, rows(*falling_errors(2))) == ()
-
-
-def test_of_a_single_step_without_a_promise_no_more_than_half_of_a_reaction_may_be_wrong():
-    for error, passes in ((0.49, True), (1.0, False), (math.nan, False)):
-        assert of(theory(JUDGE, Unpromised("nobody knows"), None, row(reaction=error)), "reaction").passed is passes
-
-
-PRESCRIBED = replace(JUDGE, prescribed=True, earlier=dict.fromkeys(NAMES, 2.0))
-
-
-def test_in_a_prescribed_motion_velocities_of_the_first_order_are_those_of_the_middle_of_a_step():
-    promise, coarse = Promise(2, rate=1), [row(every=1, rate=1e-2), row(every=3, rate=3.3e-3)]
-    for error, passes in ((1e-3, True), (1.2e-3, True), (1.3e-3, False)):  # 2 rad/s^2 for half of a thousandth
-        assert of(theory(PRESCRIBED, promise, None, row(rate=error)), "rate").passed is passes
-        assert of(theory(PRESCRIBED, promise, None, row(rate=error), coarse), "rate").passed is passes
-    soft = Softness(2500.0, 100.0, 0.01, (True, True))
-    assert of(theory(PRESCRIBED, promise, soft, row(rate=1.3e-3)), "rate").passed  # a spring lags by its own time
-
-
-def test_in_a_prescribed_motion_an_error_is_that_of_the_next_coarser_step_scaled():
-    promise, coarse = Promise(2), [row(every=1, angle=1e-5), row(every=3, angle=1e-7), row(every=5, angle=4e-8)]
-    # The coarsest would allow 1.25e-7, and with the room of a free motion 2.5e-7.
-    for judge, bound in ((PRESCRIBED, 1.25 * 1e-8), (JUDGE, ROOM_OWN * 1e-7)):
-        assert of(theory(judge, promise, None, row(), coarse), "angle").bound == pytest.approx(bound + 1e-11)
+def test_without_a_promise_an_error_may_not_be_far_above_what_the_methods_own_steps_change_in_it():
+    for coarse, error, passes in (((0.013, 0.011), 0.01, True), ((0.072, 0.071), 0.07, False)):
+        found = theory(JUDGE, UNKNOWN, None, row(angle=error), coarser(at1=coarse[0], at3=coarse[1]))
+        assert of(found, "angle").passed is passes
+    assert not theory(JUDGE, UNKNOWN, None, row(outcome=Outcome.TORN))[0].passed
+    assert order(UNKNOWN, rows(*falling_errors(2))) == ()
 
 
 def test_a_page_knows_better_what_its_motion_asks_for_than_the_engine_and_of_no_other_scene():
     own = Promise(1)
     page = Page("discs", "Discs", "Discs turn.", (SCENE, Slow()), (Toy(),), orders={("disc", "toy default"): own})
     assert [case.promise for case in cases([page])] == [own, Promise(2)]
-
-
-def test_no_bound_is_above_what_the_outcome_refuses():
-    wild = replace(JUDGE, second=dict.fromkeys(NAMES, 1e3), fourth=dict.fromkeys(NAMES, 1e3))
-    found = theory(wild, Promise(1), None, row())
-    assert [of(found, name).bound for name in ("angle", "rate", "slip", "reaction")] == [0.5, 1.0, 1.0, 1.0]
-    assert of(found, "gap").bound == pytest.approx(0.05)
-    lost = replace(JUDGE, second=dict.fromkeys(NAMES, math.inf), fourth=dict.fromkeys(NAMES, math.inf))
-    assert not idle(theory(lost, Promise(1), None, row()))
-
-
-def test_a_methods_own_coarser_steps_bound_its_finest():
-    coarse = (row(every=1, angle=1e-7), row(every=3, angle=1e-8))
-    found = theory(JUDGE, Promise(2), None, row(angle=2e-9), coarse)
-    assert of(found, "angle").bound == pytest.approx(ROOM_OWN * 1e-9 + 1e-11)
-    assert of(found, "angle").passed
-    assert not of(theory(JUDGE, Promise(2), None, row(angle=3e-9), coarse), "angle").passed
 
 
 def test_a_run_that_can_not_be_compared_fails_by_its_outcome_and_an_unsupported_one_has_no_check():
@@ -202,13 +181,9 @@ def test_a_number_that_is_none_fails_unless_there_is_none_to_tell_and_that_is_co
     assert idle(untold) == {"the engine says that it can't tell it": 1}
     for none in (replace(JUDGE, gapped=(False, False)), replace(JUDGE, second={**JUDGE.second, "gap": math.nan})):
         assert idle(theory(none, Promise(1), None, row(gap=math.nan))) == {"the scene has no such number": 1}
-
-
-def test_coarser_steps_without_a_number_bound_nothing_in_whatever_order_they_come():
-    numbers = [row(every=every, angle=angle) for every, angle in ((1, math.nan), (2, 1e-7), (3, 1e-8))]
-    for coarse in permutations(numbers):
-        found = theory(JUDGE, Promise(2), None, row(), coarse)
-        assert of(found, "angle").bound == pytest.approx(ROOM_OWN * 1e-7 * (2 / 10) ** 2 + 1e-11)
+    for coarse in permutations(coarser(at1=math.nan, at2=1e-7, at3=1e-8)):  # a step without a number bounds nothing
+        bound = of(theory(JUDGE, Promise(2), None, row(), coarse), "angle").bound
+        assert bound == pytest.approx(ROOM_OWN * 1e-7 * (2 / 10) ** 2 + 1e-11)
 
 
 def rows(*errors: float) -> list[Measurement]:
@@ -291,21 +266,11 @@ def test_an_outcome_that_is_known_is_that_one_and_no_other(outcome):
     assert any("deviates no longer" in line for line in better)
 
 
-@pytest.mark.parametrize(
-    ("reason", "factor", "outcome"),
-    [
-        ("soft", 2.0, None),
-        ("by design: soft", 1.0, None),
-        ("ours: x", math.nan, None),
-        ("ours: x", math.inf, None),
-        ("ours: x", None, None),
-        ("ours: x", 2.0, Outcome.TORN),
-        ("ours: x", None, Outcome.FINISHED),
-    ],
-)
-def test_a_deviation_says_whose_it_is_and_by_how_much_or_how_it_ends(reason, factor, outcome):
-    with pytest.raises(ValueError, match="deviation"):
-        Deviation(reason, factor, outcome)
+def test_a_deviation_says_whose_it_is_and_by_how_much_or_how_it_ends():
+    wrong = [("soft", 2.0), ("by design: soft", 1.0), ("ours: x", math.nan), ("ours: x", math.inf), ("ours: x", None)]
+    for arguments in (*wrong, ("ours: x", 2.0, Outcome.TORN), ("ours: x", None, Outcome.FINISHED)):
+        with pytest.raises(ValueError, match="deviation"):
+            Deviation(*arguments)
 
 
 def test_the_nearest_check_is_the_one_farthest_beyond_its_bound():

@@ -10,19 +10,17 @@ import pytest
 
 from engines import Engine, Promise, mujoco, pymunk
 from reference.scenes.four_bar.scenes import DrivenFourBar
-from reports.gate import grid_tests, walk
+from reports.gate import grid_tests
 from reports.gate.judge import _samples, integrate
 from reports.gate.prediction import prediction
 from reports.gate.theory import Case, checks, kinds
-from reports.gate.walk import JUDGE_LIMIT, PredictionJob, WithJobs
-from reports.model.cells import Cell
+from reports.gate.walk import JudgeRun, run_judge
 from reports.model.checks import Check
 from reports.model.measure import measure
-from reports.run.running import run_cells
 from tests import ROOT
 from tests.reports.test_gate import row
 from tests.reports.test_gate_baseline import written
-from tests.toys import Disc, FailingToy, Toy
+from tests.toys import Disc, Toy
 from tests.wrong.adapters import SMALL, Wrong
 
 
@@ -152,26 +150,11 @@ class Unknown(Disc):
         raise ValueError("nobody knows where it is")
 
 
-def test_the_judge_beside_the_cells_changes_no_row_and_has_its_own_time(monkeypatch):
-    cells = [Cell(Disc(), Toy(), 1), Cell(Disc(), Toy(), 2), Cell(Disc(), FailingToy("raise"), 1)]
-    job, results = PredictionJob(Disc(), NO_KINDS), {}
-    rows = {row.key: row for row in run_cells(cells, workers=2, timed=False, supervised=WithJobs((job,), results))}
-    plain = {row.key: row for row in run_cells(cells, workers=2, timed=False)}
-    assert rows.keys() == plain.keys() == {cell.key for cell in cells}
-    assert all((row.outcome, row.sentence) == (plain[key].outcome, plain[key].sentence) for key, row in rows.items())
-    assert [rows[cell.key].angle for cell in cells[:2]] == [plain[cell.key].angle for cell in cells[:2]]
-    assert results == {job: prediction(Disc(), NO_KINDS)}
-    limits = []
-    monkeypatch.setattr(walk, "supervise", lambda work, items, limit, *terms: limits.append(limit) or iter(()))
-    for limit in (60.0, 2 * JUDGE_LIMIT):
-        assert list(WithJobs((job,), {})(str, cells, limit)) == []
-    assert limits == [JUDGE_LIMIT, 2 * JUDGE_LIMIT]
-
-
-def test_a_judge_that_fails_ends_the_gate_with_its_reason():
-    work = WithJobs((PredictionJob(Unknown(), NO_KINDS),), {})
+def test_the_judge_runs_in_processes_of_its_own_and_one_that_fails_ends_the_gate_with_its_reason():
+    job = JudgeRun(Disc(), NO_KINDS)
+    assert run_judge([job, job], 1) == {job: prediction(Disc(), NO_KINDS)}
     with pytest.raises(RuntimeError, match=r"the judge on unknown disc: .*nobody knows where it is"):
-        list(run_cells([Cell(Disc(), Toy(), 1)], workers=1, timed=False, supervised=work))
+        run_judge([JudgeRun(Unknown(), NO_KINDS)], 1)
 
 
 SCENE = DrivenFourBar()

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import sys
+from dataclasses import replace
+from html import unescape
 from html.parser import HTMLParser
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 from urllib.parse import unquote, urlsplit
@@ -41,26 +43,17 @@ CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 
 
 class Page(HTMLParser):
-    """The addresses and anchors of a page, and what stands in its scripts of data."""
+    """The addresses and the anchors of a page."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
         self.links: list[str] = []
-        self.anchors: set[str] = set()
-        self.json: dict[str, str] = {}
-        self._inside = ""
+        self.anchors: set[str | None] = {""}
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
-        given = {name: value or "" for name, value in attrs}
-        self.links += [given[name] for name in ("href", "src") if name in given]
-        self.anchors.add(given.get("id", ""))
-        self._inside = given.get("id", "") if given.get("type") == "application/json" else ""
-
-    def handle_data(self, data):
-        if self._inside:
-            self.json[self._inside] = data
-        self._inside = ""
+        self.links += [value or "" for name, value in attrs if name in ("href", "src")]
+        self.anchors |= {value for name, value in attrs if name == "id"}
 
 
 def require_packages():
@@ -98,25 +91,24 @@ def test_arrows_add_up_to_what_moves_the_bodies():
 
 
 def test_a_part_of_a_lesson_is_words_a_question_and_why():
-    told = part_of("Heading\n\nWords\nmore.\n\n> What?\n>\n> - one\n> - **two**\n> - three\n\nBecause.")
-    assert told == Part(
-        "Heading", "Words\nmore.", "What?", (("one", False), ("two", True), ("three", False)), "Because."
-    )
+    text = "Heading\n\nWords\nmore.\n\n> What?\n>\n> - one\n> - **two**\n> - three\n\nBecause."
+    answers = (("one", False), ("two", True), ("three", False))
+    assert part_of(text) == Part("Heading", "Words\nmore.", "What?", answers, "Because.")
     with pytest.raises(ValueError, match="three answers, one of them right"):
-        part_of("Heading\n\nWords\n\n> What?\n>\n> - one\n> - two\n> - three\n")
+        part_of(text.replace("**", ""))
 
 
-def test_sections_that_lessons_quote_are_on_their_pages():
-    told = [(lesson.page, each.section) for lesson in LESSONS for each in lesson.experiments if each.section]
-    for page, heading in told:
-        assert len(section((RESULTS / f"{page}.md").read_text("utf-8"), heading) or "") > 40, heading
-    # A comment in code ends no section, and a heading of a higher rank does.
+def test_a_comment_in_code_ends_no_section_and_a_heading_of_a_higher_rank_does():
     page = "# Top\n## Part\nbefore\n```\n# a comment\n```\nafter\n### Below\nmore\n# Next\nother\n"
     assert section(page, "Part") == "before\n```\n# a comment\n```\nafter\n### Below\nmore"
     assert section(page, "Nothing") is None
 
 
-def test_a_lesson_quotes_a_part_of_its_page_of_results_whose_links_lead_there(files):
+def test_lessons_quote_parts_of_their_pages_of_results_whose_links_lead_there(files):
+    for lesson in LESSONS:
+        page = unescape(files[f"lessons/{lesson.name}.html"].decode())
+        quoted = [each.section for each in lesson.experiments if each.section]
+        assert [heading for heading in quoted if f"<summary>More: {heading}</summary>" not in page] == []
     page = files["lessons/four_bar.html"].decode()
     body = page.partition("<summary>More: Nine configurations</summary>")[2].partition("</details>")[0]
     assert "Fig. 18.66 of the chapter" in body
@@ -133,26 +125,18 @@ def test_no_link_of_the_site_is_dead(files):
             parts = urlsplit(link)
             if parts.scheme in ("http", "https", "data", "mailto"):
                 continue
-            place = (Path("/") / Path(name).parent / unquote(parts.path)).resolve().relative_to("/").as_posix()
-            target = name if not parts.path else place
-            known = target in files or target == ""  # the folder itself
-            if known and parts.fragment and "=" not in parts.fragment and target in pages:
-                known = parts.fragment in pages[target].anchors
-            if not known:
+            target = os.path.normpath(os.path.join(os.path.dirname(name), unquote(parts.path))) if parts.path else name
+            anchors = pages[target].anchors if target in pages and "=" not in parts.fragment else {parts.fragment}
+            if (target not in files and target != ".") or parts.fragment not in anchors:
                 dead.append(f"{name}: {link}")
-    assert "\n".join(dead) == ""
+    assert dead == []
 
 
-def test_nothing_is_fetched_from_elsewhere_when_a_page_is_read(files):
+def test_nothing_is_fetched_from_elsewhere_when_a_page_is_read_and_the_site_says_what_is_missing(files):
     loading = re.compile(r'(?:src|<link[^>]*href)="(?:https?:)?//|@import|url\((?!["\']?data:)')
-    for name, text in files.items():
-        if name.endswith((".html", ".css")):
-            assert not loading.search(text.decode()), name
-
-
-def test_without_npm_the_site_says_what_is_missing(files):
-    about = files["about.html"].decode()
-    assert "npm is not installed" in about
+    texts = {name: text.decode() for name, text in files.items() if name.endswith((".html", ".css"))}
+    assert [name for name, text in texts.items() if loading.search(text)] == []
+    assert "npm is not installed" in texts["about.html"]
     assert json.loads(files[MARKER])["troubles"]
 
 
@@ -178,10 +162,9 @@ def test_formulas_are_mathml_and_code_is_none(files):
         render_html("$\\nothing$")
 
 
-@pytest.mark.parametrize("name", NEEDED)
-def test_without_a_package_of_the_extra_the_site_is_refused_in_a_line(name, monkeypatch):
-    monkeypatch.setattr("reports.site.generator.find_spec", lambda asked: None if asked == name else True)
-    with pytest.raises(BadInput, match=rf"not installed \({name}\): pip install '\.\[site\]'"):
+def test_without_a_package_of_the_extra_the_site_is_refused_in_a_line(monkeypatch):
+    monkeypatch.setattr("reports.site.generator.find_spec", lambda asked: None)
+    with pytest.raises(BadInput, match=rf"not installed \({', '.join(NEEDED)}\): pip install '\.\[site\]'"):
         build_html(Documents({}, {}, {}, lambda app: iter(())))
 
 
@@ -231,17 +214,14 @@ def test_the_code_of_a_how_to_page_runs(path, capsys, monkeypatch):
 
 
 def test_all_rows_are_told_with_their_cost_and_settings():
-    texts = [(RESULTS / f"{name}.csv").read_text("utf-8") for name in ("errors", "timings", "descriptions")]
-    told = explored(*texts)
+    told = explored(*((RESULTS / f"{name}.csv").read_text("utf-8") for name in ("errors", "timings", "descriptions")))
     rows = [dict(zip(told["columns"], row, strict=True)) for row in told["rows"]]
     assert len(rows) > 500
-    (row,) = [r for r in rows if (r["scene"], r["engine"], r["variant"]) == FREE and abs(r["step"] - 1e-3) < 1e-6]
+    free = ("free_four_bar", "pymunk", "default")
+    (row,) = [r for r in rows if (r["scene"], r["engine"], r["variant"]) == free and abs(r["step"] - 1e-3) < 1e-6]
     assert row["angle"] == pytest.approx(0.19, rel=0.1)  # as the page of the four-bar tells
     assert row["cpu"] > 0
     assert "Pymunk(" in row["settings"]
-
-
-FREE = ("free_four_bar", "pymunk", "default")
 
 
 def test_the_reference_is_made_of_docstrings():
@@ -296,9 +276,7 @@ def test_a_picture_is_xml_without_script_and_the_same_every_time(falling):
 def test_a_method_that_gave_up_stays_where_it_was(falling):
     pose = falling.motions["pymunk default"].copy()
     pose[40:] = np.nan
-    text = animation(
-        Shown(falling.take, falling.mechanism, falling.t, falling.truth, {"pymunk default": pose}, {}), "Lost"
-    )
+    text = animation(replace(falling, motions={"pymunk default": pose}), "Lost")
     assert "nan" not in text
     found = keys(text, "m0b0")
     assert np.all(found[-5:, 1:] == found[-1, 1:])

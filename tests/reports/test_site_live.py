@@ -35,16 +35,16 @@ from reports.site.live.sliders import Live
 LIVE = {f"{lesson.name}: {live.word}": live for lesson in LESSONS for live in lesson.scenes}
 
 
-@pytest.mark.parametrize("name", LIVE)
-def test_the_scene_itself_is_a_place_of_its_sliders(name):
-    live = LIVE[name]
-    index = 0
-    for slider in live.sliders:
-        control = slider.control(live.scene)
-        index = index * len(slider.values) + control.start
-        assert len(control.texts) == len(slider.values)
-    assert list(live.places())[index] == live.scene
-    assert live.steps[live.start] % live.frames == 0
+def test_a_scene_is_a_place_of_its_sliders_and_sliders_that_do_not_fit_are_refused():
+    for live in LIVE.values():
+        assert live.scene in live.places()
+        assert live.steps[live.start] % live.frames == 0
+        assert all(len(control.texts) == len(control.values) for control in live.controls().values())
+    slider = sliders.Slider("crank", "crank", tuple(0.3 + 0.001 * i for i in range(126)))
+    with pytest.raises(ValueError, match="7 steps don't fit 60 frames"):
+        Live("x", DrivenFourBar(), (7,), 60, 0)
+    with pytest.raises(ValueError, match="more than 125 places"):
+        Live("x", DrivenFourBar(), (60,), 60, 0, (slider,))
 
 
 @pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.name)
@@ -60,14 +60,6 @@ def test_experiments_set_controls_that_are_there_and_have_their_words(lesson):
         assert set(numbers) <= set(live.controls()), part.heading
 
 
-def test_sliders_that_do_not_fit_are_refused():
-    slider = sliders.Slider("crank", "crank", tuple(0.3 + 0.001 * i for i in range(126)))
-    with pytest.raises(ValueError, match="7 steps don't fit 60 frames"):
-        Live("x", DrivenFourBar(), (7,), 60, 0)
-    with pytest.raises(ValueError, match="more than 125 places"):
-        Live("x", DrivenFourBar(), (60,), 60, 0, (slider,))
-
-
 def test_a_method_that_our_code_helps_is_no_model_of_a_page():
     sleigh = ChaplyginSleigh().mechanism()
     with pytest.raises(Unsupported, match="writes rows while it steps"):
@@ -76,39 +68,43 @@ def test_a_method_that_our_code_helps_is_no_model_of_a_page():
         plan_of(replace(pymunk_engine.DEFAULT, roll="pivot"), RollingDisc().mechanism(), 1.0)
 
 
+def records(engine: Any, scene: Any) -> tuple[tuple[float, ...], np.ndarray, list[tuple[float, ...]]]:
+    """The head, the bodies and the records of a plan, which have to fill it."""
+    plan = plan_of(engine, scene.mechanism(), scene.duration).numbers
+    place, found = 8 + 11 * int(plan[4]), []
+    while place < len(plan):
+        found.append((plan[place], *plan[place + 2 : place + 2 + int(plan[place + 1])]))
+        place += 2 + int(plan[place + 1])
+    assert place == len(plan)
+    return plan[:8], np.reshape(plan[8 : 8 + 11 * int(plan[4])], (-1, 11)), found
+
+
 def test_what_munk2d_is_given_is_what_pymunk_holds():
     scene = DrivenFourBar()
-    told = plan_of(pymunk_engine.DEFAULT, scene.mechanism(), scene.duration)
-    plan = told.numbers
     mechanism = scene.mechanism()
-    assert plan[5:8] == (10, pymunk_engine.SHIPPED_ERROR_BIAS, 0)
-    bodies = np.reshape(plan[8:41], (3, 11))
-    assert (plan[:2], plan[4]) == (mechanism.gravity, 3)
+    head, bodies, found = records(pymunk_engine.DEFAULT, scene)
+    assert (head[:2], head[4:]) == (mechanism.gravity, (3, 10, pymunk_engine.SHIPPED_ERROR_BIAS, 0))
     assert bodies[:, 0].tolist() == [1, 0, 0]  # the crank is kinematic
-    assert bodies[1:, 1:3] == pytest.approx(mechanism.inertias[1:, 1:])
-    assert bodies[1:, 3:6] == pytest.approx(mechanism.pose[1:])
-    assert bodies[1:, 6:9] == pytest.approx(mechanism.twist[1:])
-    records = np.reshape(plan[41:], (-1, 8))
-    assert records[:, :2].tolist() == [[Part.PIVOT, 6]] * 3
-    assert records[:, 2:4].tolist() == [[0, 1], [1, 2], [-1, 2]]
+    held = [*mechanism.inertias[1:, 1:].T, *mechanism.pose[1:].T, *mechanism.twist[1:].T]
+    free = bodies[1:, 1:9].T
+    assert free == pytest.approx(np.array(held))
+    assert [each[:3] for each in found] == [(Part.PIVOT, 0, 1), (Part.PIVOT, 1, 2), (Part.PIVOT, -1, 2)]
+    told = plan_of(pymunk_engine.DEFAULT, mechanism, scene.duration)
     assert (told.impulses, told.idle) == ((-1, 0, 1, 2), ())
 
 
-def test_a_plan_says_what_each_shape_and_each_hand_is():
-    def parts(engine: Any, scene: Any) -> list[int]:
-        plan = plan_of(engine, scene.mechanism(), scene.duration).numbers
-        place, found = 8 + 11 * int(plan[4]), []
-        while place < len(plan):
-            found.append(int(plan[place]))
-            place += 2 + int(plan[place + 1])
-        assert place == len(plan)
-        return found
-
-    assert parts(pymunk_engine.DEFAULT, RollingDisc()) == [Part.SEGMENT, Part.CIRCLE]
-    assert parts(pymunk_engine.DEFAULT, RollingEllipse()) == [Part.SEGMENT, Part.POLYGON]
-    assert parts(SKATE_CENTRE, ChaplyginSleigh()) == [Part.ZEROED]
-    assert parts(SKATE_GROOVE, ChaplyginSleigh()) == [Part.GROOVE, Part.AIMED]
-    assert parts(pymunk_engine.DEFAULT, DrivenSliderCrank()) == [Part.PIVOT, Part.PIVOT, Part.GROOVE]
+@pytest.mark.parametrize(
+    ("engine", "scene", "parts"),
+    [
+        (pymunk_engine.DEFAULT, RollingDisc(), [Part.SEGMENT, Part.CIRCLE]),
+        (pymunk_engine.DEFAULT, RollingEllipse(), [Part.SEGMENT, Part.POLYGON]),
+        (SKATE_CENTRE, ChaplyginSleigh(), [Part.ZEROED]),
+        (SKATE_GROOVE, ChaplyginSleigh(), [Part.GROOVE, Part.AIMED]),
+        (pymunk_engine.DEFAULT, DrivenSliderCrank(), [Part.PIVOT, Part.PIVOT, Part.GROOVE]),
+    ],
+)
+def test_a_plan_says_what_each_shape_and_each_hand_is(engine, scene, parts):
+    assert [each[0] for each in records(engine, scene)[2]] == parts
 
 
 def test_a_live_scene_holds_the_truth_of_every_place():
@@ -125,25 +121,18 @@ def test_a_live_scene_holds_the_truth_of_every_place():
     assert held["measure"] == "position"
 
 
-def test_of_a_force_that_the_motion_leaves_open_the_rest_is_told():
+def test_forces_and_frictions_that_a_motion_determines_are_told_and_no_others():
     gears = EllipticGears()
     truth = gears.motion(np.linspace(0, 1, 5))
     first, second, mesh = forces(gears.mechanism(), truth)
     assert first["partly"]
     assert np.reshape(second["force"], (-1, 2)) == pytest.approx(np.nan_to_num(truth.reaction[:, 2:4]), abs=1e-6)
-    assert mesh["contact"]
-    assert "friction" not in mesh
-
-
-def test_friction_that_is_demanded_is_that_of_the_rolling_body():
+    assert (mesh["contact"], "friction" in mesh) == (True, False)
     scene = RollingEllipse()
     t = np.linspace(0, scene.duration, 50)
-    truth = scene.motion(t)
-    (told,) = [each for each in forces(scene.mechanism(), truth) if "friction" in each]
+    (told,) = [each for each in forces(scene.mechanism(), scene.motion(t)) if "friction" in each]
     assert np.array(told["friction"]) == pytest.approx(scene.motion_law.required_friction(t), rel=1e-5, abs=1e-6)
-    pulled = demanded(np.array([[1.0, 2.0], [1.0, -1.0]]))
-    assert pulled[0] == 0.5
-    assert np.isnan(pulled[1])
+    assert demanded(np.array([[1.0, 2.0], [1.0, -1.0]])) == pytest.approx([0.5, np.nan], nan_ok=True)
 
 
 def test_a_contact_turns_with_the_body_on_which_something_rolls():

@@ -1,174 +1,248 @@
 """Our wheel and somebody else's in an environment of their own: it runs, reports and tests; theirs has its place.
 
-Not a line is changed here for their distribution, an engine in two variants and a scene with its page. The environment
-is made once for all tests of this file.
+Their distribution is the code of our how-to pages: an engine, of which they register two variants, and a scene with a
+page. Not a line is changed here for it. Nothing comes from the network, and the environment is made once for this file.
 """
 
 from __future__ import annotations
 
 import csv
+import os
 import re
+import shutil
 import subprocess
 import sys
 import zipfile
+from importlib import metadata
+from pathlib import Path
 
 import pytest
 
+from tests import ROOT
 from tests.reports.test_check import FOUR_BAR
-from tests.tools.installations import ROOT, distribution, environment_with, our_wheel, run, wheel_of
 
+OLDEST_BUILDER = 77  # of setuptools, as in the build-system table of pyproject.toml
+# Beyond what is committed: build and result folders of the checkout.
+NOT_COPIED = (".*", "__pycache__", "build", "dist", "*.egg-info", "crosscheck-results", "tests")
+BUILD = "import sys; from setuptools import build_meta; build_meta.build_wheel(sys.argv[1])"
 STEPS = ("--every", "1", "--every", "3", "--every", "10")
-METHODS = ("impulses default", "impulses closed")
 PACKAGES = ("engines", "reference", "reports")
-# The gate's baseline, and what the pages of versions and of the atlas are written from.
+# The gate's baseline, and the sources of the pages of versions and of the atlas.
 SHIPPED = ("errors", "timings", "versions", "atlas")
 MODULES = ("planar_crosscheck.py", "planar_crosscheck_pytest.py")
-# As anybody starts it, with every warning an error.
+# With every warning an error.
 PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "-W", "error")
+
+THEIR_PROJECT = """
+[build-system]
+requires = ["setuptools>=77"]
+build-backend = "setuptools.build_meta"
+[project]
+name = "their-suite"
+version = "1.2.3"
+[project.entry-points]
+"crosscheck.engines" = {multipliers = "their_suite:ENGINES"}
+"crosscheck.scenes" = {wheel = "their_suite:SCENE", spare = "their_suite:SPARE"}
+"crosscheck.pages" = {wheel = "their_suite.page:PAGE"}
+[tool.setuptools]
+packages = ["their_suite"]
+package-data = {their_suite = ["*.md"]}
+"""
+THEIR_NAMES = """
+class Spare(Turning):
+    name = "spare_wheel"
+
+
+ENGINES, SPARE = (MULTIPLIERS, Multipliers(variant="closed")), Spare()
+"""
+THEIR_PAGE = """
+from pathlib import Path
+
+from engines.registry import VARIANTS
+from reports.model.page import Page
+from reports.write.rows import lookups
+from their_suite import SCENE
+
+PAGE = Page(
+    name="wheel",
+    title="Their wheel",
+    lesson="A disc on an axle, which every engine should hold.",
+    scenes=(SCENE,),
+    engines=VARIANTS,
+    template=Path(__file__).with_name("page.md"),
+    words=lambda material: lookups(material, (SCENE,)),
+)
+"""
+THEIR_TEMPLATE = """{% extends "base.md" %}
+{% block lesson %}
+Their engine reaches {{ best("turning_wheel", "multipliers", "closed").angle | number }} rad.
+{% endblock %}
+"""
+METHODS = ("multipliers default", "multipliers closed")
+
+
+def write_their_distribution(folder: Path) -> Path:
+    """Somebody else's distribution, ready to be built."""
+    pages = [
+        (ROOT / "reports" / "site" / "howto" / f"add_{name}.md").read_text("utf-8") for name in ("an_engine", "a_scene")
+    ]
+    code = [block for page in pages for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL)]
+    texts = {"__init__.py": "\n".join([*code, THEIR_NAMES]), "page.py": THEIR_PAGE, "page.md": THEIR_TEMPLATE}
+    (folder / "their_suite").mkdir(parents=True)
+    (folder / "pyproject.toml").write_text(THEIR_PROJECT, encoding="utf-8")
+    for name, text in texts.items():
+        (folder / "their_suite" / name).write_text(text, encoding="utf-8")
+    return folder
+
+
+def build_wheel(source: Path, folder: Path) -> Path:
+    """Build the distribution whose pyproject.toml lies in `source`; the test is skipped where no wheel can be built."""
+    try:
+        version = metadata.version("setuptools")
+    except metadata.PackageNotFoundError:
+        pytest.skip("setuptools is not installed; the extra 'test' of pyproject.toml has it")
+    if int(version.split(".")[0]) < OLDEST_BUILDER:
+        pytest.skip(f"setuptools {version} is older than {OLDEST_BUILDER}, which pyproject.toml asks for")
+    subprocess.run([sys.executable, "-c", BUILD, folder], cwd=source, check=True, capture_output=True, text=True)
+    (wheel,) = folder.glob("*.whl")
+    return wheel
+
+
+def create_environment(folder: Path, *wheels: Path) -> Path:
+    """An environment with these wheels, above the packages that are installed here without this project; its programs.
+
+    Folders of packages are named in a .pth file; .pth files in them, which lead to this checkout, are not read. numba
+    is hidden: a new installation would compile its code first, for a quarter of a minute.
+    """
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder], check=True)
+    programs = folder / ("Scripts" if os.name == "nt" else "bin")
+    pip = [sys.executable, "-m", "pip", "--python", programs / "python", "install", "--quiet", "--no-index"]
+    installed = subprocess.run([*pip, "--no-deps", "--no-compile", *wheels], capture_output=True, text=True)
+    if installed.returncode and "No module named pip" in installed.stderr:
+        pytest.skip("pip is not installed")
+    assert installed.returncode == 0, installed.stderr
+    (site,) = {path.parent for path in folder.rglob("reports") if path.parent.name == "site-packages"}
+    here = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
+    (site / "below.pth").write_text("\n".join([*here, 'import sys; sys.modules["numba"] = None', ""]), encoding="utf-8")
+    return programs
 
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory):
-    return our_wheel(tmp_path_factory.mktemp("ours"))
+    folder = tmp_path_factory.mktemp("ours")
+    checkout = shutil.copytree(ROOT, folder / "checkout", ignore=shutil.ignore_patterns(*NOT_COPIED))
+    return build_wheel(checkout, folder / "built")
 
 
 @pytest.fixture(scope="module")
 def programs(wheel, tmp_path_factory):
     folder = tmp_path_factory.mktemp("wheels")
-    theirs = wheel_of(distribution(folder / "their source"), folder / "theirs")
-    return environment_with(tmp_path_factory.mktemp("environment"), wheel, theirs)
+    theirs = build_wheel(write_their_distribution(folder / "their source"), folder / "theirs")
+    return create_environment(tmp_path_factory.mktemp("environment"), wheel, theirs)
 
 
 @pytest.fixture
-def crosscheck(programs, tmp_path):
-    """Starts the installed program in an empty folder; its status."""
+def call(programs, tmp_path):
+    """Runs an installed program in an empty folder, with nothing of ours on the path; gives status, stdout, stderr."""
 
-    def call(*words):
-        ended = run(programs / "crosscheck", *words, folder=tmp_path)
+    def run(program, *words, folder=tmp_path, path=None):
+        kept = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+        kept |= {} if path is None else {"PYTHONPATH": str(path)}
+        ended = subprocess.run([programs / program, *words], cwd=folder, env=kept, capture_output=True, text=True)
         return ended.returncode, ended.stdout, ended.stderr
 
-    return call
-
-
-@pytest.fixture(scope="module")
-def folder(programs, tmp_path_factory):
-    """Where their engine was run in their scenes and in ours, and one of ours in theirs, and all was reported."""
-    folder = tmp_path_factory.mktemp("results")
-    for words in (
-        ("run", "flywheel", "spare_wheel", "free_four_bar", "--engine", "impulses", *STEPS),
-        ("run", "flywheel", "--engine", "lagrange", "--every", "1"),
-        ("report",),
-    ):
-        ended = run(programs / "crosscheck", *words, folder=folder)
-        assert (ended.returncode, ended.stderr) == (0, "")
-    return folder
-
-
-@pytest.fixture(scope="module")
-def texts(folder):
-    """The files of the report by name."""
-    found = (folder / "crosscheck-results").iterdir()
-    return {path.name: path.read_text(encoding="utf-8") for path in found if path.suffix in (".md", ".csv", ".svg")}
+    return run
 
 
 def test_every_template_snippet_asset_and_baseline_of_the_checkout_is_in_the_wheel(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
-    folders = [ROOT / "reports" / name for name in ("pages", "site")]
-    files = [path.relative_to(ROOT) for folder in folders for path in folder.rglob("*") if path.is_file()]
-    wanted = [path.as_posix() for path in files if "__pycache__" not in path.parts]
-    assert len([name for name in wanted if name.endswith("page.md")]) > 10
-    assert set(wanted) <= names
-    # What numba would compile is not run from an installation here: that it is there is all there is to ask.
-    modules = [path.relative_to(ROOT) for part in PACKAGES for path in (ROOT / part).rglob("*.py")]
-    assert {path.as_posix() for path in modules} <= names
+    files = [path for part in ("pages", "site") for path in (ROOT / "reports" / part).rglob("*") if path.is_file()]
+    files += [path for part in PACKAGES for path in (ROOT / part).rglob("*.py")]
+    assert {path.relative_to(ROOT).as_posix() for path in files if "__pycache__" not in path.parts} <= names
     results = {name for name in names if name.startswith("reports/results/") and not name.endswith(".py")}
     assert results == {f"reports/results/{name}.csv" for name in SHIPPED}
     assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {*PACKAGES, *MODULES}
 
 
-def test_an_installation_has_all_that_the_checkout_registers_in_the_same_order(programs, tmp_path):
+def test_an_installation_has_all_that_the_checkout_registers_in_the_same_order(call):
     from engines.registry import ENGINES, VARIANTS, method_name
     from reports.model.catalogue import PAGES, SCENES
 
-    asked = (
+    code = (
         "from engines.registry import ENGINES, VARIANTS, method_name; from reports.model.catalogue import *;"
-        "words = ('impulses', 'flywheel', 'spare_wheel');"
-        "ours = lambda found: [each for each in found if not any(word in each for word in words)];"
+        "ours = lambda found: [name for name in found if 'multipliers' not in name and 'wheel' not in name.split('_')];"
         "print(ours(map(method_name, VARIANTS)), ours(map(method_name, ENGINES)), ours(s.name for s in SCENES),"
         "ours(p.name for p in PAGES), TROUBLES, sep='\\n'); import reports; print(reports.__file__)"
     )
-    ended = run(programs / "python", "-c", asked, folder=tmp_path)
-    assert ended.stderr == ""
-    *told, place = ended.stdout.splitlines()
+    status, out, err = call("python", "-c", code)
+    assert (status, err) == (0, "")
+    *registered, place = out.splitlines()
     assert not place.startswith(str(ROOT / "reports"))
     here = ([method_name(e) for e in VARIANTS], [method_name(e) for e in ENGINES], [s.name for s in SCENES])
-    assert told == [*map(str, (*here, [page.name for page in PAGES])), "()"]
+    assert registered == [*map(str, (*here, [page.name for page in PAGES])), "()"]
 
 
-def test_nothing_is_published_from_an_installation(crosscheck, tmp_path):
-    status, out, err = crosscheck("report", "--publish")
+def test_publishing_from_an_installation_and_another_package_of_one_of_our_names_are_refused(call, tmp_path):
+    status, out, err = call("crosscheck", "report", "--publish")
     assert (status, out) == (2, "")
     assert err.startswith("crosscheck: --publish is for a checkout")
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("name", ["engines", "reports"])
-def test_another_package_of_one_of_our_names_is_told_in_one_line(programs, tmp_path, name):
-    (tmp_path / name).mkdir()
-    (tmp_path / name / "__init__.py").write_text("", encoding="utf-8")
-    ended = run(programs / "crosscheck", "--help", folder=programs, path=tmp_path)
-    assert (ended.returncode, ended.stdout) == (2, "")
-    (line,) = ended.stderr.splitlines()
-    assert line.startswith(f"crosscheck: the package {name!r} is another one, at {tmp_path / name}, and ours is at ")
+    (tmp_path / "engines").mkdir()
+    (tmp_path / "engines" / "__init__.py").write_text("", encoding="utf-8")
+    status, out, err = call("crosscheck", "--help", folder=tmp_path.parent, path=tmp_path)
+    assert (status, out) == (2, "")
+    (line,) = err.splitlines()
+    assert line.startswith(
+        f"crosscheck: the package 'engines' is another one, at {tmp_path / 'engines'}, and ours is at "
+    )
     for way in (["crosscheck"], ["python", "-m", "planar_crosscheck"]):  # neither looks in the current folder
-        assert run(programs / way[0], *way[1:], "--help", folder=tmp_path).returncode == 0
+        assert call(*way, "--help")[0] == 0
 
 
-def test_their_engine_and_scenes_are_listed_and_conform(crosscheck):
-    status, out, err = crosscheck("list", "flywheel", "spare_wheel")
+def test_their_engine_and_scenes_are_listed_conform_are_run_and_stand_on_pages(call, tmp_path):
+    status, out, err = call("crosscheck", "list", "turning_wheel", "spare_wheel")
     assert (status, err) == (0, "")
-    lines = [" ".join(line.replace("│", " ").split()) for line in out.splitlines()]
-    assert "spare_wheel spare_wheel their own invention 0.2" in lines
-    assert "impulses closed Impulses(variant='closed', share=1.0)" in lines
-    status, out, err = crosscheck("conform", "impulses", "--variant", "closed")
-    assert (status, err) == (0, ""), out
-    assert out.splitlines()[-1].strip() == "every check holds"
-
-
-def test_their_cells_are_run_and_shown_and_results_go_below_the_current_folder(programs, folder, texts):
-    ended = run(programs / "crosscheck", "show", "free_four_bar", "--engine", "impulses", folder=folder)
-    assert (ended.returncode, ended.stderr) == (0, "")
-    assert ended.stdout.count("impulses") >= 2 * 3
-    rows = [row for row in csv.DictReader(texts["errors.csv"].splitlines()) if row["engine"] == "impulses"]
-    scenes = ("flywheel", "spare_wheel", "free_four_bar")
-    found = {(row["scene"], row["variant"], int(row["every"])) for row in rows}
-    assert found == {(s, v, e) for s in scenes for v in ("default", "closed") for e in (1, 3, 10)}
+    assert "Multipliers(variant='closed')" in out
+    status, out, err = call("crosscheck", "conform", "multipliers", "--variant", "closed")
+    assert (status, err, out.splitlines()[-1].strip()) == (0, "", "every check holds"), out
+    for words in (
+        ("run", "turning_wheel", "spare_wheel", "free_four_bar", "--engine", "multipliers", *STEPS),
+        ("run", "turning_wheel", "--engine", "lagrange", "--every", "1"),
+        ("report",),
+        ("show", "free_four_bar", "--engine", "multipliers"),
+    ):
+        status, out, err = call("crosscheck", *words)
+        assert (status, err) == (0, "")
+    assert out.count("multipliers") > 3
+    assert {path.name for path in tmp_path.iterdir()} == {"crosscheck-results"}
+    found = (tmp_path / "crosscheck-results").iterdir()
+    texts = {path.name: path.read_text(encoding="utf-8") for path in found if path.suffix in (".md", ".csv")}
+    rows = [row for row in csv.DictReader(texts["errors.csv"].splitlines()) if row["engine"] == "multipliers"]
+    scenes = ("turning_wheel", "spare_wheel", "free_four_bar")
+    cells = {(row["scene"], row["variant"], int(row["every"])) for row in rows}
+    assert cells == {(s, v, e) for s in scenes for v in ("default", "closed") for e in (1, 3, 10)}
     assert {row["outcome"] for row in rows if row["scene"] != "free_four_bar"} <= {"finished", "converged"}
-    assert {path.name for path in folder.iterdir()} == {"crosscheck-results"}
-
-
-def test_pages_of_ours_and_of_theirs_and_the_index_have_their_engine(texts):
     assert "skate.md" not in texts
-    for page, title in (("four_bar", ""), ("flywheel", "# Their flywheel\n"), ("spare_wheel", "# spare_wheel\n")):
+    for page, title in (("four_bar", ""), ("wheel", "# Their wheel\n"), ("spare_wheel", "# spare_wheel\n")):
         assert texts[f"{page}.md"].startswith(title)
         assert all(f"| {method} |" in texts[f"{page}.md"] for method in METHODS)
-    assert re.search(r"Closed impulses reach \d", texts["flywheel.md"])  # from their template
-    assert "mass=3" in texts["descriptions.csv"]
-    assert "- [Their flywheel](flywheel.md). A disc on an axle, which every engine should hold." in texts["index.md"]
-    assert "| scene | impulses as shipped | impulses documented settings |" in texts["index.md"]
+    assert re.search(r"Their engine reaches \d", texts["wheel.md"])  # from their template
+    assert "rate=3" in texts["descriptions.csv"]
+    assert "- [Their wheel](wheel.md). A disc on an axle, which every engine should hold." in texts["index.md"]
+    assert "| scene | multipliers as shipped |" in texts["index.md"]
 
 
-def test_their_engine_one_in_a_file_and_ours_are_held_to_promises_and_the_baseline_in_the_wheel(programs, tmp_path):
-    text = "from their_suite.impulses import Impulses\n\nOWN = Impulses('half', 0.5)\n"
+def test_their_engine_one_in_a_file_and_ours_are_held_to_promises_and_the_baseline_in_the_wheel(call, tmp_path):
+    text = "from their_suite import Multipliers\n\nOWN = Multipliers(variant='half')\n"
     (tmp_path / "own_engine.py").write_text(text, encoding="utf-8")
-    engines = ("--engine", "impulses", "--engine", "own_engine.py:OWN", "--engine", "pymunk tuned")
-    scenes = ("--scene", "flywheel", "--scene", "free_four_bar")
-    ended = run(programs / "python", *PYTEST, "-m", "crosscheck", *engines, *scenes, folder=tmp_path)
-    assert ended.returncode == 0, ended.stdout + ended.stderr
+    engines = ("--engine", "multipliers", "--engine", "own_engine.py:OWN", "--engine", "pymunk tuned")
+    scenes = ("--scene", "turning_wheel", "--scene", "free_four_bar")
+    status, out, err = call("python", *PYTEST, "-m", "crosscheck", *engines, *scenes)
+    assert status == 0, out + err
     # Four methods in two scenes, of theory and of change; and that no cell of the baseline is missing.
-    assert f"{4 * 2 * 2 + 1} passed" in ended.stdout
-    assert "impulses half" in ended.stdout
-    assert "free_four_bar  pymunk tuned" in ended.stdout
+    assert f"{4 * 2 * 2 + 1} passed" in out
+    assert "multipliers half" in out
+    assert "free_four_bar  pymunk tuned" in out
 
 
 OWN = """
@@ -182,15 +256,15 @@ def test_it_is_read():
 """
 
 
-def test_a_project_of_ones_own_has_the_fixture_and_keeps_an_option_of_the_grids_name(programs, tmp_path):
+def test_a_project_of_ones_own_has_the_fixture_and_keeps_an_option_of_the_grids_name(call, tmp_path):
     (tmp_path / "test_own.py").write_text(OWN, encoding="utf-8")
     (tmp_path / "model.xml").write_text(FOUR_BAR, encoding="utf-8")
     (tmp_path / "conftest.py").write_text("def pytest_addoption(parser): parser.addoption('--engine')\n")
-    ended = run(programs / "python", *PYTEST, "--engine", "mine", "-m", "not crosscheck", folder=tmp_path)
-    assert ended.returncode == 1
-    assert "1 failed, 1 passed" in ended.stdout
-    assert "four bar in MuJoCo is off by up to" in ended.stdout
-    assert '<option timestep="' in ended.stdout
+    status, out, _ = call("python", *PYTEST, "--engine", "mine", "-m", "not crosscheck")
+    assert status == 1
+    assert "1 failed, 1 passed" in out
+    assert "four bar in MuJoCo is off by up to" in out
+    assert '<option timestep="' in out
 
 
 # Hides what we register of some engines, then writes every page from no rows at all. Pictures are drawn and not written
@@ -221,8 +295,7 @@ print(*[page.name for page in PAGES])
 
 
 def test_our_pages_are_written_where_two_engines_are_not_registered():
-    ended = subprocess.run(
-        [sys.executable, "-c", WITHOUT, "pymunk", "mujoco"], cwd=ROOT, capture_output=True, text=True
-    )
+    words = [sys.executable, "-c", WITHOUT, "pymunk", "mujoco"]
+    ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
     assert ended.stderr == ""
     assert {"four_bar", "skate", "rolling", "errata"} <= set(ended.stdout.split())

@@ -1,7 +1,4 @@
 """Make each deliberate mistake in a copy of the tree, and run the test that its entry names.
-
-`--renew` looks for a failing test where the entry names none, or one that does not fail: it runs the test files that
-use the function's and the module's names, most uses first, and writes the name into physics.toml.
 The status is 0 if each mistake was noticed, or survives with a reason; else 1.
 """
 
@@ -19,13 +16,12 @@ import tempfile
 from pathlib import Path
 
 from tests import ROOT
-from tests.tools.mutants.mistakes import LIST, BadList, Mistake, read_mistakes
+from tests.tools.mutants.mistakes import BadList, Mistake, read_mistakes
 
 NOT_COPIED = (".git", ".venv*", "__pycache__", "*.egg-info", ".*_cache", "*.sqlite*", "crosscheck-results")
 OPTIONS = ("-q", "-x", "--no-header", "--tb=no", "-rfE", "-p", "no:cacheprovider", "-m", "not slow and not crosscheck")
 NO_TEST = (4, 5)  # pytest's status where the name stands for no test
 LIMIT = 300.0  # s, for the tests of one file
-MOST_FILES = 8  # that --renew runs for a mistake
 
 
 def copy_tree(folder: Path) -> Path:
@@ -63,32 +59,9 @@ def run_mistake(tree: Path, mistake: Mistake, test: str) -> tuple[bool, str]:
         (tree / file).write_bytes(right)
 
 
-def rank_test_files(mistake: Mistake) -> list[str]:
-    """The test files that use the names of the function and of its module, most uses first."""
-    file, _ = mistake.locate()
-    path = Path(file)
-    names = {path.stem, path.parent.name, *mistake.function.rpartition(":")[2].split(".")} - {"", "__init__"}
-    counts = {}
-    for test in sorted((ROOT / "tests").rglob("test_*.py")):
-        text = test.read_text(encoding="utf-8") + test.stem.replace("test_", " ").replace("_", " ")
-        hits = sum(min(len(re.findall(rf"\b{re.escape(name.strip('_'))}\b", text)), 9) for name in names)
-        counts[test.relative_to(ROOT).as_posix()] = hits + 3 * (path.parts[0] == test.parent.name)
-    return sorted(counts, key=lambda name: -counts[name])[:MOST_FILES]
-
-
-def write_name(mistake: Mistake, test: str) -> None:
-    """Write the test's name below the entry's sentence in the list."""
-    sentence = f'mistake = "{mistake.mistake}"\n'
-    text = LIST.read_text(encoding="utf-8")
-    before, _, after = text.partition(sentence)
-    after = re.sub(r'\Anoticed_by = ".*"\n', "", after)
-    LIST.write_text(f'{before}{sentence}noticed_by = "{test}"\n{after}', encoding="utf-8")
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.tools.mutants", description=__doc__)
     parser.add_argument("only", nargs="*", help="beginnings of files, functions or sentences; all without one")
-    parser.add_argument("--renew", action="store_true", help="look for tests where the named one does not fail")
     options = parser.parse_args()
     alive = 0
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
@@ -104,13 +77,6 @@ def main() -> int:
             if mistake.survives or (options.only and not any(n.startswith(w) for n in names for w in options.only)):
                 continue
             noticed, test = run_mistake(tree, mistake, mistake.noticed_by)
-            if not noticed and options.renew:
-                for file in rank_test_files(mistake):
-                    noticed, test = run_mistake(tree, mistake, file)
-                    if noticed and not run_tests(tree, test)[0]:  # the test passes without the mistake
-                        write_name(mistake, test)
-                        break
-                    noticed = False
             alive += not noticed
             print(f"{'noticed' if noticed else 'ALIVE  '} {mistake.mistake} ({names[0]}): {test}", flush=True)
     print(f"{alive} not noticed")
