@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
-from engines import Engine, mujoco, pymunk
+from engines import Engine, method_name, mujoco, pymunk
 from engines.registry import VARIANTS
 from reference.scene import Scene
 from reports.model.cells import Cell
@@ -79,6 +81,31 @@ def _with_text(failure: Failure, paragraphs: Iterable[str], values: Mapping[str,
         claims=tuple(claims),
         words=words if values else failure.words,
     )
+
+
+@dataclass(frozen=True)
+class OfMethod(Task):
+    """What one method gives; subclasses say in a few words `what` that is."""
+
+    what: ClassVar[str]
+
+    method: Engine
+
+    @property
+    def label(self) -> str:
+        return f"{method_name(self.method)}: {self.what.format(self)}"
+
+    @property
+    def engine(self) -> Engine:
+        return self.method
+
+
+def run_script(name: str, text: str) -> dict[str, Any]:
+    """The names that a script of a document has at its end; what it prints is dropped."""
+    names: dict[str, Any] = {"__name__": "__main__"}
+    with contextlib.redirect_stdout(io.StringIO()):
+        exec(compile(text, name, "exec"), names)
+    return names
 
 
 def refusals(attempts: Mapping[str, Callable[[], object]]) -> list[Observation]:

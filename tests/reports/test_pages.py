@@ -325,17 +325,6 @@ def test_a_motion_that_can_not_be_read_says_so_in_its_line():
     assert line.outcome == "**diverged**: not finite from 5 s"
 
 
-def test_a_referee_that_fails_is_named_and_the_others_rule():
-    first, second = referees.TASKS[0], referees.TASKS[-1]
-    lost: list[str] = []
-    found = referees.rulings([(first, Answer(Outcome.ABORTED, "no such thing")), (second, still(second))], lost)
-    assert lost == ["pymunk extended where a disc rolls off a round hill: **aborted**: no such thing"]
-    assert {ruling.about for ruling in found} == {"the double pendulum falls"}
-    unsupported = Answer(Outcome.UNSUPPORTED, "no such joint")
-    assert referees.rulings([(first, still(first, lost=True)), (second, unsupported)], lost) == ()
-    assert lost[1:] == ["pymunk extended where a disc rolls off a round hill: its motion is not finite"]
-
-
 # --- shape ---
 
 

@@ -31,11 +31,11 @@ Run = Callable[[list[Cell]], Mapping[Cell, Measurement]]
 
 @dataclass(frozen=True)
 class Line:
-    """A column of a map, the largest step first.
+    """A column of a map as it is stored, the largest step first.
 
     outcomes: a letter a step (`Outcome.letter`, or NOT_RUN). errors: the power of ten of the angle's error [rad] of a
-    cell that was run and finished; NaN else. longest [s]: the largest step; counts: steps of each run. gives [s]: see
-    `gives_from`; left: see `left_by_sweeps`.
+    cell that was run and finished; NaN else. longest [s]: the largest step; counts: steps of each run. gives [s]: of
+    `gives_from`; left: of `left_by_sweeps`.
     """
 
     subject: str

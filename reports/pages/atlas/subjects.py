@@ -1,10 +1,13 @@
-"""What the atlas maps: a scene, the parameter that breaks it, the values it takes, and the motion that explains it."""
+"""The maps of the atlas, whose texts and ranges are in `subjects.toml`: a scene, the parameter that breaks it, and the
+frequency of the motion that explains it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from scipy.linalg import eigh
@@ -24,11 +27,9 @@ FEWEST = 10  # steps of a run: the largest step is a tenth of the duration
 
 @dataclass(frozen=True)
 class Subject:
-    """A picture of the atlas.
+    """A picture of the atlas; `subjects.toml` explains its fields.
 
-    make: the scene at a value of the parameter. values: from, to; whole: only whole numbers between. doublings: the
-    smallest step is so often half of the largest. frequency: of what turns or swings fastest there [rad/s]; `fastest`
-    says what that is, for the line that stands for it. page: of the mechanism. remark: what the map teaches.
+    make: the scene at a value of the parameter. frequency: that of the fastest motion there [rad/s].
     """
 
     name: str
@@ -61,6 +62,22 @@ class Subject:
             samples = round(FEWEST * 2 ** (doubling - int(doubling)))
             found[samples * every] = (samples, every)
         return tuple(found[count] for count in sorted(found))
+
+
+def coupler(ratio: float) -> FreeFourBar:
+    return FreeFourBar(density=(1.0, ratio, 1.0))
+
+
+def short_pendulum(length: float) -> PointPendulum:
+    return PointPendulum(length=length, duration=1.0, horizon=1.0)
+
+
+def sleigh(offset: float) -> ChaplyginSleigh:
+    return ChaplyginSleigh(offset=offset, duration=1.0, horizon=1.0)
+
+
+def loops_in_a_row(loops: float) -> NFourBar:
+    return NFourBar(loops=round(loops), duration=1.2, horizon=1.2)
 
 
 def heavy_tip(ratio: float) -> LinkPendulum:
@@ -122,130 +139,27 @@ def rocking(ratio: float) -> float:
     return law.small_frequency(law.rolling.theta)
 
 
-SUBJECTS: tuple[Subject, ...] = (
-    Subject(
-        "coupler",
-        "A free four-bar with a light or a heavy coupler",
-        "mass of the coupler per metre, relative to the other bars'",
-        lambda ratio: FreeFourBar(density=(1.0, ratio, 1.0)),
-        (1e-5, 1e5),
-        lambda ratio: 1 / FreeFourBar(density=(1.0, ratio, 1.0)).mechanism().time_scale,
-        "the bars' swing",
-        page="four_bar",
-        remark=(
-            "Sweeps over the joints have most trouble with a bar that is much lighter than its neighbours: "
-            "each joint undoes what the last one did. MuJoCo as shipped tears at the lightest and the "
-            "heaviest coupler, whatever the step: its loop's spring is too soft for them. MuJoCo tuned has "
-            "reduced coordinates, a stiff spring and one exact solution a step. It gets through everywhere "
-            "once the step is small enough."
-        ),
-    ),
-    Subject(
-        "rate",
-        "A four-bar driven fast",
-        "rate of the crank [rad/s]",
-        driven,
-        (1.0, 1e3),
-        lambda rate: rate,
-        "the crank's turning",
-        page="four_bar",
-    ),
-    Subject(
-        "tip",
-        "A pendulum of three links with a heavy tip",
-        "tip's mass over a link's",
-        heavy_tip,
-        (1e-2, 1e3),
-        lambda ratio: stiffest_hanging(heavy_tip(ratio)),
-        "the stiffest mode about hanging",
-        page="pendulum",
-        remark="A heavy tip is hard for sweeps and for large steps of a tree alike.",
-    ),
-    Subject(
-        "links",
-        "Chains of many links",
-        "links in a metre",
-        chain_of,
-        (1, 40),
-        lambda links: stiffest_hanging(chain_of(links)),
-        "the stiffest mode about hanging",
-        whole=True,
-        doublings=5.0,
-        page="pendulum",
-    ),
-    Subject(
-        "length",
-        "A short pendulum",
-        "length [m]",
-        lambda length: PointPendulum(length=length, duration=1.0, horizon=1.0),
-        (1e-4, 10.0),
-        lambda length: math.sqrt(9.81 / length),
-        "the small swing",
-        page="pendulum",
-    ),
-    Subject(
-        "offset",
-        "A slider-crank whose rod nearly stands up",
-        "what lacks to the largest offset, relative to it",
-        near_the_largest_offset,
-        (1e-7, 1.0),
-        rod_rate,
-        "the rod at its fastest",
-        page="slider_crank",
-        remark=(
-            "At the largest offset the rod stands upright once a turn, and the two assemblies meet. Near it "
-            "the slider is fast, and the forces are large for a moment. MuJoCo's soft loop as shipped lets "
-            "the rod through to the other assembly, and so does pymunk's. pymunk tuned gets through "
-            "at every value once the step is small enough; of MuJoCo tuned some value flips or tears at each step."
-        ),
-    ),
-    Subject(
-        "sleigh",
-        "A sleigh with its centre of mass far ahead",
-        "offset of the centre of mass [m]",
-        lambda offset: ChaplyginSleigh(offset=offset, duration=1.0, horizon=1.0),
-        (1e-3, 1e3),
-        lambda offset: abs(ChaplyginSleigh(offset=offset).turning_rate),
-        "the turning at the start",
-        page="skate",
-        remark=(
-            "For a method that holds the row the offset matters little. The naive zeroing (`pymunk naive`) "
-            "is right only where the centre of mass is nearly on the skate."
-        ),
-    ),
-    Subject(
-        "drawbar",
-        "A trailer on a short drawbar",
-        "length of the drawbar [m]",
-        short_trailer,
-        (2e-2, 10.0),
-        lambda length: CarAndTrailer().speed / length,
-        "the trailer's settling",
-        page="wheels",
-    ),
-    Subject(
-        "ellipse",
-        "An ellipse that rolls, ever thinner",
-        "short semi-axis over the long one",
-        ellipse,
-        (0.03, 0.99),
-        rocking,
-        "rocking on the flat side",
-        page="rolling",
-    ),
-    Subject(
-        "loops",
-        "Many four-bars in a row, through one singular position",
-        "loops",
-        lambda loops: NFourBar(loops=round(loops), duration=1.2, horizon=1.2),
-        (1, 20),
-        lambda loops: NFourBar(loops=round(loops)).pendulum.frequency,
-        "the cranks' swing",
-        whole=True,
-        doublings=5.0,
-        page="n_four_bar",
-        remark=(
-            "With a single loop the line is a parallelogram's change point. Each further loop adds a freedom there."
-        ),
-    ),
-)
+# By the map's name: the scene at a value, and the frequency [rad/s] of the motion that the map names.
+MOTIONS: Mapping[str, tuple[Callable[[float], Scene], Callable[[float], float]]] = {
+    "coupler": (coupler, lambda ratio: 1 / coupler(ratio).mechanism().time_scale),
+    "rate": (driven, lambda rate: rate),
+    "tip": (heavy_tip, lambda ratio: stiffest_hanging(heavy_tip(ratio))),
+    "links": (chain_of, lambda links: stiffest_hanging(chain_of(links))),
+    "length": (short_pendulum, lambda length: math.sqrt(9.81 / length)),
+    "offset": (near_the_largest_offset, rod_rate),
+    "sleigh": (sleigh, lambda offset: abs(sleigh(offset).turning_rate)),
+    "drawbar": (short_trailer, lambda length: CarAndTrailer().speed / length),
+    "ellipse": (ellipse, rocking),
+    "loops": (loops_in_a_row, lambda loops: loops_in_a_row(loops).pendulum.frequency),
+}
+
+
+def _read() -> Iterator[Subject]:
+    plans = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+    for name, plan in plans.items():
+        make, frequency = MOTIONS[name]
+        plan |= {"values": tuple(plan["values"]), "remark": " ".join(plan.get("remark", "").split())}
+        yield Subject(name, make=make, frequency=frequency, **plan)
+
+
+SUBJECTS: tuple[Subject, ...] = tuple(_read())

@@ -1,24 +1,21 @@
-"""The errata's page: every slip of the chapter by number, what decides, and what engines say.
+"""The errata's page: every slip of the chapter by number, the derivative that decides, and the motions of engines.
 
 A slip is a document, slips/NUMBER.md, with the printed formula, the right one, and a script whose numbers decide.
 
-Engines are referees: they know bodies, joints and forces and none of the chapter's formulas, so they may decide too.
-
-Each runs a mechanism for a while; an acceleration is then what its own velocities differ by between samples. Nothing
-but linear relations of positions is put in: the end of a bar is twice as far from its pin as its centre.
+Engines are referees: they know bodies, joints and forces and none of the chapter's formulas. Each runs a mechanism for
+a while; its accelerations are differences of its own velocities. Only linear relations of positions are put in: the
+end of a bar is twice as far from its pin as its centre.
 """
 
 from __future__ import annotations
 
-import contextlib
-import io
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -38,6 +35,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.tasks import Answer, Task
 from reports.model.tasks import Values as Kept
+from reports.pages.common import OfMethod, run_script
 from reports.run.running import run_items
 from reports.write.tables import number
 
@@ -53,7 +51,7 @@ POINTS, MIDDLE = len(FIRST), len(FIRST) // 2
 
 @dataclass(frozen=True)
 class Window:
-    """POINTS samples in a row of one engine's motion; what is asked is asked at the middle one."""
+    """POINTS samples in a row of one engine's motion; formulas are evaluated at the middle one."""
 
     pose: Array  # (POINTS, bodies, 3)
     twist: Array  # (POINTS, bodies, 3)
@@ -63,7 +61,6 @@ class Window:
         return np.tensordot(FIRST, values, axes=1) / SPACING
 
 
-Reading = Callable[[Window], dict[int, Values]]
 CONFIRMED = 0  # the key of (18.70) and (18.71), which are right as printed
 
 
@@ -141,54 +138,45 @@ def _four_bar(window: Window) -> dict[int, Values]:
     }
 
 
-@dataclass(frozen=True)
-class Question:
-    """A mechanism, what its motion says of which slips, and the scene with which it is run."""
+class Question(NamedTuple):
+    """The scene with which a question is run, what its motion decides of which slips, and its mechanism."""
 
-    mechanism: Callable[[], Mechanism]
-    read: Reading
     companion: Scene
+    read: Callable[[Window], dict[int, Values]]
+    mechanism: Callable[[], Mechanism]
 
 
-# By what happens in the motion.
+# By the motion.
 QUESTIONS: dict[str, Question] = {
-    "a disc rolls off a round hill": Question(RollingOnCircle().mechanism, _rolling, RollingOnCircle()),
-    "a sleigh on one skate coasts": Question(ChaplyginSleigh().mechanism, _skate, ChaplyginSleigh()),
-    "the crank of sample 18.15 turns at 10 rad/s": Question(DrivenFourBar().mechanism, _four_bar, DrivenFourBar()),
-    "the double pendulum falls": Question(double_pendulum, _pendulum, LinkPendulum()),
+    "a disc rolls off a round hill": Question(hill := RollingOnCircle(), _rolling, hill.mechanism),
+    "a sleigh on one skate coasts": Question(sleigh := ChaplyginSleigh(), _skate, sleigh.mechanism),
+    "the crank of sample 18.15 turns at 10 rad/s": Question(crank := DrivenFourBar(), _four_bar, crank.mechanism),
+    "the double pendulum falls": Question(LinkPendulum(), _pendulum, double_pendulum),
 }
 
 
 @dataclass(frozen=True)
-class Refereed(Task):
+class Refereed(OfMethod):
     """The last POINTS samples of an engine's motion of the mechanism of a question."""
 
     question: str
-    referee: Engine
-
-    @property
-    def engine(self) -> Engine:
-        return self.referee
+    what: ClassVar[str] = "{0.question}"
 
     @property
     def cost(self) -> float:
-        return SAMPLES * self.engine.step_cost(QUESTIONS[self.question].mechanism())
-
-    @property
-    def label(self) -> str:
-        return f"{method_name(self.engine)}: {self.question}"
+        return SAMPLES * self.method.step_cost(QUESTIONS[self.question].mechanism())
 
     def run(self) -> Kept:
-        motion = self.engine.build(QUESTIONS[self.question].mechanism(), SPACING)(SAMPLES, 1)
+        motion = self.method.build(QUESTIONS[self.question].mechanism(), SPACING)(SAMPLES, 1)
         return {"pose": motion.pose[-POINTS:], "twist": motion.twist[-POINTS:]}
 
 
-TASKS = tuple(Refereed(question, engine) for question in QUESTIONS for engine in REFEREES)
+TASKS = tuple(Refereed(engine, question) for question in QUESTIONS for engine in REFEREES)
 
 
 @dataclass(frozen=True)
 class Ruling:
-    """What one engine says of one slip: `values.decides` is its own; after 0.3 s of `about`."""
+    """One engine's decision on one slip: `values.decides` is from its own motion; after 0.3 s of `about`."""
 
     number: int
     method: str
@@ -196,17 +184,17 @@ class Ruling:
     values: Values
 
 
-def rulings(answers: Iterable[tuple[Task, Answer]], lost: list[str] | None = None) -> tuple[Ruling, ...]:
-    """Every referee's answer to every question, by number; an engine that has no such joint says nothing.
+def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...], list[str]]:
+    """(the ruling of each referee on each slip, by number; sentences on engines that failed).
 
-    What became of an engine that failed, or whose motion is not finite, becomes a sentence in `lost`, if that is given.
+    An engine that has no such joint has no ruling.
     """
     found: list[Ruling] = []
-    lost = [] if lost is None else lost
+    lost: list[str] = []
     for task, answer in answers:
         if not isinstance(task, Refereed) or answer.outcome == Outcome.UNSUPPORTED:
             continue
-        method = method_name(task.engine)
+        method = method_name(task.method)
         if not answer.finished:
             lost.append(f"{method} where {task.question}: {answer.told}")
             continue
@@ -214,12 +202,11 @@ def rulings(answers: Iterable[tuple[Task, Answer]], lost: list[str] | None = Non
         if not (np.isfinite(window.pose).all() and np.isfinite(window.twist).all()):
             lost.append(f"{method} where {task.question}: its motion is not finite")
             continue
-        said = QUESTIONS[task.question].read(window)
-        found += [Ruling(slip, method, task.question, values) for slip, values in said.items()]
-    return tuple(sorted(found, key=lambda ruling: ruling.number))
+        read = QUESTIONS[task.question].read(window)
+        found += [Ruling(slip, method, task.question, values) for slip, values in read.items()]
+    return tuple(sorted(found, key=lambda ruling: ruling.number)), lost
 
 
-SLIPS = Path(__file__).parent / "slips"
 FIELD = re.compile(r"^- ([\w ]+): (.*)$", re.MULTILINE)
 FORMULA = re.compile(r"```math\n(.*?)\n```", re.DOTALL)
 SCRIPT = re.compile(r"```python\n(.*?)```", re.DOTALL)
@@ -227,11 +214,11 @@ SCRIPT = re.compile(r"```python\n(.*?)```", re.DOTALL)
 
 @dataclass(frozen=True)
 class Erratum:
-    """One slip: its number in the list of errata, where it is, what is printed, what is right, and why.
+    """One slip of the chapter, read from its document.
 
-    quoted: the printed formula as the chapter sets it (LaTeX), or its words; corrected: the same without the slip.
-    deciding: what decides, in words. dimensions: whether they alone show that something is wrong; the size of the miss
-    then depends on the units. script: what computes the values; a slip in words has none.
+    printed, right: both formulas in a line; quoted, corrected: the same as the chapter sets them (LaTeX). deciding: the
+    derivative that decides, in words. dimensions: whether they alone show the slip; the size of the miss then depends
+    on the units. script: computes the values; a slip in words has none.
     """
 
     number: int
@@ -249,10 +236,7 @@ class Erratum:
     @cached_property
     def names(self) -> Mapping[str, Any]:
         """What the script computes, by name."""
-        names: dict[str, Any] = {}
-        with contextlib.redirect_stdout(io.StringIO()):
-            exec(compile(self.script, f"slip {self.number}", "exec"), names)
-        return names
+        return run_script(f"slip {self.number}", self.script)
 
     @property
     def values(self) -> Values:
@@ -261,8 +245,7 @@ class Erratum:
 
     @property
     def by_tolerance(self) -> Mapping[float, float]:
-        """Where a claim is wrong and what is printed beside it is a right method whose tolerance the chapter does not
-        state: the method's miss at tolerances of ours. Else empty."""
+        """The miss of a right method, whose tolerance the chapter does not state, at tolerances of ours; else empty."""
         return self.names.get("by_tolerance", {})
 
 
@@ -281,7 +264,7 @@ def read_slip(path: Path) -> Erratum:
     )
 
 
-SLIPS_OF_CHAPTER = tuple(map(read_slip, sorted(SLIPS.glob("*.md"))))
+SLIPS_OF_CHAPTER = tuple(map(read_slip, sorted((Path(__file__).parent / "slips").glob("*.md"))))
 ERRATA = tuple(slip for slip in SLIPS_OF_CHAPTER if slip.script)
 WORD_SLIPS = tuple(slip for slip in SLIPS_OF_CHAPTER if not slip.script)
 
@@ -297,83 +280,75 @@ def missed(erratum: Erratum, pattern: str, between: str) -> str:
     return between.join(pattern.format(number(miss), number(each)) for each, miss in erratum.by_tolerance.items())
 
 
-def verdict(erratum: Erratum, values: Values, said: Sequence[Ruling]) -> str:
+def verdict(erratum: Erratum, values: Values, ruled: Sequence[Ruling]) -> str:
     """By how much the printed and the right formula miss the derivative that decides, and each engine's own motion."""
-    misses = f"The printed formula misses it by {number(values.miss)}, the right one by {number(values.agreement)}."
+    right = number(values.agreement)
+    misses = f"The printed formula misses it by {number(values.miss)}, the right one by {right}."
+    pattern = "the printed one misses their motion by {0} or more, the right one by {1} at most."
     if erratum.by_tolerance:
-        at_each = missed(erratum, "{} at a relative tolerance of {}", " and ")
+        integration = missed(erratum, "{} at a relative tolerance of {}", " and ")
         misses = (
-            f"The closed form misses it by {number(values.agreement)}. The integration misses it by {at_each}: the "
-            "tolerance is ours, since the chapter states none."
+            f"The closed form misses it by {right}. The integration misses it by {integration}: the tolerance is ours,"
         )
-    told = f"Decides ({erratum.deciding}): {digits(values.decides)} {erratum.unit}. {misses}"
-    if not said:
-        return told
-    least, most = min(ruling.values.miss for ruling in said), max(ruling.values.agreement for ruling in said)
-    methods, motions = (", ".join(dict.fromkeys(getattr(each, name) for each in said)) for name in ("method", "about"))
-    if erratum.by_tolerance:
-        return f"{told} Engines ({methods}; {motions}): the closed form misses their motion by {number(most)} at most."
-    return (
-        f"{told} Engines ({methods}; {motions}): the printed one misses their motion by {number(least)} or more, "
-        f"the right one by {number(most)} at most."
-    )
+        misses += " since the chapter states none."
+        pattern = "the closed form misses their motion by {1} at most."
+    text = f"Decides ({erratum.deciding}): {digits(values.decides)} {erratum.unit}. {misses}"
+    if not ruled:
+        return text
+    methods, motions = (", ".join(dict.fromkeys(getattr(each, name) for each in ruled)) for name in ("method", "about"))
+    bounds = min(ruling.values.miss for ruling in ruled), max(ruling.values.agreement for ruling in ruled)
+    return f"{text} Engines ({methods}; {motions}): {pattern.format(*map(number, bounds))}"
 
 
 def slip_rows() -> list[tuple[str, ...]]:
-    """A row a slip by number: where, both formulas with their values, what decides, the verdict."""
-    return [_slip_row(slip) for slip in SLIPS_OF_CHAPTER]
-
-
-def _slip_row(slip: Erratum) -> tuple[str, ...]:
-    if not slip.script:
-        return (str(slip.number), slip.where, slip.printed, slip.right, "-", f"words: {slip.reason}")
-    values = slip.values
-    misses = f"off by {number(values.miss)}, right by {number(values.agreement)}"
-    if slip.by_tolerance:
-        integration = missed(slip, "{} at rtol {}", ", ")
-        misses = f"the claim; integration off by {integration} (ours); formula by {number(values.agreement)}"
-    return (
-        str(slip.number),
-        slip.where,
-        f"{slip.printed}\n= {digits(values.printed)}",
-        f"{slip.right}\n= {digits(values.right)}",
-        f"{digits(values.decides)}\n{slip.unit}",
-        f"{misses}; {'dimensions show it' if slip.dimensions else 'only numbers show it'}",
-    )
+    """A row a slip by number: where, both formulas with their values, the derivative, the verdict."""
+    rows = []
+    for slip in SLIPS_OF_CHAPTER:
+        formulas, decided, told = (slip.printed, slip.right), "-", f"words: {slip.reason}"
+        if slip.script:
+            values, right = slip.values, number(slip.values.agreement)
+            formulas = f"{slip.printed}\n= {digits(values.printed)}", f"{slip.right}\n= {digits(values.right)}"
+            decided = f"{digits(values.decides)}\n{slip.unit}"
+            told = f"off by {number(values.miss)}, right by {right}"
+            if slip.by_tolerance:
+                integration = missed(slip, "{} at rtol {}", ", ")
+                told = f"the claim; integration off by {integration} (ours); formula by {right}"
+            told += "; dimensions show it" if slip.dimensions else "; only numbers show it"
+        rows.append((str(slip.number), slip.where, *formulas, decided, told))
+    return rows
 
 
 def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
     """(a row a slip and engine: both formulas' misses of its motion; sentences on engines that failed)."""
-    lost: list[str] = []
     units = {slip.number: slip.unit for slip in ERRATA}
     answers = dict(run_items(TASKS))
-    said = rulings(((task, answers[task]) for task in TASKS), lost)
+    found, lost = rulings((task, answers[task]) for task in TASKS)
     return [
         (str(r.number), r.method, r.about, units[r.number], number(r.values.miss), number(r.values.agreement))
-        for r in said
+        for r in found
         if r.number in units
     ], lost
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """Values of the formulas, which are computed at once, and what engines say, from their stored motions."""
-    lost: list[str] = []
-    said = rulings(material.answers.items(), lost)
+    """Values of the formulas, which are computed at once, and decisions of engines, from their stored motions."""
+    found, lost = rulings(material.answers.items())
     slips = [
         {
             "erratum": erratum,
-            "verdict": verdict(erratum, erratum.values, [ruling for ruling in said if ruling.number == erratum.number]),
+            "verdict": verdict(
+                erratum, erratum.values, [ruling for ruling in found if ruling.number == erratum.number]
+            ),
             "script": f"reports/pages/errata/slips/{erratum.number:02}.md",
         }
         for erratum in ERRATA
     ]
-    rates = [(r.method, r.values.agreement) for r in said if r.number == CONFIRMED]
     return {
         "errata": slips,
         "word_slips": WORD_SLIPS,
         "blind": [erratum.number for erratum in ERRATA if not erratum.dimensions],
         "seen": [erratum.number for erratum in ERRATA if erratum.dimensions],
-        "rates": rates,
+        "rates": [(r.method, r.values.agreement) for r in found if r.number == CONFIRMED],
         "lost": lost,
         "rolling": rolling_acceleration(),
     }

@@ -6,8 +6,6 @@ release that mends its fault; a test runs every script and compares what it prin
 
 from __future__ import annotations
 
-import contextlib
-import io
 import re
 import subprocess
 import sys
@@ -16,7 +14,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -28,6 +26,7 @@ from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.model.digest import digest
 from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values
+from reports.pages.common import run_script
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 
 UPSTREAM = Path(__file__).parent / "upstream"  # a file to paste into a tracker, for each fault
@@ -56,14 +55,11 @@ class Script(Task):
 
     name: str
     digest: str
+    words: ClassVar[str] = "script {0.name}"
 
     @property
     def cost(self) -> float:
         return 6.0 if self.engine else 0.05  # measured: compiling a program, and a model
-
-    @property
-    def label(self) -> str:
-        return f"script {self.name}"
 
     @property
     def engine(self) -> Engine | None:
@@ -85,9 +81,7 @@ class Script(Task):
             return {**_values(*match.groups()), "version": version("mujoco-mjx")}
         import mujoco
 
-        names: dict[str, Any] = {"__name__": "__main__"}
-        with contextlib.redirect_stdout(io.StringIO()):
-            exec(compile(scripts()[self.name], f"{self.name}.py", "exec"), names)
+        names = run_script(f"{self.name}.py", scripts()[self.name])
         # pymunk.version is wrong in some releases (2.0.0 in 7.0.0), and MuJoCo's distribution has two names.
         release = mujoco.__version__ if self.name.startswith("mujoco") else version("pymunk")
         return {**_values(names["expected"], names["found"]), "version": release}
@@ -120,14 +114,8 @@ class Offsets(Task):
     """
 
     offsets: tuple[float, ...]
-
-    @property
-    def cost(self) -> float:
-        return 2e-4 * len(self.offsets)
-
-    @property
-    def label(self) -> str:
-        return "grooves: anchor's offset"
+    seconds: ClassVar[float] = 3e-3
+    words: ClassVar[str] = "grooves: anchor's offset"
 
     def run(self) -> Values:
         """`across` (offsets,) [m/s] after a step."""
