@@ -3,8 +3,8 @@
 It is `engines.lagrange`: its compiled rows and steps with numba, a hundred times as fast as those in numpy, which do
 the work without. So others stand beside it, which share no code with it. In scenes that is the truth, a closed form or
 an integration of few angles, to which its errors fall with the order of its method (`tests/engines/test_judge.py`). In
-random mechanisms of all joints but rolling ones, and of all forces, it is the equations in the coordinates of a
-spanning tree, written anew there (`tests/engines/test_judge_witness.py`). Soft joints are held by the sag of a spring.
+random mechanisms of all joints but rolling ones, and of all forces, it is Newton's law with multipliers, written anew
+there (`tests/engines/test_judge_witness.py`). Soft joints are held by the sag of a spring.
 """
 
 from __future__ import annotations

@@ -11,11 +11,8 @@ import pytest
 from tests.reference.laws.bent import CURVES
 from tests.reference.laws.law import Law, misses, searched
 from tests.reference.laws.linkages import LINKAGES
-from tests.reference.laws.pendulums import PENDULUMS
-from tests.reference.laws.rolled import ROLLS
-from tests.reference.laws.wheeled import WHEELED
 
-LAWS = {law.name: law for law in (*LINKAGES, *PENDULUMS, *CURVES, *ROLLS, *WHEELED)}
+LAWS = {law.name: law for law in (*LINKAGES, *CURVES)}
 # A formula of twenty operations makes that many roundings of its own, some of them along with the worst argument.
 # Beside it a lost digit is a factor of ten, and most of what was found had lost four.
 ROUNDINGS = 20

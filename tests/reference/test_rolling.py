@@ -103,6 +103,13 @@ def test_the_chapters_rate_for_a_hypocycloid():
     assert float(Rolling.at_arcs(Circle(0.3), Ring(1.0)).contact(1.0).rate) == pytest.approx(3 / 7, abs=1e-15)
 
 
+def test_a_disc_in_a_hole_of_nearly_its_size_keeps_its_digits():
+    rolling, clearance = Rolling.at_arcs(Circle(1.0), Ring(1.0 + 2.0**-20)), 2.0**-20
+    # The contact goes round the hole 1 / clearance times as fast as the disc turns; rounded once, in the angle.
+    arc = float(rolling.contact(rolling.theta + 2.0**-10).ground_arc)
+    assert arc == pytest.approx(2.0**-10 * (1 + clearance) / clearance, rel=1e-12)
+
+
 def test_a_square_rolls_level_on_catenaries_and_stops_at_its_corners():
     rolling = Rolling.at_arcs(Side(1.0), Placed(Catenary(0.5), turn=math.pi))
     quarter = math.pi / 4

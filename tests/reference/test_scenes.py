@@ -25,6 +25,7 @@ from reference.scenes.person import TwoFeet
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.skates.pinned_body import PinnedBody
 from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.skates.slopes import SkateOnSlope
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart
@@ -47,6 +48,7 @@ OTHERS: tuple[Scene, ...] = (
     *(ChaplyginSleigh(offset=-0.5), ChaplyginSleigh(speed=-1.0, turning_rate=-2.0), ChaplyginSleigh(speed=0.0)),
     *(ChaplyginSleigh(speed=0.0, turning_rate=-3.0, offset=-0.2), ChaplyginSleigh(turning_rate=0.0)),
     *(ChaplyginSleigh(offset=0.0), ChaplyginSleigh(offset=30.0, inertia=1e-3)),
+    *(SkateOnSlope(turning_rate=0.5, speed=1.0, heading=0.3), SkateOnSlope(turning_rate=-4.0, speed=-0.5, heading=2.0)),
     *(ChaplyginSleigh(start=(1.0, -2.0, 5.0)), SleighBackwards(duration=5.0)),
     *(PinnedBody(turning_rate=12.0), PinnedBody(turning_rate=-12.0, angle=7.0), PinnedBody(point=(0.0, 0.0))),
     PinnedBody(point=(0.2, -0.3), pin=(1.0, 2.0), gravity=(3.0, 4.0), angle=-2.0),

@@ -31,7 +31,7 @@ from tests.present import present
 
 def test_any_pose_is_reached_from_any_other_by_turn_slide_turn():
     rng = np.random.default_rng(7)
-    for start, goal in zip(rng.uniform(-9, 9, (50, 3)), rng.uniform(-9, 9, (50, 3)), strict=True):
+    for start, goal in rng.uniform(-9, 9, (12, 2, 3)):
         for backwards in (True, False):
             moves = park(tuple(start), tuple(goal), backwards)
             assert np.abs(stops(tuple(start), moves)[-1] - goal).max() < 1e-13
@@ -66,11 +66,6 @@ def test_a_sidestep_is_exactly_sideways_within_its_room():
         sidestep(1.0, 0.0, 1.0)
 
 
-def test_a_skate_almost_below_the_centre_of_mass_moves_as_one_below_it():
-    almost, below = (ChaplyginSleigh(offset=offset).motion([1.0, 3.0]) for offset in (1e-9, 0.0))
-    assert np.abs(almost.pose - below.pose).max() < 1e-7
-
-
 def test_a_stiff_sleigh_settles_and_is_then_followed_for_ever():
     for sleigh in (ChaplyginSleigh(speed=1e5, duration=1e3), ChaplyginSleigh(offset=-1e-3, inertia=1e-9, duration=1e3)):
         long = sleigh.skate_pose([1e-2 + sleigh._settled, 1000.0])
@@ -101,9 +96,9 @@ def test_a_tow_started_straight_behind_or_folded_over_stays_so():
     assert Tow(1.0, 1e-9).relative_angle(-1e3) == pytest.approx(math.pi, abs=1e-15)  # pushed, it folds over
 
 
-@pytest.mark.parametrize(("hitch", "speed"), [(0.0, 1.3), (0.6, 1.3), (-0.4, 1.3), (0.6, -0.4)])
+@pytest.mark.parametrize(("hitch", "speed"), [(0.6, 1.3), (-0.4, -0.4)])
 def test_a_trailer_behind_a_circling_car_is_a_tow(hitch, speed):
-    car, t = CarWithTrailers(2.5, (3.0,), (hitch,)), np.linspace(0, 20, 21)
+    car, t = CarWithTrailers(2.5, (3.0,), (hitch,)), np.linspace(0, 8, 9)
     driven = car.drive(speed, 0.3, (1.0, 2.0, 0.3), (0.4,), t)
     curvature = math.tan(0.3) / 2.5
     pace, direction = math.hypot(1, hitch * curvature), 0.3 - math.atan(hitch * curvature)
@@ -117,7 +112,7 @@ def test_a_trailer_behind_a_circling_car_is_a_tow(hitch, speed):
 
 def test_no_axle_of_a_train_skids_whatever_is_steered():
     car = CarWithTrailers(1.0, (0.9, 1.1, 0.7), (0.2, 0.0, -0.1))
-    t, step = np.linspace(0.1, 6, 13), 1e-3
+    t, step = np.linspace(0.1, 2, 4), 1e-3
     weights = np.array([-1, 9, -45, 45, -9, 1]) / 60 / step
     shifts = np.array([-3, -2, -1, 1, 2, 3]) * step
 
@@ -139,10 +134,13 @@ def test_a_reversing_trailer_jackknifes_when_its_exact_angle_says():
     driven = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.01,), [10.0, 20.0])
     # tan(psi/2) grows as exp(s/L); it is 1 at a right angle.
     assert driven.jackknifed_at == pytest.approx(-1.5 * math.log(math.tan(0.005)), abs=1e-10)
-    assert driven.jackknifed == 1
     assert driven.bends[-1, 0] == pytest.approx(2 * math.atan(math.tan(0.005) * math.exp(20 / 1.5)), abs=1e-10)
     assert car.drive(1.0, 0.0, (0.0, 0.0, 0.0), (0.01,), [20.0]).jackknifed_at is None
-    assert car.drive(1.0, 0.0, (0.0, 0.0, 0.0), (-2.0,), [1.0]).jackknifed_at == 0.0
+    for bend in (-0.3, 0.3):  # straight behind the car, the first trailer's axle pushes the second as a tow
+        pair = CarWithTrailers(1.0, (0.9, 1.1), (0.0, 0.0))
+        second = pair.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.0, bend), [4.0], limit=1.0)
+        assert (driven.jackknifed, second.jackknifed) == (1, 2)
+        assert Tow(1.1, 0.3).relative_angle(-present(second.jackknifed_at)) == pytest.approx(1.0, abs=1e-11)
 
 
 @pytest.mark.parametrize("turning_rate", [0.5, -0.5])
@@ -157,12 +155,11 @@ def test_a_caster_on_a_circling_cart_is_a_tow(turning_rate):
 
 def test_casters_swing_round_when_the_cart_is_reversed():
     casters = Casters(((1.0, 0.3), (1.0, -0.3)), 0.1)
-    swung, _ = casters.swing((1e-3, -1e-3), -0.5, 0.0, [0.0, 20.0])
-    assert np.abs(swung[1] - [math.pi, -math.pi]).max() < 1e-10
-    assert np.abs(casters.swing((0.0, 0.0), -0.5, 0.0, [20.0])[0]).max() == 0
     # Halfway when tan(beta/2) = 1: s = c log(1/tan(0.0005)).
     way = -0.1 * math.log(math.tan(0.0005))
-    assert casters.swing((1e-3, 0.0), -0.5, 0.0, [way / 0.5])[0][0, 0] == pytest.approx(math.pi / 2, abs=1e-8)
+    swung, _ = casters.swing((1e-3, -1e-3), -0.5, 0.0, [0.0, way / 0.5, 20.0])
+    assert np.abs(swung[1:] - np.array([[0.5, -0.5], [1, -1]]) * math.pi).max() < 1e-8
+    assert np.abs(casters.swing((0.0, 0.0), -0.5, 0.0, [20.0])[0]).max() == 0
 
 
 def test_a_cart_stands_on_its_wheels_where_its_drawing_says():
@@ -181,36 +178,25 @@ def test_a_cart_stands_on_its_wheels_where_its_drawing_says():
 
 
 @pytest.mark.parametrize(("bends", "which"), [((0.1, -2.0), 2), ((2.0, 0.1), 1), ((0.1, 0.2), None)])
-@pytest.mark.parametrize("times", [[0.0], [0.0, 1e-3]])
-def test_a_trailer_that_is_folded_at_the_start_is_told_by_its_number(bends, which, times):
-    found = CarWithTrailers(1.0, (0.9, 1.1), (0.2, 0.0)).drive(1.0, 0.0, (0.0, 0.0, 0.0), bends, times)
-    assert (found.jackknifed_at, found.jackknifed) == (None if which is None else 0.0, which)
-
-
-@pytest.mark.parametrize("bend", [-0.3, 0.3])
-def test_the_second_trailer_that_folds_to_either_side_is_told_by_its_number(bend):
-    car = CarWithTrailers(1.0, (0.9, 1.1), (0.0, 0.0))
-    found = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.0, bend), [4.0], limit=1.0)
-    assert found.jackknifed == 2
-    # Straight behind the car, the first trailer's axle pushes the second as a tow.
-    at = present(found.jackknifed_at)
-    assert Tow(1.1, 0.3).relative_angle(-at) == pytest.approx(1.0, abs=1e-11)
+def test_a_trailer_that_is_folded_at_the_start_is_named_by_its_number(bends, which):
+    for times in ([0.0], [0.0, 1e-3]):
+        found = CarWithTrailers(1.0, (0.9, 1.1), (0.2, 0.0)).drive(1.0, 0.0, (0.0, 0.0, 0.0), bends, times)
+        assert (found.jackknifed_at, found.jackknifed) == (None if which is None else 0.0, which)
 
 
 def test_a_joint_that_passes_the_limit_for_a_moment_is_dated():
-    car = CarWithTrailers(1.0, (1.0,), (0.0,))
+    car, start = CarWithTrailers(1.0, (1.0,), (0.0,)), (0.0, 0.0, 0.0)
 
-    def drive(limit):
-        return car.drive(1.0, lambda t: 0.9 * np.sin(3 * t), (0.0, 0.0, 0.0), (0.0,), [6.0], limit)
+    def drive(t, limit=math.pi):
+        return car.drive(1.0, lambda t: 0.9 * np.sin(3 * t), start, (0.0,), t, limit)
 
-    t = np.linspace(0, 6, 6001)
-    largest = np.abs(car.drive(1.0, lambda t: 0.9 * np.sin(3 * t), (0.0, 0.0, 0.0), (0.0,), t).bends).max()
-    assert drive(largest + 1e-5).jackknifed_at is None
-    assert drive(largest - 1e-9).jackknifed == 1
+    largest = np.abs(drive(np.linspace(0, 2, 2001)).bends).max()
+    assert drive([2.0], largest + 1e-5).jackknifed_at is None
+    assert drive([2.0], largest - 1e-9).jackknifed == 1
 
 
 RANDOM = np.random.default_rng(185)
-ROWS = [*map(tuple, RANDOM.normal(size=(12, 3)).tolist()), (1e-9, 2e-9, 3e-9), (1e9, 0.0, -1e9), (0.0, -2.0, 0.0)]
+ROWS = [*map(tuple, RANDOM.normal(size=(3, 3)).tolist()), (1e-9, 2e-9, 3e-9), (1e9, 0.0, -1e9), (0.0, -2.0, 0.0)]
 
 
 @pytest.mark.parametrize("row", ROWS)
@@ -236,54 +222,18 @@ def test_the_skates_coriolis_like_term_stands_once_and_a_sliders_twice(speed, ra
     assert coriolis_factors(speed, rate, alpha) == pytest.approx((1.0, 2.0), rel=1e-12)
 
 
-POINT = (0.4, -0.7)
-PLACE = np.array([0.3, -0.2, 0.8])
-
-
-def pin(place):
-    """(18.62), analytic."""
-    cosine, sine, one = np.cos(place[..., 2]), np.sin(place[..., 2]), 1 + 0 * place[..., 2]
-    x = np.stack([one, 0 * one, -sine * POINT[0] - cosine * POINT[1]], axis=-1)
-    y = np.stack([0 * one, one, cosine * POINT[0] - sine * POINT[1]], axis=-1)
-    return np.stack([x, y], axis=-2)
-
-
-def skate(place):
-    """The one-form of (18.64) as the very combination of the pin's two."""
-    cosine, sine = np.cos(place[..., 2])[..., None], np.sin(place[..., 2])[..., None]
-    both = pin(place)
-    return (-sine * both[..., 0, :] + cosine * both[..., 1, :])[..., None, :]
-
-
-def scaled_position(place):
-    """exp(x) times d(y + theta^2): one row that is not exact, and yet integrable after division by a factor."""
-    factor = np.exp(place[..., 0])
-    return np.stack([0 * factor, factor, 2 * place[..., 2] * factor], axis=-1)[..., None, :]
-
-
-def test_the_pins_two_rows_are_exact_and_each_alone_is_integrable():
-    assert np.abs(exterior_derivatives(pin, PLACE)).max() < 1e-15
-    for row in (0, 1):
-        assert is_integrable(lambda place, row=row: pin(place)[..., row : row + 1, :], PLACE)
-    assert is_integrable(pin, PLACE)
-    assert growth(pin, PLACE) == (1,)
-
-
-def test_a_combination_of_the_pins_rows_is_the_skate_and_not_integrable_alone():
-    """Erratum 12: the skate's row is in the span of the pin's, and only without its partner it can't be integrated."""
-    expected = [-np.sin(PLACE[2]), np.cos(PLACE[2]), POINT[0]]
-    assert np.abs(skate(PLACE)[0] - expected).max() < 1e-15
-    assert not is_integrable(skate, PLACE)
-    assert growth(skate, PLACE) == (2, 3)
-    assert is_integrable(lambda place: np.concatenate([skate(place), pin(place)[..., :1, :]], axis=-2), PLACE)
-
-
 def test_a_row_that_is_not_exact_may_be_integrable():
-    """A test of exactness, as the box has it, would call this one nonholonomic."""
-    assert np.abs(exterior_derivatives(scaled_position, PLACE)).max() > 0.1
-    assert np.abs(obstruction(scaled_position, PLACE)).max() < 1e-14
-    assert is_integrable(scaled_position, PLACE)
-    assert growth(scaled_position, PLACE) == (2,)
+    """exp(x) times d(y + theta^2): a test of exactness, as the box has it, would call it nonholonomic."""
+    place = np.array([0.3, -0.2, 0.8])
+
+    def scaled_position(place):
+        factor = np.exp(place[..., 0])
+        return np.stack([0 * factor, factor, 2 * place[..., 2] * factor], axis=-1)[..., None, :]
+
+    assert np.abs(exterior_derivatives(scaled_position, place)).max() > 0.1
+    assert np.abs(obstruction(scaled_position, place)).max() < 1e-14
+    assert is_integrable(scaled_position, place)
+    assert growth(scaled_position, place) == (2,)
 
 
 def test_a_row_that_passes_at_one_place_only_is_refused():

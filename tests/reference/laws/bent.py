@@ -100,11 +100,6 @@ def round_curve(sense: int) -> Callable[..., Exact]:
     return made
 
 
-def line() -> Exact:
-    """Flat ground, traversed to -x, in its arc."""
-    return Exact(lambda s: s, lambda s: +mp.pi, lambda s: mp.mpc(-s, 0), lambda s: mp.mpf(1), lambda s: mp.mpf(0))
-
-
 def cam(radius: Any, *harmonics: Any) -> Exact:
     """In the direction of the normal; `harmonics`: cosine and sine of the first, of the second, of the third."""
 

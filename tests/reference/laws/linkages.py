@@ -1,4 +1,4 @@
-"""Four-bar and slider-crank in fifty digits: closure as complex numbers, forces as each body's own balance."""
+"""Linkages, closed as complex numbers, and motions in closed form, in fifty digits."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ import mpmath as mp
 import numpy as np
 
 from reference.scenes.four_bar.linkage import FourBar
+from reference.scenes.pendulum.link import Pendulum
+from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.slider_crank.scenes import SliderCrank
+from reference.scenes.wheels.trailers import Tow
 from tests.reference.laws.law import Law, Outside, angle, decades
 
 
@@ -142,6 +145,114 @@ def drawn_slider_crank(rng: np.random.Generator) -> tuple[float, ...]:
     )
 
 
+def swung(frequency: Any, start: Any, rate: Any, t: Any) -> list[Any]:
+    """Angle, rate and acceleration of a pendulum: swinging or whirling (Whittaker, Analytical Dynamics, 44)."""
+    sine, half_rate = mp.sin(start / 2), rate / (2 * frequency)
+    square = sine**2 + half_rate**2
+    if square == 1 or square == 0:
+        raise Outside
+    modulus, back = mp.sqrt(square), mp.sign(rate) or 1
+    if square < 1:
+        begin = mp.ellipf(mp.asin(sine / modulus), square)
+        if half_rate < 0:  # on its way back; starts are within half a turn of the bottom
+            begin = 2 * mp.ellipk(square) - begin
+        u = frequency * t + begin
+        sn, cn = mp.ellipfun("sn", u, m=square), mp.ellipfun("cn", u, m=square)
+        now = 2 * mp.asin(modulus * sn)
+        return [now, 2 * frequency * modulus * cn, -(frequency**2) * mp.sin(now)]
+    u = modulus * frequency * t + back * mp.ellipf(start / 2, 1 / square)
+    sn, cn, dn = (mp.ellipfun(kind, u, m=1 / square) for kind in ("sn", "cn", "dn"))
+    now = 2 * back * mp.atan2(sn, cn)
+    return [now, 2 * frequency * modulus * back * dn, -(frequency**2) * mp.sin(now)]
+
+
+def swing(frequency: Any, start: Any, rate: Any, t: Any) -> list[Any]:
+    """The largest angle, rate and acceleration of the whole motion."""
+    modulus = mp.hypot(mp.sin(start / 2), rate / (2 * frequency))
+    return [2 * min(modulus, mp.pi), 2 * frequency * modulus, frequency**2 * min(2 * modulus, 1)]
+
+
+def drawn_pendulum(rng: np.random.Generator) -> tuple[float, ...]:
+    """Half of the starts near the separatrix, or near the top or the bottom; up to a hundred radians of time."""
+    frequency, start = decades(rng), angle(rng, (0.0, math.pi, -math.pi))
+    start = math.remainder(start, 2 * math.pi)
+    rate = 2 * frequency * float(rng.normal())
+    if rng.random() < 0.3:
+        rate = 2 * frequency * math.cos(start / 2) * (1 + float(rng.choice([-1, 1])) * decades(rng, -12, 0))
+    if rng.random() < 0.1:
+        rate = 0.0
+    return frequency, start, rate, float(rng.uniform(0, 1)) * decades(rng, -9, 2) / frequency
+
+
+def tow(length: Any, start: Any, radius: Any, way: Any) -> list[Any]:
+    """The drawbar's angle and the wheel's place, by the exponential of the 2 by 2 system."""
+    curvature = 1 / radius
+    root = mp.sqrt(mp.mpc(1 - (length * curvature) ** 2))
+    if root == 0:
+        raise Outside
+    size = root * way / (2 * length)
+    even, odd = mp.cosh(size), mp.sinh(size) / root  # sinh(m s) / (2 L m)
+    p, q = mp.sin(start / 2), mp.cos(start / 2)
+    across = (even * p - odd * (p + length * curvature * q)).real
+    along = (even * q + odd * (length * curvature * p + q)).real
+    turned = 2 * mp.atan2(across, along)
+    chord = 2 * radius * mp.sin(curvature * way / 2) * mp.expj(curvature * way / 2)
+    wheel = chord - length * mp.expj(curvature * way + turned)
+    return [turned, wheel.real, wheel.imag]
+
+
+def our_tow(length: float, start: float, radius: float, way: float) -> list[Any]:
+    made = Tow(length, start, radius)
+    return [made.relative_angle(way), *made.wheel(way)]
+
+
+def tow_sizes(length: Any, start: Any, radius: Any, way: Any) -> list[Any]:
+    """The angle is a remainder of the start's, and the wheel is a drawbar away from the hitch."""
+    turned, x, y = tow(length, start, radius, way)
+    place = max(abs(mp.mpc(x, y)), length)
+    return [max(abs(turned), abs(start)), place, place]
+
+
+def drawn_tow(rng: np.random.Generator) -> tuple[float, ...]:
+    """Radii around the length, and far from it; starts next to both equilibria."""
+    length = decades(rng)
+    share = 1 + float(rng.choice([-1, 1])) * decades(rng, -12, -0.1) if rng.random() < 0.5 else decades(rng, -2, 4)
+    radius = length * share * float(rng.choice([-1, 1]))
+    start = math.remainder(angle(rng, (0.0, math.pi)), 2 * math.pi)
+    if abs(share) > 1 and rng.random() < 0.3:  # next to where it settles, or to where it is pushed from
+        settled = -math.asin(length / radius)
+        start = (settled if rng.random() < 0.5 else math.pi - settled) + float(rng.normal()) * decades(rng, -9, 0)
+        start = math.remainder(start, 2 * math.pi)
+    return length, start, radius, length * float(rng.uniform(-1, 1)) * decades(rng, -9, 1.3)
+
+
+def sleigh(mass: Any, inertia: Any, offset: Any, speed: Any, turning: Any, t: Any) -> list[Any]:
+    """Speed, turning rate, heading and the blade's force, by Gudermann's function."""
+    arm = mp.sqrt(inertia / mass + offset**2)
+    top = mp.hypot(speed, arm * turning)
+    begin = mp.asinh(speed / (arm * abs(turning)))
+    phase = begin + offset * top / arm**2 * t
+    u, w = top * mp.tanh(phase), mp.sign(turning) * top / arm / mp.cosh(phase)
+    heading = mp.sign(turning) * arm / offset * 2 * (mp.atan(mp.tanh(phase / 2)) - mp.atan(mp.tanh(begin / 2)))
+    force = mass * (w * u - offset * (mass * offset * u * w / (inertia + mass * offset**2)))
+    return [u, w, heading, force]
+
+
+def our_sleigh(mass: float, inertia: float, offset: float, speed: float, turning: float, t: float) -> list[Any]:
+    scene = ChaplyginSleigh(mass, inertia, offset, speed, turning, duration=max(t, 1e-300))
+    return [*scene.rates(t), scene.heading(t), float(np.ravel(scene.lateral_force(t))[0])]
+
+
+def drawn_sleigh(rng: np.random.Generator) -> tuple[float, ...]:
+    length, clock, mass = decades(rng), decades(rng), decades(rng)
+    offset = length * float(rng.choice([-1, 1])) * decades(rng, -3, 1)
+    speed, turning = (float(rng.normal()) * decades(rng, -6, 1) for _ in range(2))
+    return (
+        *(mass, mass * length**2 * decades(rng, -3, 1), offset, speed * length / clock, turning / clock),
+        clock * float(rng.uniform(0, 1)) * decades(rng, -6, 1.5),
+    )
+
+
 LINKAGES = (
     *(
         Law(f"four-bar, branch {branch:+d}", drawn_four_bar, ours, exact, angles=(0, 1))
@@ -154,4 +265,7 @@ LINKAGES = (
         for branch in (1, -1)
         for exact, ours in [slider_crank(branch)]
     ),
+    Law("pendulum", drawn_pendulum, lambda f, a, r, t: Pendulum(f, a, r).motion(t), swung, angles=(0,), size=swing),
+    Law("towed wheel", drawn_tow, our_tow, tow, vectors=(slice(1, 3),), angles=(0,), size=tow_sizes),
+    Law("sleigh", drawn_sleigh, our_sleigh, sleigh),
 )
