@@ -1,9 +1,8 @@
-"""Who runs cells and tasks: workers here, or a Dask cluster, which gives the same answers as `supervise`.
+"""Workers here, or a Dask cluster, which gives the same answers as `supervise`.
 
-A chunk of items is a Dask task; its worker supervises processes in which they are run, so that an engine that aborts
-ends a cell and no worker. Dask runs a chunk again whose worker has vanished, as often as its `allowed-failures` says.
-The worker makes the key of every item anew and compares it with the client's: rows of other versions of an engine, or
-of other files of ours, are never mixed. Items travel as bytes: no scheduler imports an engine.
+A Dask task is a chunk of items, which a Dask worker runs in supervised processes of its own: an engine that aborts
+ends a cell and no worker. Items travel as bytes, so that no scheduler imports an engine, and with their keys: where a
+process makes another key of an item, it has other versions or files, and nothing is run.
 """
 
 from __future__ import annotations
@@ -11,7 +10,6 @@ from __future__ import annotations
 import logging
 import multiprocessing
 import pickle
-import queue
 import re
 import sys
 import threading
@@ -48,7 +46,7 @@ class Refusal:
 
 @dataclass(frozen=True)
 class Workforce:
-    """Who runs items: `supervise` here or on a cluster, and how many items run at a time."""
+    """The function that runs items, `supervise` here or on a cluster, and how many items run at a time."""
 
     threads: int
     supervise: Supervise = supervise
@@ -61,16 +59,16 @@ def pool(workers: int | None) -> Workforce:
 
 def chunks(items: Iterable[Any]) -> list[list[Any]]:
     """Items in their order, as many together as are expected to take CHUNK seconds."""
-    found: list[list[Any]] = []
-    left = 0.0
+    out: list[list[Any]] = []
+    remaining = 0.0
     for item in items:
         seconds = expected_seconds(item)
-        if seconds > left or not found:
-            found.append([])
-            left = CHUNK
-        found[-1].append(item)
-        left -= seconds
-    return found
+        if seconds > remaining or not out:
+            out.append([])
+            remaining = CHUNK
+        out[-1].append(item)
+        remaining -= seconds
+    return out
 
 
 def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_key: bytes) -> Any:
@@ -86,18 +84,18 @@ def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_ke
 
 
 def run_chunk(data: bytes) -> bytes:
-    """In a worker: the pickled answers (place of the item, result or Loss, note) to a pickled chunk."""
+    """In a Dask worker: the pickled answers (place of the item, result or Loss, note) to a pickled chunk."""
+
+    def end_when_closing(running: list[Any]) -> None:
+        if _closing.is_set():
+            raise WorkersLost("the client is gone")
+
     job, items, limit, wall = pickle.loads(data)
     # Dask starts its workers as processes that may have no children, unless its settings say so (`worker.daemon`).
     vars(multiprocessing.current_process())["_config"]["daemon"] = False
     places = {item: place for place, item in enumerate(items)}
-    answers = supervise(job, items, limit, 1, watch=_end_when_closing, wall=wall)
+    answers = supervise(job, items, limit, 1, watch=end_when_closing, wall=wall)
     return pickle.dumps([(places[item], result, note) for item, result, note in answers])
-
-
-def _end_when_closing(running: list[Any]) -> None:
-    if _closing.is_set():
-        raise WorkersLost("the client is gone")
 
 
 @contextmanager
@@ -110,7 +108,6 @@ def elsewhere(scheduler: str | None) -> Iterator[Workforce | None]:
     if not words:
         raise BadInput(f"--scheduler is {scheduler!r}; it must be {FORMS}")
     try:
-        import dask
         import distributed
     except ImportError:
         raise BadInput(
@@ -122,16 +119,11 @@ def elsewhere(scheduler: str | None) -> Iterator[Workforce | None]:
         try:
             with process_start():  # Ctrl-C reaches every process of a terminal; what starts here leaves it to this one
                 where: Any = scheduler
-                if words[1]:
-                    scratch = str(stack.enter_context(temporary_folder()))
-                    stack.enter_context(dask.config.set({"temporary-directory": scratch}))  # pyright: ignore[reportPrivateImportUsage]
-                    # Threads: cells have processes of their own, all by one fork server.
-                    where = stack.enter_context(
-                        distributed.LocalCluster(
-                            **{"n_workers": int(words[1]), "processes": False, "threads_per_worker": 1},
-                            **{"local_directory": scratch, "dashboard_address": "127.0.0.1:0", "memory_limit": None},
-                        )
-                    )
+                if words[1]:  # threads: cells have processes of their own, all by one fork server
+                    folder = str(stack.enter_context(temporary_folder()))
+                    terms: dict[str, Any] = {"processes": False, "threads_per_worker": 1, "memory_limit": None}
+                    terms |= {"local_directory": folder, "dashboard_address": "127.0.0.1:0"}
+                    where = stack.enter_context(distributed.LocalCluster(n_workers=int(words[1]), **terms))
                     _closing.clear()
                     stack.callback(_closing.set)
                 client = stack.enter_context(distributed.Client(where, timeout=ANSWERS_WITHIN, set_as_default=False))
@@ -161,16 +153,13 @@ def _supervise(
     parts = chunks(items)
     job = partial(run_item, function, tuple(filter(None, sys.path)))
     packed = [(job, [pickle.dumps((i, getattr(i, "key", None))) for i in part], limit, wall) for part in parts]
-    futures = client.map(run_chunk, [pickle.dumps(each) for each in packed], pure=False, retries=2)
+    futures = client.map(run_chunk, [pickle.dumps(chunk) for chunk in packed], pure=False, retries=2)
     remaining = dict(zip(futures, parts, strict=True))
-    ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
     seen = time.monotonic()
     try:
-        for future in futures:
-            future.add_done_callback(ended.put)
         while remaining:
-            with suppress(queue.Empty):
-                future = ended.get(timeout=TICK)
+            done = [future for future in remaining if future.done()]
+            for future in done:
                 part = remaining.pop(future)
                 for place, result, note in _answers(future, len(part), scheduler):
                     if isinstance(result, Refusal):
@@ -182,6 +171,8 @@ def _supervise(
                 raise WorkersLost(f"no worker is at {scheduler}: what is done is stored; start some with: dask worker")
             if watch is not None:
                 watch([part[0] for part in list(remaining.values())[:threads]])
+            if not done:
+                time.sleep(TICK)
     finally:
         with suppress(Exception):  # this side is done, whatever the scheduler makes of it
             client.cancel(futures, force=True)
@@ -209,13 +200,7 @@ def _answers(future: Any, count: int, scheduler: str) -> list[tuple[int, Any, st
 
 def _refused(refusal: Refusal, item: Any, scheduler: str) -> BadInput:
     """The line about a worker that would run something else."""
-    here = versions_of(item)
-    differences = [
-        f"{name} {refusal.versions.get(name, 'missing')} there, {here.get(name, 'missing')} here"
-        for name in sorted({*here, *refusal.versions})
-        if here.get(name) != refusal.versions.get(name)
-    ]
-    return BadInput(
-        f"a worker at {scheduler} would give other rows ({'; '.join(differences)}): nothing was run there; "
-        "install the same"
-    )
+    here, there = versions_of(item), refusal.versions
+    names = sorted(name for name in {*here, *there} if here.get(name) != there.get(name))
+    words = "; ".join(f"{name} {there.get(name, 'missing')} there, {here.get(name, 'missing')} here" for name in names)
+    return BadInput(f"a worker at {scheduler} would give other rows ({words}): nothing was run there; install the same")

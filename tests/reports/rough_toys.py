@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import ctypes
 import multiprocessing
 import os
@@ -13,13 +12,12 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from multiprocessing import forkserver, resource_tracker
+from multiprocessing import forkserver
 from pathlib import Path
 from typing import Any
 
 from reference.trajectory import Trajectory
 from reports.run.files import PREFIX
-from reports.run.worker import LARGEST
 from tests.toys import Toy
 
 
@@ -52,14 +50,13 @@ class RoughToy(Toy):
         ACTIONS[self.variant](self)
         return super().spoil(exact, dt)
 
-    def once(self) -> bool:
-        """Whether this is the first time."""
+    def is_first_call(self) -> bool:
         mark = Path(self.folder) / "mark"
         first = not mark.exists()
         mark.touch()
         return first
 
-    def held(self, then: str) -> None:
+    def hold(self, then: str) -> None:
         """Hold a lock on a file as long as the process lives."""
         import fcntl
 
@@ -73,16 +70,9 @@ def throw(error: BaseException) -> None:
     raise error
 
 
-def send(number: int) -> None:
+def kill_self(number: int) -> None:
     os.kill(os.getpid(), number)
     time.sleep(5)
-
-
-def close_streams(toy: RoughToy) -> None:
-    sys.stdout.close()
-    for number in (1, 2):
-        with contextlib.suppress(OSError):  # closed with its stream
-            os.close(number)
 
 
 def install_handlers(toy: RoughToy) -> None:
@@ -93,30 +83,21 @@ def install_handlers(toy: RoughToy) -> None:
 
 ACTIONS: dict[str, Callable[[RoughToy], Any]] = {
     "segfault": lambda toy: ctypes.string_at(0),
-    "abort": lambda toy: os.abort(),
-    "exit 255": lambda toy: os._exit(255),
-    "kill": lambda toy: send(signal.SIGKILL),
-    "segfault once": lambda toy: send(signal.SIGSEGV) if toy.once() else None,
-    "kill once": lambda toy: send(signal.SIGKILL) if toy.once() else None,
+    "kill": lambda toy: kill_self(signal.SIGKILL),
+    "segfault once": lambda toy: kill_self(signal.SIGSEGV) if toy.is_first_call() else None,
+    "kill once": lambda toy: kill_self(signal.SIGKILL) if toy.is_first_call() else None,
     "sleep": lambda toy: time.sleep(1000),
-    "spin": lambda toy: [None for _ in iter(int, 1)],
     # Both hold the interpreter: no other thread of the process runs.
     "native spin": lambda toy: re.match(r"(a|a)*$", "a" * 60 + "b"),
     "native sleep": lambda toy: ctypes.PyDLL(None).sleep(1000),
-    "held sleep": lambda toy: toy.held("sleep"),
-    "held native spin": lambda toy: toy.held("native spin"),
-    "held native sleep": lambda toy: toy.held("native sleep"),
+    "held sleep": lambda toy: toy.hold("sleep"),
+    "held native spin": lambda toy: toy.hold("native spin"),
     "short sleep": lambda toy: time.sleep(0.05),
-    "nap": lambda toy: time.sleep(1),
     "needs two": lambda toy: throw(NeedsTwo(1, 2)),
     "unprintable": lambda toy: throw(Unprintable()),
-    "long words": lambda toy: throw(RuntimeError("x" * 10_000_000)),
     "system exit": lambda toy: sys.exit(3),
-    "interrupt": lambda toy: throw(KeyboardInterrupt()),
-    "endless recursion": lambda toy: ACTIONS["endless recursion"](toy),
-    "closes streams": close_streams,
     "closes files": lambda toy: os.closerange(3, 1000),
-    "changes folder": lambda toy: os.chdir("/"),
+    "closes streams": lambda toy: sys.stdout.close(),
     "changes environment": lambda toy: os.environ.update(CROSSCHECK_TOY="was here"),
     "leaves threads": lambda toy: threading.Thread(target=time.sleep, args=(1000,), daemon=True).start(),
     "installs handlers": install_handlers,
@@ -140,31 +121,15 @@ def act(name: str) -> object:
             return os.abort() if DAMAGE else "sound"
         case "unreadable":
             return Unreadable()
-        case "huge":
-            return bytes(LARGEST)
-    return ACTIONS[name](RoughToy())
-
-
-def spoiled(name: str) -> list[str]:
-    """The process after one of the actions."""
     ACTIONS[name](RoughToy())
     return probe()
 
 
-def is_log(number: int) -> bool:
-    """Whether a file descriptor writes into a log in the working folder."""
-    try:
-        status = os.fstat(number)
-    except OSError:
-        return False
-    return any(os.path.samestat(log.stat(), status) for log in Path().glob("*.log"))
-
-
 def probe() -> list[str]:
-    """What is not as it should be in the process of a worker."""
+    """What differs from a fresh worker process."""
     wrong = {
         "folder": not Path.cwd().name.startswith(PREFIX),
-        "streams": sys.stdout.closed or not all(map(is_log, (1, 2))),
+        "streams": sys.stdout.closed,
         "handlers": any(callable(handler) for handler in map(signal.getsignal, signal.valid_signals())),
         "blocked signals": bool(signal.pthread_sigmask(signal.SIG_BLOCK, ())),
         "threads": threading.active_count() != 2,  # this one, and that which looks after the parent
@@ -197,11 +162,10 @@ def wait_until(is_true: Callable[[], bool]) -> None:
         time.sleep(0.05)
 
 
-def helpers() -> tuple[int | None, int | None]:
-    """The process ids of multiprocessing's fork server and resource tracker, which it has no public name for."""
+def fork_server() -> int | None:
+    """The process id of multiprocessing's fork server, which it has no public name for."""
     server: Any = forkserver._forkserver
-    tracker: Any = resource_tracker._resource_tracker
-    return server._forkserver_pid, tracker._pid
+    return server._forkserver_pid
 
 
 def end_the_supervisor(item: Any) -> str:

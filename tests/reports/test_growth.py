@@ -10,10 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import Promise, Unpromised, Unsupported
-from engines.lagrange import Lagrange
+from engines import Promise, Unpromised
 from reference.chapter.centrodes import Centrodes
-from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.many_links import LongPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.cli.selection import BadInput, steps_per_sample
@@ -30,8 +28,7 @@ from reports.pages.scaling.experiments import (
     exponent,
     series_of,
 )
-from reports.pages.scaling.page import STEP, cost_table, crossing
-from reports.write.rows import Rows
+from reports.pages.scaling.page import cost_table, crossing
 from tests.rows import row_of, table
 from tests.toys import Disc, Plain, Toy
 
@@ -54,17 +51,6 @@ def test_the_reference_as_a_method_is_of_order_four():
         run = BandedChain().build(scene.mechanism(), scene.duration / steps)(1, steps)
         errors.append(np.abs(run.pose[-1] - scene.motion([scene.duration]).pose[0]).max())
     assert math.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
-
-
-def test_the_reference_reads_reactions_of_the_same_sign_as_exact_multipliers():
-    mechanism = LongPendulum(3).mechanism()
-    ours, exact = (e.build(mechanism, 1e-3)(1, 10).reaction for e in (BandedChain(), Lagrange("rk4", "projection")))
-    assert ours == pytest.approx(exact, abs=1e-6)  # N of 30; both integrated with an error of 1e-10
-
-
-def test_the_reference_refuses_what_is_no_long_pendulum():
-    with pytest.raises(Unsupported, match="LongPendulum alone"):
-        BandedChain().build(FreeFourBar().mechanism(), STEP)
 
 
 def test_a_power_law_is_found_at_the_large_end_only():
@@ -217,13 +203,6 @@ def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
 def test_steps_end_where_the_promised_order_has_divided_the_error_by_1e8(order, finest, monkeypatch):
     monkeypatch.setattr(Toy, "order", lambda toy, mechanism: order)
     assert max(cell.every for cell in sweep_cells((Disc(),), (Toy(f"of {order}"),), FULL)) == finest
-
-
-def test_the_row_of_a_step_is_the_nearest_by_ratio():
-    rows = [row_of("toy x", step=step) for step in (1e-2, 1e-3, 1e-4)]
-    near = {step: Rows(rows).near(step) for step in (1.9e-3, 5.1e-3, 2.9e-3, 3.3e-3)}
-    assert [row.step if row else None for row in near.values()] == [1e-3, 1e-2, None, None]
-    assert not Rows([]).near(1e-3)
 
 
 def test_a_cost_table_is_in_microseconds_and_a_crossing_is_where_the_first_becomes_the_dearer():

@@ -18,7 +18,7 @@ from reports.model.outcomes import BLOWN, SATURATED, TORN, Outcome, of_motion
 from reports.plots.theme import Theme
 from tests.reports.test_measure import DISC, INSTANTS, LENGTH, SCENE, Given, Pair, disc, shifted
 from tests.rows import row
-from tests.toys import Disc, ImpossibleDisc, Toy
+from tests.toys import ImpossibleDisc, Toy
 
 
 def outcome_of(trajectory: Trajectory, scene=DISC) -> tuple[str, str]:
@@ -59,14 +59,10 @@ def cut(count):
     [
         (None, "a NoneType", "a Trajectory"),
         (cut(0), "t of the shape (0,)", "(21,)"),
-        (cut(1), "t of the shape (1,)", "(21,)"),
         (cut(18), "t of the shape (18,)", "(21,)"),
-        (disc(t=INSTANTS + 1000.0), "an instant that is 1e+03 s off", "multiples of 0.01 s"),
-        (disc(t=-INSTANTS), "an instant that is 0.4 s off", "multiples of 0.01 s"),
         (disc(t=INSTANTS + 0.005), "an instant that is 0.005 s off", "multiples of 0.01 s"),
         (disc(pose=np.zeros((21, 2, 3)), twist=np.zeros((21, 2, 3))), "pose of the shape (21, 2, 3)", "(21, 1, 3)"),
         (disc(reaction=np.zeros((21, 3))), "reaction of the shape (21, 3)", "(21, 2)"),
-        (disc(stepping=-1.0), "stepping = -1.0 s", "CPU seconds from 0 on"),
         (disc(stepping=math.nan), "stepping = nan s", "CPU seconds from 0 on"),
     ],
 )
@@ -79,12 +75,6 @@ def test_what_is_no_motion_at_the_instants_asked_for_has_no_errors_and_a_sentenc
     )
     assert math.isnan(row.angle)
     assert math.isnan(row.cpu)
-
-
-def test_beyond_the_horizon_a_wrong_angle_is_told_and_is_no_failure():
-    scene = Disc(horizon=0.1)
-    outcome, sentence = outcome_of(shifted(2, 0.75, 15), scene)
-    assert (outcome, sentence) == ("finished", "beyond the horizon an angle is wrong by 0.75 rad")
 
 
 def test_a_drive_that_falls_behind_is_torn():

@@ -7,13 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from reports.model.catalogue import PAGES
-from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells, too_much
+from reports.model.cells import FULL, QUICK, Cell, too_much
 from reports.model.convergence import Verdict, by_method, fit, judged, sweeps
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
-from reports.model.usual_steps import FEATURED, USUAL_STEPS, is_run_at, is_step, usual_cells, usual_variants
+from reports.model.usual_steps import USUAL_STEPS, is_run_at, is_step, usual_cells, usual_variants
 from reports.write.rows import Rows
 from reports.write.unmeasured import UNMEASURED
 from tests.rows import falling, row_of
@@ -23,19 +22,7 @@ STEPS = np.array([1e-2 / every for every in (*FULL, 1000)])
 ROUNDING = 1e-11
 
 
-@pytest.mark.parametrize("order", [1, 2, 4])
-def test_a_pure_power_gives_its_order_on_every_point_above_rounding(order):
-    errors = 3 * STEPS**order
-    verdict, found, points, spread, plateau, _ = fit(STEPS, errors, ROUNDING)
-    # A pure power in double precision: the slope is exact up to the rounding of logarithms.
-    assert found == pytest.approx(order, abs=1e-9)
-    assert points == np.sum(errors > ROUNDING)
-    assert spread < 1e-9
-    assert math.isnan(plateau)
-    assert verdict == (Verdict.ROUNDING if errors[-1] <= ROUNDING else Verdict.FALLS)
-
-
-@pytest.mark.parametrize(("order", "floor"), [(1, 1e-2), (2, 1e-5), (4, 1e-8)])
+@pytest.mark.parametrize(("order", "floor"), [(1, 1e-2), (4, 1e-8)])
 def test_a_floor_above_rounding_is_a_plateau_and_leaves_the_order_alone(order, floor):
     found = fit(STEPS, (10 * STEPS) ** order + floor, ROUNDING)
     assert found.verdict is Verdict.PLATEAU
@@ -44,9 +31,14 @@ def test_a_floor_above_rounding_is_a_plateau_and_leaves_the_order_alone(order, f
     # The falling part carries up to a third of the floor.
     assert found.order == pytest.approx(order, abs=0.35 * order)
     assert found.points >= 2
+    power = fit(STEPS, 3 * STEPS**order, ROUNDING)
+    # A pure power in double precision: the slope is exact up to the rounding of logarithms.
+    assert power.order == pytest.approx(order, abs=1e-9)
+    assert power.points == np.sum(3 * STEPS**order > ROUNDING)
+    assert power.verdict is (Verdict.ROUNDING if order == 4 else Verdict.FALLS)
 
 
-@pytest.mark.parametrize("factor", [2.0, 0.03, -0.03, -0.09])
+@pytest.mark.parametrize("factor", [2.0, -0.09])
 def test_a_plateau_is_the_limit_at_a_step_of_zero_and_no_mean_of_the_points_before_it(factor):
     errors = 1e-3 + factor * STEPS
     found = fit(STEPS, errors, ROUNDING)
@@ -129,11 +121,6 @@ def test_verdicts_by_hand(errors, verdict, points):
     assert math.isnan(found.order) == (points == 0)
 
 
-def test_an_error_that_rises_more_and_more_has_no_limit():
-    assert fit(STEPS[:4], [1e-2, 1.0e-3, 1.3e-3, 2.4e-3], ROUNDING).verdict is Verdict.GROWS
-    assert fit(STEPS[:4], [1e-2, 1.9e-3, 1.0e-3, 1.3e-3], ROUNDING).verdict is Verdict.LEVELS
-
-
 def test_the_order_is_that_of_least_squares_with_how_far_the_furthest_slope_is_from_it():
     _, order, points, spread, _, _ = fit([1e-1, 1e-2, 1e-3, 1e-4], [1e-2, 1e-3, 1e-4, 1e-6], 0.0)  # slopes 1, 1 and 2
     assert (order, points, spread) == (pytest.approx(1.3), 4, pytest.approx(0.7))
@@ -170,13 +157,6 @@ def test_a_sweep_is_of_one_method_in_one_scene_with_each_quantity_its_own():
             assert (sweep.best, sweep.best_step) == (pytest.approx(1e-2 * 1e-3 ** (1 + shift) * (i + 2)), 1e-3)
     assert by_method(found, "angle")["one", "a", "x"].order == pytest.approx(1.0)
     assert by_method(found, "angle")["two", "a", "x"].order == pytest.approx(2.0)
-
-
-def test_each_quantity_has_its_own_rounding():
-    for q in QUANTITIES:
-        for last, verdict in ((0.9 * q.rounding, Verdict.ROUNDING), (1.1 * q.rounding, Verdict.FALLS)):
-            found = sweeps(falling("a x", (1e4 * last, 1e2 * last, last), q.name))
-            assert by_method(found, q.name)["disc", "a", "x"].verdict is verdict, q.name
 
 
 def judgements(*errors: float, quantity: str = "angle") -> list[str]:
@@ -216,36 +196,6 @@ def test_the_best_row_has_the_least_error_of_those_that_can_be_compared():
     assert Rows(rows).of(method="a x").best("position").step == 1e-1
     assert Rows(rows).of(method="c x").best() is UNMEASURED
     assert Rows(rows[3:5]).best() is UNMEASURED
-
-
-# Samples 10, 9.97, 20 and 50 ms apart, and scenes of 0.3 to 10 s; chains are left out, whose costs take long to tell.
-NAMES = (
-    "driven_four_bar",
-    "free_four_bar",
-    "sleigh",
-    "pendulum_1",
-    "rolling_in_ring",
-    "elliptic_gears",
-    "person_two_feet",
-)
-SCENES = [(page, scene) for page in PAGES for scene in page.scenes if scene.name in NAMES]
-
-
-@pytest.mark.parametrize(("page", "scene"), SCENES, ids=[scene.name for _, scene in SCENES])
-def test_a_scene_is_run_at_each_usual_step_once_within_a_hundredth(page, scene):
-    engines = [engine for engine in page.engines_of(scene) if engine.variant in FEATURED]
-    swept = sweep_cells((scene,), engines, FULL)
-    cells = [*swept, *usual_cells((scene,), engines)]
-    for engine in engines:
-        for name, step in USUAL_STEPS.items():
-            own = [cell for cell in cells if cell.engine == engine and abs(cell.step / step - 1) < 0.01]
-            dear = estimated_cost(Cell(scene, engine, max(1, round(scene.spacing / step)))) > 0.9 * COST_LIMIT
-            may_lack = dear or not is_run_at(name, engine.name, engine.variant)
-            assert len(own) == 1 or (may_lack and not own), (engine.name, engine.variant, step)
-    added = [cell for cell in cells if cell.purpose == "usual"]
-    assert all(any(is_step(cell.step, step) for step in USUAL_STEPS.values()) for cell in added)
-    assert all(cell.step * cell.every * cell.sample_count == pytest.approx(scene.duration) for cell in added)
-    assert all(estimated_cost(cell) <= COST_LIMIT for cell in added)
 
 
 def test_a_habit_of_one_engines_users_is_no_step_of_another_engine_that_has_its_own_and_of_no_code_of_ours():

@@ -159,19 +159,10 @@ def written_twice(page: Page, material: Material, monkeypatch) -> None:
 
 
 # All kinds: pictures with motions over them, tables from motions, observations, referees, and rows alone.
-@pytest.mark.parametrize("name", ["centrodes", "wheels", "scaling"])
+@pytest.mark.parametrize("name", ["centrodes", "scaling"])
 def test_a_page_is_the_same_without_engines(name, monkeypatch):
     [page] = [page for page in PAGES if page.name == name]
     written_twice(page, Material({}, answers(page)), monkeypatch)
-
-
-def test_an_engine_that_is_built_while_a_page_is_written_is_noticed(monkeypatch):
-    page = Page("discs", "Discs", "One disc.", (), (), words=lambda material: {"x": motion().run()})
-    monkeypatch.setattr("tests.reports.test_tasks.PAGES", (replace(page, tasks=(motion(),)),))
-    asked = refusing(monkeypatch)
-    with pytest.raises(AssertionError, match="while a page is written"):
-        page.words(Material({}))
-    assert asked == ["Toy"]
 
 
 T = np.linspace(0.0, 0.5, 6)
