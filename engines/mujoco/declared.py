@@ -137,11 +137,9 @@ class State:
 def jacobian(compiled: Any, data: Any) -> Array:
     """MuJoCo's rows (rows, nv), whichever way it stores them."""
     if not mujoco.mj_isSparse(compiled):
-        return data.efc_J.reshape(data.nefc, compiled.nv)
+        return data.efc_J[: data.nefc * compiled.nv].reshape(data.nefc, compiled.nv)
     dense = np.zeros((data.nefc, compiled.nv))
-    for row in range(data.nefc):
-        begin, size = data.efc_J_rowadr[row], data.efc_J_rownnz[row]
-        dense[row, data.efc_J_colind[begin : begin + size]] = data.efc_J.reshape(-1)[begin : begin + size]
+    mujoco.mju_sparse2dense(dense, data.efc_J.reshape(-1), data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
     return dense
 
 

@@ -17,7 +17,7 @@ from pymunk.constraints import PinJoint, PivotJoint, SimpleMotor
 from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.mujoco.reading import read as read_mujoco
-from engines.mujoco.reading.obstacles import positions
+from engines.mujoco.reading.own_model import positions
 from engines.pymunk.reading import read
 from reference.checks import InvalidMechanism
 from reports.check.checked import Plan, check

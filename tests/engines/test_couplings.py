@@ -15,6 +15,7 @@ from engines import Unsupported
 from engines.lagrange import TRUTH, Lagrange
 from engines.mujoco import TUNED as MUJOCO
 from engines.mujoco.reading import read
+from engines.mujoco.reading.own_model import centres
 from engines.pymunk import TUNED as PYMUNK
 from reference.checks import InvalidMechanism
 from reference.couplings import Coupling, Term
@@ -184,7 +185,7 @@ def test_a_coupling_in_mujoco_moves_as_its_tree_with_multipliers(name):
     for sample, coordinates in enumerate(wanted):
         data.qpos[:] = coordinates
         mujoco.mj_kinematics(model, data)
-        places = reading.model._centres(data) @ reading.model.scene.frame.both.T
+        places = centres(reading.model.scene, data) @ reading.model.scene.frame.both.T
         assert ours.pose[sample, :, :2] == pytest.approx(places, abs=1e-8 * max(1.0, unit))
     names = [name for joint in reading.mechanism.joints for name in [type(joint).__name__] * joint.size]
     coupled = [place for place, kind in enumerate(names) if kind == "Coupling"]

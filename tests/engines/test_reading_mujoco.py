@@ -16,7 +16,7 @@ import pytest
 from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.mujoco.reading import read
-from engines.mujoco.reading.obstacles import positions
+from engines.mujoco.reading.own_model import positions
 from engines.mujoco.reading.settings import switch_off
 from engines.reading import Reading
 from reports.check.checked import Plan, check

@@ -12,11 +12,19 @@ import mujoco
 import numpy as np
 
 from engines.consistent_start import OpenStart, closed_positions, with_consistent_start
-from engines.mujoco.reading.elements import EQUALITIES, JOINTS, Scene, drives, equalities, steady, tree_joints
-from engines.mujoco.reading.forces import FORCES, forces, off, turns
-from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, bodies_of, find_frame, find_groups, flattened, name_of
-from engines.mujoco.reading.obstacles import limited_forces, positions
-from engines.mujoco.reading.own_model import OwnMuJoCo, in_state
+from engines.mujoco.reading.elements import EQUALITIES, JOINTS, drives, equalities, is_steady, tree_joints
+from engines.mujoco.reading.forces import FORCES, forces, is_off, turns
+from engines.mujoco.reading.frame import (
+    FREE,
+    HINGE,
+    PLANAR,
+    PlanarModel,
+    find_bodies,
+    find_frame,
+    flattened,
+    name_of,
+)
+from engines.mujoco.reading.own_model import OwnMuJoCo, in_state, limited_forces, positions
 from engines.mujoco.reading.settings import rewritten, switch_off
 from engines.mujoco.running import listening
 from engines.reading import Note, Reading, Source, left_out, refuse, refuse_at_start
@@ -33,16 +41,40 @@ def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: boo
     Unsupported for what has no counterpart in the plane, in a sentence that names it, and InvalidMechanism for a start
     that does not satisfy the model's own equalities, unless rounded digits explain it and `closing` is true.
     """
-    original = model
-    if data is None:
-        data = mujoco.MjData(model)
+    scene, users, tilt = _plane_of(model, mujoco.MjData(model) if data is None else data, without)
+    joints = [*tree_joints(scene), *drives(scene), *equalities(scene)]
+    acting = forces(scene)
+    bodies, weights = _with_armature(scene)
+    gravity = (0.0, 0.0) if is_off(scene.model, "GRAVITY") else scene.frame.in_plane(scene.model.opt.gravity)
+    _note_gravity_across(scene)
+    _note_what_may_act(scene)
+    for element in without:
+        scene.note(element, "left out at your word, in your model too")
+    elements = bodies, joints, gravity, (*acting, *weights)
+    closed = closed_positions(*elements) if closing else None
+    if closed is not None:
+        scene.data.qpos[:] = positions(scene, closed[0][None])[0]
+        reading = read(model, scene.data, without, closing=False)
+        return replace(reading, notes=(closed[1], *reading.notes))
+    try:
+        mechanism, jumped = with_consistent_start(*elements)
+    except OpenStart as reason:
+        words = "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed"
+        raise InvalidMechanism(f"{reason}: {words}") from None
+    own = OwnMuJoCo(scene, mechanism, users, tilt)
+    refuse_at_start(own, mechanism)
+    return Reading(mechanism, own, (*jumped, *scene.notes), model.names.split(b"\x00")[0].decode())
+
+
+def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarModel, Any, float]:
+    """The model in its plane and in this state, without some elements; also the user's own, and its tilt [rad]."""
     model = copy.copy(model)
     for element in without:
         switch_off(model, element)
-    started = in_state(model, data)
+    started = in_state(model, state)
     if model.nv == 0:
         raise refuse("the model", "nothing in it can move")
-    if model.opt.enableflags & int(getattr(mujoco.mjtEnableBit, "mjENBL_SLEEP", 0)):
+    if model.opt.enableflags & int(mujoco.mjtEnableBit.mjENBL_SLEEP):
         words = "MuJoCo stops a tree of bodies that is slow, even a pendulum at its turning point, which no joint does"
         raise refuse("flag sleep", f"{words}; {left_out('sleep')}")
     _refuse_not_finite(model, started)
@@ -51,36 +83,12 @@ def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: boo
     mujoco.mj_comPos(model, started)
     frame = find_frame(model, started)
     flat, tilt = flattened(model, frame)
-    users, model = model, flat if tilt > PLANAR else model
+    users, model, tilt = (model, flat, tilt) if tilt > PLANAR else (model, model, 0.0)
     mujoco.mj_kinematics(model, started)
     mujoco.mj_comPos(model, started)
-    groups = find_groups(model, started, frame)
+    groups, bodies = find_bodies(model, started, frame)
     mujoco.mj_forward(model, started)
-    bodies = bodies_of(model, started, frame, groups)
-    scene = Scene(model, started, frame, groups, bodies)
-    joints = [*tree_joints(scene), *drives(scene), *equalities(scene)]
-    acting = forces(scene)
-    bodies, weights = _with_armature(scene)
-    gravity = (0.0, 0.0) if off(model, "GRAVITY") else frame.in_plane(model.opt.gravity)
-    _note_gravity_across(scene)
-    _note_what_may_act(scene)
-    for element in without:
-        scene.note(element, "left out at your word, in your model too")
-    elements = bodies, joints, gravity, (*acting, *weights)
-    closed = closed_positions(*elements) if closing else None
-    if closed is not None:
-        started.qpos[:] = positions(scene, closed[0][None])[0]
-        reading = read(original, started, without, closing=False)
-        return replace(reading, notes=(closed[1], *reading.notes))
-    try:
-        mechanism, jumped = with_consistent_start(*elements)
-    except OpenStart as reason:
-        words = "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed"
-        raise InvalidMechanism(f"{reason}: {words}") from None
-    own = OwnMuJoCo(scene, mechanism, users, tilt if users is not model else 0.0)
-    refuse_at_start(own, mechanism)
-    title = model.names[: model.names.find(b"\x00")].decode() if isinstance(model.names, bytes) else ""
-    return Reading(mechanism, own, (*jumped, *scene.notes), title)
+    return PlanarModel(model, started, frame, groups, bodies), users, tilt
 
 
 def read_object(model: Any, without: Sequence[str] = (), step: float | None = None) -> Reading:
@@ -104,9 +112,9 @@ def _refuse_not_finite(model: Any, data: Any) -> None:
             )
 
 
-def _note_gravity_across(scene: Scene) -> None:
+def _note_gravity_across(scene: PlanarModel) -> None:
     model = scene.model
-    across = 0.0 if off(model, "GRAVITY") else float(model.opt.gravity @ scene.frame.normal)
+    across = 0.0 if is_off(model, "GRAVITY") else float(model.opt.gravity @ scene.frame.normal)
     if abs(across) <= 1e-12 * max(1.0, float(np.linalg.norm(model.opt.gravity))):
         return
     if np.any(model.jnt_type == FREE):
@@ -114,7 +122,7 @@ def _note_gravity_across(scene: Scene) -> None:
     scene.note("gravity", f"{across:g} m/s^2 of it act across the plane, where joints hold the bodies")
 
 
-def _note_what_may_act(scene: Scene) -> None:
+def _note_what_may_act(scene: PlanarModel) -> None:
     """Limits and contacts, which count as left out once nothing in the judged motion has met them."""
     model, limit = scene.model, "its limit is left out, since it is not reached in the judged motion"
     for element in limited_forces(model):
@@ -123,26 +131,26 @@ def _note_what_may_act(scene: Scene) -> None:
     for index in np.flatnonzero((low == high) & (low != 0) & (model.jnt_limited == 0)):
         words = f"MuJoCo does not limit it, since both ends of its range are {low[index]:g}; an equality holds it there"
         scene.note(name_of(model, mujoco.mjtObj.mjOBJ_JOINT, index), words)
-    if off(model, "CONSTRAINT"):
+    if is_off(model, "CONSTRAINT"):
         return
-    if not off(model, "LIMIT"):
+    if not is_off(model, "LIMIT"):
         for kind, limited in (("JOINT", model.jnt_limited), ("TENDON", model.tendon_limited)):
             for index in np.flatnonzero(limited):
                 scene.note(name_of(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), index), limit)
     shaped = np.any(model.geom_contype) and np.any(model.geom_conaffinity)
-    if not off(model, "CONTACT") and model.ngeom > 1 and (shaped or model.npair):
+    if not is_off(model, "CONTACT") and model.ngeom > 1 and (shaped or model.npair):
         scene.note("contacts", "they are left out, since none is made in the judged motion")
 
 
-def _with_armature(scene: Scene) -> tuple[tuple[Any, ...], list[Force]]:
+def _with_armature(scene: PlanarModel) -> tuple[tuple[Any, ...], list[Force]]:
     """Bodies with the inertia that armature gives them, and what takes its weight off where it has none."""
     model, bodies, weights = scene.model, list(scene.bodies), []
-    gravity = np.zeros(3) if off(model, "GRAVITY") else model.opt.gravity
+    gravity = np.zeros(3) if is_off(model, "GRAVITY") else model.opt.gravity
     for joint in range(model.njnt):
         added = float(model.dof_armature[int(model.jnt_dofadr[joint])])
-        if not added or steady(scene, joint):
+        if not added or is_steady(scene, joint):
             continue
-        group, parent = scene.group(int(model.jnt_bodyid[joint])), scene.parent(joint)
+        group, parent = scene.group_of(joint), scene.parent(joint)
         element, body = name_of(model, mujoco.mjtObj.mjOBJ_JOINT, joint), bodies[group]
         if model.jnt_type[joint] == HINGE and not turns(scene, parent):
             bodies[group] = replace(body, inertia=body.inertia + added)

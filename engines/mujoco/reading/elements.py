@@ -1,8 +1,8 @@
-"""A model while it is read, and what holds its bodies: joints, steady hinges and equalities as ideal joints."""
+"""A model while it is read, and its joints, steady hinges and equalities as ideal joints."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import mujoco
@@ -10,151 +10,93 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.consistent_start import PRINTED
-from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, SLIDE, Frame, Groups, name_of, plain_name
-from engines.reading import Names, Note, refuse
+from engines.mujoco.reading.frame import (
+    BODY,
+    FREE,
+    HINGE,
+    JOINT,
+    PLANAR,
+    SLIDE,
+    PlanarModel,
+    name_of,
+    plain_name,
+)
+from engines.reading import refuse
 from reference.couplings import Coupling, Term
-from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Slot, Vector, Weld
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Weld
 
 Array = NDArray[np.float64]
-JOINT, EQUALITY, BODY = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_EQUALITY, mujoco.mjtObj.mjOBJ_BODY
+Ends = tuple[int, int, Array, Array]  # two groups, and their points in the world [m]
+Parts = Sequence[tuple[int, float]]  # joints of the model, and their factors in a sum of coordinates
+EQUALITY, TENDON = mujoco.mjtObj.mjOBJ_EQUALITY, mujoco.mjtObj.mjOBJ_TENDON
+# The armature beside the largest inertia that a joint can feel, from which on a hinge counts as driven. The remaining
+# acceleration is the reciprocal: a tenth of what the accelerations of engine and judge may differ by at the start.
+FAR_ABOVE = 1e7
+TORQUE_SCALE = 10  # its index in eq_data of a weld
 
 
-@dataclass(eq=False)
-class Scene:
-    """A model in its start, while it is read: what the readers of joints and of forces ask of it."""
-
-    model: Any
-    data: Any
-    frame: Frame
-    groups: Groups
-    bodies: tuple[Body, ...]
-    names: Names = field(default_factory=Names)
-    notes: list[Note] = field(default_factory=list)
-    held: dict[int, tuple[Joint, ...]] = field(default_factory=dict)  # by equality: what stands for it
-
-    def group(self, body: int) -> int:
-        """The index among the mechanism's bodies, -1 for the ground."""
-        return int(self.groups.of[body])
-
-    def name(self, group: int) -> str | None:
-        return None if group < 0 else self.bodies[group].name
-
-    def parent(self, joint: int) -> int:
-        """The group on which a joint hangs its own."""
-        return self.group(int(self.model.body_parentid[self.model.jnt_bodyid[joint]]))
-
-    def own(self, group: int, place: Any) -> Vector:
-        """A place of the world (3,) [m] in the frame of a body, or of the ground."""
-        x, y = self.frame.in_plane(place)
-        if group < 0:
-            return x, y
-        at_x, at_y, angle = self.bodies[group].pose
-        cosine, sine = np.cos(angle), np.sin(angle)
-        x, y = x - at_x, y - at_y
-        return float(cosine * x + sine * y), float(cosine * y - sine * x)
-
-    def angle(self, group: int) -> float:
-        return 0.0 if group < 0 else self.bodies[group].pose[2]
-
-    def direction(self, group: int, axis: Any) -> float:
-        """The angle [rad] of a direction of the world in the frame of a body."""
-        x, y = self.frame.in_plane(axis)
-        return float(np.arctan2(y, x)) - self.angle(group)
-
-    def sign(self, joint: int) -> float:
-        return float(np.sign(self.data.xaxis[joint] @ self.frame.normal))
-
-    def joints_of(self, group: int) -> range:
-        root = self.groups.roots[group]
-        begin = int(self.model.body_jntadr[root])
-        return range(begin, begin + int(self.model.body_jntnum[root]))
-
-    def note(self, element: str, reason: str) -> None:
-        self.notes.append(Note(element, reason))
+def tree_joints(scene: PlanarModel) -> list[Joint]:
+    """The joints of each body with its parent."""
+    return [joint for group in range(len(scene.bodies)) for joint in _joints_with_parent(scene, group)]
 
 
-def tree_joints(scene: Scene) -> list[Joint]:
-    """What hangs every body on its parent."""
-    return [joint for group in range(len(scene.bodies)) for joint in _hung(scene, group)]
-
-
-def _hung(scene: Scene, group: int) -> list[Joint]:
-    model, data = scene.model, scene.data
-    own = list(scene.joints_of(group))
-    kinds = [int(model.jnt_type[index]) for index in own]
-    hinges = [index for index in own if model.jnt_type[index] == HINGE]
-    slides = [index for index in own if model.jnt_type[index] == SLIDE]
-    body = name_of(model, BODY, scene.groups.roots[group])
-    if FREE in kinds:
-        return []
+def _joints_with_parent(scene: PlanarModel, group: int) -> list[Joint]:
+    data, hinges, slides = scene.data, scene.joints_of(group, HINGE), scene.joints_of(group, SLIDE)
+    body = name_of(scene.model, BODY, scene.groups.roots[group])
     if len(hinges) > 1:
         raise refuse(body, "it has two hinges with nothing between them that has a mass")
-    across = np.linalg.matrix_rank(np.array([data.xaxis[index] for index in slides]).reshape(-1, 3), tol=PLANAR)
-    if across < len(slides):
+    if np.linalg.matrix_rank(data.xaxis[slides].reshape(-1, 3), tol=PLANAR) < len(slides):
         raise refuse(body, "two of its slides are parallel")
-    parent, second = scene.parent(own[0]), scene.name(group)
-    first = scene.name(parent)
-    label = scene.names.new(plain_name(model, JOINT, own[0] if not hinges else hinges[0]))
-    if len(slides) == 2 and hinges:
+    if scene.joints_of(group, FREE) or (len(slides) == 2 and hinges):
         return []
-    turned = scene.angle(group) - scene.angle(parent)
+    joints = hinges or slides
+    parent = scene.parent(joints[0])
+    label, names = scene.new_name(JOINT, joints[0]), (scene.name(parent), scene.name(group))
     if len(slides) == 2:
-        return [Drive(label, first, second, 0.0, turned)]
+        return [Drive(label, *names, 0.0, scene.turned(parent, group))]
     if not slides:
         anchor = data.xanchor[hinges[0]]
-        return [Pin(label, first, second, scene.own(parent, anchor), scene.own(group, anchor))]
+        return [Pin(label, *scene.between(parent, group, anchor, anchor))]
     axis = data.xaxis[slides[0]]
     if not hinges:
-        x, y, _ = scene.bodies[group].pose
-        centre = scene.frame.both.T @ [x, y]
-        line = Slot(label, first, second, scene.own(parent, centre), scene.direction(parent, axis), (0.0, 0.0))
-        return [line, Drive(scene.names.new(f"{label}, no turning"), first, second, 0.0, turned)]
+        line = scene.in_body(parent, scene.centre(group)), scene.direction(parent, axis), (0.0, 0.0)
+        turned = scene.turned(parent, group)
+        return [Slot(label, *names, *line), Drive(scene.names.new(f"{label}, no turning"), *names, 0.0, turned)]
     anchor = data.xanchor[hinges[0]]
-    if slides[0] < hinges[0]:  # the slide comes first: its line is in the parent
-        points = scene.own(parent, anchor), scene.direction(parent, axis), scene.own(group, anchor)
-        return [Slot(label, first, second, *points)]
-    points = scene.own(group, anchor), scene.direction(group, axis), scene.own(parent, anchor)
-    return [Slot(label, second, first, *points)]
+    # The line is in the parent if the slide comes first.
+    first, second = (parent, group) if slides[0] < hinges[0] else (group, parent)
+    line = scene.in_body(first, anchor), scene.direction(first, axis), scene.in_body(second, anchor)
+    return [Slot(label, scene.name(first), scene.name(second), *line)]
 
 
-# Armature beside the largest inertia that a joint can feel. What is left of an acceleration is the reciprocal: a tenth
-# of what the accelerations of engine and judge may differ by at the start.
-FAR_ABOVE = 1e7
-
-
-def steady(scene: Scene, joint: int) -> bool:
+def is_steady(scene: PlanarModel, joint: int) -> bool:
     """Whether a joint is a hinge whose rate no force of the model changes."""
     armature = float(scene.model.dof_armature[int(scene.model.jnt_dofadr[joint])])
-    return bool(scene.model.jnt_type[joint] == HINGE and armature >= FAR_ABOVE * _largest_inertia(scene))
+    points = np.array(
+        [body.pose[:2] for body in scene.bodies] + [scene.frame.in_plane(at) for at in scene.data.xanchor]
+    )
+    span = float(np.ptp(points, axis=0).max())
+    largest = sum(body.inertia + body.mass * span**2 for body in scene.bodies)  # that a joint can feel, armatures apart
+    return bool(scene.model.jnt_type[joint] == HINGE and armature >= FAR_ABOVE * largest)
 
 
-def drives(scene: Scene) -> list[Drive]:
+def drives(scene: PlanarModel) -> list[Drive]:
     """A drive at the rate of the start for every steady hinge, with a note."""
     out = []
     for joint in range(scene.model.njnt):
-        if not steady(scene, joint):
+        if not is_steady(scene, joint):
             continue
-        group, parent = scene.group(int(scene.model.jnt_bodyid[joint])), scene.parent(joint)
-        rate = scene.sign(joint) * float(scene.data.qvel[int(scene.model.jnt_dofadr[joint])])
+        group, parent = scene.group_of(joint), scene.parent(joint)
+        rate = float(scene.groups.signs[joint]) * float(scene.data.qvel[int(scene.model.jnt_dofadr[joint])])
         label = scene.names.new(f"{plain_name(scene.model, JOINT, joint)} turns")
-        turned = scene.angle(group) - scene.angle(parent)
-        out.append(Drive(label, scene.name(parent), scene.name(group), rate, turned))
+        out.append(Drive(label, scene.name(parent), scene.name(group), rate, scene.turned(parent, group)))
         words = f"its armature is so large that nothing accelerates it, so it is taken as driven at {rate:g} rad/s"
         scene.note(name_of(scene.model, JOINT, joint), words)
     return out
 
 
-def _largest_inertia(scene: Scene) -> float:
-    """About the largest inertia that a joint of the model can feel [kg m^2], armatures left out."""
-    places = np.array(
-        [body.pose[:2] for body in scene.bodies] + [scene.frame.in_plane(at) for at in scene.data.xanchor]
-    )
-    span = float(np.ptp(places, axis=0).max())
-    return sum(body.inertia + body.mass * span**2 for body in scene.bodies)
-
-
-def equalities(scene: Scene) -> list[Joint]:
-    """What closes loops and couples angles."""
+def equalities(scene: PlanarModel) -> list[Joint]:
+    """The ideal joints of the model's equalities, which close loops and couple coordinates."""
     model, data = scene.model, scene.data
     off = mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     out: list[Joint] = []
@@ -166,8 +108,8 @@ def equalities(scene: Scene) -> list[Joint]:
         kind = mujoco.mjtEq(int(model.eq_type[index])).name.split("_")[1].lower()
         if kind not in EQUALITIES:
             raise refuse(element, f"an equality of the kind {kind} has no ideal counterpart here")
-        reads, _ = EQUALITIES[kind]
-        joints = reads(scene, index, element)
+        read_equality, _ = EQUALITIES[kind]
+        joints = read_equality(scene, index, element)
         if joints and not len(equality_rows(data, index)):
             scene.note(element, "it holds what the joints hold already, so MuJoCo makes no row of it, nor do we")
             joints = []
@@ -177,211 +119,177 @@ def equalities(scene: Scene) -> list[Joint]:
 
 
 def equality_rows(data: Any, index: int) -> NDArray[np.intp]:
-    """Which of MuJoCo's rows are of an equality."""
+    """The indices of an equality's rows in MuJoCo's."""
     return np.flatnonzero((data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)) & (data.efc_id == index))
 
 
-def _ends(scene: Scene, index: int, element: str) -> tuple[int, int, Array, Array]:
-    """The two groups, and where each has its point in the world."""
+def _ends(scene: PlanarModel, index: int) -> Ends:
+    """The two groups of a connect or a weld, and the point of each in the world."""
     model, data = scene.model, scene.data
     objects = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
     if model.eq_objtype[index] == int(mujoco.mjtObj.mjOBJ_SITE):
-        bodies = [int(model.site_bodyid[each]) for each in objects]
-        places = [data.site_xpos[each] for each in objects]
-    else:
-        bodies = list(objects)
-        parts = (0, 3) if model.eq_type[index] == int(mujoco.mjtEq.mjEQ_CONNECT) else (3, 0)
-        points = [model.eq_data[index][part : part + 3] for part in parts]
-        places = [
-            data.xpos[body] + data.xmat[body].reshape(3, 3) @ point for body, point in zip(bodies, points, strict=True)
-        ]
-    groups = [scene.group(body) for body in bodies]
-    return groups[0], groups[1], places[0], places[1]
+        first, second = (scene.group(model.site_bodyid[site]) for site in objects)
+        return first, second, *(data.site_xpos[site] for site in objects)
+    parts = (0, 3) if model.eq_type[index] == int(mujoco.mjtEq.mjEQ_CONNECT) else (3, 0)
+    points = (
+        data.xpos[body] + data.xmat[body].reshape(3, 3) @ model.eq_data[index][part : part + 3]
+        for body, part in zip(objects, parts, strict=True)
+    )
+    return scene.group(objects[0]), scene.group(objects[1]), *points
 
 
-def _connected(scene: Scene, index: int, element: str) -> list[Joint]:
-    first, second, at, other = _ends(scene, index, element)
-    if first == second:
-        scene.note(element, "it connects a body with itself")
+def _read_connect(scene: PlanarModel, index: int, element: str) -> list[Joint]:
+    ends = _ends(scene, index)
+    if ends[0] == ends[1]:
+        scene.note(element, "it holds a body to itself")
         return []
-    label = scene.names.new(plain_name(scene.model, EQUALITY, index))
-    return [Pin(label, scene.name(first), scene.name(second), scene.own(first, at), scene.own(second, other))]
+    return [Pin(scene.new_name(EQUALITY, index), *scene.between(*ends))]
 
 
-TORQUE_SCALE = 10  # its place in eq_data of a weld
-
-
-def _welded(scene: Scene, index: int, element: str) -> list[Joint]:
-    first, second, at, other = _ends(scene, index, element)
-    if first == second:
-        scene.note(element, "it welds a body to itself")
-        return []
+def _read_weld(scene: PlanarModel, index: int, element: str) -> list[Joint]:
+    ends = _ends(scene, index)
     rows = equality_rows(scene.data, index)
-    if np.abs(scene.data.efc_pos[rows]).max(initial=0.0) > PLANAR * max(1.0, scene.model.stat.extent):
-        raise refuse(element, f"it is open by {np.abs(scene.data.efc_pos[rows]).max():.2g} m or rad at the start")
-    label = scene.names.new(plain_name(scene.model, EQUALITY, index))
-    points = scene.own(first, at), scene.own(second, other)
-    if scene.model.eq_data[index][TORQUE_SCALE] == 0:
-        scene.note(element, "it holds a point and no angle, since its torquescale is zero")
-        return [Pin(label, scene.name(first), scene.name(second), *points)]
-    turned = scene.angle(second) - scene.angle(first)
-    return [Weld(label, scene.name(first), scene.name(second), *points, turned)]
+    open_by = np.abs(scene.data.efc_pos[rows]).max(initial=0.0)
+    if ends[0] != ends[1] and open_by > PLANAR * max(1.0, scene.model.stat.extent):
+        raise refuse(element, f"it is open by {open_by:.2g} m or rad at the start")
+    pins = _read_connect(scene, index, element)
+    if not pins or scene.model.eq_data[index][TORQUE_SCALE]:
+        turned = scene.turned(*ends[:2])
+        return [Weld(pin.name, *scene.between(*ends), turned) for pin in pins]
+    scene.note(element, "it holds a point and no angle, since its torquescale is zero")
+    return pins
 
 
-def is_turned_with(scene: Scene, joint: int) -> bool:
-    """Whether a slide's line is in its own body, which a hinge before it turns. Raises Unsupported for a hinge between
-    two slides.
-    """
-    own = scene.joints_of(scene.group(int(scene.model.jnt_bodyid[joint])))
-    hinges = [each for each in own if scene.model.jnt_type[each] == HINGE]
-    slides = [each for each in own if scene.model.jnt_type[each] == SLIDE]
+def _term(scene: PlanarModel, joint: int, factor: float) -> Term:
+    """factor times a joint's coordinate, except for a constant. Raises Unsupported for a hinge between two slides."""
+    data, group, parent = scene.data, scene.group_of(joint), scene.parent(joint)
+    if scene.model.jnt_type[joint] == HINGE:
+        return Term(scene.name(parent), scene.name(group), factor * float(scene.groups.signs[joint]))
+    hinges, slides = scene.joints_of(group, HINGE), scene.joints_of(group, SLIDE)
     if hinges and slides[0] < hinges[0] < slides[-1]:
-        raise refuse(
-            name_of(scene.model, JOINT, joint),
-            "its body turns between two slides, of which no sum is read; give the slides a body of their own",
-        )
-    return bool(hinges) and hinges[0] < slides[0]
-
-
-def term_of(scene: Scene, joint: int, factor: float) -> Term:
-    """factor times a joint's coordinate, but for a constant."""
-    model, data = scene.model, scene.data
-    group, parent = scene.group(int(model.jnt_bodyid[joint])), scene.parent(joint)
-    first, second = scene.name(parent), scene.name(group)
-    if model.jnt_type[joint] == HINGE:
-        return Term(first, second, factor * scene.sign(joint))
-    own = list(scene.joints_of(group))
-    slides = [each for each in own if model.jnt_type[each] == SLIDE]
-    at = next((data.xanchor[each] for each in own if model.jnt_type[each] == HINGE), None)
-    at = scene.frame.both.T @ scene.bodies[group].pose[:2] if at is None else at
-    # Of two slides each is told by the direction across the other.
-    axes = np.array([scene.frame.in_plane(data.xaxis[each]) for each in slides])
+        reason = "its body turns between two slides, of which no sum is read; give the slides a body of their own"
+        raise refuse(name_of(scene.model, JOINT, joint), reason)
+    at = data.xanchor[hinges[0]] if hinges else scene.centre(group)
+    # With two slides, the coordinate of one is measured along the direction across the other.
+    axes = np.array([scene.frame.in_plane(data.xaxis[slide]) for slide in slides])
     x, y = np.linalg.pinv(axes)[:, slides.index(joint)]
     along, size = scene.frame.both.T @ [x, y], float(np.hypot(x, y))
-    here, there = scene.own(group, at), scene.own(parent, at)
-    if is_turned_with(scene, joint):
-        return Term(second, first, -factor * size, True, here, scene.direction(group, along), there)
-    return Term(first, second, factor * size, True, there, scene.direction(parent, along), here)
+    first, second, sign = parent, group, 1.0
+    if hinges and hinges[0] < slides[0]:  # the hinge turns the line
+        first, second, sign = group, parent, -1.0
+    line = scene.in_body(first, at), scene.direction(first, along), scene.in_body(second, at)
+    return Term(scene.name(first), scene.name(second), sign * factor * size, True, *line)
 
 
-def terms_of(scene: Scene, parts: list[tuple[int, float]]) -> tuple[tuple[Term, ...], float]:
+def terms_of(scene: PlanarModel, parts: Parts) -> tuple[tuple[Term, ...], float]:
     """A sum of joints' coordinates as terms, and its value at the start."""
-    terms = tuple(term_of(scene, joint, factor) for joint, factor in parts)
+    terms = tuple(_term(scene, joint, factor) for joint, factor in parts)
     pose = {body.name: np.array(body.pose) for body in scene.bodies} | {None: np.zeros(3)}
     return terms, float(sum(term.value(pose[term.first], pose[term.second]) for term in terms))
 
 
-def angle_weights(scene: Scene, parts: list[tuple[int, float]]) -> dict[int, float]:
-    """How much the angle of each body adds to a sum of hinge coordinates; bodies that add nothing are left out."""
+def angle_weights(scene: PlanarModel, parts: Parts) -> dict[int, float]:
+    """The factor of each body's angle in a sum of hinge coordinates; bodies with none are left out."""
     weights: dict[int, float] = {}
     for joint, factor in parts:
-        for group, sign in ((scene.group(int(scene.model.jnt_bodyid[joint])), 1.0), (scene.parent(joint), -1.0)):
+        for group, sign in ((scene.group_of(joint), 1.0), (scene.parent(joint), -1.0)):
             if group >= 0:
-                weights[group] = weights.get(group, 0.0) + sign * factor * scene.sign(joint)
+                weights[group] = weights.get(group, 0.0) + sign * factor * float(scene.groups.signs[joint])
     return {group: weight for group, weight in sorted(weights.items()) if abs(weight) > PLANAR}
 
 
 def wrapped_joints(model: Any, tendon: int) -> list[tuple[int, float]] | None:
     """The joints of a fixed tendon with their coefficients; None of a spatial one."""
-    begin, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
-    if np.any(model.wrap_type[begin : begin + count] != int(mujoco.mjtWrap.mjWRAP_JOINT)):
+    wraps = range(int(model.tendon_adr[tendon]), int(model.tendon_adr[tendon] + model.tendon_num[tendon]))
+    if np.any(model.wrap_type[wraps] != int(mujoco.mjtWrap.mjWRAP_JOINT)):
         return None
-    return [(int(model.wrap_objid[each]), float(model.wrap_prm[each])) for each in range(begin, begin + count)]
+    return [(int(model.wrap_objid[wrap]), float(model.wrap_prm[wrap])) for wrap in wraps]
 
 
-def straight(scene: Scene, tendon: int) -> tuple[int, int, Array, Array]:
+def straight(scene: PlanarModel, tendon: int) -> Ends:
     """The two groups that a spatial tendon joins, and its ends in the world. Raises Unsupported if it wraps."""
-    model, data = scene.model, scene.data
-    element = name_of(model, mujoco.mjtObj.mjOBJ_TENDON, tendon)
+    model, element = scene.model, name_of(scene.model, TENDON, tendon)
     begin, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
     if count != 2 or np.any(model.wrap_type[begin : begin + count] != int(mujoco.mjtWrap.mjWRAP_SITE)):
         raise refuse(element, "only a tendon straight between two sites has an ideal counterpart; this one wraps")
-    sites = [int(site) for site in model.wrap_objid[begin : begin + 2]]
-    places = [data.site_xpos[site] for site in sites]
-    if abs((places[1] - places[0]) @ scene.frame.normal) > PLANAR * max(1.0, model.stat.extent):
+    sites = model.wrap_objid[begin : begin + 2]
+    at, end = scene.data.site_xpos[sites]
+    if abs((end - at) @ scene.frame.normal) > PLANAR * max(1.0, model.stat.extent):
         raise refuse(element, "its two sites are at different distances from the plane, so its length is not ours")
-    first, second = (scene.group(int(model.site_bodyid[site])) for site in sites)
-    return first, second, places[0], places[1]
+    first, second = (scene.group(body) for body in model.site_bodyid[sites])
+    return first, second, at, end
 
 
-def _coupled(scene: Scene, index: int, element: str) -> list[Joint]:
-    """Angles of bodies that a coupling of hinges holds in a linear relation: of one body, or of two."""
-    model, data = scene.model, scene.data
-    curve = model.eq_data[index][:5]
+def _read_coupling(scene: PlanarModel, index: int, element: str) -> list[Joint]:
+    """Coordinates of two joints, or of one, in a linear relation."""
+    model, curve = scene.model, scene.model.eq_data[index][:5]
     pairs = [(int(model.eq_obj1id[index]), 1.0), (int(model.eq_obj2id[index]), -float(curve[1]))]
     parts = [(joint, factor) for joint, factor in pairs if joint >= 0 and factor]
-    wrong = -curve[0]
-    for joint, factor in parts:
-        place = int(model.jnt_qposadr[joint])
-        wrong += factor * (data.qpos[place] - model.qpos0[place])
-    return _held_angles(scene, index, element, parts, float(wrong))
+    moved = scene.data.qpos - model.qpos0
+    open_by = sum((factor * moved[scene.qpos_of(joint)] for joint, factor in parts), -curve[0])
+    return _read_sum(scene, index, element, parts, float(open_by))
 
 
-def _held_angles(scene: Scene, index: int, element: str, parts: list[tuple[int, float]], wrong: float) -> list[Joint]:
-    model = scene.model
-    if np.any(model.eq_data[index][2:5]):
+def _read_sum(scene: PlanarModel, index: int, element: str, parts: Parts, open_by: float) -> list[Joint]:
+    """A sum of joints' coordinates that an equality holds, and that is `open_by` [m or rad] at the start."""
+    if np.any(scene.model.eq_data[index][2:5]):
         raise refuse(element, "a coupling that is not linear has no ideal counterpart here")
-    slides = any(model.jnt_type[joint] != HINGE for joint, _ in parts)
+    slides = any(scene.model.jnt_type[joint] != HINGE for joint, _ in parts)
     # A smaller one is that of rounded digits, which the reading closes.
     largest = max((abs(factor) for _, factor in parts), default=1.0)
-    if abs(wrong) > PRINTED * largest * (max(1.0, float(model.stat.extent)) if slides else 1.0):
-        raise refuse(element, f"it is open by {abs(wrong):.2g} {'m' if slides else 'rad'} at the start")
+    if abs(open_by) > PRINTED * largest * (max(1.0, float(scene.model.stat.extent)) if slides else 1.0):
+        raise refuse(element, f"it is open by {abs(open_by):.2g} {'m' if slides else 'rad'} at the start")
     weights = angle_weights(scene, parts)
-    label = scene.names.new(plain_name(model, EQUALITY, index))
-    groups = list(weights)
+    label, groups = scene.new_name(EQUALITY, index), list(weights)
     if slides or len(groups) > 2:
         terms, offset = terms_of(scene, parts)
-        return [Coupling(label, terms, offset - wrong)]
-    if len(groups) == 1:
-        held = scene.angle(groups[0]) - wrong / weights[groups[0]]
-        return [Drive(label, None, scene.name(groups[0]), 0.0, held)]
+        return [Coupling(label, terms, offset - open_by)]
     if not groups:
         scene.note(element, "the sum that it holds does not change")
         return []
-    first, second = groups
-    ratio = -weights[first] / weights[second]
-    turned = scene.angle(second) - ratio * scene.angle(first) - wrong / weights[second]
+    *others, second = groups
+    first = others[0] if others else -1
+    ratio = -weights[first] / weights[second] if others else 1.0
+    turned = scene.angle(second) - ratio * scene.angle(first) - open_by / weights[second]
     if abs(ratio - 1) <= PLANAR:
         return [Drive(label, scene.name(first), scene.name(second), 0.0, turned)]
     return [Gear(label, scene.name(first), scene.name(second), ratio, turned)]
 
 
-def _tied(scene: Scene, index: int, element: str) -> list[Joint]:
-    """A tendon of constant length: a rod between two sites, or a sum of angles."""
+def _read_tendon(scene: PlanarModel, index: int, element: str) -> list[Joint]:
+    """A tendon of constant length: a rod between two sites, or a sum of coordinates."""
     model, data = scene.model, scene.data
-    tendon = int(model.eq_obj1id[index])
-    wrong = float(data.ten_length[tendon] - model.tendon_length0[tendon] - model.eq_data[index][0])
+    tendon, other = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
+    longer = data.ten_length - model.tendon_length0
+    open_by = float(longer[tendon] - model.eq_data[index][0])
     parts = wrapped_joints(model, tendon)
-    if (other := int(model.eq_obj2id[index])) >= 0:
+    if other >= 0:
         more, share = wrapped_joints(model, other), -float(model.eq_data[index][1])
         if parts is None or more is None:
-            raise refuse(
-                element, "it couples two tendons of which one goes through sites; only those over joints are read"
-            )
-        wrong += share * float(data.ten_length[other] - model.tendon_length0[other])
-        return _held_angles(scene, index, element, [*parts, *((joint, share * by) for joint, by in more)], wrong)
+            reason = "it couples two tendons of which one goes through sites; only those over joints are read"
+            raise refuse(element, reason)
+        parts, open_by = [*parts, *((joint, share * by) for joint, by in more)], open_by + share * float(longer[other])
     if parts is not None:
-        return _held_angles(scene, index, element, parts, wrong)
-    first, second, at, end = straight(scene, tendon)
-    if first == second:
+        return _read_sum(scene, index, element, parts, open_by)
+    ends = straight(scene, tendon)
+    if ends[0] == ends[1]:
         scene.note(element, "its two ends are on one body")
         return []
-    if abs(wrong) > PRINTED * max(1.0, model.stat.extent):
-        raise refuse(element, f"it is open by {abs(wrong):.2g} m at the start")
-    label = scene.names.new(plain_name(model, EQUALITY, index))
-    points = scene.own(first, at), scene.own(second, end)
-    return [Rod(label, scene.name(first), scene.name(second), *points, float(data.ten_length[tendon]) - wrong)]
+    if abs(open_by) > PRINTED * max(1.0, model.stat.extent):
+        raise refuse(element, f"it is open by {abs(open_by):.2g} m at the start")
+    length = float(data.ten_length[tendon]) - open_by
+    return [Rod(scene.new_name(EQUALITY, index), *scene.between(*ends), length)]
 
 
-# By the kind of an equality: what reads it, and as what.
-EQUALITIES = {
-    "connect": (_connected, "a pin"),
-    "weld": (_welded, "a weld; a pin where its torquescale is zero"),
+# The reader of each kind of equality, and the ideal joint that it is read as.
+EQUALITIES: dict[str, tuple[Callable[[PlanarModel, int, str], list[Joint]], str]] = {
+    "connect": (_read_connect, "a pin"),
+    "weld": (_read_weld, "a weld; a pin where its torquescale is zero"),
     "joint": (
-        _coupled,
+        _read_coupling,
         "a gear, a fixed angle, or a linear coupling of hinges and slides: mimic joints, rack and pinion",
     ),
-    "tendon": (_tied, "a rod between two sites; over joints, of one tendon or of two, a linear coupling"),
+    "tendon": (_read_tendon, "a rod between two sites; over joints, of one tendon or of two, a linear coupling"),
 }
 # What hangs a body on its parent.
 JOINTS = {

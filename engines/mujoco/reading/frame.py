@@ -1,13 +1,13 @@
 """The plane in which a MuJoCo model moves, found from its joints, and its bodies seen in that plane.
 
-Bodies without joints are one with their parents: their masses are merged. What lies across the plane has no part in
-the motion: joints hold it, and products of inertia only load them.
+Bodies without joints are merged with their parents. Positions and inertias across the plane have no part in the motion:
+joints hold them, and products of inertia only load these.
 """
 
 from __future__ import annotations
 
 import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -15,8 +15,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.reading import MOST_BODIES, refuse
-from reference.joints import Body
+from engines.reading import MOST_BODIES, Names, Note, refuse
+from reference.joints import Body, Joint, Vector
 
 Array = NDArray[np.float64]
 PLANAR = 1e-9  # of a unit vector, or of an inertia: what counts as rounding
@@ -25,6 +25,7 @@ PLANAR = 1e-9  # of a unit vector, or of an inertia: what counts as rounding
 PRINTED = 1e-4
 ROUGH = 1e-2  # rad: what a few digits less may make
 
+BODY, JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
 FREE, BALL, SLIDE, HINGE = (
     int(getattr(mujoco.mjtJoint, f"mjJNT_{kind}")) for kind in ("FREE", "BALL", "SLIDE", "HINGE")
 )
@@ -62,10 +63,9 @@ def plain_name(model: Any, kind: Any, index: int) -> str:
 
 def find_frame(model: Any, data: Any) -> Frame:
     """The plane in which every joint moves its body. Raises Unsupported where there is none."""
-    joint = mujoco.mjtObj.mjOBJ_JOINT
     kinds = model.jnt_type
     for index in np.flatnonzero(kinds == BALL):
-        raise refuse(name_of(model, joint, index), "a ball joint turns its body out of any plane")
+        raise refuse(name_of(model, JOINT, index), "a ball joint turns its body out of any plane")
     hinges, slides = np.flatnonzero(kinds == HINGE), np.flatnonzero(kinds == SLIDE)
     normal = data.xaxis[hinges[0]].copy() if len(hinges) else _without_hinges(model, data, slides)
     normal = _nearest_axis(normal / np.linalg.norm(normal))
@@ -76,13 +76,13 @@ def find_frame(model: Any, data: Any) -> Frame:
     more = "; if rounding in the file makes that, give its angles and quaternions with six digits or more"
     for index in hinges:
         if (off := float(np.linalg.norm(np.cross(normal, data.xaxis[index])))) > PRINTED:
-            first = name_of(model, joint, int(hinges[0]))
+            first = name_of(model, JOINT, int(hinges[0]))
             words = f"it is not parallel to {first}, but {off:.2g} rad off: this model moves in no plane"
-            raise refuse(name_of(model, joint, index), words + more * (off < ROUGH))
+            raise refuse(name_of(model, JOINT, index), words + more * (off < ROUGH))
     for index in slides:
         if (off := abs(float(normal @ data.xaxis[index]))) > PRINTED:
             words = f"it slides out of the plane in which the others move, by {off:.2g} rad"
-            raise refuse(name_of(model, joint, index), words + more * (off < ROUGH))
+            raise refuse(name_of(model, JOINT, index), words + more * (off < ROUGH))
     upward = np.array([0.0, 1.0, 0.0]) if abs(normal[2]) > 1 - PLANAR else np.array([0.0, 0.0, 1.0])
     up = upward - (upward @ normal) * normal
     up /= np.linalg.norm(up)
@@ -114,47 +114,36 @@ def flattened(model: Any, frame: Frame) -> tuple[Any, float]:
 
 
 def _without_hinges(model: Any, data: Any, slides: Any) -> Array:
-    """A normal across all slides and gravity."""
-    axes = np.array([data.xaxis[index] for index in slides]).reshape(-1, 3)
-    if np.linalg.matrix_rank(axes, tol=PLANAR) == 2:  # they are a plane, whatever pulls across it
-        return np.asarray(np.linalg.svd(axes)[2][-1])
-    vectors = [data.xaxis[index] for index in slides] + ([model.opt.gravity] if np.any(model.opt.gravity) else [])
-    spanned = np.linalg.svd(np.array(vectors).reshape(-1, 3))
-    rank = int(np.sum(spanned[1] > PLANAR * max(1.0, *spanned[1]))) if len(vectors) else 0
-    if rank == 3:
+    """A normal across all slides, and across gravity unless two slides span the plane."""
+    axes = data.xaxis[slides].reshape(-1, 3)
+    spanned = np.linalg.matrix_rank(axes, tol=PLANAR) == 2
+    vectors = axes if spanned else np.vstack([axes, model.opt.gravity])
+    _, sizes, directions = np.linalg.svd(vectors)
+    if np.sum(sizes > PLANAR * max(1.0, *sizes)) == 3:
         raise refuse("its slides and gravity", "they lie in no common plane")
-    candidates = [np.array(axis) for axis in ((0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0))]
-    for axis in candidates:
-        if all(abs(axis @ vector) <= PLANAR * np.linalg.norm(vector) for vector in vectors):
+    for axis in np.array([(0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0)]):
+        if np.all(np.abs(vectors @ axis) <= PLANAR * np.linalg.norm(vectors, axis=1)):
             return axis
-    return np.array(spanned[2][-1])
+    return np.asarray(directions[-1])
 
 
 @dataclass(frozen=True, eq=False)
 class Groups:
-    """What moves as one: `of` (nbody,) is the index among the mechanism's bodies, -1 for the ground.
+    """MuJoCo bodies that move as one: `of` (nbody,) is the index among the mechanism's bodies, -1 for the ground.
 
-    `roots`: MuJoCo's own body of each, that which has the joints. `centres` (bodies, 3) [m] in the frames of the roots.
-    `angles` (bodies,) [rad] at t = 0: the sum of the hinges up to the ground.
+    `roots`: the MuJoCo body of each group that has the joints. `centres` (groups, 3) [m]: centres of mass in the frames
+    of the roots. `signs` (njnt,): the sense of each joint's axis against the normal.
     """
 
     of: Array
     roots: tuple[int, ...]
     centres: Array
-    names: tuple[str, ...]
-    masses: Array
-    inertias: Array
-    angles: Array
-
-    def name(self, body: int) -> str | None:
-        """Of the group of MuJoCo's body."""
-        index = int(self.of[body])
-        return None if index < 0 else self.names[index]
+    signs: Array
 
 
-def find_groups(model: Any, data: Any, frame: Frame) -> Groups:
-    """Bodies merged with those that are fixed to them."""
-    roots = [body for body in range(1, model.nbody) if model.body_jntnum[body] > 0]
+def find_bodies(model: Any, data: Any, frame: Frame) -> tuple[Groups, tuple[Body, ...]]:
+    """MuJoCo's bodies merged with those that are fixed to them, and the mechanism's bodies in the state of `data`."""
+    roots = [int(body) for body in np.flatnonzero(model.body_jntnum)]
     if not roots:
         raise refuse("the model", "nothing in it can move")
     if len(roots) > MOST_BODIES:
@@ -162,56 +151,54 @@ def find_groups(model: Any, data: Any, frame: Frame) -> Groups:
     of = np.full(model.nbody, -1)
     for body in range(1, model.nbody):
         of[body] = roots.index(body) if model.body_jntnum[body] else of[model.body_parentid[body]]
-    masses, inertias, centres = np.zeros(len(roots)), np.zeros(len(roots)), np.zeros((len(roots), 3))
-    for index, root in enumerate(roots):
-        own = np.flatnonzero(of == index)
-        mass = model.body_mass[own]
-        masses[index] = mass.sum()
-        name = name_of(model, mujoco.mjtObj.mjOBJ_BODY, root)
-        if not masses[index] > 0:
-            raise refuse(name, "it has no mass")
-        centre = mass @ data.xipos[own] / masses[index]
-        tensor = np.zeros((3, 3))
-        for body in own:
-            turn = data.ximat[body].reshape(3, 3)
-            arm = data.xipos[body] - centre
-            tensor += turn @ np.diag(model.body_inertia[body]) @ turn.T
-            tensor += model.body_mass[body] * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-        inertias[index] = frame.normal @ tensor @ frame.normal
-        if not inertias[index] > 0:
-            raise refuse(name, "its inertia about the normal of the plane is zero")
-        centres[index] = data.xmat[root].reshape(3, 3).T @ (centre - data.xpos[root])
-        if FREE in _kinds(model, root):
-            _refuse_free_body_out_of_plane(frame, tensor, inertias[index], name)
-    names = tuple(plain_name(model, mujoco.mjtObj.mjOBJ_BODY, root) for root in roots)
-    groups = Groups(of, tuple(roots), centres, names, masses, inertias, np.zeros(len(roots)))
-    groups.angles[:] = angles_of(model, frame, groups, data.qpos[None])[0]
-    return groups
+    groups = Groups(of, tuple(roots), np.zeros((len(roots), 3)), np.sign(data.xaxis @ frame.normal))
+    angles = angles_of(model, frame, groups, data.qpos[None])[0]
+    return groups, tuple(_body(model, data, frame, groups, index, float(angle)) for index, angle in enumerate(angles))
 
 
-def _kinds(model: Any, body: int) -> list[int]:
-    begin = int(model.body_jntadr[body])
-    return [int(model.jnt_type[index]) for index in range(begin, begin + int(model.body_jntnum[body]))]
-
-
-def _refuse_free_body_out_of_plane(frame: Frame, tensor: Array, inertia: float, name: str) -> None:
-    tilted = tensor @ frame.normal - inertia * frame.normal
-    if np.linalg.norm(tilted) > PLANAR * inertia:
-        raise refuse(name, "it is free, and the normal of the plane is no principal axis of its inertia")
+def _body(model: Any, data: Any, frame: Frame, groups: Groups, index: int, angle: float) -> Body:
+    """One body of the mechanism; its centre of mass is stored in `groups`."""
+    root, parts = groups.roots[index], np.flatnonzero(groups.of == index)
+    element, masses = name_of(model, BODY, root), model.body_mass[parts]
+    if not masses.sum() > 0:
+        raise refuse(element, "it has no mass")
+    centre = masses @ data.xipos[parts] / masses.sum()
+    tensor = np.zeros((3, 3))
+    for body in parts:
+        turn, arm = data.ximat[body].reshape(3, 3), data.xipos[body] - centre
+        tensor += turn @ np.diag(model.body_inertia[body]) @ turn.T
+        tensor += model.body_mass[body] * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    inertia = frame.normal @ tensor @ frame.normal
+    if not inertia > 0:
+        raise refuse(element, "its inertia about the normal of the plane is zero")
+    tilted = np.linalg.norm(tensor @ frame.normal - inertia * frame.normal)
+    if model.jnt_type[model.body_jntadr[root]] == FREE and tilted > PLANAR * inertia:
+        raise refuse(element, "it is free, and the normal of the plane is no principal axis of its inertia")
+    turn = data.xmat[root].reshape(3, 3)
+    groups.centres[index] = turn.T @ (centre - data.xpos[root])
+    centre = data.xpos[root] + turn @ groups.centres[index]  # as every later state has it
+    moving, turning = np.zeros((2, 3, model.nv))
+    mujoco.mj_jac(model, data, moving, turning, centre, root)
+    speed, rate = moving @ data.qvel, turning @ data.qvel
+    span = np.linalg.norm(speed) + np.linalg.norm(rate)
+    if abs(speed @ frame.normal) > PLANAR * span or np.linalg.norm(frame.both @ rate) > PLANAR * span:
+        raise refuse(element, "it moves out of the plane at the start")
+    twist = (*frame.in_plane(speed), float(rate @ frame.normal))
+    name = plain_name(model, BODY, root)
+    return Body(name, float(masses.sum()), float(inertia), (*frame.in_plane(centre), angle), twist)
 
 
 def angles_of(model: Any, frame: Frame, groups: Groups, qpos: Array) -> Array:
-    """Angles (times, bodies) [rad], not wrapped, of positions (times, nq)."""
+    """Angles (times, groups) [rad], not wrapped, of positions (times, nq): the sums of the hinges up to the ground."""
     angles = np.zeros((len(qpos), len(groups.roots)))
     for index, root in enumerate(groups.roots):
-        parent = int(groups.of[model.body_parentid[root]])
+        parent, first = int(groups.of[model.body_parentid[root]]), int(model.body_jntadr[root])
         if parent >= 0:
             angles[:, index] = angles[:, parent]
-        begin = int(model.body_jntadr[root])
-        for joint in range(begin, begin + int(model.body_jntnum[root])):
+        for joint in range(first, first + int(model.body_jntnum[root])):
             place = int(model.jnt_qposadr[joint])
             if model.jnt_type[joint] == HINGE:
-                angles[:, index] += _hinge_sign(model, frame, groups, joint) * qpos[:, place]
+                angles[:, index] += groups.signs[joint] * qpos[:, place]
             elif model.jnt_type[joint] == FREE:
                 angles[:, index] += np.unwrap(2 * np.arctan2(*_turn(model, frame, place + 3, qpos)))
     return angles
@@ -226,33 +213,77 @@ def _turn(model: Any, frame: Frame, place: int, qpos: Array) -> tuple[Array, Arr
     return vector @ frame.normal, now @ begin
 
 
-def _hinge_sign(model: Any, frame: Frame, groups: Groups, joint: int) -> float:
-    """From the model alone: every turn before this joint is about the normal and leaves its axis as it is."""
-    body = int(model.jnt_bodyid[joint])
-    axis = model.jnt_axis[joint].copy()
-    while body > 0:
-        turned = np.zeros(3)
-        mujoco.mju_rotVecQuat(turned, axis, model.body_quat[body])
-        begin = int(model.body_jntadr[body])
-        if begin >= 0 and FREE in _kinds(model, body):
-            turned = axis  # the quaternion of a free joint replaces that of the body; its turns leave the normal
-            mujoco.mju_rotVecQuat(turned := np.zeros(3), axis, model.qpos0[int(model.jnt_qposadr[begin]) + 3 :][:4])
-        axis, body = turned, int(model.body_parentid[body])
-    return float(np.sign(axis @ frame.normal))
+@dataclass(eq=False)
+class PlanarModel:
+    """A model in its start, while it is read, and the bodies of its mechanism."""
 
+    model: Any
+    data: Any
+    frame: Frame
+    groups: Groups
+    bodies: tuple[Body, ...]
+    names: Names = field(default_factory=Names)
+    notes: list[Note] = field(default_factory=list)
+    held: dict[int, tuple[Joint, ...]] = field(default_factory=dict)  # the ideal joints of each equality
 
-def bodies_of(model: Any, data: Any, frame: Frame, groups: Groups) -> tuple[Body, ...]:
-    """The mechanism's bodies in the state of `data`."""
-    out = []
-    for index, root in enumerate(groups.roots):
-        place = data.xpos[root] + data.xmat[root].reshape(3, 3) @ groups.centres[index]
-        moving, turning = np.zeros((3, model.nv)), np.zeros((3, model.nv))
-        mujoco.mj_jac(model, data, moving, turning, place, root)
-        speed, rate = moving @ data.qvel, turning @ data.qvel
-        span = np.linalg.norm(speed) + np.linalg.norm(rate)
-        if abs(speed @ frame.normal) > PLANAR * span or np.linalg.norm(frame.both @ rate) > PLANAR * span:
-            raise refuse(name_of(model, mujoco.mjtObj.mjOBJ_BODY, root), "it moves out of the plane at the start")
-        pose = (*frame.in_plane(place), float(groups.angles[index]))
-        twist = (*frame.in_plane(speed), float(rate @ frame.normal))
-        out.append(Body(groups.names[index], float(groups.masses[index]), float(groups.inertias[index]), pose, twist))
-    return tuple(out)
+    def group(self, body: int) -> int:
+        """The index among the mechanism's bodies, -1 for the ground."""
+        return int(self.groups.of[body])
+
+    def group_of(self, joint: int) -> int:
+        """The group that a joint moves."""
+        return self.group(self.model.jnt_bodyid[joint])
+
+    def parent(self, joint: int) -> int:
+        """The group against which a joint moves its own."""
+        return self.group(self.model.body_parentid[self.model.jnt_bodyid[joint]])
+
+    def name(self, group: int) -> str | None:
+        return None if group < 0 else self.bodies[group].name
+
+    def angle(self, group: int) -> float:
+        return 0.0 if group < 0 else self.bodies[group].pose[2]
+
+    def turned(self, first: int, second: int) -> float:
+        """The angle of the second group against the first at the start [rad]."""
+        return self.angle(second) - self.angle(first)
+
+    def in_body(self, group: int, point: Any) -> Vector:
+        """A point of the world (3,) [m] in the frame of a body, or of the ground."""
+        x, y = self.frame.in_plane(point)
+        if group < 0:
+            return x, y
+        at_x, at_y, angle = self.bodies[group].pose
+        cosine, sine = np.cos(angle), np.sin(angle)
+        x, y = x - at_x, y - at_y
+        return float(cosine * x + sine * y), float(cosine * y - sine * x)
+
+    def between(self, first: int, second: int, at: Any, other: Any) -> tuple[str | None, str | None, Vector, Vector]:
+        """The names of two groups, and a point of the world in the frame of each."""
+        return self.name(first), self.name(second), self.in_body(first, at), self.in_body(second, other)
+
+    def direction(self, group: int, axis: Any) -> float:
+        """The angle [rad] of a direction of the world in the frame of a body."""
+        x, y = self.frame.in_plane(axis)
+        return float(np.arctan2(y, x)) - self.angle(group)
+
+    def centre(self, group: int) -> Array:
+        """The centre of mass (3,) of a group at the start, moved along the normal into the plane of the origin [m]."""
+        return self.frame.both.T @ self.bodies[group].pose[:2]
+
+    def joints_of(self, group: int, *kinds: int) -> list[int]:
+        """The joints between a group and its parent, of these kinds if any are named."""
+        root = self.groups.roots[group]
+        first = int(self.model.body_jntadr[root])
+        joints = range(first, first + int(self.model.body_jntnum[root]))
+        return [joint for joint in joints if not kinds or self.model.jnt_type[joint] in kinds]
+
+    def qpos_of(self, joint: int) -> int:
+        """The index of a joint's coordinate in qpos."""
+        return int(self.model.jnt_qposadr[joint])
+
+    def new_name(self, kind: Any, index: int) -> str:
+        return self.names.new(plain_name(self.model, kind, index))
+
+    def note(self, element: str, reason: str) -> None:
+        self.notes.append(Note(element, reason))

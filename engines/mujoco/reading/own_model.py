@@ -1,4 +1,7 @@
-"""A user's MuJoCo model as it is: run from its start, with its own settings or with others that MuJoCo documents."""
+"""A user's MuJoCo model as it is: run from its start, with its own settings or with others that MuJoCo documents.
+
+The limits and contacts that a motion meets in it are here as well.
+"""
 
 from __future__ import annotations
 
@@ -12,23 +15,25 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.mujoco.reading.elements import Scene
-from engines.mujoco.reading.frame import angles_of, name_of
-from engines.mujoco.reading.obstacles import obstacles, positions
+from engines.mujoco.reading.elements import EQUALITY, TENDON
+from engines.mujoco.reading.forces import ACTUATOR, limited_servos
+from engines.mujoco.reading.frame import JOINT, PlanarModel, angles_of, name_of
 from engines.mujoco.reading.settings import TIED_STEPS, changes, declared, switch_off
 from engines.mujoco.releases import marks, spelled
 from engines.mujoco.running import listening
 from engines.mujoco.stiffness import STIFFEST
-from engines.reading import Change, Give, Note, Obstacle
+from engines.reading import Change, Give, Note, Obstacle, left_out
 from engines.sampling import sampled
 from reference.joints import Rod
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-
-
 STATE = ("qpos", "qvel", "ctrl", "act", "qfrc_applied", "xfrc_applied", "eq_active", "mocap_pos", "mocap_quat")
+LIMITS = {
+    int(mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT): JOINT,
+    int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON): TENDON,
+}
 
 
 def in_state(model: Any, state: Any) -> Any:
@@ -39,32 +44,85 @@ def in_state(model: Any, state: Any) -> Any:
     return data
 
 
+def centres(scene: PlanarModel, data: Any) -> Array:
+    """The centres of mass (bodies, 3) [m] in the world."""
+    roots = list(scene.groups.roots)
+    return data.xpos[roots] + np.einsum("bij,bj->bi", data.xmat[roots].reshape(-1, 3, 3), scene.groups.centres)
+
+
+def directions(scene: PlanarModel, data: Any) -> Array:
+    """(bodies, 3, nv): the twists of unit velocities of MuJoCo's coordinates."""
+    jac, out = np.zeros((2, 3, scene.model.nv)), np.zeros((len(scene.bodies), 3, scene.model.nv))
+    for index, (root, centre) in enumerate(zip(scene.groups.roots, centres(scene, data), strict=True)):
+        mujoco.mj_jac(scene.model, data, jac[0], jac[1], centre, root)
+        out[index, :2], out[index, 2] = scene.frame.both @ jac[0], scene.frame.normal @ jac[1]
+    return out
+
+
+def positions(scene: PlanarModel, pose: Array) -> Array:
+    """qpos (times, nq) of poses (times, bodies, 3); MuJoCo's coordinates have no loops, so any pose has one."""
+    model, data = scene.model, in_state(scene.model, scene.data)
+    out = np.empty((len(pose), model.nq))
+    for sample, wanted in enumerate(pose):
+        data.qpos[:] = scene.data.qpos
+        # Angles are linear in the coordinates. With these right, places are linear in those that turn nothing.
+        for part in (slice(2, 3), slice(0, 2)):
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_comPos(model, data)
+            angle = angles_of(model, scene.frame, scene.groups, data.qpos[None])[0]
+            miss = wanted - np.column_stack([centres(scene, data) @ scene.frame.both.T, angle])
+            columns = directions(scene, data)
+            still = ~np.any(columns[:, 2], axis=0) if part.start == 0 else np.any(columns[:, 2], axis=0)
+            way = np.zeros(model.nv)
+            right = miss[:, part].reshape(-1)
+            way[still] = np.linalg.lstsq(columns[:, part][..., still].reshape(len(right), -1), right, rcond=None)[0]
+            mujoco.mj_integratePos(model, data.qpos, way, 1.0)
+        out[sample] = data.qpos
+    return out
+
+
+def limited_forces(model: Any) -> list[str]:
+    """The elements with a limit of their force, which no ideal mechanism has."""
+    tables = ((ACTUATOR, limited_servos(model)), (JOINT, model.jnt_actfrclimited), (TENDON, model.tendon_actfrclimited))
+    return [name_of(model, kind, index) for kind, limited in tables for index in np.flatnonzero(limited)]
+
+
+def _at_limits(model: Any, data: Any) -> list[str]:
+    """The elements that are at a limit of their force in the state of `data`, after mj_fwdPosition."""
+    free = copy.copy(model)
+    free.actuator_forcelimited[limited_servos(model)] = 0
+    free.jnt_actfrclimited[:] = free.tendon_actfrclimited[:] = 0
+    mujoco.mj_fwdVelocity(model, data)
+    mujoco.mj_fwdActuation(free, data)
+    wanted, unlimited = data.actuator_force.copy(), data.qfrc_actuator.copy()
+    mujoco.mj_fwdActuation(model, data)
+    actuators = np.flatnonzero(wanted != data.actuator_force)
+    joints = [] if len(actuators) else model.dof_jntid[unlimited != data.qfrc_actuator]
+    return [name_of(model, ACTUATOR, index) for index in actuators] + [name_of(model, JOINT, index) for index in joints]
+
+
 @dataclass(frozen=True, eq=False)
 class OwnMuJoCo:
     """The compiled model and its start; see `engines.reading.OwnModel`.
 
-    `users`: the user's model, which is run; the scene's is the same, but that its joints move exactly in the plane;
+    `users`: the user's model, which is run; the scene's is the same, except that its joints move exactly in the plane;
     `tilt` [rad]: by how much the user's do not.
     """
 
-    scene: Scene
+    scene: PlanarModel
     mechanism: Mechanism
     users: Any
     tilt: float = 0.0
     urdf: bool = False  # read from a URDF file without an element of MuJoCo's own: the lines to copy bring one
     classes: bool = False  # the file may have classes of its own, which a default that is copied does not reach
 
-    @property
-    def engine(self) -> str:
-        return "MuJoCo"
+    engine = "MuJoCo"
+    assumed = ""
+    elements = ("contact", "limit", "frictionloss", "actuation", "spring", "damper", "armature")
 
     @property
     def dt(self) -> float:
         return float(self.scene.model.opt.timestep)
-
-    @property
-    def assumed(self) -> str:
-        return ""
 
     @property
     def declares(self) -> bool:
@@ -76,10 +134,6 @@ class OwnMuJoCo:
         return any(self.scene.held.values())
 
     @property
-    def elements(self) -> Sequence[str]:
-        return ("contact", "limit", "frictionloss", "actuation", "spring", "damper", "armature")
-
-    @property
     def own_twist(self) -> Array:
         return np.array([body.twist for body in self.scene.bodies])
 
@@ -89,8 +143,7 @@ class OwnMuJoCo:
 
     @property
     def settings(self) -> Mapping[str, str]:
-        model = self.scene.model
-        option = model.opt
+        model, option = self.scene.model, self.scene.model.opt
         out = {
             "timestep": f"{option.timestep:g} s",
             "integrator": spelled(mujoco.mjtIntegrator(option.integrator)),
@@ -100,10 +153,9 @@ class OwnMuJoCo:
             "cone": spelled(mujoco.mjtCone(option.cone)),
         }
         for index, joints in self.scene.held.items():
-            if joints:
-                element = name_of(model, mujoco.mjtObj.mjOBJ_EQUALITY, index)
-                out[f"solref of {element}"] = " ".join(f"{value:g}" for value in model.eq_solref[index])
-                out[f"solimp of {element}"] = " ".join(f"{value:g}" for value in model.eq_solimp[index])
+            for name in ("solref", "solimp") if joints else ():
+                values = getattr(model, f"eq_{name}")[index]
+                out[f"{name} of {name_of(model, EQUALITY, index)}"] = " ".join(f"{value:g}" for value in values)
         return out
 
     def start(self) -> Array:
@@ -123,6 +175,9 @@ class OwnMuJoCo:
             mujoco.mj_forward(model, data)
         return self._motion(model, data)[1]
 
+    def give(self, gap: Array, pose: Array) -> Give:
+        return self._give(gap, pose)
+
     @cached_property
     def _give(self) -> Any:
         data = self._fresh(self.scene.model)
@@ -132,21 +187,40 @@ class OwnMuJoCo:
             mujoco.mj_fwdPosition(self.scene.model, data)
             return data
 
-        return declared(self.scene, self.mechanism, self._directions(self.scene.data), self._drift(), moved)
+        columns = directions(self.scene, self.scene.data).reshape(-1, self.scene.model.nv)
+        return declared(self.scene, self.mechanism, columns, self._drift(), moved)
 
     def _drift(self) -> Array:
         """Accelerations (3 bodies,) at the start with MuJoCo's coordinates at a steady rate."""
-        model = self.scene.model
-        data = self._started(model)
-        mujoco.mj_forward(model, data)
+        data = self._started(self.scene.model)
+        mujoco.mj_forward(self.scene.model, data)
         data.qacc[:] = 0.0
-        return self._motion(model, data)[1].reshape(-1)
-
-    def give(self, gap: Array, pose: Array) -> Give:
-        return self._give(gap, pose)
+        return self._motion(self.scene.model, data)[1].reshape(-1)
 
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
-        return obstacles(self.scene, self._fresh(self.scene.model), self._directions, t, pose, twist)
+        """What the motion of poses and twists (times, bodies, 3) meets first, in the order of time."""
+        model, data, first = self.scene.model, self._fresh(self.scene.model), dict[str, Obstacle]()
+        kinds = mujoco.mjtConstraint
+        touching = range(int(kinds.mjCNSTR_CONTACT_FRICTIONLESS), int(kinds.mjCNSTR_CONTACT_ELLIPTIC) + 1)
+        has_limits = bool(limited_forces(model))
+        for at, qpos, rates in zip(t, positions(self.scene, pose), twist, strict=True):
+            data.qpos[:] = qpos
+            mujoco.mj_fwdPosition(model, data)
+            met: list[tuple[str, str]] = []
+            for kind, index in zip(data.efc_type, data.efc_id, strict=True):
+                if kind in LIMITS:
+                    met.append((f"{name_of(model, LIMITS[kind], index)} reaches its limit", "limit"))
+                elif kind in touching:
+                    pair = [name_of(model, mujoco.mjtObj.mjOBJ_GEOM, geom) for geom in data.contact[index].geom]
+                    met.append((f"{pair[0]} touches {pair[1]}", "contact"))
+            if has_limits:
+                self._set_rates(data, rates)
+                met += [
+                    (f"{element} reaches the limit of its force", "forcelimit") for element in _at_limits(model, data)
+                ]
+            for words, without in met:
+                first.setdefault(words, Obstacle(float(at), words, left_out(without)))
+        return sorted(first.values(), key=lambda obstacle: obstacle.t)
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
         return changes(self.scene.model, self.softly_held, smallest, self.urdf, self.classes, further)
@@ -163,8 +237,8 @@ class OwnMuJoCo:
 
         words = (
             f"they are up to {self.tilt:.2g} rad off, as rounding of a file makes them, and taken as exact; with exact "
+            f"ones your model moves differently by {moved(run, None)} in {run.t[-1]:.3g} s"
         )
-        words += f"ones your model moves differently by {moved(run, None)} in {run.t[-1]:.3g} s"
         if self.softly_held:
             stiff = self.changes(self.dt)[-1]
             words += f", with stiff loops by {moved(self.run(samples, every, stiff), stiff)}"
@@ -197,31 +271,26 @@ class OwnMuJoCo:
             sound = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
             if reset is not None:
                 sound &= t < reset - model.opt.timestep / 2  # a sum of steps is rounded
-            pose, twist, acceleration = self._read(model, data, qpos, qvel, sound)
+            sound = np.logical_and.accumulate(sound)
+            pose, twist, acceleration = self._read(model, qpos[sound], qvel[sound], len(t))
             warnings = (*complaints.said, *marks())
         reaction = np.full((samples + 1, self.mechanism.row_count), np.nan)
-        if self.mechanism.row_count:
-            own = (each[sound] for each in (pose, acceleration, twist))
-            reaction[sound] = self._reactions(*own) if sound.any() else np.nan
+        if self.mechanism.row_count and sound.any():
+            reaction[sound] = self.mechanism.reaction(pose[sound], acceleration[sound], twist=twist[sound])
         return Trajectory(t, pose, twist, reaction, stepping, warnings, reset)
 
-    def _reactions(self, pose: Array, acceleration: Array, twist: Array) -> Array:
-        return self.mechanism.reaction(pose, acceleration, twist=twist)
-
-    def _read(self, model: Any, data: Any, qpos: Array, qvel: Array, sound: Any) -> tuple[Array, Array, Array]:
-        shape = (len(qpos), len(self.mechanism.bodies), 3)
-        pose, twist, acceleration = (np.full(shape, np.nan) for _ in range(3))
+    def _read(self, model: Any, qpos: Array, qvel: Array, count: int) -> tuple[Array, Array, Array]:
+        """Poses, twists and accelerations (count, bodies, 3) of the first states, NaN after them."""
+        pose, twist, acceleration = np.full((3, count, len(self.mechanism.bodies), 3), np.nan)
         data = self._fresh(model)
-        last = int(np.argmin(sound)) if not sound.all() else len(sound)
-        sound[last:] = False
-        angles = angles_of(model, self.scene.frame, self.scene.groups, qpos[:last]) if last else np.zeros((0, 1))
-        for sample in range(last):
+        if len(qpos):
+            pose[: len(qpos), :, 2] = angles_of(model, self.scene.frame, self.scene.groups, qpos)
+        for sample in range(len(qpos)):
             data.qpos[:], data.qvel[:] = qpos[sample], qvel[sample]
             mujoco.mj_forward(model, data)
             data.qacc_warmstart[:] = data.qacc
             twist[sample], acceleration[sample] = self._motion(model, data)
-            pose[sample, :, :2] = self._centres(data) @ self.scene.frame.both.T
-            pose[sample, :, 2] = angles[sample]
+            pose[sample, :, :2] = centres(self.scene, data) @ self.scene.frame.both.T
         return pose, twist, acceleration
 
     def _fresh(self, model: Any) -> Any:
@@ -233,35 +302,20 @@ class OwnMuJoCo:
         data = self._fresh(model)
         mujoco.mj_fwdPosition(model, data)
         if np.any(self.own_twist != self.mechanism.twist):
-            data.qvel[:] = np.linalg.lstsq(self._directions(data), self.mechanism.twist.reshape(-1), rcond=None)[0]
+            self._set_rates(data, self.mechanism.twist)
         return data
 
-    def _centres(self, data: Any) -> Array:
-        groups = self.scene.groups
-        roots = list(groups.roots)
-        turns = data.xmat[roots].reshape(-1, 3, 3)
-        return data.xpos[roots] + np.einsum("bij,bj->bi", turns, groups.centres)
+    def _set_rates(self, data: Any, twist: Array) -> None:
+        columns = directions(self.scene, data).reshape(-1, self.scene.model.nv)
+        data.qvel[:] = np.linalg.lstsq(columns, twist.reshape(-1), rcond=None)[0]
 
     def _motion(self, model: Any, data: Any) -> tuple[Array, Array]:
         """Twists and accelerations (bodies, 3) in the state of `data`, after mj_forward."""
-        frame, count = self.scene.frame, len(self.mechanism.bodies)
-        out = np.zeros((2, count, 3))
-        jac, rate = np.zeros((2, 3, model.nv)), np.zeros((2, 3, model.nv))
-        # What holds a tree: the derivative of the Jacobian along the motion.
-        for index, (root, centre) in enumerate(zip(self.scene.groups.roots, self._centres(data), strict=True)):
+        frame, out = self.scene.frame, np.zeros((2, len(self.mechanism.bodies), 3))
+        jac, rate = np.zeros((2, 2, 3, model.nv))
+        for index, (root, centre) in enumerate(zip(self.scene.groups.roots, centres(self.scene, data), strict=True)):
             mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
             mujoco.mj_jacDot(model, data, rate[0], rate[1], centre, root)
-            for which, vectors in enumerate((jac @ data.qvel, jac @ data.qacc + rate @ data.qvel)):
-                out[which, index, :2] = frame.both @ vectors[0]
-                out[which, index, 2] = frame.normal @ vectors[1]
+            for which, (along, turning) in enumerate((jac @ data.qvel, jac @ data.qacc + rate @ data.qvel)):
+                out[which, index, :2], out[which, index, 2] = frame.both @ along, frame.normal @ turning
         return out[0], out[1]
-
-    def _directions(self, data: Any) -> Array:
-        """(3 bodies, nv): twists of unit velocities of MuJoCo's coordinates."""
-        model, frame = self.scene.model, self.scene.frame
-        jac = np.zeros((2, 3, model.nv))
-        out = np.zeros((len(self.mechanism.bodies), 3, model.nv))
-        for index, (root, centre) in enumerate(zip(self.scene.groups.roots, self._centres(data), strict=True)):
-            mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
-            out[index, :2], out[index, 2] = frame.both @ jac[0], frame.normal @ jac[1]
-        return out.reshape(-1, model.nv)

@@ -16,7 +16,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.mujoco.reading.elements import Scene, equality_rows
+from engines.mujoco.declared import jacobian
+from engines.mujoco.reading.elements import equality_rows
+from engines.mujoco.reading.frame import PlanarModel
 from engines.mujoco.releases import spelled
 from engines.mujoco.stiffness import STIFFEST
 from engines.reading import Change, Give, refuse
@@ -29,8 +31,8 @@ LEAST_IMPEDANCE, MOST_IMPEDANCE = 1e-4, 0.9999  # mjMINIMP and mjMAXIMP
 
 @dataclass(frozen=True, eq=False)
 class _Held:
-    """An equality and its ideal rows `places`. `blocks`: which of its rows in MuJoCo (slice) are which multiples
-    (rows, places) of which of ours (slice); `factors` (places,): the lengths of these multiples.
+    """An equality, and the indices `places` of its ideal rows. `blocks`: the MuJoCo rows (slice) that are multiples
+    (rows, places) of some of the ideal ones (slice); `factors` (places,): the lengths of these multiples.
     """
 
     equality: int
@@ -43,66 +45,63 @@ class _Held:
 
 
 def declared(
-    scene: Scene, mechanism: Mechanism, directions: Array, drift: Array, moved: Callable[[Array], Any]
+    scene: PlanarModel, mechanism: Mechanism, directions: Array, drift: Array, moved: Callable[[Array], Any]
 ) -> Callable[[Array, Array], Give]:
     """How each row gives way at a gap (rows,) [m, rad] and a pose (bodies, 3).
 
     directions (3 bodies, nv): how MuJoCo's coordinates move the bodies at the start, where its rows are compared with
     the mechanism's: a row that is a multiple of ours has a compliance of another size. drift (3 bodies,): the bodies'
     accelerations there with MuJoCo's coordinates at a steady rate: an equality of a tendon, which has no term of
-    velocities (up to 4.0.1), holds these steady. moved: gives a mujoco.MjData at a pose, after mj_fwdPosition; asked
-    for with the flag `diagexact` alone, whose diagonal is that of the pose. Without it the diagonal is an estimate of
+    velocities (up to 4.0.1), holds these steady. moved: returns a mujoco.MjData at a pose, after mj_fwdPosition; used
+    with the flag `diagexact` alone, whose diagonal is that of the pose. Without it the diagonal is an estimate of
     the compiler's, the same at all poses.
     """
-    model, data = scene.model, scene.data
-    places, start = dict[str, range](), 0
+    begin = np.cumsum([0, *(joint.size for joint in mechanism.joints)])
+    places = {joint.name: list(range(at, at + joint.size)) for joint, at in zip(mechanism.joints, begin, strict=False)}
+    rows, instead = mechanism.rows(mechanism.pose), np.full(mechanism.row_count, np.nan)
     for joint in mechanism.joints:
-        places[joint.name] = range(start, start + joint.size)
-        start += joint.size
-    instead = np.full(mechanism.row_count, np.nan)
-    rods = [joint.name for joint in mechanism.joints if isinstance(joint, Rod)]
-    for name in rods:
-        instead[places[name]] = mechanism.rows(mechanism.pose)[places[name]] @ drift
-    ours = mechanism.rows(mechanism.pose) @ directions
-    theirs = _dense(model, data)
-    held: list[_Held] = []
-    for index, joints in scene.held.items():
-        own = [place for joint in joints for place in places[joint.name]]
-        rows = equality_rows(data, index)
-        if not own or not len(rows):
-            continue
-        blocks, factors = [], np.ones(len(own))
-        if len(own) > 1:  # a connect, or the first rows of a weld: along the axes of the world
-            blocks.append((slice(0, 3), slice(0, 2), scene.frame.both.T))
-        if len(own) != 2:
-            place, turning = own[-1], slice(3 if len(own) > 1 else 0, len(rows))
-            length = float(ours[place] @ ours[place])
-            multiple = theirs[rows[turning]] @ ours[place] / length if length else np.ones(len(rows[turning]))
-            blocks.append((turning, slice(len(own) - 1, len(own)), multiple[:, None]))
-            factors[-1] = np.linalg.norm(multiple)
-        stiffness, damping, _ = (float(value) for value in data.efc_KBIP[rows[0]][:3])
-        held.append(_Held(index, own, tuple(blocks), factors, model.eq_solimp[index].copy(), stiffness, damping))
-    exact = bool(model.opt.enableflags & int(getattr(mujoco.mjtEnableBit, "mjENBL_DIAGEXACT", 0)))
-    usual = {each.equality: _estimates(data, each.equality) for each in held}
+        if isinstance(joint, Rod):
+            instead[places[joint.name]] = rows[places[joint.name]] @ drift
+    ours, theirs = rows @ directions, jacobian(scene.model, scene.data)
+    held = [
+        _held(scene, index, [place for joint in joints for place in places[joint.name]], ours, theirs)
+        for index, joints in scene.held.items()
+        if joints and len(equality_rows(scene.data, index))
+    ]
+    is_exact = bool(scene.model.opt.enableflags & int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT))
 
     def give(gap: Array, pose: Array) -> Give:
         stiffness, damping = np.zeros((2, mechanism.row_count))
         compliance = np.zeros((mechanism.row_count, mechanism.row_count))
-        now = moved(pose) if exact else None
-        for each in held:
-            d = impedance_of(each.shape, float(np.linalg.norm(each.factors * gap[each.places])))
-            stiffness[each.places], damping[each.places] = each.stiffness * d, each.damping
-            estimates = usual[each.equality] if now is None else _estimates(now, each.equality)
-            for rows, which, multiples in each.blocks:
+        data = moved(pose) if is_exact else scene.data
+        for one in held:
+            d = impedance_of(one.shape, float(np.linalg.norm(one.factors * gap[one.places])))
+            stiffness[one.places], damping[one.places] = one.stiffness * d, one.damping
+            diagonal = _diagonal(data, one.equality)
+            for of_mujoco, which, multiples in one.blocks:
                 # R f = a_ref - a in MuJoCo's rows, which are these multiples of ours.
-                stiff = multiples.T @ (multiples / estimates[rows, None])
-                compliance[np.ix_(each.places[which], each.places[which])] = (1 - d) / d * np.linalg.inv(stiff)
+                stiff = multiples.T @ (multiples / diagonal[of_mujoco, None])
+                compliance[np.ix_(one.places[which], one.places[which])] = (1 - d) / d * np.linalg.inv(stiff)
         return Give(stiffness, damping, compliance, instead)
 
     return give
 
 
-def _estimates(data: Any, equality: int) -> Array:
+def _held(scene: PlanarModel, equality: int, places: list[int], ours: Array, theirs: Array) -> _Held:
+    rows, blocks, factors = equality_rows(scene.data, equality), [], np.ones(len(places))
+    if len(places) > 1:  # a connect, or the first rows of a weld: along the axes of the world
+        blocks.append((slice(0, 3), slice(0, 2), scene.frame.both.T))
+    if len(places) != 2:
+        own, turning = ours[places[-1]], slice(3 if len(places) > 1 else 0, len(rows))
+        length = float(own @ own)
+        multiple = theirs[rows[turning]] @ own / length if length else np.ones(len(rows[turning]))
+        blocks.append((turning, slice(len(places) - 1, len(places)), multiple[:, None]))
+        factors[-1] = np.linalg.norm(multiple)
+    stiffness, damping, _ = (float(value) for value in scene.data.efc_KBIP[rows[0]][:3])
+    return _Held(equality, places, tuple(blocks), factors, scene.model.eq_solimp[equality], stiffness, damping)
+
+
+def _diagonal(data: Any, equality: int) -> Array:
     """The diagonal (rows,) that stands for the inverse inertia in the rows of an equality."""
     rows = equality_rows(data, equality)
     impedance = data.efc_KBIP[rows, 2]
@@ -123,32 +122,12 @@ def impedance_of(shape: Array, gap: float) -> float:
     return low + rise * (high - low)
 
 
-def _dense(model: Any, data: Any) -> Array:
-    """MuJoCo's rows (rows, nv), whichever way it stores them."""
-    if not mujoco.mj_isSparse(model):
-        return data.efc_J[: data.nefc * model.nv].reshape(data.nefc, model.nv).copy()
-    out = np.zeros((data.nefc, model.nv))
-    for row in range(data.nefc):
-        begin, size = data.efc_J_rowadr[row], data.efc_J_rownnz[row]
-        out[row, data.efc_J_colind[begin : begin + size]] = data.efc_J.reshape(-1)[begin : begin + size]
-    return out
-
-
-ELEMENTS = {
-    "contact": "CONTACT",
-    "limit": "LIMIT",
-    "frictionloss": "FRICTIONLOSS",
-    "equality": "EQUALITY",
-    "actuation": "ACTUATION",
-    "spring": "SPRING",
-    "damper": "DAMPER",
-    "gravity": "GRAVITY",
-}
-OTHERS = ("armature", "fluid", "forcelimit", "sleep")  # that no flag of MuJoCo's switches off
+# The kinds of elements that a flag of MuJoCo's switches off, and those that none does.
+ELEMENTS = ("contact", "limit", "frictionloss", "equality", "actuation", "spring", "damper", "gravity")
+OTHERS = ("armature", "fluid", "forcelimit", "sleep")
 TIED_STEPS = 5.0  # time constant of the stiffer loops, in steps: the same rule as the tuned variant's
 SHIPPED = ((0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0))  # solref and solimp of an equality about which nothing is said
-HALVINGS = (1, 2, 4, 8, 16, 32)
-FURTHER = (*HALVINGS, 64, 128, 256, 512, 1024)
+HALVINGS, FURTHER = 6, 11  # how many steps are tried, each half of the one before
 
 
 def switch_off(model: Any, element: str) -> None:
@@ -159,11 +138,11 @@ def switch_off(model: Any, element: str) -> None:
         for limited in (model.actuator_forcelimited, model.jnt_actfrclimited, model.tendon_actfrclimited):
             limited[:] = 0
     elif element == "sleep":
-        model.opt.enableflags &= ~int(getattr(mujoco.mjtEnableBit, "mjENBL_SLEEP", 0))
+        model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     elif element == "fluid":
         model.opt.density = model.opt.viscosity = 0.0
     elif element in ELEMENTS:
-        model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{ELEMENTS[element]}"))
+        model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{element.upper()}"))
     else:
         raise ValueError(f"--without is {element!r}; it must be one of {', '.join((*ELEMENTS, *OTHERS))}")
 
@@ -182,12 +161,13 @@ def changes(
     file has classes, which have copied what their parent had before. `further`: more halvings.
     """
     own_step = float(model.opt.timestep)
+    by_hand = np.any(model.eq_solref != SHIPPED[0]) or np.any(model.eq_solimp != SHIPPED[1])  # a default can't reach it
     integrators = list(dict.fromkeys([spelled(mujoco.mjtIntegrator(model.opt.integrator)), "RK4"]))
     out = []
     for tied in (False, True) if soft else (False,):
         for integrator in integrators:
-            for divisor in FURTHER if further else HALVINGS:
-                dt = own_step / divisor
+            for halving in range(FURTHER if further else HALVINGS):
+                dt = own_step / 2**halving
                 if dt < smallest:
                     break
                 words = f"{integrator}, step {dt * 1e3:.4g} ms" + (", stiff loops" if tied else "")
@@ -196,17 +176,12 @@ def changes(
                 if tied:
                     values = " ".join(f'{name}="{value}"' for name, value in tied_values(dt).items())
                     lines.append(f"<default><equality {values}/></default>")
-                    if classes or _set_by_hand(model):
+                    if classes or by_hand:
                         lines.append(
                             "<!-- an equality of a class, or with its own values, needs these values there -->"
                         )
                 out.append(Change(words, dt, tuple(lines), (("integrator", integrator), ("tied", tied))))
     return out
-
-
-def _set_by_hand(model: Any) -> bool:
-    """Whether an equality has other values than those that MuJoCo gives it: a default would not reach it."""
-    return bool(np.any(model.eq_solref != SHIPPED[0]) or np.any(model.eq_solimp != SHIPPED[1]))
 
 
 Tag = tuple[tuple[str, ...], int, int]  # the path of an element, and where its start tag begins and ends
