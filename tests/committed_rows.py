@@ -10,7 +10,7 @@ from typing import Any
 
 from reports.cli.selection import shown_cells
 from reports.model.cells import Cell
-from reports.model.digest import SHORT, digest
+from reports.model.fingerprint import SHORT, digest
 from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome
 from reports.model.page import Page

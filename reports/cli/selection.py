@@ -9,11 +9,10 @@ from engines import Engine
 from reference.checks import LARGEST_COUNT
 from reference.scene import Scene
 from reports.gate.prediction import all_tasks
-from reports.model.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells, too_much
+from reports.model.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells, too_much, usual_cells
 from reports.model.ending import BadInput, nearest
 from reports.model.page import Page
 from reports.model.tasks import Task
-from reports.model.usual_steps import usual_cells
 
 # A quick run over everything takes about twenty seconds of two cores. For that no cell of it takes longer than
 # QUICK_SECONDS, but for the shortest of each method in each scene: that one is left out only beyond QUICK_CELL, as

@@ -49,33 +49,22 @@ def _no_scene(value: Any) -> str:
 
 def _by_defaults(cls: type) -> Scene | None:
     """A scene with its default numbers; None for another class, and for a scene without a default for every number."""
-    if (
-        not (issubclass(cls, Scene) and is_dataclass(cls))
-        or inspect.isabstract(cls)
-        or not isinstance(getattr(cls, "name", None), str)
-    ):
+    is_scene = issubclass(cls, Scene) and is_dataclass(cls) and not inspect.isabstract(cls)
+    if not is_scene or not isinstance(getattr(cls, "name", None), str):
         return None
-    given = (field.default is MISSING and field.default_factory is MISSING for field in fields(cls))
-    return None if any(given) else cls()  # type: ignore[call-arg]
-
-
-def _no_page(value: Any) -> str:
-    return "" if isinstance(value, Page) else "it is no reports.model.page.Page"
+    required = (field.default is MISSING and field.default_factory is MISSING for field in fields(cls))
+    return None if any(required) else cls()  # type: ignore[call-arg]
 
 
 SCENE = Kind("scene", _no_scene, _by_defaults)
+PAGE = Kind("page", lambda value: "" if isinstance(value, Page) else "it is no reports.model.page.Page")
 _scenes = registered("crosscheck.scenes", SCENE, lambda scene: scene.name)
-_pages = registered("crosscheck.pages", Kind("page", _no_page), lambda page: page.name)
+_pages = registered("crosscheck.pages", PAGE, lambda page: page.name)
 
 
 def page_of(scene: Scene, pages: Sequence[Page] | None = None) -> Page | None:
     """The page that teaches a scene, of all unless some are given; None for a scene from elsewhere."""
     return next((page for page in (PAGES if pages is None else pages) if page.teaches(scene)), None)
-
-
-def untaught(scenes: Iterable[Scene], pages: Sequence[Page] | None = None) -> tuple[str, ...]:
-    """The names of the scenes that no page teaches."""
-    return tuple(scene.name for scene in scenes if page_of(scene, pages) is None)
 
 
 def generic_page(scene: Scene, engines: Sequence[Engine], taken: Iterable[str] = ()) -> Page:

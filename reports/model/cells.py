@@ -1,19 +1,21 @@
-"""A cell is one scene in one engine variant at one step; the grids say which cells are run."""
+"""A cell is one scene in one engine variant at one step; the grids say which cells are run.
+
+The grid of sweeps has half decades of the step; `usual_cells` are at the steps that people use, which these miss.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Literal
+from typing import Any, Literal
 
 from engines import Engine, Promise, method_name
 from reference.checks import Count, Valid
 from reference.mechanism import Mechanism
 from reference.scene import Scene
-from reports.model.digest import LONG, digest
 from reports.model.ending import BadInput, describe
-from reports.model.fingerprint import fingerprint
+from reports.model.fingerprint import LONG, digest, fingerprint
 
 Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 
@@ -25,9 +27,24 @@ FULL = (1, 3, 10, 30, 100, 300)
 # A step, the coarsest apart, is left out when one run would take about this long [s]. The estimate is fixed, not
 # measured, so that the grid (and errors.csv) is the same on every machine.
 COST_LIMIT = 0.8
-# Beyond QUICK, finer steps end where the promised order has divided the coarsest one's error by this: what is left then
-# is rounding, or no error of the step. So methods of order 4 get five steps, those of order 6 and more three.
+# Beyond QUICK, finer steps end where the promised order has divided the coarsest one's error by this: the rest is then
+# rounding, or no error of the step. So methods of order 4 get five steps, those of order 6 and more three.
 DIVIDED = 1e8
+BESIDE_LIMIT = 0.5  # s, building included: longest cell of an engine that is an extra
+SLOW_TO_BUILD = 1.0  # s: a model that takes as long to build is run where a page asks for it, and in no grid
+
+# Seconds by how they are printed: a picture of a screen, as in pymunk's examples; MuJoCo's own; half of that.
+USUAL_STEPS = {"1/60 s": 1 / 60, "2 ms": 2e-3, "1 ms": 1e-3}
+# Steps that differ by less than this share are one: a scene's time is a whole number of steps, so that 1/60 s may be a
+# little less there. At order 4 an error differs by four times as much, which two printed digits show just so.
+SAME = 0.01
+# The methods that the overview and the charts show: an engine as shipped, by documented settings, and with code around
+# it; ideal constraints at order 1 and 4.
+FEATURED = ("default", "tuned", "extended", "euler projection", "rk4 projection")
+SHOWN = 3  # variants of an engine that has none of these: more columns than others have would be unreadable
+# A step that is the habit of one engine's users: other engines that have such a step of their own are not run at it.
+HABITS = {"1/60 s": "pymunk", "2 ms": "mujoco"}
+OURS = ("extended", "euler projection", "rk4 projection")  # need code of ours, and so are nobody's habit
 
 
 @dataclass(frozen=True)
@@ -76,7 +93,7 @@ class Cell(Valid):
 
     @cached_property
     def truth(self) -> str:
-        """A digest of all that the scene's exact motion depends on, but for the instants (`reports.model.truths`)."""
+        """A digest of all that the scene's exact motion depends on, but for the instants (`measure.exact_motion`)."""
         sources = fingerprint(self.scene, folders=("reference",))
         parts = (self.scene.name, type(self.scene).__qualname__, repr(self.scene), sources)
         return digest("\0".join(parts), LONG)
@@ -100,13 +117,17 @@ def estimated_seconds(cell: Cell) -> float:
 
 @lru_cache(maxsize=4096)
 def _step_cost(scene: Scene, engine: Engine) -> float:
-    try:
-        cost = float(engine.step_cost(mechanism_of(scene)))
-    except Exception as error:  # whatever somebody else's engine does
-        raise BadInput(f"{method_name(engine)}: step_cost of {scene.name}: {describe(error)}") from error
+    cost = _call(engine, "step_cost", scene, float)
     if not cost >= 0:
         raise BadInput(f"{method_name(engine)}: step_cost of {scene.name} is {cost}; it must be a time [s]")
     return cost
+
+
+def _call(engine: Engine, method: str, scene: Scene, convert: Callable[[Any], Any] = lambda value: value) -> Any:
+    try:
+        return convert(getattr(engine, method)(mechanism_of(scene)))
+    except Exception as error:  # whatever somebody else's engine does
+        raise BadInput(f"{method_name(engine)}: {method} of {scene.name}: {describe(error)}") from error
 
 
 @lru_cache(maxsize=512)
@@ -127,14 +148,9 @@ def sweep_cells(
     The coarsest step is always there, the other QUICK ones while their estimated cost stays below COST_LIMIT; finer
     ones while it stays below `cost_limit`, and the promised order has divided the error by no more than `divided`.
     """
-    engines, scenes = tuple(engines), tuple(scenes)
-    return tuple(_sweep(scenes, engines, tuple(steps), cost_limit, divided))
-
-
-# Of engines that are extras: no cell that takes longer than this [s], building included.
-BESIDE_LIMIT = 0.5
-# A model that takes as long as this to build [s] is run where a page asks for it, and in no grid.
-SLOW_TO_BUILD = 1.0
+    engines, scenes, steps = tuple(engines), tuple(scenes), sorted(steps)
+    cells = [Cell(scene, engine, every) for every in steps for scene in scenes for engine in engines]
+    return tuple(cell for cell in cells if cell.every == steps[0] or not too_much(cell, cost_limit, divided))
 
 
 def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool = False) -> tuple[Cell, ...]:
@@ -142,24 +158,13 @@ def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool
     that is cheap enough; at all of these with `sweep`.
     """
     engines = tuple(engine for engine in engines if engine.building < SLOW_TO_BUILD)
-    found: list[Cell] = []
+    out: list[Cell] = []
     for scene in scenes:
         for engine in engines:
             cells = [Cell(scene, engine, every, "beside") for every in QUICK]
             cheap = [cell for cell in cells if estimated_cost(cell) <= BESIDE_LIMIT]
-            found += cheap if sweep else cheap[-1:]
-    return tuple(found)
-
-
-def _sweep(
-    scenes: tuple[Scene, ...], engines: tuple[Engine, ...], steps: tuple[int, ...], cost_limit: float, divided: float
-) -> Iterator[Cell]:
-    for every in sorted(steps):
-        for scene in scenes:
-            for engine in engines:
-                cell = Cell(scene, engine, every)
-                if every == min(steps) or not too_much(cell, cost_limit, divided):
-                    yield cell
+            out += cheap if sweep else cheap[-1:]
+    return tuple(out)
 
 
 def too_much(cell: Cell, cost_limit: float = COST_LIMIT, divided: float = DIVIDED) -> str:
@@ -176,8 +181,54 @@ def too_much(cell: Cell, cost_limit: float = COST_LIMIT, divided: float = DIVIDE
 @lru_cache(maxsize=4096)
 def _promised_order(scene: Scene, engine: Engine) -> float:
     """Of poses; 0 where none is promised."""
-    try:
-        promise = engine.order(mechanism_of(scene))
-    except Exception as error:  # whatever somebody else's engine does
-        raise BadInput(f"{method_name(engine)}: order of {scene.name}: {describe(error)}") from error
+    promise = _call(engine, "order", scene)
     return promise.order if isinstance(promise, Promise) else 0.0
+
+
+def is_step(step: float, wanted: float) -> bool:
+    """Whether a step [s] is printed as this one."""
+    return abs(step - wanted) <= SAME * wanted
+
+
+def usual_variants(methods: Iterable[tuple[str, str]]) -> dict[str, tuple[str, ...]]:
+    """Engine -> its variants in FEATURED, in that order, or its first ones where it has none of them.
+
+    `methods` are (engine, variant).
+    """
+    variants: dict[str, dict[str, None]] = {}
+    for engine, variant in methods:
+        variants.setdefault(engine, {})[variant] = None
+    return {
+        engine: tuple(name for name in FEATURED if name in names) or tuple(names)[:SHOWN]
+        for engine, names in variants.items()
+    }
+
+
+def is_run_at(name: str, engine: str, variant: str) -> bool:
+    """Whether a method is run at the usual step of this name."""
+    if name not in HABITS:
+        return True
+    return variant not in OURS and (HABITS[name] == engine or engine not in HABITS.values())
+
+
+def usual_cells(scenes: Iterable[Scene], engines: Iterable[Engine]) -> tuple[Cell, ...]:
+    """The engines' usual variants at USUAL_STEPS, where the sweep has no such step and a run does not take too long."""
+    engines = tuple(engines)
+    usual = usual_variants((engine.name, engine.variant) for engine in engines)
+    chosen = [engine for engine in engines if engine.variant in usual[engine.name]]
+    return tuple(cell for scene in scenes for engine in chosen for cell in _cells(scene, engine))
+
+
+def _cells(scene: Scene, engine: Engine) -> Iterator[Cell]:
+    for name, step in USUAL_STEPS.items():
+        if not is_run_at(name, engine.name, engine.variant):
+            continue
+        every = max(1, round(scene.spacing / step))
+        if not is_step(scene.spacing / every, step):  # then with samples at other times
+            cell = Cell(scene, engine, every, "usual", samples=max(1, round(scene.duration / (every * step))))
+        elif every not in FULL:
+            cell = Cell(scene, engine, every, "usual")
+        else:
+            continue
+        if is_step(cell.step, step) and estimated_cost(cell) <= COST_LIMIT:
+            yield cell

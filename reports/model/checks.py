@@ -9,17 +9,12 @@ from dataclasses import dataclass
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
 
-# "change" stands apart: it is of a baseline, and no deviation excuses it.
 CHECKS = ("outcome", *dict.fromkeys(quantity.check for quantity in QUANTITIES), "order")
-CHANGE = "change"
+CHANGE = "change"  # stands apart: it is of a baseline, and no deviation excuses it
 BEGINNINGS = ("upstream:", "by design:", "ours:")
-# A deviation that becomes this many times as large as stated fails; one that has come back to this part of its bound is
-# none any more, and fails too. In between it may hover about its bound with the versions of what is measured.
-WORSE = 2.0
-BACK = 0.5
-# One run's roundings are this much short of the most that roundings may do, as `reports.gate.change.ROOM` has it. Seen:
-# with another processor's instructions 2.0 times as large, and a seventeenth.
-ROUNDED = 10.0
+WORSE = 2.0  # times the stated deviation: a larger one fails
+BACK = 0.5  # of the bound: a deviation that has come back to this is none any more, and fails too
+ROUNDED = 10.0  # times the stated one for roundings that the motion amplifies; another processor gave 2 and 1/17
 
 
 @dataclass(frozen=True)
@@ -55,13 +50,11 @@ class Check:
 
 @dataclass(frozen=True)
 class Deviation:
-    """A check that a method is known to miss: why, and `factor`, how many times its bound it takes at most.
+    """A check that a method is known to miss.
 
-    `reason` begins with whose it is: "upstream:", "by design:" or "ours:". An outcome has no number: of it `outcome`
-    is what is known, and another one is another fault. `rounding`: the error is made of roundings that the motion
-    amplifies, so that another processor has another one: up to ROUNDED times as large, or none at all. Raises
-    ValueError for another beginning, for a factor that is not a number above 1, and for both or neither of factor and
-    outcome.
+    reason: begins with whose it is: "upstream:", "by design:" or "ours:". Either factor, how many times its bound it
+    takes at most, or the known outcome. rounding: the error is made of roundings that the motion amplifies, so that
+    another processor has another one: up to ROUNDED times as large, or none at all. Raises ValueError.
     """
 
     reason: str
@@ -73,14 +66,9 @@ class Deviation:
         if not self.reason.startswith(BEGINNINGS):
             raise ValueError(f"deviation: reason is {self.reason!r}; it must begin with one of {', '.join(BEGINNINGS)}")
         if (self.factor is None) == (self.outcome is None):
-            raise ValueError(
-                f"deviation: factor is {self.factor!r} and outcome {self.outcome!r}; give one of them, and the outcome "
-                f"where that is what is known"
-            )
+            raise ValueError(f"deviation: factor is {self.factor!r} and outcome {self.outcome!r}; give one of them")
         if self.factor is not None and not 1 < self.factor < math.inf:
-            raise ValueError(
-                f"deviation: factor is {self.factor!r}; it must be a number above 1, or there is no deviation"
-            )
+            raise ValueError(f"deviation: factor is {self.factor!r}; it must be a number above 1")
         if self.outcome is not None and self.outcome.comparable:
             raise ValueError(f"deviation: outcome is {self.outcome!r}; such a run can be compared, so it is none")
 

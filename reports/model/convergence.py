@@ -17,18 +17,12 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, Quantity
 
-# Room above the error of the declared softness: its estimate of a row's own inertia is right within about this.
-ROOM_SOFT = 2.0
-# A local slope below this is no convergence: half a decade of steps then wins less than a factor 1.5.
-FLAT = 0.35
-# Fewest points that carry an order with a word on its fit; two points give a slope and nothing to check it by.
-ENOUGH = 3
-# Rounding may grow by this much after it was met: steps a hundred times as small are a hundred times as many.
-ROUNDING_GROWTH = 100.0
-# An error this close to the plateau is the sum of both, and its slope is neither.
-NEAR_PLATEAU = 3.0
-# Powers of the step with which an error may come to its limit: from the root that a kink leaves to order 8.
-POWERS = (0.5, 8.0)
+ROOM_SOFT = 2.0  # times the error of the declared softness, whose estimate of a row's inertia is right within this
+FLAT = 0.35  # a local slope below this is no convergence: half a decade of steps then wins less than a factor 1.5
+ENOUGH = 3  # fewest points that carry an order; two give a slope and nothing to check it by
+ROUNDING_GROWTH = 100.0  # rounding may grow so much after it was met: the finest steps are so many times as many
+NEAR_PLATEAU = 3.0  # an error within this factor of the plateau is the sum of both, and its slope is neither
+POWERS = (0.5, 8.0)  # of the step with which an error may come to its limit: from the root of a kink to order 8
 
 
 class Verdict(StrEnum):
@@ -44,19 +38,14 @@ class Verdict(StrEnum):
 
 
 class Fit(NamedTuple):
-    """What errors at several steps do as the step goes to zero.
-
-    order: slope of log error over log step on `points` points of the falling part (NaN without two); spread: the
-    largest difference of a local slope from it; plateau: the limit of the error at a step of zero, in the error's unit
-    (NaN without one); uncertainty: how far that limit may be off, in the same unit.
-    """
+    """What errors at several steps do as the step goes to zero."""
 
     verdict: Verdict
-    order: float = NAN
-    points: int = 0
-    spread: float = NAN
-    plateau: float = NAN
-    uncertainty: float = NAN
+    order: float = NAN  # slope of log error over log step on the falling part
+    points: int = 0  # of the falling part
+    spread: float = NAN  # largest difference of a local slope from the order
+    plateau: float = NAN  # limit of the error at a step of zero, in the error's unit
+    uncertainty: float = NAN  # of that limit
 
 
 @dataclass(frozen=True)
@@ -198,11 +187,11 @@ def _order(
 
 def groups(rows: Iterable[Measurement]) -> dict[tuple[str, str, str], list[Measurement]]:
     """The rows of sweeps by (scene, engine, variant), each from coarse to fine, in the order of their first row."""
-    found: dict[tuple[str, str, str], list[Measurement]] = {}
+    members: dict[tuple[str, str, str], list[Measurement]] = {}
     for row in rows:
         if row.purpose == "sweep":
-            found.setdefault((row.scene, row.engine, row.variant), []).append(row)
-    return {key: sorted(members, key=lambda row: -row.step) for key, members in found.items()}
+            members.setdefault((row.scene, row.engine, row.variant), []).append(row)
+    return {key: sorted(group, key=lambda row: -row.step) for key, group in members.items()}
 
 
 def sweeps(rows: Iterable[Measurement], quantities: Iterable[Quantity] = QUANTITIES) -> tuple[Sweep, ...]:
@@ -212,9 +201,8 @@ def sweeps(rows: Iterable[Measurement], quantities: Iterable[Quantity] = QUANTIT
     for (scene, engine, variant), members in groups(rows).items():
         usable = [row for row in members if Outcome(row.outcome).comparable]
         for quantity in quantities:
-            values = [(row.step, getattr(row, quantity.name)) for row in usable]
-            steps, errors = [step for step, _ in values], [error for _, error in values]
-            known = [(error, step) for step, error in values if math.isfinite(error)]
+            steps, errors = [row.step for row in usable], [getattr(row, quantity.name) for row in usable]
+            known = [(error, step) for step, error in zip(steps, errors, strict=True) if math.isfinite(error)]
             best = min(known, default=(NAN, NAN))
             out.append(Sweep(scene, engine, variant, quantity, *fit(steps, errors, quantity.rounding), *best))
     return tuple(out)
@@ -228,7 +216,7 @@ def by_method(found: Iterable[Sweep], quantity: str) -> Mapping[tuple[str, str, 
 def judged(rows: Iterable[Measurement], quantity: str = "angle") -> list[Measurement]:
     """The rows with `finished` replaced by what their sweep says: converged or plateau, where it says either."""
     rows = list(rows)
-    verdicts = by_method(sweeps(rows, [each for each in QUANTITIES if each.name == quantity]), quantity)
+    verdicts = by_method(sweeps(rows, [q for q in QUANTITIES if q.name == quantity]), quantity)
     out = []
     for row in rows:
         sweep = verdicts.get((row.scene, row.engine, row.variant))

@@ -8,6 +8,7 @@ it is installed, else by the files of its package or folder.
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import platform
 import re
 import sys
@@ -19,14 +20,19 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from reports.model.digest import LONG, digest
-
 ROOT = Path(__file__).resolve().parents[2]
 OURS = ("reference", "engines", "reports")
 MEASURING = ("reference", "engines", "reports/model", "reports/run")  # the folders that a row depends on
 SUFFIXES = {f".{suffix.rpartition('.')[2]}" for suffix in (*SOURCE_SUFFIXES, *EXTENSION_SUFFIXES)}
 INSTALLED = {"site-packages", "dist-packages"}  # names of the folders in which a version stands for the files
 SCIENTIFIC = ("numpy", "scipy")  # what every result depends on
+SHORT, USUAL, LONG = 8, 16, 32  # hexadecimal digits: for a table, for the name of a file, for a cache key
+
+
+def digest(content: str | bytes, digits: int = USUAL) -> str:
+    """The first hexadecimal digits of the SHA-256 of a text (UTF-8) or of bytes."""
+    data = content.encode(errors="replace") if isinstance(content, str) else content
+    return hashlib.sha256(data).hexdigest()[:digits]
 
 
 def fingerprint(*values: Any, folders: tuple[str, ...] = MEASURING) -> str:
@@ -36,21 +42,25 @@ def fingerprint(*values: Any, folders: tuple[str, ...] = MEASURING) -> str:
 
 def versions_of(*values: Any, folders: tuple[str, ...] = MEASURING) -> dict[str, str]:
     """By name: versions of distributions and of Python, digests of files."""
-    return _versions(frozenset(_modules(values)), frozenset(_packages(values)), folders)
+    modules, packages = set[str](), set[str]()
+    for value in _parts(values):
+        kinds = (*(value if isinstance(value, type) else type(value)).__mro__, *((value,) if callable(value) else ()))
+        modules |= {str(getattr(kind, "__module__", "")) for kind in kinds}
+        packages |= set(getattr(value, "packages", ()) if hasattr(value, "step_cost") else ())  # of an engine
+    return _versions(frozenset(modules), frozenset(packages), folders)
 
 
 @cache
 def _versions(modules: frozenset[str], packages: frozenset[str], folders: tuple[str, ...]) -> dict[str, str]:
-    found, distributions = {}, {*SCIENTIFIC, *packages}
+    versions, distributions = {}, {*SCIENTIFIC, *packages}
     for module in sorted({name.partition(".")[0] for name in modules} - {*OURS, *sys.stdlib_module_names}):
-        files = _files(module)
-        if files:
-            found[f"files of {module}"] = _content(files)
+        if files := _files(module):
+            versions[f"files of {module}"] = _content(files)
         else:
             distributions.update(_distributions().get(module, ()))
     for name in sorted(with_required(distributions | _rivals(packages))):
-        found[name] = metadata.version(name)
-    return {**found, "Python": platform.python_version(), "our source files": _our_files(folders)[:12]}
+        versions[name] = metadata.version(name)
+    return {**versions, "Python": platform.python_version(), "our source files": _our_files(folders)[:12]}
 
 
 def _rivals(packages: Iterable[str]) -> set[str]:
@@ -72,21 +82,6 @@ def _parts(values: Iterable[Any]) -> Iterator[Any]:
             yield from _parts(value)
 
 
-def _modules(values: Iterable[Any]) -> Iterator[str]:
-    """The modules that define the classes and functions in these values."""
-    for value in _parts(values):
-        for base in value.__mro__ if isinstance(value, type) else type(value).__mro__:
-            yield base.__module__
-        if callable(value):
-            yield str(getattr(value, "__module__", ""))
-
-
-def _packages(values: Iterable[Any]) -> Iterator[str]:
-    """The distributions that the engines in these values name."""
-    for value in _parts(values):
-        yield from getattr(value, "packages", ()) if hasattr(value, "step_cost") else ()
-
-
 def _files(module: str) -> tuple[Path, ...]:
     """The files of a top-level module that is not installed: of its package, or of its folder; and data they name."""
     try:
@@ -96,10 +91,10 @@ def _files(module: str) -> tuple[Path, ...]:
     if spec is None or not (spec.submodule_search_locations or spec.origin):
         return ()
     places = [Path(name) for name in spec.submodule_search_locations or ()]
-    files = [path for place in places for path in place.rglob("*")] or list(Path(str(spec.origin)).parent.glob("*"))
-    if any(INSTALLED & set(path.parts) for path in files):
+    paths = [path for place in places for path in place.rglob("*")] or list(Path(str(spec.origin)).parent.glob("*"))
+    if any(INSTALLED & set(path.parts) for path in paths):
         return ()
-    files = [path for path in files if path.is_file() and "__pycache__" not in path.parts]
+    files = [path for path in paths if path.is_file() and "__pycache__" not in path.parts]
     sources = [path for path in files if path.suffix in SUFFIXES]
     text = "".join(path.read_text(encoding="utf-8", errors="replace") for path in sources if path.suffix == ".py")
     return tuple(sorted(path for path in files if path in sources or path.name in text))

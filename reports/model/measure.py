@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import io
+import os
+import struct
 import time
+import zlib
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from html import escape
 from pathlib import Path
 from typing import Any, TypeVar
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -21,24 +27,22 @@ from reference.scene import NoMotion, Scene
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell, mechanism_of
 from reports.model.errors import branch_flips, constraint_errors, motion_errors, usable_samples
+from reports.model.fingerprint import LONG, digest
 from reports.model.outcomes import Outcome, of_motion, refusal
 from reports.model.spending import spending
-from reports.model.truths import kept_motion
 
 NAN = float("nan")
-
-# Experiments and maps are about what becomes of a run; only what is charted against its cost is timed with care.
-TIMED = ("sweep", "beside", "growth", "large")
-
+TIMED = ("sweep", "beside", "growth", "large")  # purposes whose rows are charted against their cost
 SAME_INSTANT = 1e-15  # relative: a sum or product of steps rounds a few times
-# CPU seconds after which a cell is not run once more, building and reading included. Of 70 cells of the quick grid, on
-# a loaded machine, the least of these runs was 1.8 % above the least of ten in the middle, and 8 % for one in ten; with
-# twice the seconds 1.4 and 5 %.
+# CPU seconds after which a cell is not run once more: in the median of 70 cells 1.8 % above the least of ten runs.
 BUDGET = 0.015
 MOST_RUNS = 5
-# s: not repeated from here on. The first of runs of 0.05 to 0.2 s took 1.01 times as long as the least of the next
-# three (median of 50), no more than single runs scatter by.
-LONG = 0.05
+LONG_RUN = 0.05  # s: the first of such runs takes 1.01 times as long as the least of three more, and is not repeated
+TRUTHS = "truths"  # the folder of exact motions beside a store, which may be deleted at any time
+SHORT_MOTION = 5e-3  # s: a motion that takes less is computed again sooner than it is read
+# What reading a damaged file raises; RuntimeError: parts that say that they are encrypted, or packed in another way.
+DAMAGES = (OSError, ValueError, KeyError, EOFError, RuntimeError, MemoryError, struct.error, zlib.error, BadZipFile)
+PARTS = ("t", "pose", "twist", "reaction")
 
 Result = TypeVar("Result")
 
@@ -123,23 +127,43 @@ def blank(cell: Cell, outcome: Outcome = Outcome.FAILED, sentence: str = "") -> 
     )
 
 
-def _truth(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
-    """The scene's motion at an engine's instants t (times,) [s], kept in a folder (`reports.model.truths`).
+def exact_motion(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
+    """The scene's motion at an engine's instants t (times,) [s], stored in a folder unless it is None or not there.
 
-    Engines that take other steps meet the same instants but for rounding, and then share one motion: a motion moves by
-    no more than its own rounding meanwhile.
+    Engines that take other steps meet the same instants but for rounding, and then share one motion. Raises ValueError
+    where the scene refuses.
     """
     usual = np.arange(len(t)) * (cell.scene.duration / cell.sample_count)
     shared = np.allclose(t, usual, rtol=SAME_INSTANT, atol=0.0)
+    instants = np.ascontiguousarray(usual if shared else t, dtype=float)
     with spending("truth"):
-        return _motion(
-            cell.scene, np.ascontiguousarray(usual if shared else t, dtype=float).tobytes(), cell.truth, folder
-        )
+        return _motion(cell.scene, instants.tobytes(), cell.truth, folder)
 
 
 @lru_cache(maxsize=128)
 def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Trajectory:
-    return fixed(kept_motion(scene, np.frombuffer(instants), name, folder))
+    """A file is named by all that its motion depends on, and so is never stale."""
+    if folder is None or not folder.is_dir():
+        return fixed(scene.motion(np.frombuffer(instants)))
+    file = folder / f"{digest(name.encode() + instants, LONG)}.npz"
+    with suppress(*DAMAGES), np.load(io.BytesIO(file.read_bytes())) as stored:
+        return fixed(Trajectory(*(stored[part] for part in PARTS)))
+    seconds, motion = process_seconds(lambda: scene.motion(np.frombuffer(instants)))
+    if seconds > SHORT_MOTION:
+        _store_motion(motion, file)
+    return fixed(motion)
+
+
+def _store_motion(motion: Trajectory, file: Path) -> None:
+    """Write it whole or not at all; without it only time is lost."""
+    half = file.with_name(f"{file.stem}.{os.getpid()}.half")
+    with suppress(OSError):
+        try:
+            with half.open("wb") as stream:
+                np.savez(stream, **{part: getattr(motion, part) for part in PARTS})
+            half.replace(file)
+        finally:
+            half.unlink(missing_ok=True)
 
 
 @lru_cache(maxsize=128)
@@ -186,7 +210,7 @@ def process_seconds(function: Callable[[], Result]) -> tuple[float, Result]:
 
 def repeated_stepping(cell: Cell, mechanism: Mechanism, first: float, build: float) -> tuple[float, int, float]:
     """(least stepping time [s], runs it is the least of, least building time [s]) of a cell already run once."""
-    if not first < LONG:
+    if not first < LONG_RUN:
         return first, 1, build
     times: list[float] = []
     begin = time.process_time()
@@ -214,13 +238,7 @@ def compare(
     """Fill a row with errors and its outcome."""
     trajectory, note = stopped_where_it_ends(cell.scene, trajectory)
     count = usable_samples(trajectory)
-    finite = replace(
-        trajectory,
-        t=trajectory.t[:count],
-        pose=trajectory.pose[:count],
-        twist=trajectory.twist[:count],
-        reaction=trajectory.reaction[:count],
-    )
+    finite = first_samples(trajectory, count)
     errors: dict[str, Any] = {}
     note = "; ".join(filter(None, dict.fromkeys([note, *trajectory.warnings])))
     try:
@@ -229,7 +247,7 @@ def compare(
         told = "; ".join(filter(None, (f"a joint has no meaning at the end: {reason}", note)))
         return replace(row, outcome=Outcome.REFUSED, sentence=told)
     try:
-        truth = _truth(cell, finite.t, truths)
+        truth = exact_motion(cell, finite.t, truths)
         errors |= motion_errors(cell.scene, mechanism, truth, finite)
         errors["flips"] = branch_flips(cell.scene, truth, finite)
     except NoMotion as reason:  # no motion of these numbers is known, so that nothing can be held against an engine
@@ -250,15 +268,16 @@ def stopped_where_it_ends(scene: Scene, trajectory: Trajectory) -> tuple[Traject
     count = int(np.sum(trajectory.t <= limit * (1 + 1e-12)))
     if count == len(trajectory.t):
         return trajectory, ""
-    kept = replace(
-        trajectory,
-        **{name: getattr(trajectory, name)[:count] for name in ("t", "pose", "twist", "reaction")},
+    events = {name: getattr(trajectory, name) for name in ("reset_at", "unresolved_at")}
+    compared = replace(
+        first_samples(trajectory, count),
         estimate=None if trajectory.estimate is None else trajectory.estimate[:count],
-        reset_at=_until(limit, trajectory.reset_at),
-        unresolved_at=_until(limit, trajectory.unresolved_at),
+        **{name: t if t is not None and t <= limit else None for name, t in events.items()},
     )
-    return kept, f"compared until {limit:.4g} s only: beyond, the ideal motion asks for what a real contact can't give"
+    why = f"compared until {limit:.4g} s only: beyond, the ideal motion asks for what a real contact can't give"
+    return compared, why
 
 
-def _until(limit: float, t: float | None) -> float | None:
-    return t if t is not None and t <= limit else None
+def first_samples(trajectory: Trajectory, count: int) -> Trajectory:
+    """The motion at so many samples from the start."""
+    return replace(trajectory, **{part: getattr(trajectory, part)[:count] for part in PARTS})

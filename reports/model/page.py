@@ -10,11 +10,10 @@ from typing import Any
 from engines import Engine, Promise
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reports.model.cells import Cell, Purpose
+from reports.model.cells import FEATURED, Cell, Purpose
 from reports.model.checks import Deviation
 from reports.model.measure import Measurement
 from reports.model.tasks import Answer, Motion, Task, trajectory_of
-from reports.model.usual_steps import FEATURED
 
 
 def no_words(material: Material) -> dict[str, Any]:
@@ -23,7 +22,7 @@ def no_words(material: Material) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Observation:
-    """What was found of something that is no cell: a motion that was kept, or a method of the reference."""
+    """The outcome of something that is no cell: a stored motion, or a method of the reference."""
 
     method: str
     setting: str
@@ -34,13 +33,12 @@ class Observation:
 class Failure:
     """An experiment in which methods are expected to fail.
 
-    `expected` says what the reference says should happen, a template of what `words` gives. `cells` have the
-    purpose "failure". `tasks` are run with them; `observations` reads their answers, and formulas that cost
-    nothing: it steps and integrates nothing. `columns` are the quantities (`reports.model.quantities`) whose largest
-    errors are told of every cell; without any, a grid of methods and steps tells the angle's. `remark` is a
-    template: its numbers are `at(method, step)`, the row of the experiment at about a step [s], `count(outcome)`,
-    how many of its rows ended so, `count()`, how many there are, and what `words` gives. A clause within
-    `if_measured` vanishes where one of its numbers is missing.
+    expected: what should happen according to the reference, a template with the variables of `words`. cells: of the
+    purpose "failure". tasks: run with them. observations: reads their answers; it steps and integrates nothing.
+    columns: the quantities whose largest errors are printed for every cell; without any, a grid of methods and steps
+    has the angle's. remark: a template with `at(method, step)`, the row at about a step [s], `count(outcome)`, how many
+    rows ended so (all of them without an outcome), and the variables of `words`; a clause within `if_measured` vanishes
+    where one of its numbers is missing.
     """
 
     title: str
@@ -68,17 +66,16 @@ class Material:
 
     def unfinished(self, task: Task) -> str:
         """Why a task has no numbers here, as a sentence: what its run said, or what is to be installed or run."""
-        absent = task.engine.missing if task.engine is not None else ""
         if answer := self.answers.get(task):
             return f"Not finished, {answer.told}."
-        return (
-            f"Not run here: {absent}." if absent else "Not run yet: `crosscheck run --full`, then `crosscheck report`."
-        )
+        if task.engine is not None and task.engine.missing:
+            return f"Not run here: {task.engine.missing}."
+        return "Not run yet: `crosscheck run --full`, then `crosscheck report`."
 
     def motions(self, cells: Iterable[Cell]) -> dict[Cell, Trajectory]:
         """The kept motions of these cells, those that were run and finished."""
-        found = ((cell, self.finished(Motion(cell))) for cell in cells)
-        return {cell: trajectory_of(answer) for cell, answer in found if answer is not None}
+        answers = ((cell, self.finished(Motion(cell))) for cell in cells)
+        return {cell: trajectory_of(answer) for cell, answer in answers if answer is not None}
 
     def sweep(self, scenes: Iterable[Scene]) -> list[Measurement]:
         """The sweep rows of some scenes, in the order of the grid."""
@@ -104,49 +101,31 @@ def usual_series(row: Measurement) -> bool:
     return row.variant in FEATURED or row.method in map(method_name, VARIANTS)
 
 
-def everything(scene: Scene, engine: Engine) -> bool:
-    return True
-
-
-def no_figures(material: Material) -> dict[str, str]:
-    return {}
-
-
 @dataclass(frozen=True)
 class Page:
-    """One mechanism's page: `name`.md in the results, from its template.
-
-    template: its file, which may extend "base.md"; without one, page.md in the folder of the page's name beside this
-    file, and where there is none the generic "base.md" itself.
-    scenes: those that the page teaches, each on one page only. companions: scenes of other pages with which the page's
-    own cells are run too; for a page without scenes. borrowed: cells of other pages whose rows the words tell; this
-    page never has them run.
-    figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
-    template's own variables, numbers taken from the rows. further: Markdown files beside the page, by name.
-    compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
-    quantity: the error by which methods are compared and charted, a name in `reports.model.quantities`.
-    advised: name of the scene for which the page says on top which setting gives which accuracy; the first if empty.
-    orders: (scene, method) -> what is promised where the motion, not the mechanism alone, makes it another than the
-    engine says. known: (scene, method, check) -> by how much that check (`reports.model.checks`) is missed, and why.
-    """
+    """One mechanism's page: `name`.md in the results, from its template."""
 
     name: str
     title: str
     lesson: str  # one sentence for the index
-    scenes: tuple[Scene, ...]
+    scenes: tuple[Scene, ...]  # which the page teaches, each on one page only
     engines: tuple[Engine, ...]
-    companions: tuple[Scene, ...] = ()
-    borrowed: tuple[Cell, ...] = ()
+    companions: tuple[Scene, ...] = ()  # scenes of other pages with which the page's own cells are run too
+    borrowed: tuple[Cell, ...] = ()  # cells of other pages whose rows the words use; this page never has them run
+    # May extend "base.md"; without one, page.md in the folder of the page's name, else the generic "base.md" itself.
     template: Path | None = None
     failures: tuple[Failure, ...] = ()
-    compared: Callable[[Scene, Engine], bool] = everything
-    quantity: str = "angle"
-    advised: str = ""
+    # Whether a scene is run in an engine: a construction of a joint has no place where there is no such joint.
+    compared: Callable[[Scene, Engine], bool] = lambda scene, engine: True
+    quantity: str = "angle"  # by whose error methods are compared and charted
+    advised: str = ""  # the scene for which the page says which setting gives which accuracy; the first if empty
     featured: Callable[[Measurement], bool] = usual_series
-    figures: Callable[[Material], Mapping[str, str]] = no_figures
-    words: Callable[[Material], Mapping[str, Any]] = no_words
-    further: Callable[[Material], Mapping[str, str]] = no_figures
+    figures: Callable[[Material], Mapping[str, str]] = no_words  # SVG texts by file name without ending
+    words: Callable[[Material], Mapping[str, Any]] = no_words  # the template's own variables
+    further: Callable[[Material], Mapping[str, str]] = no_words  # Markdown files beside the page, by name
+    # (scene, method) -> the promise where the motion, not the mechanism alone, makes it another than the engine's.
     orders: Mapping[tuple[str, str], Promise] = field(default_factory=dict, compare=False)
+    # (scene, method, check) -> by how much that check (`reports.model.checks`) is missed, and why.
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
     tasks: tuple[Task, ...] = ()  # of its pictures and words; those of an experiment stand there
     cells: tuple[Cell, ...] = ()  # beyond the grid and the experiments

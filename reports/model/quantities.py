@@ -12,17 +12,13 @@ DIGITS = 4  # of the numbers in a report's CSV files
 
 @dataclass(frozen=True)
 class Quantity:
-    """`name` is the field of a Measurement; errors below `rounding` (in `unit`) carry no information on a model.
+    """A kind of error. Rounding: positions and angles lose about 1e-16 a step over 1e5 steps, so 1e-11 has room for
+    some ill-conditioning; velocities are differences of those over a step, and reactions of those again."""
 
-    `check`: the check of the gate of theory that holds it. Rounding: positions and angles lose about 1e-16 a step over
-    1e5 steps, so 1e-11 has room for some ill-conditioning; velocities are differences of those over a step, and
-    reactions of those again.
-    """
-
-    name: str
+    name: str  # the field of a Measurement
     unit: str
-    rounding: float
-    check: str
+    rounding: float  # errors below it carry no information on a model
+    check: str  # the check of the gate of theory that holds it
 
     @property
     def label(self) -> str:
@@ -50,10 +46,7 @@ QUANTITIES = (
 # Fields of a Measurement that are another measure of a quantity's error.
 OF: Mapping[str, str] = {
     "position_rms": "position",
-    "angle_rms": "angle",
-    "angle_duration": "angle",
-    "drive_gap": "angle",
-    "estimate": "angle",
+    **dict.fromkeys(("angle_rms", "angle_duration", "drive_gap", "estimate"), "angle"),
 }
 
 
@@ -75,24 +68,20 @@ def printed(value: float) -> float:
 def room(name: str, before: float, amplified: float = 1.0) -> tuple[float, float]:
     """What printing and rounding may change in a value: one unit of its last printed digit, and the quantity's floor.
 
-    `name`: a field of a Measurement that is an error, a root mean square or an estimate of one. An error is a
-    difference from the truth. Where another processor rounds each step otherwise, the motion moves by no more than
-    `Quantity.rounding`, which is what 1e5 steps may lose. By the triangle inequality the error moves by no more than
-    that, however small it is: this floor is never zero. `amplified`: how many times the usual rounding the method
-    carries, as the weights of a combination of runs do (`engines.Promise.amplified`). What a motion itself amplifies is
-    not in it, and has to be measured (`reports.gate.change`). Raises KeyError for another name.
+    name: a field of a Measurement that is an error, a root mean square or an estimate of one; KeyError for another.
+    Where another processor rounds each step otherwise, the motion moves by no more than `Quantity.rounding`, and by the
+    triangle inequality its error too, however small it is. amplified: how many times the usual rounding the method
+    carries (`engines.Promise.amplified`). What a motion itself amplifies has to be measured (`reports.gate.change`).
     """
     return printed(before), quantity(OF.get(name, name)).rounding * amplified
 
 
 def agrees(name: str, now: float, before: float, amplified: float = 1.0) -> bool:
-    """Whether two values of one quantity differ by no more than its `room`: nothing is run for it.
+    """Whether two values of one quantity differ by no more than its `room`; two values that are no numbers agree.
 
-    `now` may have all its digits, `before` the DIGITS of a file. Of 4,280 rows that two processors gave 1,511 errors
-    differ in print. Of those that can be compared eight numbers of four rows go beyond this room: of pivots that are
-    placed where curves touch, at 300 steps a sample and more, which feed rounding back. All others stay
-    within two thirds of it. Two values that are no numbers agree, and one that is a number never agrees with one that
-    is not. Raises KeyError for another name.
+    `now` may have all its digits, `before` the DIGITS of a file. Of 4,280 rows of two processors eight numbers go
+    beyond this room, of pivots that are placed where curves touch, which feed rounding back; all others stay within two
+    thirds of it.
     """
     allowed = sum(room(name, before, amplified))
     if not (math.isfinite(now) and math.isfinite(before)):

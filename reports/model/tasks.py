@@ -18,8 +18,7 @@ from engines import Engine, Unsupported
 from engines.contract import flaw
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell, estimated_cost
-from reports.model.digest import LONG, digest
-from reports.model.fingerprint import OURS, fingerprint
+from reports.model.fingerprint import LONG, OURS, digest, fingerprint
 from reports.model.outcomes import Outcome, refusal
 from reports.model.spending import spending
 

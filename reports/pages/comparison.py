@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from engines import registry
+from reports.model.cells import is_step
 from reports.model.measure import Measurement
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.model.usual_steps import is_step
 from reports.plots.engines_compared import Compared, engines_compared
 from reports.plots.theme import svg
 from reports.write.columns import (

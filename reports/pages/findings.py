@@ -18,12 +18,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from reports.model.cells import is_step
 from reports.model.convergence import Verdict
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.model.tasks import Answer, Task
-from reports.model.usual_steps import is_step
 from reports.pages.faults.page import OFFSETS, SCRIPTS, is_right
 from reports.plots.looks import colour
 from reports.plots.theme import LIGHT, drawing, style_axes, svg

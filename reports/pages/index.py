@@ -10,11 +10,11 @@ from types import MappingProxyType
 
 from engines import Engine
 from reference.scene import Scene
+from reports.model.cells import USUAL_STEPS
 from reports.model.convergence import judged
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
-from reports.model.usual_steps import USUAL_STEPS
 from reports.pages import comparison
 from reports.pages.findings import findings
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP

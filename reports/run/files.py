@@ -13,12 +13,11 @@ from pathlib import Path
 
 from reports.model.ending import FileTrouble
 
-# Versions before this one remove folders called ".crosscheck-" that no process has locked.
 PREFIX = ".crosscheck_"
 SOCKET_PATH = 104  # bytes of the path of a socket that every system takes
 TRIES = 20  # to remove a folder into which a process writes that is just being ended
 
-_folders: list[Path] = []
+_folders: list[Path] = []  # the temporary folders that this process has made and not removed yet
 
 
 @contextmanager
@@ -43,14 +42,9 @@ def socket_folder() -> Path:
     return _new_folder(Path("/tmp") if too_long and os.access("/tmp", os.W_OK) else folder)
 
 
-def temporary_folders() -> tuple[Path, ...]:
-    """The temporary folders that this process has made and not removed yet."""
-    return tuple(_folders)
-
-
 def remove_all() -> None:
     """Remove every temporary folder of this process; for a process that ends at once."""
-    for folder in temporary_folders():
+    for folder in tuple(_folders):
         _remove(folder)
 
 

@@ -21,8 +21,8 @@ from importlib import metadata
 from pathlib import Path
 
 from engines.user_cache import CACHE, cache_folder
-from reports.model.digest import digest
 from reports.model.ending import BadInput
+from reports.model.fingerprint import digest
 from reports.run.files import folder_for, temporary_folder
 
 # The name of the folder itself: what lies in one of this name counts by its version (`reports.model.fingerprint`).

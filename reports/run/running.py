@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 from reports.model.cells import Cell, estimated_cost
-from reports.model.measure import Measurement, blank, measure
+from reports.model.measure import TRUTHS, Measurement, blank, measure
 from reports.model.outcomes import Loss, Outcome
 from reports.model.tasks import Answer, Task, answered
-from reports.model.truths import FOLDER
 from reports.run.files import folder_for
 from reports.run.store import ELSEWHERE, Store
 from reports.run.supervisor import Supervise, Watch, WorkersLost, supervise
@@ -49,12 +48,11 @@ def longest_first(items: Iterable[Item]) -> list[Item]:
 
     What begins last is then short, and no worker runs long after the others have ended.
     """
-    groups: dict[Any, list[tuple[float, Item]]] = {}
+    groups: dict[Any, list[Item]] = {}
     for item in items:
-        scene = item.scene if isinstance(item, Cell) else item
-        groups.setdefault(scene, []).append((expected_seconds(item), item))
-    ordered = sorted(groups.values(), key=lambda group: -sum(seconds for seconds, _ in group))
-    return [item for group in ordered for _, item in sorted(group, key=lambda pair: -pair[0])]
+        groups.setdefault(item.scene if isinstance(item, Cell) else item, []).append(item)
+    ordered = sorted(groups.values(), key=lambda group: -sum(map(expected_seconds, group)))
+    return [item for group in ordered for item in sorted(group, key=expected_seconds, reverse=True)]
 
 
 def run_items(
@@ -71,7 +69,7 @@ def run_items(
 
     A lost one has its outcome and no numbers. `limit`: CPU seconds for one; `wall`: seconds for one that sleeps.
     `workers`: `worker_count` if None. `timed`: whether a cell is run again for the least of several times.
-    `supervised`: by which function. `truths`: a folder of exact motions that workers share (`reports.model.truths`).
+    `supervised`: by which function. `truths`: a folder of exact motions that workers share (`reports.model.measure`).
     Raises WorkersLost (`supervise`).
     """
     items = tuple(items)
@@ -132,7 +130,7 @@ def run_into(
     waiting = tuple(items) if fresh else missing(items, store, limit)  # an old row stays until the new one replaces it
     lost: list[str] = []
     # Its whole path: workers have folders of their own.
-    truths = folder_for(store.path.parent.resolve() / FOLDER, ELSEWHERE) if waiting else None
+    truths = folder_for(store.path.parent.resolve() / TRUTHS, ELSEWHERE) if waiting else None
     for item, result in run_items(waiting, limit, workers, watch, timed, None, supervised, truths):
         if result.outcome == Outcome.LOST:
             lost.append(f"{item.label}: {result.sentence}")
@@ -146,17 +144,6 @@ def run_into(
     return len(waiting)
 
 
-def run_grid(path: Path, items: Sequence[Cell | Task], **terms: Any) -> Mapping[Cell | Task, Measurement | Answer]:
-    """Run the cells and tasks that the store at `path` lacks; all their results. `terms`: those of `run_into`.
-
-    Raises FileTrouble where the store can't be used, WorkersLost where workers are killed.
-    """
-    with Store(path) as store:
-        run_into(store, items, **terms)
-        cells = store.get(item for item in items if isinstance(item, Cell))
-        return {**cells, **store.answers(item for item in items if isinstance(item, Task))}
-
-
 def support_of(cell: Cell) -> str:
     """Why an engine can't build a scene's mechanism, in its own words; empty if it can."""
     from engines import Unsupported
@@ -168,7 +155,7 @@ def support_of(cell: Cell) -> str:
     return ""
 
 
-def support(cells: Sequence[Cell]) -> Mapping[Cell, str]:
+def support(cells: Sequence[Cell]) -> dict[Cell, str]:
     """Cell -> why it can't be built, in supervised processes; empty if it can. Raises WorkersLost."""
     reasons: dict[Cell, str] = {}
     for cell, result, _ in supervise(support_of, cells, TIME_LIMIT, worker_count()):

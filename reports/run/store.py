@@ -101,11 +101,13 @@ class Store:
 
     def put(self, row: Measurement) -> None:
         """Store a row, replacing an older one of the same cell."""
-        self._put(row.key, text_of_row(row))
+        self._put(row.key, json.dumps(asdict(row)))
 
     def put_answer(self, task: Task, answer: Answer) -> None:
         """Store the answer to a task, replacing an older one."""
-        self._put(task.key, text_of_answer(answer))
+        values = {name: value if isinstance(value, str) else _packed(value) for name, value in answer.values.items()}
+        fields_of = {name: getattr(answer, name) for name in ("outcome", "sentence", "limit")}
+        self._put(task.key, json.dumps({**fields_of, "values": values}))
 
     def _put(self, key: str, text: str) -> None:
         with _file_trouble(self.path), self._connection:
@@ -139,9 +141,9 @@ class Store:
     def _texts(self, items: Iterable[Keyed]) -> Iterator[tuple[Keyed, str]]:
         with _file_trouble(self.path):
             for item in items:
-                found = self._connection.execute("select row from results where key = ?", (item.key,)).fetchone()
-                if found:
-                    yield item, found[0]
+                line = self._connection.execute("select row from results where key = ?", (item.key,)).fetchone()
+                if line:
+                    yield item, line[0]
 
 
 @contextmanager
@@ -220,11 +222,6 @@ def _put_aside(path: Path) -> Path:
     return aside
 
 
-def text_of_row(row: Measurement) -> str:
-    """A row as it is stored."""
-    return json.dumps(asdict(row))
-
-
 def _loaded(text: str) -> dict[str, Any]:
     """The JSON of a stored text. Earlier versions put a digest and a blank before it."""
     return json.loads(text[max(0, text.find("{")) :])
@@ -240,12 +237,6 @@ def row_of(text: str) -> Measurement | None:
         return Measurement(**{**values, "outcome": Outcome(values["outcome"])})
     except (ValueError, TypeError, KeyError, AttributeError):
         return None
-
-
-def text_of_answer(answer: Answer) -> str:
-    """An answer as it is stored."""
-    values = {name: value if isinstance(value, str) else _packed(value) for name, value in answer.values.items()}
-    return json.dumps({**{name: getattr(answer, name) for name in ("outcome", "sentence", "limit")}, "values": values})
 
 
 def answer_of(text: str) -> Answer | None:

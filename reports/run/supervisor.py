@@ -1,10 +1,8 @@
 """Work supervised from outside: each item in a worker process, so that a crash in native code is a result too.
 
-Own code, although well-kept libraries for this exist. pebble, loky and concurrent.futures hand out work through one
-queue with a lock that all workers share: a worker killed while it holds the lock stops the others, a worker killed
-while it starts breaks the pool, and then every item that waits is answered with an error that says nothing about it.
-Exceptions travel as objects there, which fails for those that can't be unpickled, and limits count wall time only.
-Here every worker has a connection of its own, and a job counts as run only once its answer is whole.
+The pools of the kept libraries (pebble, loky, concurrent.futures) share a queue and its lock: a worker killed while it
+holds the lock, or while it starts, stops the others, and limits count wall time only. Here every worker has a
+connection of its own, and a job counts as run only once its answer is whole.
 
 * A worker that ends while it starts costs no item anything; after several in a row `WorkersLost` is raised.
 * An item whose worker ended is tried once more, in a worker that has run nothing else before, and the outcome of this
@@ -34,7 +32,6 @@ from reports.run.worker import (
     SPENT,
     Worker,
     cpu_time,
-    end_processes_of,
     last_words,
     one_thread_each,
     process_start,
@@ -94,7 +91,6 @@ def supervise(
             yield from pool.results(watch)
         finally:
             pool.close()
-            end_processes_of([folder])
 
 
 class Pool:

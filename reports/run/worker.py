@@ -1,7 +1,7 @@
-"""A worker: a process that answers one job after another, each within its CPU time, until one leaves something behind.
+"""A worker: a process that runs one job after another, each within its CPU time, until one leaves something behind.
 
-The first part is its parent's: how it is started and ended. The second, from `work` on, is what runs in it. Nothing of
-an engine is imported here, so that a worker that has to start from nothing is there at once.
+The first part runs in the parent: a worker is started and ended. The second, from `work` on, runs in the worker. No
+engine is imported here, so that a worker that has to start from nothing is there at once.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import tempfile
 import threading
 import time
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib import import_module
@@ -28,7 +28,7 @@ from typing import Any
 
 from reports.model.ending import describe
 from reports.model.outcomes import Loss, Outcome, failure, out_of_time
-from reports.run.files import socket_folder, temporary_folders
+from reports.run.files import socket_folder
 
 # Rows depend on the files that this module imports, and on no engine but their own. So these, which look at all engines
 # and packages, are imported by their names.
@@ -36,12 +36,11 @@ GUARD, REGISTRY = "planar_crosscheck", "engines.registry"
 IMPORTED_ONCE = ("reports.model.measure", REGISTRY)  # by the fork server, for all workers
 PATIENCE = 30.0  # s for a process that has ended to be gone: its memory may have to be written first
 READY = b"ready"
-LARGEST = 2**28  # bytes of one result: far above any motion, far below what would fill the memory of the parent
-SPENT = 152  # how a worker ends whose job has used up its CPU time, where nobody else sees that: 128 + SIGXCPU
+SPENT = 152  # exit code of a worker whose job has used up its CPU time, where the parent can't see that: 128 + SIGXCPU
 SAFE_PATH = "PYTHONSAFEPATH"  # any value keeps the current folder off the path of a Python that starts
-OURS = "crosscheck"  # its value where the user has set none: what a job starts is not meant
+OURS = "crosscheck"  # its value where the user has set none: it does not hold for processes that a job starts
 PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
-LOOK = 0.2  # s between two looks at its own CPU time
+CHECK_INTERVAL = 0.2  # s between two looks at its own CPU time
 # Starting a process looks at all others, and takes away the exit code of one that has ended: with several threads, each
 # of which supervises workers of its own, that may be another's.
 _reading = threading.Lock()
@@ -50,9 +49,8 @@ _reading = threading.Lock()
 def cpu_time(process: int) -> float | None:
     """CPU seconds of a process, all threads together; None where the system does not tell those of another process.
 
-    On Linux by the process's clock, whose number clock_getcpuclockid(3) makes in this way. A timer for the CPU time
-    (ITIMER_PROF, RLIMIT_CPU) would end a process by itself, but while one is set the process's own clock, by which
-    stepping is timed, moves in jumps of 4 ms only.
+    On Linux by the process's clock, whose number clock_getcpuclockid(3) makes in this way. While a timer for the CPU
+    time is set (ITIMER_PROF, RLIMIT_CPU), that clock, by which stepping is timed, moves in jumps of 4 ms only.
     """
     try:
         return time.clock_gettime((~process << 3) | 2)
@@ -64,21 +62,6 @@ def stop_all() -> None:
     """End every worker of this process; for a process that ends where it stands."""
     for child in multiprocessing.active_children():
         _kill(child)
-    end_processes_of(temporary_folders())
-
-
-def end_processes_of(folders: Iterable[Path]) -> None:
-    """End what jobs have started in sessions of their own, which outlives the process group of their worker.
-
-    They are known by the folder of the crew, which is their TMPDIR or where they are. Nothing is done without /proc.
-    """
-    names = [os.fsencode(folder) for folder in folders]
-    for process in Path("/proc").glob("[0-9]*") if names else ():
-        with suppress(OSError):  # it has ended, or is somebody else's
-            where = os.readlink(os.fsencode(process / "cwd"))
-            words = (process / "environ").read_bytes().split(b"\0")
-            if int(process.name) != os.getpid() and any(where == name or b"TMPDIR=" + name in words for name in names):
-                os.kill(int(process.name), signal.SIGKILL)
 
 
 def _kill(process: BaseProcess) -> None:
@@ -105,24 +88,19 @@ class Worker:
         return 0.0 if now is None or self.cpu is None else now - self.cpu
 
     def exit_code(self) -> int | None:
-        """Of a worker whose connection has ended; None if nobody knows how the process ended."""
-        return _exit_code(self.process)
+        """Once the process has ended; None if it can't be known, or it is still there after PATIENCE."""
+        ended = wait([self.process.sentinel], PATIENCE)
+        with _reading:
+            if ended:  # the sentinel of a spawned process is a pipe, closed a moment before the exit code is there
+                self.process.join(PATIENCE)
+            return self.process.exitcode
 
     def stop(self) -> None:
         """End the process, whatever it does, and what it has started."""
         _kill(self.process)
         self.connection.close()
-        if _exit_code(self.process) is not None:
+        if self.exit_code() is not None:
             self.process.close()
-
-
-def _exit_code(process: BaseProcess) -> int | None:
-    """Once the process has ended; None if nobody knows how, or it is still there after PATIENCE."""
-    ended = wait([process.sentinel], PATIENCE)
-    with _reading:
-        if ended:  # of a spawned process it is a pipe, closed a moment before the system tells the exit code
-            process.join(PATIENCE)
-        return process.exitcode
 
 
 def start_method(*modules: str) -> Any:
@@ -159,9 +137,8 @@ def start_worker(context: Any, folder: str, limit: float, wall: float) -> Worker
     """Start a process that runs `work` on these terms. Raises OSError or EOFError if none can be started."""
     ours, theirs = context.Pipe()
     process = context.Process(target=work, args=(theirs, folder, limit, wall), daemon=True)
-    # About a resource tracker killed in this moment.
     with theirs, warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+        warnings.simplefilter("ignore")  # about a resource tracker killed in this moment
         try:
             with _reading:
                 process.start()
@@ -183,8 +160,7 @@ def process_start() -> Iterator[None]:
     os.environ.setdefault(SAFE_PATH, OURS)
     before = None
     if hasattr(signal, "pthread_sigmask"):
-        # Starting the resource tracker ends the holding of Ctrl-C, so it comes first. The standard library warns when
-        # its tracker was killed, and starts another.
+        # Starting the resource tracker unblocks Ctrl-C, so it comes first. It warns when the old tracker was killed.
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             resource_tracker.ensure_running()
@@ -199,7 +175,7 @@ def process_start() -> Iterator[None]:
 
 
 def last_words(folder: Path, pid: int | None) -> str:
-    """In what words native code said why it aborts, if it did."""
+    """The reason that native code printed before it aborted, if it did."""
     with suppress(OSError):
         text = (folder / f"{pid}.log").read_text(encoding="utf-8", errors="replace")
         lines = [line.strip() for line in text.splitlines() if line.strip()]
@@ -210,7 +186,7 @@ def last_words(folder: Path, pid: int | None) -> str:
     return ""
 
 
-WATCHED = cpu_time(os.getpid()) is not None  # whether the parent sees when a job has used up its CPU time
+PARENT_SEES_CPU = cpu_time(os.getpid()) is not None  # whether the parent sees when a job has used up its CPU time
 
 
 class Clock:
@@ -223,11 +199,14 @@ class Clock:
 def work(connection: Connection, folder: str, limit: float, wall: float) -> None:
     """Answer jobs until the connection ends, or until a job leaves the process changed.
 
-    A job is a pickled (function, item); its answer is a pickled (whether this worker takes another job, what the
-    function gave or a Loss, pickled). `limit`: CPU seconds of one job, `wall`: seconds after which the parent
-    ends it; after twice as many it ends itself, should the parent be gone.
+    A job is a pickled (function, item); its answer is a pickled (whether this worker takes another job, the pickled
+    result or Loss). `limit`: CPU seconds of one job, `wall`: seconds after which the parent ends it; after twice as
+    many it ends itself, should the parent be gone.
     """
-    _ignore_interrupts()
+    # Ctrl-C reaches every process of a terminal; the parent alone decides what it means.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())
     if os.environ.get(SAFE_PATH) == OURS:
         del os.environ[SAFE_PATH]
     if hasattr(os, "setpgid"):
@@ -237,34 +216,25 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
         _redirect(Path(folder))
     except FileNotFoundError:  # the command was interrupted meanwhile, and has taken its folder away
         os._exit(1)
-    if hidden := import_module(
-        GUARD
-    ).clash():  # the path came from the parent: a folder before ours may have appeared since
+    # The path came from the parent: a folder before ours may have appeared since.
+    if hidden := import_module(GUARD).clash():
         print(hidden, file=sys.stderr, flush=True)
         os._exit(1)
     clock = Clock()
     threading.Thread(target=_watch, args=(clock,), daemon=True).start()
     connection.send_bytes(READY)
-    stays, own = True, os.getpid()
+    stays, number = True, os.getpid()
     while stays:
         try:
             job = connection.recv_bytes()
         except (EOFError, OSError):
             break
-        os.ftruncate(2, 0)  # what native code says last is then about this job
+        os.ftruncate(2, 0)  # what native code prints last is then about this job
         stays, answer = _answer(job, clock, limit, wall)
-        if os.getpid() != own:  # a child that a job has forked: its parent answers
+        if os.getpid() != number:  # a child that a job has forked: its parent answers
             os._exit(0)
         connection.send_bytes(pickle.dumps((stays, answer)))
-    # Not sys.exit: threads that a job has left running must not keep the process.
-    os._exit(0)
-
-
-def _ignore_interrupts() -> None:
-    """Ctrl-C reaches every process of a terminal; the parent alone decides what it means."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_SETMASK, ())
+    os._exit(0)  # not sys.exit: threads that a job has left running must not keep the process
 
 
 def _end_with_the_parent() -> None:
@@ -286,20 +256,20 @@ def _redirect(folder: Path) -> None:
     """Engines write logs into the working folder and to the standard streams; both go where the parent can look."""
     os.chdir(folder)
     log = os.open(f"{os.getpid()}.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
-    # What an engine makes elsewhere goes with this folder too, however the worker ends.
-    tempfile.tempdir = os.environ["TMPDIR"] = str(folder)
+    tempfile.tempdir = os.environ["TMPDIR"] = str(folder)  # what an engine makes goes with this folder too
     os.dup2(log, 1)
     os.dup2(log, 2)
     os.close(log)
 
 
 def _watch(clock: Clock) -> None:
-    """In a thread: end the process when its parent is gone, or when its CPU time is used up and nobody else sees it."""
+    """In a thread: end the process when its parent is gone, or when its CPU time is used up and the parent can't see
+    that."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     while parent.is_alive():
-        parent.join(None if WATCHED else LOOK)
-        if not WATCHED and time.process_time() > clock.end:
+        parent.join(None if PARENT_SEES_CPU else CHECK_INTERVAL)
+        if not PARENT_SEES_CPU and time.process_time() > clock.end:
             os._exit(SPENT)
     os._exit(1)
 
@@ -312,23 +282,18 @@ def _answer(job: bytes, clock: Clock, limit: float, wall: float) -> tuple[bool, 
     except BaseException as error:  # nothing was run
         return False, pickle.dumps(Loss(Outcome.LOST, f"a worker can't read it: {describe(error)}"))
     try:
-        before = _traces()
-        start = time.process_time()
+        before, start = _process_state(), time.process_time()
         with _timers(clock, limit, wall):
             result = function(item)
         if time.process_time() - start > limit:
             result = out_of_time(limit)
-        if sentence := import_module(REGISTRY).mislabelled(
-            elsewhere=False
-        ):  # a build that `compare` runs may lie elsewhere
+        # A build that `compare` runs may lie elsewhere.
+        if sentence := import_module(REGISTRY).mislabelled(elsewhere=False):
             result = Loss(Outcome.LOST, sentence)
-        answer = pickle.dumps(result)
-        if len(answer) > LARGEST:
-            raise OverflowError(f"a result of {len(answer)} bytes; {LARGEST} can be handed over")
+        return _process_state() == before, pickle.dumps(result)
     except BaseException as error:  # what an engine raises is a result, SystemExit and KeyboardInterrupt too
-        # It may have stopped half-way through a change of its own library, so nobody else gets this process.
+        # It may have stopped half-way through a change of its own library, so this process gets no other job.
         return False, pickle.dumps(failure(error))
-    return _traces() == before, answer
 
 
 @contextmanager
@@ -347,7 +312,7 @@ def _timers(clock: Clock, limit: float, wall: float) -> Iterator[None]:
                 signal.setitimer(timer, 0)
 
 
-def _traces() -> tuple[Any, ...]:
+def _process_state() -> tuple[Any, ...]:
     """What a job could leave behind for the next one: a worker in which this differs afterwards is replaced."""
     try:
         folder = os.getcwd()

@@ -11,8 +11,7 @@ from itertools import count
 
 from engines import Engine, Unsupported, pymunk
 from engines.registry import INSTALLED, VARIANTS
-from reports.model.digest import SHORT, digest
-from reports.model.fingerprint import OURS, ROOT
+from reports.model.fingerprint import OURS, ROOT, SHORT, digest
 from reports.search import mechanisms
 from reports.search.chunk import Chunk, chunks
 from reports.search.mujoco_alone import HINGED

@@ -6,8 +6,8 @@ import shutil
 from importlib.metadata import version
 from pathlib import Path
 
-from reports.model.digest import digest
 from reports.model.ending import BadInput
+from reports.model.fingerprint import digest
 from reports.run.files import temporary_folder
 from reports.run.installed import sources
 from reports.site.packages import ANSWERING, NotFetched, printed

@@ -20,13 +20,12 @@ from reference.joints import Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.scene import Scene
-from reports.model.cells import Cell, mechanism_of
+from reports.model.cells import USUAL_STEPS, Cell, is_run_at, is_step, mechanism_of, usual_variants
 from reports.model.convergence import Sweep, Verdict, by_method, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.model.quantities import quantity
-from reports.model.usual_steps import USUAL_STEPS, is_run_at, is_step, usual_variants
 from reports.write.page_tables import SAME_COST, TARGETS, reliable
 from reports.write.tables import NOTHING, error_words, markdown, milliseconds, number, step_words
 

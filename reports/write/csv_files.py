@@ -14,8 +14,8 @@ from pathlib import Path
 
 from engines import Promise
 from reports.model.cells import Cell, mechanism_of
-from reports.model.digest import SHORT, digest
 from reports.model.ending import BadInput
+from reports.model.fingerprint import SHORT, digest
 from reports.model.measure import TIMINGS, Measurement
 from reports.model.quantities import DIGITS, OF, QUANTITIES, agrees
 from reports.write.provenance import machine

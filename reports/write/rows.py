@@ -7,12 +7,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from reference.scene import Scene
+from reports.model.cells import is_step
 from reports.model.convergence import by_method, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.model.usual_steps import is_step
 from reports.write.unmeasured import UNMEASURED
 
 # Steps of the grids are half a decade apart: one of them is nearer to any step between its ends than this factor.

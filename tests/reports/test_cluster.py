@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import gc
-import os
 import pickle
-import signal
 import sys
-import threading
-from collections import Counter
 from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any
@@ -62,24 +58,6 @@ def test_a_local_cluster_gives_the_same_rows_and_answers_as_the_pool(tmp_path):
         there = {row.key: untimed(row) for row in store.get(cells).values()}
         assert store.answers(items[4:])
     assert there == {row.key: untimed(row) for row in run_cells(cells)}
-
-
-def test_workers_killed_at_work_lose_no_row_and_double_none(workers):
-    cells = [Cell(Disc(), SlowToy(seconds=0.05), every) for every in range(1, 30)]
-
-    def kill() -> None:
-        for worker in list(workers.workers.values()):
-            if worker.pid:
-                os.kill(worker.pid, signal.SIGKILL)
-
-    rows = []
-    with elsewhere(workers.scheduler_address) as cluster:
-        assert cluster is not None
-        threading.Timer(1.0, kill).start()
-        for row in run_cells(cells, timed=False, supervised=cluster.supervise):
-            rows.append(row)
-    assert Counter(row.key for row in rows) == Counter(cell.key for cell in cells)
-    assert {row.outcome for row in rows} == {Outcome.FINISHED}
 
 
 def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(workers, monkeypatch):

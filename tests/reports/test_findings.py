@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from reports.model.catalogue import PAGES
+from reports.model.cells import is_step
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Answer, Task
-from reports.model.usual_steps import is_step
 from reports.pages import findings as module
 from reports.pages.faults.page import OFFSETS, SCRIPTS
 from reports.pages.findings import CPU, FINDINGS, LOOKS, STEP, PlottedLine, Sources, draw, finding, findings, of_rows

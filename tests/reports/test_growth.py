@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from engines import Promise, Unpromised
-from reference.chapter.centrodes import Centrodes
 from reference.scenes.many_links import LongPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.cli.selection import BadInput, steps_per_sample
@@ -19,7 +18,6 @@ from reports.model import measure as measuring
 from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
 from reports.model.measure import repeated_stepping
 from reports.model.outcomes import Outcome
-from reports.pages.centrodes.page import returned
 from reports.pages.scaling.experiments import (
     LAST,
     BandedChain,
@@ -29,6 +27,7 @@ from reports.pages.scaling.experiments import (
     series_of,
 )
 from reports.pages.scaling.page import cost_table, crossing
+from reports.write.rows import Rows
 from tests.rows import row_of, table
 from tests.toys import Disc, Plain, Toy
 
@@ -137,22 +136,6 @@ def test_a_cost_is_the_least_of_several_runs_the_first_left_out_and_a_long_run_i
     assert measuring.process_seconds(lambda: setattr(clock, "now", clock.now + 3.0)) == (pytest.approx(3.0), None)
 
 
-def test_the_round_trip_is_the_worst_distance_and_the_rotation_looked_at():
-    # A wheel of 0.5 m on a line; its poses are wrong by 0.1 m at one end only.
-    theta = np.linspace(0.1, 1.1, 41)
-    pose = np.stack([-0.5 * theta, 0 * theta + 0.5, theta], axis=-1)
-    space = np.stack([-0.5 * theta, 0 * theta], axis=-1)
-    body = -0.5 * np.stack([np.sin(theta), np.cos(theta)], axis=-1)
-    right = Centrodes(pose, space, body, 0.0)
-    distance, rotation = returned(right)
-    assert distance < 1e-6
-    low, high = right.rolling().limits
-    looked = theta[(theta >= low) & (theta <= high)]
-    assert rotation == pytest.approx(looked[-1] - looked[0])
-    pose[np.argmax(theta >= low), 1] += 0.1
-    assert returned(Centrodes(pose, space, body, 0.0))[0] == pytest.approx(0.1, abs=1e-6)
-
-
 def test_a_step_must_divide_the_sampling_to_ten_digits():
     scene = Disc()
     assert steps_per_sample(scene, scene.spacing / 7) == 7
@@ -209,9 +192,10 @@ def test_a_cost_table_is_in_microseconds_and_a_crossing_is_where_the_first_becom
     def line(*costs):
         return Series("e", "v", tuple(Point(10**n, cost, 0.1, "torn") for n, cost in enumerate(costs)))
 
-    assert table(cost_table((line(1e-6, 1e-4, math.nan),))) == [
-        ["method", "1", "10", "100"],
-        ["e v", "1", "100", "**torn**"],
-    ]
-    found = [crossing(line(*costs), line(3, 3, 3)) for costs in ((1, 2, 9), (1, 4, 9), (9, 2, 1), (1, 1, 1), (9, 9, 9))]
-    assert found == [(10, 100), (1, 10), None, None, None]
+    cells = table(cost_table((line(1e-6, 1e-4, math.nan),)))
+    assert cells == [["method", "1", "10", "100"], ["e v", "1", "100", "**torn**"]]
+    crossings = [crossing(line(*costs), line(3, 3, 3)) for costs in ((1, 2, 9), (1, 4, 9), (9, 2, 1), (1, 1, 1))]
+    assert crossings == [(10, 100), (1, 10), None, None]
+    rows = [row_of("toy x", step=step) for step in (1e-2, 1e-3, 1e-4)]
+    near = [Rows(rows).near(step) for step in (1.9e-3, 5.1e-3, 2.9e-3)]
+    assert [row.step if row else None for row in near] == [1e-3, 1e-2, None]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import random
 import re
-import sys
 import time
 from dataclasses import dataclass, replace
 from typing import Any
@@ -137,20 +136,14 @@ def forks(file):
     fcntl.flock(held, fcntl.LOCK_EX)
     if os.fork():
         os.close(held)
-    elif file.name in "135":
-        if file.name in "35":
-            os.setsid()
-        if file.name == "5":  # of which the parent process knows nothing but its environment
-            os.chdir("/")
-            os.set_inheritable(held, True)
-            os.execv(sys.executable, [sys.executable, "-c", "import time; time.sleep(1e4)"])
+    elif file.name == "1":
         time.sleep(1e4)
     return file
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
 def test_a_job_that_forks_is_answered_once_and_its_child_is_ended(tmp_path):
-    files = [tmp_path / str(number) for number in range(6)]
+    files = [tmp_path / str(number) for number in range(3)]
     told = list(supervise(forks, files, 20.0, workers=2))
     assert sorted((item, result) for item, result, _ in told) == [(file, file) for file in files]
     for path in files:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -25,10 +25,8 @@ from reports.model.errors import (
     root_mean_square,
     usable_samples,
 )
-from reports.model.measure import Measurement, measure
-from reports.model.outcomes import Outcome
-from tests.rows import row
-from tests.toys import Disc, Plain, Toy
+from reports.model.measure import measure
+from tests.toys import Disc, Plain
 
 TIMES = np.array([0.0, 0.1, 0.2, 0.3])
 
@@ -140,19 +138,6 @@ def test_the_root_mean_square_is_that_of_all_numbers_and_the_largest_ignores_sig
     assert largest(np.array([1.0, -np.inf, np.nan])) == np.inf
 
 
-def test_gap_is_of_lengths_drive_gap_of_angles_and_slip_of_velocities():
-    for index, offset, expected in (
-        (("pose", (1, 0, 0)), 0.25, {"gap": 0.25}),
-        (("pose", (2, 0, 1)), -0.25, {"gap": 0.25}),
-        (("pose", (3, 0, 2)), -0.5, {"drive_gap": 0.5}),
-        (("twist", (1, 0, 1)), -0.75, {"slip": 0.75}),
-        (("twist", (1, 0, 2)), 0.5, {"slip": 0.5}),
-    ):
-        found = constraint_errors(MECHANISM, moved(**{index[0]: [(index[1], offset)]}))
-        assert set(found) == {"gap", "drive_gap", "slip"}
-        assert {name: value for name, value in found.items() if value > 1e-15} == pytest.approx(expected)
-
-
 @pytest.mark.parametrize("name", ["pose", "twist"])
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_samples_count_until_the_first_pose_or_twist_that_is_not_finite(name, value):
@@ -219,15 +204,6 @@ def shifted(column: int, offset, start: int = 0) -> Trajectory:
     trajectory = disc()
     trajectory.pose[start:, 0, column] += offset
     return trajectory
-
-
-def test_no_two_fields_of_the_row_by_hand_share_a_number():
-    values = [getattr(row(), f.name) for f in fields(Measurement)]
-    numbers = [value for value in values if isinstance(value, (int, float))]
-    assert len(set(values)) == len(values)
-    assert len({f"{value:.1e}" for value in numbers if isinstance(value, float)}) == sum(
-        isinstance(value, float) for value in numbers
-    )
 
 
 def test_every_field_of_a_measured_row_is_its_own():
@@ -312,23 +288,3 @@ def test_rows_told_are_those_known_at_all_samples_after_the_first():
     reaction[0, 0], reaction[:, 1] = np.nan, np.nan
     found = measure(Cell(DISC, Given(disc(reaction=reaction)), 1), repeat=False)
     assert (found.outcome, found.reaction_rows) == ("finished", 1)
-
-
-@dataclass(frozen=True)
-class Moving(Toy):
-    """An engine that counts from another origin, and moves the mechanism's own arrays there."""
-
-    name: str = "moving"
-
-    def build(self, mechanism, dt):
-        pose = mechanism.pose
-        pose += 1.0
-        return super().build(mechanism, dt)
-
-
-def test_an_engine_that_writes_into_a_mechanism_spoils_its_own_row_alone():
-    alone = measure(Cell(DISC, Toy(), 2))
-    spoilt = measure(Cell(DISC, Moving(), 2))
-    assert (spoilt.outcome, "read-only" in spoilt.sentence) == (Outcome.REFUSED, True)
-    after = measure(Cell(DISC, Toy(), 2))
-    assert (after.outcome, after.angle, after.energy) == (alone.outcome, alone.angle, alone.energy)

@@ -22,7 +22,7 @@ from reports.model.cells import Cell
 from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside
 from reports.model.tasks import Motion
 from reports.run import supervisor, worker
-from reports.run.running import longest_first, missing, run_cells, run_grid, run_into
+from reports.run.running import longest_first, missing, run_cells, run_into
 from reports.run.store import Store
 from reports.run.supervisor import WorkersLost, supervise
 from tests import ROOT
@@ -260,9 +260,9 @@ def test_only_what_is_not_stored_is_run_and_a_timeout_again_with_more_time_alone
         }
         assert run_into(store, items, limit=5e-10) == 0
         assert missing(items, store, limit=2e-9) == tuple(items)
-    results = run_grid(path, [*items, cells[1]], supervised=in_process)
-    assert {result.outcome for result in results.values()} == {Outcome.FINISHED}
     with Store(path) as store:
+        assert run_into(store, [*items, cells[1]], supervised=in_process) == 3
+        assert {row.outcome for row in store.get(cells).values()} == {Outcome.FINISHED}
         assert run_into(store, [*items, cells[1]], limit=1e-9, supervised=in_process) == 0
         assert run_into(store, cells, fresh=True, supervised=in_process) == 2
 

@@ -23,7 +23,7 @@ from engines import Engine, Unsupported
 from engines.mjx import DEFAULT
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
-from reports.model.digest import digest
+from reports.model.fingerprint import digest
 from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values
 from reports.pages.common import run_script
