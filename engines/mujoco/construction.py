@@ -62,7 +62,6 @@ class Building:
     tree: Tree
     dt: float
     stiffness: Stiffness
-    driven: tuple[int, ...]  # tree coordinates that turn at a prescribed rate
     written: list[WrittenJoint] = field(default_factory=list)
     binders: list[Binder] = field(default_factory=list)
     contact: bool = False

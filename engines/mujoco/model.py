@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -63,7 +63,7 @@ class Model:
     hooks: Hooks = field(default_factory=Hooks)
     rows: int = 0  # scalar constraints held by forces, drives not counted
     written: bool = False  # some of them by callback: the dual solver can't serve them
-    start_rates: tuple[tuple[int, float], ...] = ()  # of coordinates that stand for no body of the mechanism
+    start_rates: Mapping[int, float] = field(default_factory=dict)  # of coordinates of no body of the mechanism
     unit: float = 1.0  # kg: masses, forces and torques in the compiled model are in this
     halves: tuple[tuple[str, int], ...] = ()  # bodies of the model alone, and the one that each is a part of
     spec: Any = None  # mujoco.MjSpec
@@ -99,7 +99,7 @@ class Model:
         data.qvel[self.address] = self.tree.start_rates()
         for driven in self.driven:
             data.qvel[self.address[driven.column]] = driven.rate
-        for place, rate in self.start_rates:
+        for place, rate in self.start_rates.items():
             data.qvel[place] = rate
         with self.hooked():
             if self.hooks.before:
@@ -119,42 +119,40 @@ def build_model(
     CAPABILITY.require(mechanism)
     whole, unit = mechanism, unit or unit_of_mass(mechanism)
     mechanism = counted_in(mechanism, unit)
-
-    def of(kind: type[Any]) -> list[Any]:
-        return [joint for joint in mechanism.joints if isinstance(joint, kind)]
-
     tree = spanning_tree(mechanism, hanging=settings.coordinates == "tree")
+
+    def of(kind: type[Any], joints: Sequence[Any] = mechanism.joints) -> list[Any]:
+        return [joint for joint in joints if isinstance(joint, kind)]
+
     single = [joint for joint in of(Drive) if joint not in (*tree.kept, *tree.geared)]
     driven = driven_coordinates(tree, single)
-
     spec = _spec(tree, dt, settings.islands, options)
     if settings.drive == "inertia":
         for coordinate in driven:
             spec.joint(f"coordinate {coordinate.column}").armature = settings.armature * inertia_scale(mechanism)
-    building = Building(spec, mechanism, tree, dt, settings.stiffness, tuple(one.column for one in driven))
-    add_pins(building, [joint for joint in tree.loops if isinstance(joint, Pin)])
-    add_slots(building, [joint for joint in tree.loops if isinstance(joint, Slot)], settings.slots)
-    add_welds(building, [joint for joint in tree.loops if isinstance(joint, Weld)])
+    building = Building(spec, mechanism, tree, dt, settings.stiffness)
+    add_pins(building, of(Pin, tree.loops))
+    add_slots(building, of(Slot, tree.loops), settings.slots)
+    add_welds(building, of(Weld, tree.loops))
     add_rods(building, of(Rod), settings.rods)
     add_gears(building, of(Gear))
     add_forces(building)
     clocks = add_geared_drives(building, tree.geared, settings.drive, settings.armature)
     add_skates(building, of(Skate), settings.skates)
     add_rolls(building, of(Roll), settings.rolls)
-    if building.written:
+    written = building.written
+    if written:
         # The placeholders come last: what stands before them in the solver is then known.
         user_rows().add_placeholders(building)
     compiled = _compiled(building)
     places = [int(compiled.joint(f"coordinate {column}").qposadr[0]) for column in range(tree.coordinates)]
+    rates = {int(compiled.joint(name).dofadr[0]): rate for name, rate in building.start_rates.items()}
     steady = [*(places[one.column] for one in driven), *(int(compiled.joint(clock).dofadr[0]) for clock in clocks)]
     _scale_tolerance_by_free_inertia(compiled, steady)
-    for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
-        scale[:] *= settings.stiffness.softening  # connects, joints, tendons
+    multiply_compliances(compiled, settings.stiffness.softening)
     hooks = sum((bind(compiled, places) for bind in building.binders), Hooks())
-    if building.written:
-        write = user_rows().row_callback(compiled, tree, places, building.written, settings.stiffness.softening)
-        hooks += Hooks(control=write)
-    rates = tuple((int(compiled.joint(name).dofadr[0]), rate) for name, rate in building.start_rates.items())
+    if written:
+        hooks += Hooks(user_rows().row_callback(compiled, tree, places, written, settings.stiffness.softening))
     return Model(
         whole,
         tree,
@@ -163,13 +161,19 @@ def build_model(
         driven,
         settings.drive,
         hooks,
-        building.size + sum(joint.size for joint in building.written),
-        bool(building.written),
-        rates,
-        unit,
-        tuple(building.halves),
-        spec,
+        rows=building.size + sum(joint.size for joint in written),
+        written=bool(written),
+        start_rates=rates,
+        unit=unit,
+        halves=tuple(building.halves),
+        spec=spec,
     )
+
+
+def multiply_compliances(compiled: Any, factor: float) -> None:
+    """Multiply the compliances of the rows of connects, joints and tendons."""
+    for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
+        scale[:] *= factor
 
 
 def _spec(tree: Tree, dt: float, islands: bool, options: Mapping[str, Any]) -> Any:
@@ -178,9 +182,7 @@ def _spec(tree: Tree, dt: float, islands: bool, options: Mapping[str, Any]) -> A
     spec.compiler.degree = False
     spec.option.timestep = dt
     spec.option.gravity = [*tree.mechanism.gravity, 0.0]
-    spec.option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-    if not islands:
-        spec.option.disableflags |= NO_ISLANDS
+    spec.option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT) | (0 if islands else NO_ISLANDS)
     for name, value in options.items():
         setattr(spec.option, name, value)
     _add_bodies(spec, tree)
@@ -210,14 +212,13 @@ def _keep_small_offsets(compiled: Any) -> None:
     """Let MuJoCo read where sites and shapes are: it puts those within 1e-6 m of their body's origin there.
 
     It marks them as in their body's frame when it compiles, and never reads `site_pos`: a spring at an arm of a tenth
-    of a micrometre then turns nothing (4.0.1, asked by a test in `tests/engines/test_mujoco_scales.py`).
+    of a micrometre then turns nothing (4.0.1, asked by a test in `tests/engines/test_mujoco.py`).
     """
-    for place, same in (
-        (compiled.site_pos, compiled.site_sameframe),
-        (compiled.geom_pos, compiled.geom_sameframe),
-    ):
-        whole = np.isin(same, (int(mujoco.mjtSameFrame.mjSAMEFRAME_BODY), int(mujoco.mjtSameFrame.mjSAMEFRAME_INERTIA)))
-        same[whole & place.any(axis=1)] = int(mujoco.mjtSameFrame.mjSAMEFRAME_NONE)
+    kinds = mujoco.mjtSameFrame
+    tables = (compiled.site_pos, compiled.site_sameframe), (compiled.geom_pos, compiled.geom_sameframe)
+    for place, same in tables:
+        whole = np.isin(same, (int(kinds.mjSAMEFRAME_BODY), int(kinds.mjSAMEFRAME_INERTIA)))
+        same[whole & place.any(axis=1)] = int(kinds.mjSAMEFRAME_NONE)
 
 
 def _add_bodies(spec: Any, tree: Tree) -> None:

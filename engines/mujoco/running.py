@@ -86,67 +86,53 @@ class MuJoCoRun:
         The sampling is no part of the method: an estimate is made at WATCHED instants beside the samples, and these
         decide whether the estimate needs a third run. `stepping` counts all runs.
         """
-        self._begin(samples)
-        sampled = np.arange(samples + 1) * every
-        if self.other is None:
-            return self._as_built(sampled, sampled)
-        # After every second step, or WATCHED of these.
-        half = (samples * every + 1) // 2
-        watched = 2 * np.unique(np.linspace(0, half, min(half, WATCHED) + 1).round().astype(int))
-        counts = np.union1d(sampled, watched)
-        at_samples, at_watched = np.searchsorted(counts, sampled), np.searchsorted(counts, watched)
-        found, apart = self._doubled(counts, sampled)
-        return _at(self._estimated(found, apart, counts, at_watched), at_samples)
-
-    def _begin(self, samples: int) -> None:
         self.model.mechanism.require_room(samples)
         if self.data.time > 0:
             raise RuntimeError("this model has been stepped already; build it again to repeat the run")
+        sampled = np.arange(samples + 1) * every
+        if self.other is None:
+            return self._as_built(sampled, sampled)
+        # Double steps end after every second step. Estimates are made there, or at WATCHED of them, and beside samples.
+        half = (samples * every + 1) // 2
+        watched = 2 * np.unique(np.linspace(0, half, min(half, WATCHED) + 1).round().astype(int))
+        counts = np.unique([*sampled, *watched, *(sampled - sampled % 2), *(sampled + sampled % 2)])
+        run = self._estimated(self._as_built(counts, sampled), counts, np.searchsorted(counts, watched))
+        at = np.searchsorted(counts, sampled)
+        return replace(run, **{name: getattr(run, name)[at] for name in ("t", "pose", "twist", "reaction", "estimate")})
 
     def _as_built(self, counts: Counts, read: Counts) -> Trajectory:
         """The motion by the steps of the model, after so many of them; reactions are read after `read`, of these."""
-        step = self._dt
+        step, model = self._dt, self.model
         t = counts.astype(float) * step
-        with listening(self.data) as complaints, self.model.hooked():
+        with listening(self.data) as complaints, model.hooked():
             position, velocity, clock, stepping = self._step(counts)
             # The clock falls behind when MuJoCo starts anew; the listener hears it, but only once per kind of trouble.
             behind = np.abs(clock - t) > step / 2
-            reset_at = complaints.reset_at if complaints.reset_at is not None else _first(t, behind)
+            reset_at = complaints.reset_at
+            if reset_at is None and behind.any():
+                reset_at = float(t[int(np.argmax(behind))])
             sound = ~behind & np.all(np.isfinite(position) & np.isfinite(velocity), axis=1)
             if reset_at is not None:
                 sound &= t <= reset_at
             warnings = list(complaints.said)
             acceleration, missed = self._accelerations(position, velocity, t, sound & np.isin(counts, read))
-        pose, twist, change = self.model.tree.motion(*(self._ordered(x) for x in (position, velocity, acceleration)))
-        reaction = np.full((len(t), self.model.mechanism.row_count), np.nan)
-        told = np.all(np.isfinite(change), axis=(1, 2))
-        reaction[told] = self.model.mechanism.reaction(pose[told], change[told], *self.model.loads(), twist[told])
+        pose, twist, change = model.tree.motion(*(x[:, model.address] for x in (position, velocity, acceleration)))
+        reaction = np.full((len(t), model.mechanism.row_count), np.nan)
+        is_read = np.all(np.isfinite(change), axis=(1, 2))
+        seen = pose[is_read], twist[is_read]
+        reaction[is_read] = model.mechanism.reaction(seen[0], change[is_read], *model.loads(), seen[1])
         pose[~sound], twist[~sound] = np.nan, np.nan
         warnings += self._doubts(pose[sound], t[sound], missed)
         warnings += marks()
-        warnings += roll_warnings(self.model.mechanism, step, t[told], pose[told], twist[told], reaction[told])
+        warnings += roll_warnings(model.mechanism, step, t[is_read], *seen, reaction[is_read])
         return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at)
 
-    def _doubled(self, counts: Counts, read: Counts) -> tuple[Trajectory, Array]:
-        """The same, and the differences of a run of steps twice as long from its poses.
-
-        That run is there after every second step. In between, the larger of the differences before and after counts.
-        """
-        before, after = counts - counts % 2, counts + counts % 2
-        even = np.union1d(before, after)
-        every = np.union1d(even, counts)
-        found = self._as_built(every, read)
-        apart, spent = self._apart(found.pose[np.searchsorted(every, even)], np.floor_divide(even, 2), 2.0)
-        first, second = (apart[np.searchsorted(even, around)] for around in (before, after))
-        apart = np.where(np.abs(first) > np.abs(second), first, second + 0 * first)  # NaN where either is
-        return replace(_at(found, np.searchsorted(every, counts)), stepping=found.stepping + spent), apart
-
     def _apart(self, pose: Array, counts: Counts, ratio: float) -> tuple[Array, float]:
-        """The differences of the poses after so many steps of another length from these (times, bodies, 3), and what
-        those took.
+        """The differences of the poses after so many steps of another length from these (times, bodies, 3), and the CPU
+        seconds of those steps.
 
-        Its rows give way ratio^4 times as much, so that their error is told with that of the step. NaN where it is
-        lost.
+        Rows of the other run have ratio^4 times the compliance, so that the difference has their error beside that of
+        the step. NaN where it is lost.
         """
         assert self.other is not None  # only a run with an estimate asks
         run = self.other(self._dt * ratio)
@@ -154,87 +140,74 @@ class MuJoCoRun:
             getattr(run.model.compiled, name)[:] = ratio**ORDER * getattr(self.model.compiled, name)
         with listening(run.data) as complaints, run.model.hooked():
             position, velocity, clock, spent = run._step(counts)
-        there, _, _ = run.model.tree.motion(*(run._ordered(x) for x in (position, velocity, velocity)))
-        apart = there - pose
+        columns = (x[:, run.model.address] for x in (position, velocity, velocity))
+        apart = run.model.tree.motion(*columns)[0] - pose
         reset_at = np.inf if complaints.reset_at is None else complaints.reset_at
         t = counts * run._dt
         apart[(np.abs(clock - t) > run._dt / 2) | (t >= reset_at)] = np.nan
         return apart, spent
 
-    def _by_order(self, apart: Array) -> Array:
-        """What steps twice as long say of the error: RK4's falls with the fourth power, and so does that of soft rows.
+    def _estimated(self, run: Trajectory, counts: Counts, watched: Counts) -> Trajectory:
+        """The run (after `counts` steps) with its estimate, and from when on that is above CLAIM.
 
-        What hard rows lose in rounding falls with nothing, so a small difference counts in full.
+        The error of RK4 falls with the fourth power of the step, and so does that of soft rows. The rounding errors of
+        hard rows do not fall, so a small difference counts in full. If the difference to the run with double steps
+        exceeds CLAIM, two runs cannot confirm the order, and a third run with half steps is made. Its difference is q
+        times as large, where RK4's q is 1/16. At q up to 1/8 the third order is seen at least: were steps halved on and
+        on, and each difference at most half of the one before, the rest would add up to 2 q of it at most. Otherwise
+        each is taken to be up to 2/3 of the one before, so that they add up to three times the first: they fell so near
+        a change point, where a plain half missed by a fifth. An error may pass zero: q is that of the largest
+        differences so far.
         """
-        apart = np.abs(apart)
-        return np.maximum(apart / (2**ORDER - 1), np.minimum(apart, ROUNDED * self._sizes))
-
-    def _estimated(self, found: Trajectory, apart: Array, counts: Counts, watched: Counts) -> Trajectory:
-        """With an estimate, and whether it is above what is claimed; by half steps too where double ones can't tell.
-
-        Where double steps make more of a difference than is claimed, nobody knows whether the order is seen. Half steps
-        make a difference that is q times as large, where RK4's q is 1/16. At q up to 1/8 the third order is seen at
-        least: were steps halved on and on, and each difference at most half of the one before, the rest would add up to
-        2 q of it at most. Else each is taken to be up to 2/3 of the one before, so that they add up to three: they fell
-        so near a change point, where a plain half missed by a fifth. What was missed once may pass zero: q is that of
-        the largest differences so far.
-        """
-        stepping, warnings = found.stepping, found.warnings
-        estimate, better = self._by_order(apart), -apart / (2**ORDER - 1)
-        coarse = self._largest_so_far(apart[watched])
-        # From which step on it is above is known no better than the estimate is: from where double steps leave it open.
-        closed = watched[: np.argmin([*self._within(apart[watched]), False])]
-        unresolved_at = None
+        even = counts[counts % 2 == 0]
+        apart, spent = self._apart(run.pose[counts % 2 == 0], even // 2, 2.0)
+        # After an odd number of steps the larger of the differences before and after counts; NaN where either is.
+        first, second = (apart[np.searchsorted(even, around)] for around in (counts - counts % 2, counts + counts % 2))
+        apart = np.where(np.abs(first) > np.abs(second), first, second + 0 * first)
+        estimate, better = np.abs(apart) / (2**ORDER - 1), -apart / (2**ORDER - 1)
+        estimate = np.maximum(estimate, np.minimum(np.abs(apart), ROUNDED * self.model.mechanism.pose_unit))
+        coarse, unresolved_at = np.maximum.accumulate(self._relative(apart[watched])), None
+        # When the estimate rises above CLAIM is known no better than from where double steps leave it open.
+        closed = watched[: np.argmin([*(self._relative(apart[watched]) <= CLAIM), False])]
         if not coarse[-1] <= CLAIM:
-            apart, spent = self._apart(found.pose, 2 * counts, 0.5)
-            better = apart * 2**ORDER / (2**ORDER - 1)
-            q = self._largest_so_far(apart[watched]) / np.where(coarse > 0, coarse, np.inf)
+            apart, more = self._apart(run.pose, 2 * counts, 0.5)
+            better, spent = apart * 2**ORDER / (2**ORDER - 1), spent + more
+            fine = np.maximum.accumulate(self._relative(apart[watched]))
+            q = fine / np.where(coarse > 0, coarse, np.inf)
             factor = np.where(q <= 1 / 8, 1 + 2 * q, 3.0)  # 3 also where the run of double steps is lost
             estimate = np.abs(apart) * factor[np.searchsorted(counts[watched], counts, side="right") - 1, None, None]
-            stepping += spent
         # Extrapolated poses still have the gaps that all runs leave alike.
-        seen = found.pose[watched] + better[watched]
-        moved = RELEASED * closing(self.model.mechanism, found.t[watched], seen, found.t)
+        moved = RELEASED * closing(self.model.mechanism, run.t[watched], run.pose[watched] + better[watched], run.t)
         estimate = estimate + np.maximum.accumulate(np.abs(moved))
-        warnings = (*warnings, *self._reaction_doubts(found, moved, better))
-        if not self._within(estimate).all():
-            above = found.t[np.argmin(self._within(estimate))]
-            unresolved_at = float(min(above, (counts[closed[-1]] + 1) * self._dt)) if len(closed) else 0.0
-            warnings = (
-                *warnings,
-                f"ours: unresolved from {unresolved_at:.4g} s on, its own estimate is not below its claim",
-            )
-        return replace(found, stepping=stepping, warnings=warnings, estimate=estimate, unresolved_at=unresolved_at)
+        warnings = [*run.warnings, *self._reaction_doubts(run, moved, better)]
+        above = np.flatnonzero(~(self._relative(estimate) <= CLAIM))
+        if len(above):
+            at = run.t[above[0]]
+            unresolved_at = float(min(at, (counts[closed[-1]] + 1) * self._dt)) if len(closed) else 0.0
+            words = f"unresolved from {unresolved_at:.4g} s on, its own estimate is not below its claim"
+            warnings.append(f"ours: {words}")
+        spent += run.stepping
+        return replace(run, stepping=spent, warnings=tuple(warnings), estimate=estimate, unresolved_at=unresolved_at)
 
-    def _reaction_doubts(self, found: Trajectory, *moved: Array) -> list[str]:
-        """What is to be said of reactions where poses may be displaced by these (times, bodies, 3)."""
+    def _reaction_doubts(self, run: Trajectory, *moved: Array) -> list[str]:
+        """The warning for reactions that are uncertain where poses may be displaced by these (times, bodies, 3)."""
         mechanism = self.model.mechanism
-        sound = np.isfinite(found.reaction).any(axis=1) & np.isfinite(moved).all(axis=(0, 2, 3))
-        felt = np.any(np.abs(moved) > UNFELT * self._sizes, axis=(0, 2, 3))
-        told = some(mechanism, np.logical_and(sound, felt))
-        if not len(told):
+        sound = np.isfinite(run.reaction).any(axis=1) & np.isfinite(moved).all(axis=(0, 2, 3))
+        is_felt = np.any(np.abs(moved) > UNFELT * self.model.mechanism.pose_unit, axis=(0, 2, 3))
+        at = some(mechanism, np.logical_and(sound, is_felt))
+        if not len(at):
             return []
-        pose, reaction = found.pose[told], found.reaction[told]
-        errors = [displaced_reaction(mechanism, pose, reaction, each[told]) - reaction for each in moved]
-        return reaction_doubts(mechanism, pose, found.twist[told], reaction, np.abs(errors).max(axis=0))
+        pose, reaction = run.pose[at], run.reaction[at]
+        errors = [displaced_reaction(mechanism, pose, reaction, displacement[at]) - reaction for displacement in moved]
+        return reaction_doubts(mechanism, pose, run.twist[at], reaction, np.abs(errors).max(axis=0))
 
-    def _within(self, apart: Array) -> NDArray[np.bool_]:
-        """(times,) whether that is no more than what is claimed."""
-        return np.max(np.abs(apart) / self._sizes, axis=(1, 2)) <= CLAIM
-
-    def _largest_so_far(self, apart: Array) -> Array:
-        """(times,) of a radian or of the mechanism's length; NaN from where one is lost."""
-        return np.maximum.accumulate(np.max(np.abs(apart) / self._sizes, axis=(1, 2)))
+    def _relative(self, apart: Array) -> Array:
+        """(times,) the largest difference of poses as a part of a radian or of the mechanism's length."""
+        return np.max(np.abs(apart) / self.model.mechanism.pose_unit, axis=(1, 2))
 
     @property
     def _dt(self) -> float:
         return self.model.compiled.opt.timestep
-
-    @property
-    def _sizes(self) -> Array:
-        """What differences of poses are measured by [m, m, rad]."""
-        length = self.model.mechanism.length_scale
-        return np.array([length, length, 1.0])
 
     def _step(self, counts: Counts) -> tuple[Array, Array, Array, float]:
         """Positions, velocities and clock after so many steps (times, ...), the first after none, as MuJoCo orders
@@ -268,9 +241,6 @@ class MuJoCoRun:
             place = self.model.address[driven.column]
             self.data.qpos[place] = driven.rate * self.data.time
             self.data.qvel[place] = driven.rate
-
-    def _ordered(self, values: Array) -> Array:
-        return values[:, self.model.address]
 
     def _accelerations(
         self, position: Array, velocity: Array, t: Array, sound: NDArray[np.bool_]
@@ -306,13 +276,3 @@ class MuJoCoRun:
         if not missed <= UNSOLVED:
             doubts.append(f"ours: the solver missed the accelerations by {missed:.1g} of themselves")
         return doubts
-
-
-def _at(found: Trajectory, places: Counts) -> Trajectory:
-    """The motion at some of its times."""
-    kept = {name: getattr(found, name)[places] for name in ("t", "pose", "twist", "reaction")}
-    return replace(found, **kept, estimate=None if found.estimate is None else found.estimate[places])
-
-
-def _first(t: Array, flags: NDArray[np.bool_]) -> float | None:
-    return float(t[int(np.argmax(flags))]) if flags.any() else None

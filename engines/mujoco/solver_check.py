@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from engines import Unsupported
-from engines.mujoco.model import Model
+from engines.mujoco.model import Model, multiply_compliances
 from engines.mujoco.releases import full_inertia
 
 # At the start a solver must find the accelerations to this part of them. Measured: a solver that suits a mechanism
@@ -96,8 +96,7 @@ def ease(model: Model, softening: float, start: Any) -> float:
         return softening
     while softening < 1 and not mujoco.mj_isSparse(compiled) and _lost(compiled, start) > LOST:
         softening *= 10
-        for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
-            scale[:] *= 10
+        multiply_compliances(compiled, 10)
         start = model.start()
     return softening
 

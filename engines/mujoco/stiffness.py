@@ -8,6 +8,7 @@ Solver parameters" for solref and solimp.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -18,70 +19,67 @@ from reference.mechanism import Mechanism
 STIFFEST = (0.9999, 0.9999, 0.001, 0.5, 1.0)
 
 
-def _critical(constant: float) -> tuple[float, float]:
-    return 1 / constant**2, 2 / constant
+@dataclass(frozen=True)
+class _Spring(Valid, ABC):
+    """Critically damped springs; `impedance` is solimp, `softening` multiplies the compliance that belongs to it."""
+
+    softening: ClassVar[float] = 1.0
+    impedance: ClassVar[tuple[float, float, float, float, float]] = STIFFEST
+
+    @abstractmethod
+    def time_constant(self, mechanism: Mechanism, dt: float) -> float:
+        """[s], for steps of dt [s]."""
+
+    @validated
+    def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
+        """solref: the time constant [s] and the damping ratio, or -stiffness and -damping of a unit mass."""
+        return self.time_constant(mechanism, dt), 1.0
+
+    @validated
+    def gains(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
+        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
+        constant = self.time_constant(mechanism, dt)
+        return 1 / constant**2, 2 / constant
 
 
 @dataclass(frozen=True)
-class Shipped(Valid):
+class Shipped(_Spring):
     """MuJoCo's defaults: a time constant of 0.02 s whatever the step, and an impedance that grows with the gap.
 
     It is 0.9 with the gap closed, and 0.95 where it is open by a millimetre and more: R is 0.11 of the inverse inertia
     and falls to 0.053 (checked against `efc_KBIP` by a test in `tests/engines/test_mujoco.py`).
     """
 
-    softening: ClassVar[float] = 1.0
+    impedance: ClassVar[tuple[float, float, float, float, float]] = (0.9, 0.95, 0.001, 0.5, 2.0)
 
-    @validated
-    def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """solref."""
-        return 0.02, 1.0
-
-    @validated
-    def gains(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
-        return _critical(0.02)
-
-    @property
-    def impedance(self) -> tuple[float, float, float, float, float]:
-        """solimp."""
-        return 0.9, 0.95, 0.001, 0.5, 2.0
+    def time_constant(self, mechanism: Mechanism, dt: float) -> float:
+        return 0.02
 
 
 @dataclass(frozen=True)
-class TiedToStep(Valid):
+class TiedToStep(_Spring):
     """Critically damped with a time constant of some steps, impedance at its limit: documented settings only.
 
     The gap is R f / k, so it falls as the square of the step: the only way to let it vanish without touching the model.
     With its flag `refsafe`, which is on unless it is disabled, MuJoCo clamps a shorter time constant at two steps
     (mjDSBL_REFSAFE in mjtype.h). Its integrator "discrete" is another matter: there an equality is not clamped, and a
-    contact at about one step (4.0.1; a test in `tests/engines/test_mujoco.py` asks it for both).
+    contact at about one step (4.0.1; a test in `tests/engines/test_mujoco.py` asks it for both). The time constant here
+    is that of all other integrators.
     """
 
     steps: Positive = 5.0
-    softening: ClassVar[float] = 1.0
+
+    def time_constant(self, mechanism: Mechanism, dt: float) -> float:
+        return max(self.steps, 2.0) * dt
 
     @validated
     def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """solref."""
+        """solref as it is asked for, which MuJoCo clamps."""
         return self.steps * dt, 1.0
-
-    @validated
-    def gains(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to.
-
-        With the clamp of all integrators but "discrete", which below two steps is stiffer than this says.
-        """
-        return _critical(max(self.steps, 2.0) * dt)
-
-    @property
-    def impedance(self) -> tuple[float, float, float, float, float]:
-        """solimp."""
-        return STIFFEST
 
 
 @dataclass(frozen=True)
-class Hardened(Valid):
+class Hardened(_Spring):
     """The compliance itself multiplied by `softening`; springs as slow as the motion allows, whatever the step.
 
     The estimate in R comes from fields of the model that can be written after it is compiled. With R near zero the loop
@@ -90,14 +88,12 @@ class Hardened(Valid):
     compliance in rounding it is made larger again (`engines.mujoco.solver_check`); otherwise it is what was asked for.
     """
 
-    softening: Positive = 1e-8
+    softening: Positive = 1e-8  # pyright: ignore[reportIncompatibleVariableOverride]
     share: Positive = 0.2
     steps: Positive = 5.0
     eased: bool = False
 
-    @validated
-    def time_constant(self, mechanism: Mechanism, dt: Positive) -> float:
-        """[s]"""
+    def time_constant(self, mechanism: Mechanism, dt: float) -> float:
         return max(self.steps * dt, self.share * mechanism.time_scale)
 
     @validated
@@ -105,16 +101,6 @@ class Hardened(Valid):
         """solref in its direct form, -stiffness and -damping of a unit mass: this one MuJoCo doesn't clamp."""
         constant = self.time_constant(mechanism, dt)
         return -1 / constant**2, -2 / constant
-
-    @validated
-    def gains(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
-        return _critical(self.time_constant(mechanism, dt))
-
-    @property
-    def impedance(self) -> tuple[float, float, float, float, float]:
-        """solimp."""
-        return STIFFEST
 
 
 Stiffness = Shipped | TiedToStep | Hardened

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -21,6 +21,7 @@ import numpy as np
 from engines import Unsupported
 from engines.capability import Capability
 from engines.mujoco.releases import spelled
+from engines.reading import Names
 from engines.tree import Link, spanning_tree
 from reference.joints import Drive, Pin, Slot, Vector, Weld
 from reference.mechanism import Mechanism
@@ -30,9 +31,9 @@ if TYPE_CHECKING:
     from engines.mujoco.model import Model
 
 FLAGS = ("contact", "island")
+TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
 THICKNESS = 0.02  # of bars, in the mechanism's lengths
 UNTOUCHED = {"contype": "0", "conaffinity": "0", "mass": "0"}
-REFERRING = ("name", "body", "body1", "body2")
 
 
 @dataclass(frozen=True)
@@ -100,56 +101,44 @@ def urdf(mechanism: Mechanism) -> str:
         if isinstance(joint, Drive) and joint not in tree.kept:
             raise Unsupported(f"drive {joint.name!r} prescribes a motion, which URDF has no word for")
     root = xml.Element("robot", {"name": "crosscheck"})
-    xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _row(_upright(*mechanism.gravity))})
+    xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _upright(*mechanism.gravity)})
     if mechanism.twist.any():
-        root.append(
-            xml.Comment(" The mechanism starts in motion, which URDF has no word for: here it starts at rest. ")
-        )
+        words = " The mechanism starts in motion, which URDF has no word for: here it starts at rest. "
+        root.append(xml.Comment(words))
     xml.SubElement(root, "link", {"name": "world"})
+    anchors = {link.body: link.anchor for link in tree.links}
     for link in tree.links:
-        _add(root, mechanism, link)
-    xml.indent(root)
-    return xml.tostring(root, encoding="unicode") + "\n"
+        _add_link(root, mechanism, link, anchors)
+    return _text(root)
 
 
-def _add(root: xml.Element, mechanism: Mechanism, link: Link) -> None:
-    """A body's frame is its joint's point, parallel to the world at the start."""
+def _add_link(root: xml.Element, mechanism: Mechanism, link: Link, anchors: Mapping[int, Vector]) -> None:
+    """A body and its joint; the body's frame is its joint's point (`anchors`), parallel to the world at the start."""
     body = mechanism.bodies[link.body]
     if link.kind == "free" or (link.kind == "slot" and link.turns):
         raise Unsupported(f"body {body.name!r} is held by less than a hinge or a slide, which URDF has no joint for")
-    element = xml.SubElement(root, "link", {"name": body.name})
-    inertial = xml.SubElement(element, "inertial")
-    xml.SubElement(inertial, "origin", {"xyz": _row(_upright(-link.anchor[0], -link.anchor[1])), "rpy": "0 0 0"})
+    inertial = xml.SubElement(xml.SubElement(root, "link", {"name": body.name}), "inertial")
+    xml.SubElement(inertial, "origin", {"xyz": _upright(-link.anchor[0], -link.anchor[1]), "rpy": "0 0 0"})
     xml.SubElement(inertial, "mass", {"value": repr(float(body.mass))})
-    tensor = {name: repr(float(body.inertia)) for name in ("ixx", "iyy", "izz")} | dict.fromkeys(
-        ("ixy", "ixz", "iyz"), "0"
-    )
+    tensor = {f"i{axes}": repr(float(body.inertia)) if axes[0] == axes[1] else "0" for axes in TENSOR}
     xml.SubElement(inertial, "inertia", tensor)
     kind = "prismatic" if link.kind == "slot" else "continuous" if link.turns else "fixed"
-    parent = "world" if link.parent is None else mechanism.bodies[link.parent].name
     joint = xml.SubElement(root, "joint", {"name": f"joint of {body.name}", "type": kind})
+    parent = "world" if link.parent is None else mechanism.bodies[link.parent].name
+    base = (0.0, 0.0) if link.parent is None else anchors[link.parent]
     xml.SubElement(joint, "parent", {"link": parent})
     xml.SubElement(joint, "child", {"link": body.name})
-    at = link.arm
-    if link.parent is not None:
-        base = _anchor(mechanism, link.parent)
-        at = (at[0] - base[0], at[1] - base[1])
-    xml.SubElement(joint, "origin", {"xyz": _row(_upright(*at)), "rpy": "0 0 0"})
-    axis = (0.0, -1.0, 0.0) if link.kind == "hinge" else _upright(*link.direction)
+    xml.SubElement(joint, "origin", {"xyz": _upright(link.arm[0] - base[0], link.arm[1] - base[1]), "rpy": "0 0 0"})
     if kind != "fixed":
-        xml.SubElement(joint, "axis", {"xyz": _row(axis)})
+        axis = _row((0.0, -1.0, 0.0)) if link.kind == "hinge" else _upright(*link.direction)
+        xml.SubElement(joint, "axis", {"xyz": axis})
     if link.kind == "slot":
         xml.SubElement(joint, "limit", {"lower": "-1e9", "upper": "1e9", "effort": "1e9", "velocity": "1e9"})
 
 
-def _anchor(mechanism: Mechanism, body: int) -> tuple[float, float]:
-    """The joint's point of a body's own link from its centre of mass, with world directions at the start [m]."""
-    return next(link.anchor for link in spanning_tree(mechanism).links if link.body == body)
-
-
-def _upright(x: float, y: float) -> tuple[float, float, float]:
+def _upright(x: float, y: float) -> str:
     """A vector of the plane in URDF's frame."""
-    return (x, 0.0, y)
+    return _row((x, 0.0, y))
 
 
 def mjcf(model: Model, softening: float) -> str:
@@ -171,24 +160,19 @@ def mjcf(model: Model, softening: float) -> str:
     if model.compiled.nu:
         key["ctrl"] = _row(start.ctrl)
     xml.SubElement(xml.SubElement(root, "keyframe"), "key", key)
+    return _text(root)
+
+
+def _text(root: xml.Element) -> str:
     xml.indent(root)
     return xml.tostring(root, encoding="unicode") + "\n"
 
 
 def _option(option: Any) -> xml.Element:
     """The settings as compiled, those that are MuJoCo's own too."""
-    enums = {
-        "integrator": mujoco.mjtIntegrator,
-        "solver": mujoco.mjtSolver,
-        "jacobian": mujoco.mjtJacobian,
-        "cone": mujoco.mjtCone,
-    }
-    attributes = {
-        "timestep": _row(option.timestep),
-        "gravity": _row(option.gravity),
-        "tolerance": _row(option.tolerance),
-    }
-    attributes |= {name: spelled(enum(getattr(option, name))) for name, enum in enums.items()}
+    attributes = {name: _row(getattr(option, name)) for name in ("timestep", "gravity", "tolerance")}
+    for name in ("Integrator", "Solver", "Jacobian", "Cone"):
+        attributes[name.lower()] = spelled(getattr(mujoco, f"mjt{name}")(getattr(option, name.lower())))
     element = xml.Element("option", attributes | {"iterations": str(int(option.iterations))})
     off = [flag for flag in FLAGS if option.disableflags & int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag.upper()}"))]
     if off:
@@ -243,15 +227,18 @@ def _set(element: xml.Element | None, **numbers: Any) -> None:
 
 
 def _rename(root: xml.Element, model: Model) -> None:
-    """Bodies under the mechanism's names, where these are not taken by something else."""
-    names = {f"body {number}": body.name for number, body in enumerate(model.mechanism.bodies)}
-    if set(names) & set(names.values()):
-        return
+    """Bodies under the mechanism's names, with a number where something else in the file has that name."""
+    written = [f"body {number}" for number in range(len(model.mechanism.bodies))]
+    names = Names()
+    for other in ("world", *(element.get("name", "") for element in root.iter("body"))):
+        if other not in written:
+            names.new(other)
+    new = dict(zip(written, (names.new(body.name) for body in model.mechanism.bodies), strict=True))
     for element in root.iter():
-        for attribute in REFERRING:
+        for attribute in ("name", "body", "body1", "body2"):
             value = element.get(attribute)
-            if value in names and (attribute != "name" or element.tag == "body"):
-                element.set(attribute, names[value])
+            if value in new and (attribute != "name" or element.tag == "body"):
+                element.set(attribute, new[value])
 
 
 def _row(values: Any) -> str:
@@ -260,33 +247,31 @@ def _row(values: Any) -> str:
 
 def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
     """Bars through the joints of every "body i" of a model that has no shapes yet, and the view onto its plane."""
-    size = repr(THICKNESS * mechanism.length_scale)
+    size = THICKNESS * mechanism.length_scale
     visual = xml.Element("visual")
     xml.SubElement(visual, "global", {"azimuth": "90", "elevation": "-90"})
     xml.SubElement(visual, "headlight", {"ambient": "0.5 0.5 0.5"})
     root.insert(1, visual)
     world = root.find("worldbody")
     assert world is not None
+
+    def add(parent: xml.Element, kind: str, size: float, colour: str = "0.3 0.5 0.8 1", **place: str) -> None:
+        look = {"type": kind, **place, "size": repr(size), "rgba": colour}
+        parent.append(xml.Element("geom", {**look, **UNTOUCHED}))
+
+    bodies = {element.get("name"): element for element in world.iter("body")}
     for index, body in enumerate(mechanism.bodies):
-        element = next(each for each in world.iter("body") if each.get("name") == f"body {index}")
+        element = bodies[f"body {index}"]
         if element.find("geom") is not None:
             continue
         # The file's bodies stand parallel to the world at the start.
-        ends = [_place(rotated(body.pose[2], np.array(point))) for point in _points(mechanism, body.name)]
+        ends = [_row([*rotated(body.pose[2], np.array(point)), 0.0]) for point in _points(mechanism, body.name)]
         for first, second in pairwise(ends):
-            look = {"type": "capsule", "fromto": f"{first} {second}", "size": size, "rgba": "0.3 0.5 0.8 1"}
-            element.append(xml.Element("geom", {**look, **UNTOUCHED}))
+            add(element, "capsule", size, fromto=f"{first} {second}")
         if len(ends) == 1:
-            look = {"type": "sphere", "size": repr(3 * float(size)), "rgba": "0.3 0.5 0.8 1"}
-            element.append(xml.Element("geom", {**look, **UNTOUCHED}))
+            add(element, "sphere", 3 * size)
     for point in _points(mechanism, None):
-        look = {
-            "type": "sphere",
-            "pos": _place(np.array(point)),
-            "size": repr(1.5 * float(size)),
-            "rgba": "0.5 0.5 0.5 1",
-        }
-        world.append(xml.Element("geom", {**look, **UNTOUCHED}))
+        add(world, "sphere", 1.5 * size, "0.5 0.5 0.5 1", pos=_row([*point, 0.0]))
 
 
 def _points(mechanism: Mechanism, name: str | None) -> list[Vector]:
@@ -300,7 +285,3 @@ def _points(mechanism: Mechanism, name: str | None) -> list[Vector]:
     if name is not None and len(set(points)) < 2:
         points.append((0.0, 0.0))
     return list(dict.fromkeys(points))
-
-
-def _place(point: np.ndarray) -> str:
-    return f"{float(point[0])!r} {float(point[1])!r} 0.0"

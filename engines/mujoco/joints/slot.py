@@ -82,31 +82,25 @@ def _add_half(building: Building, slot: Slot) -> None:
     turn, direction = f"{name}: turn", (math.cos(line), math.sin(line))
     half.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[*direction, 0.0])
     half.add_joint(name=turn, type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0.0, 0.0, 1.0], pos=[*anchor, 0.0])
-    building.start_rates |= {name: _along(building, slot, direction), turn: _turning(building, slot)}
+    building.start_rates |= dict(zip((name, turn), _start_rates(building, slot, direction), strict=True))
     other_half = "world" if second is None else f"body {second}"
     weld = building.hold(mujoco.mjtEq.mjEQ_WELD, name, other_half, rows=3)
     weld.data[:3] = [*anchor, 0.0]
 
 
-def _along(building: Building, slot: Slot, direction: tuple[float, float]) -> float:
-    """How fast the second body's point moves along the slot at the start, relative to the first's material [m/s]."""
+def _start_rates(building: Building, slot: Slot, direction: tuple[float, float]) -> tuple[float, float]:
+    """The rates of the second body's point along the slot [m/s], and of the second body's rotation [rad/s], both
+    against the first body at the start.
+    """
     mechanism = building.mechanism
     at = np.array(world_offset(mechanism, slot.second, slot.second_point))
     if slot.second is not None:
         at = at + mechanism.pose[mechanism.body_index(slot.second), :2]
-    velocity = np.zeros(2)
+    velocity, turning = np.zeros(2), 0.0
     for name, sign in ((slot.first, -1.0), (slot.second, 1.0)):
         if name is not None:
             index = mechanism.body_index(name)
             twist = mechanism.twist[index]
             velocity += sign * (twist[:2] + rotation_velocity(twist[2], at - mechanism.pose[index, :2]))
-    return float(velocity @ np.array(direction))
-
-
-def _turning(building: Building, slot: Slot) -> float:
-    """How fast the second body turns against the first at the start [rad/s]."""
-    mechanism = building.mechanism
-    rates = [
-        0.0 if name is None else mechanism.twist[mechanism.body_index(name), 2] for name in (slot.first, slot.second)
-    ]
-    return float(rates[1] - rates[0])
+            turning += sign * twist[2]
+    return float(velocity @ np.array(direction)), float(turning)
