@@ -3,12 +3,9 @@
 A body is a dynamic body whose mass, centre and inertia are set directly; it may not sleep, and no shape is made, since
 no contact is the subject. A Pin is a revolute joint, a Weld a weld joint, a Rod a distance joint, a Slot a wheel joint
 without its spring (a point on a line that is free to turn), or a prismatic joint where a Drive of rate zero keeps the
-angle. A Drive is the motor of the Pin or Slot between the same two bodies, with more torque than it can need. Version 3
-has no gears. Its prismatic and wheel joints hold a point on a line that is fixed in a body, so a place; a blade needs a
-velocity across a line that moves along with it, which may be anywhere, and there is no joint for that (in
-3.1.1, which pyb2d3 0.11.1 holds). Rolling is contact with friction; none is built here. Its springs have a frequency,
-and their stiffness is that of the mass which they feel, pose by pose; so what springs, dampers, forces and torques do
-to bodies is worked out by our code before a step and applied as forces, as users do.
+angle. A Drive is the motor of the Pin or Slot between the same two bodies, with more torque than it can need. The
+stiffness of its springs is that of the mass which they feel, pose by pose; so our code works out what springs, dampers,
+forces and torques do to bodies before a step and applies forces, as users do.
 
 What one step does (its solver.c): `substeps` times with h = dt / substeps it kicks, lets every joint correct the
 velocities once with a push against its gap (soft, below), drifts by p += v h, and corrects once more without the push.
@@ -18,21 +15,18 @@ Joints are springs of 60 Hz, or of a quarter of the rate of sub-steps where that
 solved implicitly (b2MakeSoft in its solver.h; `crosscheck search` holds single joints to it): frequency w and ratio z
 give a push of a share h w (2 z + h w) / (1 + h w (2 z + h w)) of w / (2 z + h w) times the gap. Since the push is taken
 back after the drift, a gap closes at about w^2 h = 1.4e5 / s^2 times h: the shorter the sub-step, the slower, while
-what opens it falls with h too. So no order can be promised. Box2D 3.1.0 can set the frequency of all joints
-(`b2World_SetJointTuning`), 3.1.1 and later that of one (`b2Joint_SetConstraintTuning`). pyb2d3 0.11.1 has neither, so
-that it stays as shipped here. But a weld joint has frequencies of its own, which stay in the correction after the
-drift. With `closing`, a Pin without a drive is a weld joint that nearly nothing (SLACK) keeps from turning, whose
-points are held at the frequency closing / h; Rods and Welds are held at it too. A quarter is what the engine allows its
-contacts at most; at a half a chain of ten pins blows up. So stiff a pin makes forces of what single precision rounds
-off places: the shorter the step, the noisier are reactions. The page of engines shows what each of the two, frequency
-and sub-steps, does.
+what opens it falls with h too. So no order can be promised. pyb2d3 0.11.1 has no function for the frequency of joints
+(`b2World_SetJointTuning`). But a weld joint has frequencies of its own, which stay in the correction after the drift.
+With `closing`, a Pin without a drive is a weld joint that nearly nothing (SLACK) keeps from turning, whose points are
+held at the frequency closing / h; Rods and Welds are held at it too. A quarter is the engine's maximum for contacts; at
+a half a chain of ten pins blows up. So stiff a pin turns the rounding of places into forces: the shorter the step, the
+noisier are reactions. The page of engines shows the effect of frequency and of sub-steps.
 
-No body turns by more than an eighth of a turn in a step: a faster one is slowed down, which a warning tells.
+No body turns by more than an eighth of a turn in a step: a faster one is slowed down, with a warning.
 
-Numbers are of single precision, so that an error below about 1e-6 of the motion, and an acceleration below 1e-7 of the
-speed over the step, can't be told. Its own functions between angles and rotations are approximations, off by 1.6e-3 and
-3e-5 rad, so both are worked out here; whole turns, which a rotation does not keep, are taken back. Nothing is printed,
-and no threads are started unless a pool is given.
+Numbers are of single precision: an error below about 1e-6 of the motion, and an acceleration below 1e-7 of the speed
+over the step, can't be seen. The engine's functions between angles and rotations are approximations, off by 1.6e-3 and
+3e-5 rad, so both are computed here; whole turns, which a rotation does not keep, are restored.
 """
 
 from __future__ import annotations
@@ -46,10 +40,10 @@ import numpy as np
 from engines.capability import Capability
 from engines.contract import Holder, Promise, Size, Unpromised, Unsupported
 from engines.motions import over_three
-from engines.sampling import differences, sampled, unwrapped
-from engines.single_run import Optional, Recorded, SingleRun
-from reference.checks import Count, Name, NonNegative, Positive, validated
-from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
+from engines.sampling import sampled_with_differences, unwrapped
+from engines.single_run import Optional, Recorded
+from reference.checks import Count, Name, NonNegative, validated
+from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
@@ -58,21 +52,11 @@ SUBSTEP_COST = 0.8e-6  # s
 SLOP = 0.005  # m: the shortest distance of a joint
 ENOUGH = 1e30  # N m, of a motor: single precision ends at 3e38
 FASTEST = 1e18  # m/s, which the engine would cut to 400; single precision holds no larger square
-TURNED = math.pi / 4  # in a step: what is faster the engine cuts to it, and its binding has no switch for that
+TURNED = math.pi / 4  # in a step: a faster body is slowed to it, and the binding has no switch for that
 FORCES_COST = 150e-6  # s, of force elements, which are worked out by numpy
 # Of its points' frequency: a weld joint's spring that keeps it from turning in no number of steps; 0 is the stiffest.
 SLACK = 4e-9
 JOINTS = "https://box2d.org/documentation/group__joint.html"  # all that there are
-CAPABILITY = Capability(
-    "box2d",
-    frozenset({Pin, Slot, Drive, Rod, Weld}),
-    lacks={
-        Gear: f"box2d has no gears since version 3 ({JOINTS})",
-        Skate: "box2d has no joint for a velocity across a blade alone: those for lines hold a place on them "
-        f"({JOINTS})",
-        Roll: "in box2d a disc rolls by contact and friction, and our adapter builds no contact",
-    },
-)
 
 
 @dataclass(frozen=True)
@@ -89,6 +73,16 @@ class Box2D(Optional):
     forces_by: ClassVar[Holder] = "ours"
     precision: ClassVar[float] = 2.0**-23  # of its numbers
     angle_error: ClassVar[float] = 2.8e-5  # b2Atan2 of its math_functions.h is a polynomial, by which it reads a weld
+    capability: ClassVar[Capability] = Capability(
+        "box2d",
+        frozenset({Pin, Slot, Drive, Rod, Weld}),
+        lacks={
+            Gear: f"box2d has no gears since version 3 ({JOINTS})",
+            Skate: "box2d has no joint for a velocity across a blade alone: those for lines hold a place on them "
+            f"({JOINTS})",
+            Roll: "in box2d a disc rolls by contact and friction, and our adapter builds no contact",
+        },
+    )
 
     variant: Name
     substeps: Count = 4
@@ -105,33 +99,18 @@ class Box2D(Optional):
         forces = FORCES_COST if mechanism.forces else 0.0
         return (STEP_COST + SUBSTEP_COST * self.substeps) * over_three(mechanism) + forces
 
-    @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
-        """Every joint is the engine's own."""
-        return "engine"
-
-    @validated
-    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
-        """A world for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        CAPABILITY.require(mechanism)
-        self.require()
-        world = _World(mechanism, self.closing * self.substeps / dt)
-        return SingleRun(
-            mechanism, dt, world.size, lambda samples, every: world.record(dt, self.substeps, samples, every)
-        )
+    def model(self, mechanism: Mechanism, dt: float) -> Box2DWorld:
+        return Box2DWorld(mechanism, dt, self.substeps, self.closing * self.substeps / dt)
 
 
-class _World:
-    """The engine's objects for one mechanism."""
+class Box2DWorld:
+    """The engine's objects for one mechanism; `hertz`: the frequency of stiffened joints, 0 for those as shipped."""
 
-    def __init__(self, mechanism: Mechanism, hertz: float) -> None:
+    def __init__(self, mechanism: Mechanism, dt: float, substeps: int, hertz: float) -> None:
         import pyb2d3
 
-        self.mechanism, self.box2d, self.hertz = mechanism, pyb2d3, hertz
-        self.drives = {
-            frozenset((joint.first, joint.second)): joint for joint in mechanism.joints if isinstance(joint, Drive)
-        }
-        self._refuse()
+        self.mechanism, self.box2d, self.dt, self.substeps, self.hertz = mechanism, pyb2d3, dt, substeps, hertz
+        self.drives = self._motors()
         self.world = pyb2d3.World(gravity=mechanism.gravity, maximum_linear_speed=FASTEST)
         self.world.continuous_enabled = False
         self.ground = self.world.create_static_body(position=(0.0, 0.0))
@@ -141,8 +120,8 @@ class _World:
         count, rows = len(self.bodies), mechanism.row_count
         self.size = Size(count, 3 * count, rows, rows)
 
-    def _refuse(self) -> None:
-        """Raises Unsupported for what the engine has no joint for."""
+    def _motors(self) -> dict[frozenset[str | None], Drive]:
+        """The drive of each pair of bodies; raises Unsupported for what the engine has no joint for."""
         joints = self.mechanism.joints
         held = {frozenset((joint.first, joint.second)) for joint in joints if isinstance(joint, Pin | Slot)}
         drives = [joint for joint in joints if isinstance(joint, Drive)]
@@ -151,22 +130,18 @@ class _World:
                 raise Unsupported(
                     f"drive {drive.name!r}: a motor of box2d belongs to a joint between the same two bodies"
                 )
-        if len(self.drives) < len(drives):
+        motors = {frozenset((drive.first, drive.second)): drive for drive in drives}
+        if len(motors) < len(drives):
             raise Unsupported("two drives between the same two bodies: a joint of box2d has one motor")
+        return motors
 
     def _body(self, body: Any) -> Any:
         x, y, angle = body.pose
         vx, vy, rate = body.twist
-        rotation = self.box2d.Rot()
+        rotation, masses = self.box2d.Rot(), self.box2d.MassData()
         rotation.c, rotation.s = math.cos(angle), math.sin(angle)
-        made = self.world.create_dynamic_body(
-            position=(x, y),
-            rotation=rotation,
-            linear_velocity=(vx, vy),
-            angular_velocity=rate,
-            enable_sleep=False,
-        )
-        masses = self.box2d.MassData()
+        start = {"position": (x, y), "rotation": rotation, "linear_velocity": (vx, vy), "angular_velocity": rate}
+        made = self.world.create_dynamic_body(**start, enable_sleep=False)
         masses.mass, masses.center, masses.rotational_inertia = body.mass, (0.0, 0.0), body.inertia
         made.mass_data = masses
         return made
@@ -175,12 +150,8 @@ class _World:
         return self.ground if name is None else self.bodies[self.mechanism.body_index(name)]
 
     def _join(self, joint: Any) -> Any:
-        ends = {
-            "body_a": self._named(joint.first),
-            "body_b": self._named(joint.second),
-            "local_anchor_a": joint.first_point,
-            "local_anchor_b": joint.second_point,
-        }
+        bodies = {"body_a": self._named(joint.first), "body_b": self._named(joint.second)}
+        ends = {**bodies, "local_anchor_a": joint.first_point, "local_anchor_b": joint.second_point}
         if isinstance(joint, Rod):
             if joint.length < SLOP:
                 raise Unsupported(
@@ -189,22 +160,20 @@ class _World:
             spring = {"enable_spring": True, "hertz": self.hertz, "damping_ratio": 1.0} if self.hertz else {}
             return self.world.create_distance_joint(**ends, length=joint.length, **spring)
         if isinstance(joint, Weld):
-            angle = math.remainder(joint.angle, 2 * math.pi)
-            return self._weld(ends, self.hertz, reference_angle=angle)
-        pair = frozenset((joint.first, joint.second))
-        drive = self.drives.pop(pair, None)  # of two joints between two bodies the first has the motor
+            return self._weld(ends, self.hertz, reference_angle=math.remainder(joint.angle, 2 * math.pi))
+        # Of two joints between two bodies the first has the motor.
+        drive = self.drives.pop(frozenset((joint.first, joint.second)), None)
+        sign = 1.0 if drive is None or drive.second == joint.second else -1.0
         motor: dict[str, Any] = {}
         if drive is not None:
-            rate = drive.turning_rate if drive.second == joint.second else -drive.turning_rate
-            motor = {"enable_motor": True, "motor_speed": rate, "max_motor_torque": ENOUGH}
+            motor = {"enable_motor": True, "motor_speed": sign * drive.turning_rate, "max_motor_torque": ENOUGH}
         if isinstance(joint, Pin):
             if drive is None and self.hertz:
                 return self._weld(ends, SLACK * self.hertz, angular_damping_ratio=0.0)
             return self.world.create_revolute_joint(**ends, **motor)
         line = (math.cos(joint.line_angle), math.sin(joint.line_angle))
         if drive is not None and drive.turning_rate == 0:
-            offset = drive.offset if drive.second == joint.second else -drive.offset
-            angle = math.remainder(offset, 2 * math.pi)
+            angle = math.remainder(sign * drive.offset, 2 * math.pi)
             return self.world.create_prismatic_joint(**ends, local_axis_a=line, reference_angle=angle)
         return self.world.create_wheel_joint(**ends, **motor, local_axis_a=line, enable_spring=False)
 
@@ -213,49 +182,44 @@ class _World:
         held = {"linear_hertz": self.hertz, "linear_damping_ratio": 1.0, "angular_hertz": turning}
         return self.world.create_weld_joint(**ends, **{**held, "angular_damping_ratio": 1.0, **further})
 
+    def _poses(self) -> list[tuple[float, float, float]]:
+        """x, y and the angle within a turn."""
+        states = ((body.position, body.rotation) for body in self.bodies)
+        return [(at.x, at.y, math.atan2(turned.s, turned.c)) for at, turned in states]
+
+    def _twists(self) -> list[tuple[float, float, float]]:
+        velocities = ((body.linear_velocity, body.angular_velocity) for body in self.bodies)
+        return [(velocity.x, velocity.y, rate) for velocity, rate in velocities]
+
     def _push(self) -> None:
         """Give bodies what force elements do now: the engine forgets it after a step."""
-        pose, twist = np.empty((2, len(self.bodies), 3))
-        for index, body in enumerate(self.bodies):
-            at, turned, velocity = body.position, body.rotation, body.linear_velocity
-            self.angles[index] += math.remainder(math.atan2(turned.s, turned.c) - self.angles[index], 2 * math.pi)
-            pose[index] = at.x, at.y, self.angles[index]
-            twist[index] = velocity.x, velocity.y, body.angular_velocity
+        pose, twist = np.array(self._poses()), np.array(self._twists())
+        for index, angle in enumerate(pose[:, 2].tolist()):
+            self.angles[index] += math.remainder(angle - self.angles[index], 2 * math.pi)
+        pose[:, 2] = self.angles
         for body, (x, y, torque) in zip(self.bodies, self.mechanism.applied.on(pose, twist).tolist(), strict=True):
             body.apply_force_to_center((x, y))
             body.apply_torque(torque)
 
-    def record(self, dt: float, substeps: int, samples: int, every: int) -> Recorded:
-        world, bodies = self.world, self.bodies
-        pose, twist, before = np.full((3, samples + 1, len(bodies), 3), np.nan)
+    def _advance(self, count: int) -> None:
+        for _ in range(count):
+            if self.mechanism.forces:
+                self._push()
+            self.world.step(self.dt, self.substeps)
 
-        def advance(count: int) -> None:
-            for _ in range(count):
-                if self.mechanism.forces:
-                    self._push()
-                world.step(dt, substeps)
-
-        def record_velocities(sample: int) -> None:
-            for body, speed in zip(bodies, before[sample], strict=True):
-                velocity = body.linear_velocity
-                speed[:] = velocity.x, velocity.y, body.angular_velocity
-
-        def record(sample: int) -> None:
-            for body, place, speed in zip(bodies, pose[sample], twist[sample], strict=True):
-                at, turned, velocity = body.position, body.rotation, body.linear_velocity
-                place[:] = at.x, at.y, math.atan2(turned.s, turned.c)
-                speed[:] = velocity.x, velocity.y, body.angular_velocity
-
-        stepping = sampled([every] * samples, advance, record, record_velocities)
-        start = self.mechanism.pose[:, 2]
-        pose[..., 2] = unwrapped(pose[..., 2], twist[..., 2], start, dt * every)
-        masses = [body.mass_data for body in bodies]
+    def record(self, samples: int, every: int) -> Recorded:
+        pose, twist, acceleration, stepping = sampled_with_differences(
+            (samples, every), self.dt, self._advance, lambda: (self._poses(), self._twists()), self._twists
+        )
+        pose[..., 2] = unwrapped(pose[..., 2], twist[..., 2], self.mechanism.pose[:, 2], self.dt * every)
+        masses = [body.mass_data for body in self.bodies]
         inertias = np.array([(each.mass, each.mass, each.rotational_inertia) for each in masses])
-        gravity = np.array([world.gravity.x, world.gravity.y])
+        gravity = np.array([self.world.gravity.x, self.world.gravity.y])
         with np.errstate(all="ignore"):
-            turned = np.fmax.reduce(np.abs([twist[..., 2], before[..., 2]]), axis=None) * dt
+            before = twist[..., 2] - acceleration[..., 2] * self.dt
+            turned = np.fmax.reduce(np.abs([twist[..., 2], before]), axis=None) * self.dt
         warnings = ("upstream: a rate was cut to an eighth of a turn in a step",) if turned > 0.999 * TURNED else ()
-        return Recorded(pose, twist, differences(twist, before, dt), stepping, inertias, gravity, warnings)
+        return Recorded(pose, twist, acceleration, stepping, inertias, gravity, warnings)
 
 
 DEFAULT = Box2D("default")

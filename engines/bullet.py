@@ -1,23 +1,22 @@
 """Bullet under test, by its binding PyBullet: a tree in reduced coordinates, loops closed by impulses at points.
 
-PyBullet and not ODE: it is what people use (the binding alone is asked about more than ODE is), and pip installs it
-whole, while ode-python needs a library of the system. It costs 290 MB. Its wheels end with Python 3.11.
+PyBullet and not ODE: it is what people use, and pip installs it whole, while ode-python needs a library of the system.
+Its wheels end with Python 3.11; the wheel is built in double precision.
 
 The tree is that of `engines.tree`, written as a URDF file, because nothing else takes a link's inertia, and read back:
 continuous joints, prismatic ones for slots whose angle is kept, fixed ones for welds. A Pin that closes a loop is a
 JOINT_POINT2POINT of enough force, a Weld a JOINT_FIXED, a Drive the velocity motor of a joint, a Gear a JOINT_GEAR
 between two joints of the tree. This adapter makes no link of mass zero, so a body that slides and turns, or that hangs
-on nothing, is refused; Bullet itself would take one. Refused are slots in loops, rods, skates and rolling contact too.
-What force elements do to bodies is worked out by our code before every step, as users do, and given to the engine as
-external forces; for a torsion damper on the ground Bullet has `jointDamping`, which is not used. All damping and the
-limit on joint velocities are off; the wheel is built in double precision.
+on nothing, is refused; Bullet itself would take one. Our code works out what force elements do to bodies before every
+step, as users do, and passes it to the engine as external forces. All damping and the limit on joint velocities are
+off.
 
 One step (btMultiBodyDynamicsWorld) kicks with the forces at the old positions, corrects the velocities by impulses with
 a push against the gap (erp, 0.2 of it a step as shipped), and drifts with the new ones: semi-implicit Euler of first
-order. Accelerations are changes of velocity over the last step, so nothing is told at t = 0.
+order. Accelerations are changes of velocity over the last step, so there are none at t = 0.
 
 A joint that moves less inertia than 2.2e-16 (SIMD_EPSILON) in the model's units, a millimetre's body in metres, say,
-feels no force (btMultiBody.cpp); it goes on as it began, which a warning tells. So does one for a motor of a joint that
+feels no force (btMultiBody.cpp); it goes on as it began, with a warning. So does one for a motor of a joint that
 moves more than 1 / SIMD_EPSILON = 4.5e15, to which it does nothing (btMultiBodyConstraint.cpp).
 """
 
@@ -26,7 +25,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -36,11 +35,11 @@ from engines.capability import Capability
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.sampling import differences, sampled, tree_states
-from engines.single_run import Optional, Recorded, SingleRun, quiet
+from engines.sampling import sampled_with_differences
+from engines.single_run import Optional, Recorded, quiet
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
-from reference.checks import Count, Fraction, Name, Positive, validated
-from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
+from reference.checks import Count, Fraction, Name, validated
+from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
@@ -53,15 +52,7 @@ SHIPPED_ITERATIONS, SHIPPED_ERP = 50, 0.2
 NOTHING = float(np.finfo(float).eps)  # kg or kg m^2: SIMD_EPSILON, below which the inverse of an inertia is zero
 UNMOVED = "ours: unresolved from 0 s on, bullet takes an inertia below 2.2e-16 for none and moves it by no force"
 UNTURNED = "ours: unresolved from 0 s on, a motor of bullet does nothing to an inertia above 4.5e15"
-CAPABILITY = Capability(
-    "bullet",
-    frozenset({Pin, Slot, Drive, Gear, Weld}),
-    lacks={
-        Rod: "our adapter of bullet builds no distance between points",
-        Skate: "bullet stops slip by friction at a contact, and our adapter builds no contact",
-        Roll: "in bullet a disc rolls by contact and friction, and our adapter builds no contact",
-    },
-)
+NOWHERE = [0.0, 0.0, 0.0]
 
 
 @dataclass(frozen=True)
@@ -76,6 +67,15 @@ class Bullet(Optional):
     packages = ("pybullet",)
     modules: ClassVar[tuple[str, ...]] = ("pybullet",)
     forces_by: ClassVar[Holder] = "ours"
+    capability: ClassVar[Capability] = Capability(
+        "bullet",
+        frozenset({Pin, Slot, Drive, Gear, Weld}),
+        lacks={
+            Rod: "our adapter of bullet builds no distance between points",
+            Skate: "bullet stops slip by friction at a contact, and our adapter builds no contact",
+            Roll: "in bullet a disc rolls by contact and friction, and our adapter builds no contact",
+        },
+    )
 
     variant: Name
     iterations: Count = SHIPPED_ITERATIONS
@@ -86,12 +86,13 @@ class Bullet(Optional):
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
         """First, of semi-implicit Euler; what the tree holds is exact.
 
-        Iterations end where the square of what rates miss, in m/s or rad/s, is below `residual`, at whatever step.
-        Where nothing is left to be integrated that is all that a loop misses.
+        Iterations end where the square of the slip, in m/s or rad/s, is below `residual`, at whatever step. Where
+        nothing is left to be integrated that is the whole error of a loop.
         """
-        if spanning_tree(mechanism).loops and is_prescribed(mechanism) and self.residual:
+        loops = spanning_tree(mechanism).loops
+        if loops and is_prescribed(mechanism) and self.residual:
             return Unpromised(f"iterations of bullet end at a residual of {self.residual:g}, however short the step is")
-        if spanning_tree(mechanism).loops or any(isinstance(joint, Gear) for joint in mechanism.joints):
+        if loops or any(isinstance(joint, Gear) for joint in mechanism.joints):
             return Promise(1, differences=1)
         if turns_steadily(mechanism) or is_prescribed(mechanism):
             return Promise(EXACT, reaction=1, differences=1)
@@ -104,31 +105,20 @@ class Bullet(Optional):
         forces = FORCES_COST if mechanism.forces else 0.0
         return STEP_COST * over_three(mechanism) + ITERATION_COST * self.iterations * rows + forces
 
-    @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
-        """Every joint is the engine's own."""
-        return "engine"
-
     def alike(self, mechanism: Mechanism) -> Bullet | None:
         """With twenty times as many iterations, where there are loops, whose rows they solve."""
         if not spanning_tree(mechanism).loops and not any(isinstance(joint, Drive) for joint in mechanism.joints):
             return None
         return replace(self, iterations=20 * self.iterations, residual=0.0)
 
-    @validated
-    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
-        """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        CAPABILITY.require(mechanism)
-        tree = spanning_tree(mechanism)
-        drives = _refused(mechanism, tree)
-        self.require()
+    def model(self, mechanism: Mechanism, dt: float) -> BulletWorld:
         parameters = {"numSolverIterations": self.iterations, "solverResidualThreshold": self.residual, "erp": self.erp}
-        world = World(mechanism, tree, drives, dt, parameters)
-        return SingleRun(mechanism, dt, world.size, lambda samples, every: world.record(dt, samples, every))
+        tree = spanning_tree(mechanism)
+        return BulletWorld(tree, motor_rates(tree), dt, parameters)
 
 
-def _unmoved(mechanism: Mechanism, tree: Tree, motors: Iterable[int]) -> tuple[str, ...]:
-    """Warnings of what the engine takes for no inertia, or for an infinite one, in the pose of the start.
+def unmoved(tree: Tree, motors: Iterable[int]) -> tuple[str, ...]:
+    """Warnings of inertias that the engine takes for none or for infinite ones, in the pose of the start.
 
     A joint moves what hangs on it, whose own joints are free: 1 / (M^-1)_jj, M of the coordinates from it outwards
     (Featherstone's articulated inertia). A motor moves all of the tree, which is the same of all coordinates.
@@ -138,36 +128,36 @@ def _unmoved(mechanism: Mechanism, tree: Tree, motors: Iterable[int]) -> tuple[s
     still = np.zeros(tree.coordinates)
     rest, units = tree.instant(still, still)[1], np.eye(tree.coordinates)
     twists = np.array([(tree.instant(still, unit)[1] - rest).reshape(-1) for unit in units])
-    masses = (twists * mechanism.inertias.reshape(-1)) @ twists.T
+    masses = (twists * tree.mechanism.inertias.reshape(-1)) @ twists.T
     size = np.sqrt(np.diag(masses))
 
-    def moved(own: list[int], column: int) -> float:
-        scaled = masses[np.ix_(own, own)] / np.outer(size[own], size[own])
-        place = own.index(column)
-        return float(size[column] ** 2 / np.linalg.pinv(scaled, hermitian=True)[place, place])
+    def moved(columns: list[int], column: int) -> float:
+        scaled = masses[np.ix_(columns, columns)] / np.outer(size[columns], size[columns])
+        index = columns.index(column)
+        return float(size[column] ** 2 / np.linalg.pinv(scaled, hermitian=True)[index, index])
 
     outwards: dict[int, list[int]] = {}
     for link in reversed(tree.links):
-        own = [*link.columns, *outwards.pop(link.body, [])]
-        if link.columns and moved(own, link.column) < NOTHING:
+        columns = [*link.columns, *outwards.pop(link.body, [])]
+        if link.columns and moved(columns, link.column) < NOTHING:
             return (UNMOVED,)
         if link.parent is not None:
-            outwards.setdefault(link.parent, []).extend(own)
+            outwards.setdefault(link.parent, []).extend(columns)
     every = [*range(tree.coordinates)]
     return (UNTURNED,) if any(moved(every, column) > 1 / NOTHING for column in motors) else ()
 
 
-def _refused(mechanism: Mechanism, tree: Tree) -> dict[int, float]:
-    """Tree coordinates that a motor turns, and their rates [rad/s]; raises Unsupported."""
+def motor_rates(tree: Tree) -> dict[int, float]:
+    """The rates [rad/s] of the tree coordinates that motors turn; raises Unsupported for what bullet can't hold."""
     refuse_slots_in_loops(tree, "bullet")
+    bodies, rates = tree.mechanism.bodies, dict[int, float]()
     for link in tree.links:
         if len(link.columns) > 1:
             raise Unsupported(
-                f"body {mechanism.bodies[link.body].name!r}: it slides and turns, or hangs on nothing; that needs a "
+                f"body {bodies[link.body].name!r}: it slides and turns, or hangs on nothing; that needs a "
                 "link of mass zero in bullet's tree, and our adapter makes none"
             )
-    rates: dict[int, float] = {}
-    for joint in mechanism.joints:
+    for joint in tree.mechanism.joints:
         if isinstance(joint, Drive) and joint not in tree.kept:
             turned = tree.turning(joint.first, joint.second)
             if len(turned) != 1 or next(iter(turned)) in rates:
@@ -182,12 +172,12 @@ def _refused(mechanism: Mechanism, tree: Tree) -> dict[int, float]:
 def geared_columns(tree: Tree, gear: Gear) -> tuple[int, int]:
     """The tree coordinates of the second and of the first body's angle; raises Unsupported."""
     turned = [tree.turning(None, name) for name in (gear.second, gear.first)]
-    if any(len(each) != 1 for each in turned):
+    if any(len(columns) != 1 for columns in turned):
         raise Unsupported(
             f"joint {gear.name!r}: a gear of bullet is between two of its joints, "
             "and the angle of a body that does not hang on the ground is a sum of several"
         )
-    second, first = (next(iter(each)) for each in turned)
+    second, first = (next(iter(columns)) for columns in turned)
     return second, first
 
 
@@ -199,56 +189,61 @@ def package() -> Any:
     return pybullet
 
 
-class World:
+class BulletWorld:
     """The engine's objects for one mechanism, in a server of its own within this process."""
 
-    def __init__(
-        self, mechanism: Mechanism, tree: Tree, drives: dict[int, float], dt: float, parameters: dict[str, float]
-    ) -> None:
-        """`drives`: rates [rad/s] of tree coordinates that a motor turns; `parameters`: the engine's own, by name."""
-        self.mechanism, self.tree, self.motors, self.bullet = mechanism, tree, tuple(drives), package()
+    def __init__(self, tree: Tree, motors: dict[int, float], dt: float, parameters: dict[str, float]) -> None:
+        """`motors`: rates [rad/s] of tree coordinates that a motor turns; `parameters`: the engine's own, by name."""
+        self.mechanism, self.tree, self.dt, self.motors, self.bullet = tree.mechanism, tree, dt, motors, package()
         self.server: int = self.bullet.connect(self.bullet.DIRECT)
-        own = {"physicsClientId": self.server}
-        self.bullet.setGravity(*mechanism.gravity, 0.0, **own)
-        self.bullet.setPhysicsEngineParameter(fixedTimeStep=dt, **parameters, **own)
+        self._call("setGravity", *self.mechanism.gravity, 0.0)
+        self._call("setPhysicsEngineParameter", fixedTimeStep=dt, **parameters)
         self.anchors = {link.body: np.array(link.anchor) for link in tree.links}
         with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder, quiet():
             file = Path(folder, "mechanism.urdf")
             file.write_text(self._urdf(), encoding="utf-8")
             flags = self.bullet.URDF_USE_INERTIA_FROM_FILE
-            self.body: int = self.bullet.loadURDF(str(file), useFixedBase=True, flags=flags, **own)
-        count = self.bullet.getNumJoints(self.body, **own)
-        told = [self.bullet.getJointInfo(self.body, index, **own)[1].decode() for index in range(count)]
-        self.links = [told.index(f"joint {link.body}") for link in tree.links]
-        rates = tree.start_rates()
-        self.bullet.changeDynamics(self.body, -1, linearDamping=0.0, angularDamping=0.0, **own)
-        for link, index in zip(tree.links, self.links, strict=True):
-            free = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0, "maxJointVelocity": FAST}
-            self.bullet.changeDynamics(self.body, index, **free, **own)
-            if not link.columns:
-                continue
-            rate = drives.get(link.column, float(rates[link.column]))
-            self.bullet.resetJointState(self.body, index, 0.0, rate, **own)
-            force = ENOUGH if link.column in drives else 0.0
-            kind = self.bullet.VELOCITY_CONTROL
-            self.bullet.setJointMotorControl2(self.body, index, kind, targetVelocity=rate, force=force, **own)
+            self.body: int = self._call("loadURDF", str(file), useFixedBase=True, flags=flags)
+        infos = [self._call("getJointInfo", self.body, index) for index in range(self._call("getNumJoints", self.body))]
+        names = [info[1].decode() for info in infos]
+        self.links = [names.index(f"joint {link.body}") for link in tree.links]
+        # All links with a coordinate have one, so they stand in the order of the coordinates.
+        self.moving = [index for link, index in zip(tree.links, self.links, strict=True) if link.columns]
+        self._start()
         for loop in tree.loops:
             self._close(loop)
-        gears = [joint for joint in mechanism.joints if isinstance(joint, Gear)]
-        for gear in gears:
-            self._mesh(gear)
-        rows, single = sum(loop.size for loop in tree.loops), len(drives) + len(gears)
+        gears = [joint for joint in self.mechanism.joints if isinstance(joint, Gear)]
+        for gear in gears:  # the rate of the second body's joint less `ratio` times that of the first's is zero
+            second, first = (self.moving[column] for column in geared_columns(tree, gear))
+            self._constrain(second, first, self.bullet.JOINT_GEAR, NOWHERE, NOWHERE, gearRatio=-gear.ratio)
+        rows, single = sum(loop.size for loop in tree.loops), len(motors) + len(gears)
         spatial = sum(6 if isinstance(loop, Weld) else 3 for loop in tree.loops)
-        self.size = Size(len(mechanism.bodies), tree.coordinates, rows + single, spatial + single)
+        self.size = Size(len(self.mechanism.bodies), tree.coordinates, rows + single, spatial + single)
 
     def __del__(self) -> None:
         if getattr(self, "server", -1) >= 0:
             self.bullet.disconnect(self.server)
 
+    def _call(self, function: str, *arguments: Any, **named: Any) -> Any:
+        """A function of the engine in our server."""
+        return getattr(self.bullet, function)(*arguments, **named, physicsClientId=self.server)
+
+    def _start(self) -> None:
+        """Switch damping off and set rates and motors."""
+        rates = self.tree.start_rates()
+        self._call("changeDynamics", self.body, -1, linearDamping=0.0, angularDamping=0.0)
+        for link, index in zip(self.tree.links, self.links, strict=True):
+            free = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0, "maxJointVelocity": FAST}
+            self._call("changeDynamics", self.body, index, **free)
+            if link.columns:
+                rate = self.motors.get(link.column, float(rates[link.column]))
+                self._call("resetJointState", self.body, index, 0.0, rate)
+                motor = {"targetVelocity": rate, "force": ENOUGH if link.column in self.motors else 0.0}
+                self._call("setJointMotorControl2", self.body, index, self.bullet.VELOCITY_CONTROL, **motor)
+
     def _urdf(self) -> str:
-        return "\n".join(
-            ['<robot name="mechanism"><link name="ground"/>', *map(self._link, self.tree.links), "</robot>"]
-        )
+        links = map(self._link, self.tree.links)
+        return "\n".join(['<robot name="mechanism"><link name="ground"/>', *links, "</robot>"])
 
     def _link(self, link: Link) -> str:
         """A link whose frame stands at its joint, parallel to the world's at the start."""
@@ -266,15 +261,14 @@ class World:
             f'<origin xyz="{float(x)!r} {float(y)!r} 0"/><axis xyz="{" ".join(map(repr, axis))}"/>{reach}</joint>'
         )
 
-    def _link_of(self, name: str | None) -> int:
-        """The engine's number of a body's link; of the ground -1."""
-        place = {link.body: index for link, index in zip(self.tree.links, self.links, strict=True)}
-        return -1 if name is None else place[self.mechanism.body_index(name)]
-
     def _close(self, loop: Pin | Slot | Weld) -> None:
         """A point of two links, or both altogether: each from the link's centre of mass, the ground's in the world."""
+        numbers = {link.body: index for link, index in zip(self.tree.links, self.links, strict=True)}
         ends = [
-            (self._link_of(name), [*world_offset(self.mechanism, name, point), 0.0])
+            (
+                -1 if name is None else numbers[self.mechanism.body_index(name)],
+                [*world_offset(self.mechanism, name, point), 0.0],
+            )
             for name, point in ((loop.first, loop.first_point), (loop.second, loop.second_point))
         ]
         ends.sort(key=lambda end: end[0] < 0)  # the ground can only be the second
@@ -282,59 +276,40 @@ class World:
         kind = self.bullet.JOINT_FIXED if isinstance(loop, Weld) else self.bullet.JOINT_POINT2POINT
         self._constrain(first, second, kind, at, there)
 
-    def _mesh(self, gear: Gear) -> None:
-        """The rate of the second body's joint less `ratio` times that of the first's is zero."""
-        link_of = {link.column: index for link, index in zip(self.tree.links, self.links, strict=True) if link.columns}
-        second, first = (link_of[column] for column in geared_columns(self.tree, gear))
-        nowhere = [0.0, 0.0, 0.0]
-        self._constrain(second, first, self.bullet.JOINT_GEAR, nowhere, nowhere, gearRatio=-gear.ratio)
-
-    def _constrain(self, first: int, second: int, kind: int, at: Any, there: Any, **what: float) -> None:
-        own = {"physicsClientId": self.server}
+    def _constrain(self, first: int, second: int, kind: int, at: Any, there: Any, **settings: float) -> None:
         other = self.body if second >= 0 else -1
-        made = self.bullet.createConstraint(self.body, first, other, second, kind, [0, 0, 1], at, there, **own)
-        self.bullet.changeConstraint(made, maxForce=ENOUGH, **what, **own)
+        made = self._call("createConstraint", self.body, first, other, second, kind, [0, 0, 1], at, there)
+        self._call("changeConstraint", made, maxForce=ENOUGH, **settings)
 
     def _push(self) -> None:
         """Give the engine what force elements do now: it forgets them after a step."""
-        own = {"physicsClientId": self.server}
-        told = self.bullet.getJointStates(self.body, self.links, **own)
-        position, velocity = np.zeros((2, self.tree.coordinates))
-        for link, (angle, rate, *_) in zip(self.tree.links, told, strict=True):
-            position[link.columns], velocity[link.columns] = angle, rate
-        _, pushed = pushes(self.tree, position, velocity)
+        _, pushed = pushes(self.tree, *map(np.array, self._state()))
         for link, index in zip(self.tree.links, self.links, strict=True):
             x, y, torque = pushed[link.body]
-            at = self.bullet.getLinkState(self.body, index, computeForwardKinematics=True, **own)[0]
-            self.bullet.applyExternalForce(self.body, index, [x, y, 0.0], at, self.bullet.WORLD_FRAME, **own)
-            self.bullet.applyExternalTorque(self.body, index, [0.0, 0.0, torque], self.bullet.WORLD_FRAME, **own)
+            at = self._call("getLinkState", self.body, index, computeForwardKinematics=True)[0]
+            self._call("applyExternalForce", self.body, index, [x, y, 0.0], at, self.bullet.WORLD_FRAME)
+            self._call("applyExternalTorque", self.body, index, [0.0, 0.0, torque], self.bullet.WORLD_FRAME)
 
-    def record(self, dt: float, samples: int, every: int) -> Recorded:
-        shape = (samples + 1, self.tree.coordinates)
-        position, velocity, before = np.full((3, *shape), np.nan)
-        moving = [place for place, link in enumerate(self.tree.links) if link.columns]
-        columns, links = [self.tree.links[place].column for place in moving], [self.links[place] for place in moving]
-        states, server = self.bullet.getJointStates, self.server
+    def _state(self) -> tuple[list[float], list[float]]:
+        """The tree coordinates and their rates."""
+        states = self.bullet.getJointStates(self.body, self.moving, self.server)
+        return [state[0] for state in states], [state[1] for state in states]
 
-        def advance(count: int) -> None:
-            for _ in range(count):
-                if self.mechanism.forces:
-                    self._push()
-                self.bullet.stepSimulation(server)
+    def _advance(self, count: int) -> None:
+        step = partial(self.bullet.stepSimulation, self.server)
+        for _ in range(count):
+            if self.mechanism.forces:
+                self._push()
+            step()
 
-        def record_velocities(sample: int) -> None:
-            before[sample, columns] = [state[1] for state in states(self.body, links, server)]
-
-        def record(sample: int) -> None:
-            now = states(self.body, links, server)
-            position[sample, columns] = [state[0] for state in now]
-            velocity[sample, columns] = [state[1] for state in now]
-
-        stepping = sampled([every] * samples, advance, record, record_velocities)
-        acceleration = differences(velocity, before, dt)
-        motion = tree_states(self.tree, position, velocity, acceleration)
-        warnings = _unmoved(self.mechanism, self.tree, self.motors)
-        return Recorded(*motion, stepping, self.mechanism.inertias, np.array(self.mechanism.gravity), warnings)
+    def record(self, samples: int, every: int) -> Recorded:
+        mechanism = self.mechanism
+        *states, stepping = sampled_with_differences(
+            (samples, every), self.dt, self._advance, self._state, lambda: self._state()[1]
+        )
+        motion = self.tree.motion(*states)
+        warnings = unmoved(self.tree, self.motors)
+        return Recorded(*motion, stepping, mechanism.inertias, np.array(mechanism.gravity), warnings)
 
 
 DEFAULT = Bullet("default")

@@ -1,28 +1,28 @@
 """MJX under test: MuJoCo's model, stepped by JAX instead of C, here on the processor and in double precision.
 
 The model is the MjModel that our MuJoCo adapter compiles with the same settings, put on the device as it is, so that
-what differs from `mujoco` is the other implementation. What MuJoCo's adapter does by callbacks in C has no place in a
-compiled program and is refused. So are skates and rolling, for which this adapter builds no contact, though MJX has
-contacts; and what MJX itself does not run, in its words.
+only the implementation differs from `mujoco`. Callbacks of MuJoCo's adapter in C have no place in a compiled program
+and are refused. So are skates and rolling, for which this adapter builds no contact, though MJX has contacts; and what
+MJX itself does not run, in its words.
 
-MJX leaves out the velocity term of loops: C MuJoCo has it since 3.7, MJX 3.17.0 has not. It is known: MJX's own tests
-say "Jdotv effect (not in MJX)". A loop is then pulled off its path by J-dot v at any step; runs with loops say so in a
-warning, and `reports/pages/engines` shows it by force. How far it is pulled is J-dot v over the row's stiffness, the
-inverse square of its time constant. So where that is tied to the step, the error falls with its square, though none is
-MuJoCo's own: the free four-bar with RK4 at 1e-3 s is 7.40e-4 rad off with two steps, as MuJoCo before 3.7 is, and
-4.58e-3 rad with the five of our tuned variant.
+MJX leaves out the velocity term of loops, which C MuJoCo has since 3.7. MJX's own tests say "Jdotv effect (not in
+MJX)". A loop is then pulled off its path by J-dot v at any step, by J-dot v over the row's stiffness, the inverse
+square of its time constant; runs with loops say so in a warning, and `reports/pages/engines` shows it by force. Where
+the time constant is tied to the step, the error falls with its square, though none is MuJoCo's own: the free four-bar
+with RK4 at 1e-3 s is 7.40e-4 rad off with two steps, as MuJoCo before 3.7 is, and 4.58e-3 rad with the five of our
+tuned variant.
 
-Its solver ends where no part of what is left of the forces is above 1e-8, whatever the tolerance: `mjx.math.norm` takes
-such a vector for zero. That number has a unit, so the model is in the smallest one of mass that its rows admit
+Its solver ends where no residual of the forces is above 1e-8, whatever the tolerance: `mjx.math.norm` takes such a
+vector for zero. That number has a unit, so the model is in the smallest one of mass that its rows admit
 (`_smallest_unit`): in that of `mujoco`, about the whole mechanism's, light bodies beside heavy ones would never feel a
 gear, and from step to step keep the acceleration that they had.
 
 A program is compiled for each model, 5 s to half a minute: that is building and not stepping. JAX keeps it for models
-of the same structure, numbers apart; and for other processes in the user's cache folder, or where the environment's
-JAX_COMPILATION_CACHE_DIR says. It is told to use the processor alone, one thread, and doubles, before it is imported.
+of the same structure, numbers apart; and for other processes in the user's cache folder, or in that of the
+environment's JAX_COMPILATION_CACHE_DIR. It uses the processor alone, one thread, and doubles.
 
 The package mujoco-mjx requires the package mujoco, whose files overwrite those of mujoco-core by an older release. So
-the extra installs what it needs, and it has to be installed by itself: pip install --no-deps mujoco-mjx.
+it has to be installed by itself: pip install --no-deps mujoco-mjx.
 """
 
 from __future__ import annotations
@@ -32,12 +32,13 @@ import os
 import platform
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from engines.capability import Capability
 from engines.contract import EXACT, Holder, Instant, Promise, Size, Softness, Unpromised, Unsupported
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco import declared
@@ -47,12 +48,12 @@ from engines.mujoco.methods import TUNED as C_TUNED
 from engines.mujoco.model import Model
 from engines.mujoco.releases import full_inertia
 from engines.mujoco.running import UNSOLVED
-from engines.sampling import sampled, tree_states
-from engines.single_run import Optional, Recorded, SingleRun, quiet
+from engines.sampling import sampled
+from engines.single_run import Optional, Recorded, quiet
 from engines.tree import Tree, spanning_tree
 from engines.units import power_of_two
 from engines.user_cache import cache_folder
-from reference.checks import Name, Positive, validated
+from reference.checks import Name, validated
 from reference.joints import Joint, Rod, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -74,6 +75,14 @@ class Mjx(Optional):
     modules: ClassVar[tuple[str, ...]] = ("jax", "mujoco.mjx")
     apart: ClassVar[str] = "pip install --no-deps mujoco-mjx"
     building: ClassVar[float] = 20.0
+    capability: ClassVar[Capability] = Capability(
+        "mjx",
+        frozenset(get_args(Joint)) - {Skate, Roll},  # of the others MuJoCo's adapter refuses what it does not build
+        lacks={
+            kind: f"a {kind.__name__.lower()} needs a contact, and our adapter of MJX builds none"
+            for kind in (Skate, Roll)
+        },
+    )
 
     variant: Name
     settings: MuJoCo = field(default_factory=lambda: C_DEFAULT)
@@ -109,12 +118,13 @@ class Mjx(Optional):
     ) -> tuple[Instant, ...] | Unpromised:
         """Accelerations in the states that MuJoCo steps to; those of loops and rods lack their velocity terms."""
         settings = replace(self.settings, tolerance=min(self.settings.tolerance, declared.SOLVED))
-        solved = replace(self, settings=settings)
-        _, held = solved.model(built or mechanism, dt)
+        self.capability.require(built or mechanism)
+        self.require()
+        solved = replace(self, settings=settings).model(built or mechanism, dt)
         check = declared.WITHOUT if lacks_velocity_terms(spanning_tree(mechanism)) else "acceleration"
 
         def accelerations(model: Model, data: Any) -> Array:
-            return solved.accelerations(model, held, data)
+            return solved.accelerations(model, data)
 
         return declared.instants(settings, mechanism, dt, steps, built or mechanism, accelerations, check)
 
@@ -123,41 +133,20 @@ class Mjx(Optional):
         settings = self.settings.alike(mechanism)
         return None if settings is None else replace(self, settings=settings)
 
-    @validated
-    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
-        """A model for steps of dt [s], not yet compiled; raises Unsupported, and ValueError for a bad dt."""
-        model, held = self.model(mechanism, dt)
-        data = model.start()
-        size = Size(model.compiled.nbody - 1, model.compiled.nq, model.rows + len(model.driven), data.nefc)
-        return SingleRun(mechanism, dt, size, lambda samples, every: _record(model, held, data, samples, every))
-
-    def model(self, mechanism: Mechanism, dt: float) -> tuple[Model, Any]:
-        """MuJoCo's model, and the same on the device; raises Unsupported."""
-        for joint in mechanism.joints:
-            if isinstance(joint, Skate | Roll):
-                what = f"a {type(joint).__name__.lower()} needs a contact, and our adapter of MJX builds none"
-                raise Unsupported(f"joint {joint.name!r}: {what}")
-        self.require()
+    def model(self, mechanism: Mechanism, dt: float) -> DeviceModel:
+        """The model on the device, not yet compiled; raises Unsupported."""
         model = self.settings.model(mechanism, dt)
         if unit := _smallest_unit(model):
             model = self.settings.model(mechanism, dt, unit=unit)
         if model.hooks.control or model.hooks.before:
             raise Unsupported("some rows are written by callbacks of MuJoCo's C code, which MJX does not run")
         try:
-            return model, _programs()[0].put_model(model.compiled)
+            return DeviceModel(model)
         except NotImplementedError as reason:
             raise Unsupported(f"MJX does not run this model: {' '.join(str(reason).split())}") from None
         except (RuntimeError, AssertionError):
-            told = os.environ.get("JAX_PLATFORMS")
-            raise Unsupported(f"JAX finds no device to run on here: JAX_PLATFORMS is {told!r}") from None
-
-    def accelerations(self, model: Model, held: Any, data: Any) -> Array:
-        """The accelerations (nv,) that MJX gives the state of a mujoco.MjData; `model` and `held` are those of `model`.
-
-        It compiles a program for each structure of a model, about 10 s, and keeps it.
-        """
-        mjx, _, forward = _programs()
-        return np.asarray(forward(held, mjx.put_data(model.compiled, data)).qacc, dtype=np.float64)
+            platforms = os.environ.get("JAX_PLATFORMS")
+            raise Unsupported(f"JAX finds no device to run on here: JAX_PLATFORMS is {platforms!r}") from None
 
 
 def _smallest_unit(model: Model) -> float | None:
@@ -170,25 +159,6 @@ def _smallest_unit(model: Model) -> float | None:
     if not len(compliance):
         return None
     return model.unit * power_of_two(LEAST_COMPLIANCE * mujoco.mjMINVAL / float(compliance.min()))
-
-
-def _missed(model: Model, data: Any, told: Any) -> float:
-    """How far MJX's answer `told` is from the equations that it solves, relative to the accelerations in them.
-
-    Its cost is a parabola, whose least is one step of Newton's away: H^-1 g, H = M + J^T R^-1 J, and g what is left of
-    the forces. `data`: a mujoco.MjData in the state, for M.
-    """
-    rows, solved = np.asarray(told._impl.efc_J), np.asarray(told.qacc)
-    if not len(rows):
-        return 0.0
-    mujoco.mj_forward(model.compiled, data)
-    inertia, hard, aimed = full_inertia(model.compiled, data), *map(np.asarray, (told._impl.efc_D, told._impl.efc_aref))
-    left = inertia @ solved - np.asarray(told.qfrc_smooth) + rows.T @ (hard * (rows @ solved - aimed))
-    size = max(np.abs(each).max() for each in (solved, np.asarray(told.qacc_smooth), aimed))
-    try:
-        return float(np.abs(np.linalg.solve(inertia + (rows.T * hard) @ rows, left)).max() / max(size, 1e-300))
-    except np.linalg.LinAlgError:
-        return math.inf
 
 
 def lacks_velocity_terms(tree: Tree) -> bool:
@@ -221,28 +191,67 @@ def _programs() -> tuple[Any, Any, Any]:
     return mjx, jax.jit(steps), jax.jit(mjx.forward)
 
 
-def _record(model: Model, held: Any, data: Any, samples: int, every: int) -> Recorded:
-    mjx, steps, forward = _programs()
-    states = [mjx.put_data(model.compiled, data)]
-    steps(held, states[0], 0).qpos.block_until_ready()  # compiles
-    position, velocity, acceleration = np.full((3, samples + 1, model.compiled.nq), np.nan)
+class DeviceModel:
+    """MuJoCo's model, and the same on the device."""
 
-    def record(sample: int) -> None:
-        position[sample], velocity[sample] = np.asarray(states[-1].qpos), np.asarray(states[-1].qvel)
+    def __init__(self, model: Model) -> None:
+        self.mujoco, (self.mjx, self._steps, self._forward) = model, _programs()
+        self._held, self._data = self.mjx.put_model(model.compiled), model.start()
+        rows = model.rows + len(model.driven)
+        self.size = Size(model.compiled.nbody - 1, model.compiled.nq, rows, self._data.nefc)
 
-    stepping = sampled([every] * samples, lambda count: states.append(steps(held, states[-1], count)), record)
-    missed = 0.0
-    for sample, each in enumerate(states):
-        told = forward(held, each)
-        acceleration[sample] = np.asarray(told.qacc)
-        if np.isfinite(position[sample]).all() and np.isfinite(acceleration[sample]).all():
-            data.time, data.qpos[:], data.qvel[:] = float(each.time), position[sample], velocity[sample]
-            missed = max(missed, _missed(model, data, told))
-    motion = tree_states(model.tree, *(each[:, model.address] for each in (position, velocity, acceleration)))
-    warnings = (NO_VELOCITY_TERM,) if lacks_velocity_terms(model.tree) else ()
-    if not missed <= UNSOLVED:
-        warnings += (f"ours: the solver missed the accelerations by {missed:.1g} of themselves",)
-    return Recorded(*motion, stepping, *model.loads(), warnings)
+    def accelerations(self, model: Model, data: Any) -> Array:
+        """The accelerations (nv,) that MJX gives the state of a mujoco.MjData of `model`.
+
+        It compiles a program for each structure of a model, about 10 s, and keeps it.
+        """
+        answer = self._forward(self._held, self.mjx.put_data(model.compiled, data))
+        return np.asarray(answer.qacc, dtype=np.float64)
+
+    def record(self, samples: int, every: int) -> Recorded:
+        model, data = self.mujoco, self._data
+        states = [self.mjx.put_data(model.compiled, data)]
+        self._steps(self._held, states[0], 0).qpos.block_until_ready()  # compiles
+        position, velocity, acceleration = np.full((3, samples + 1, model.compiled.nq), np.nan)
+
+        def record(sample: int) -> None:
+            position[sample], velocity[sample] = np.asarray(states[-1].qpos), np.asarray(states[-1].qvel)
+
+        def advance(count: int) -> None:
+            states.append(self._steps(self._held, states[-1], count))
+
+        stepping, residual = sampled([every] * samples, advance, record), 0.0
+        for sample, state in enumerate(states):
+            answer = self._forward(self._held, state)
+            acceleration[sample] = np.asarray(answer.qacc)
+            if np.isfinite(position[sample]).all() and np.isfinite(acceleration[sample]).all():
+                data.time, data.qpos[:], data.qvel[:] = float(state.time), position[sample], velocity[sample]
+                residual = max(residual, _solver_residual(model, data, answer))
+        motion = model.tree.motion(*(values[:, model.address] for values in (position, velocity, acceleration)))
+        warnings = (NO_VELOCITY_TERM,) if lacks_velocity_terms(model.tree) else ()
+        if not residual <= UNSOLVED:
+            warnings += (f"ours: the solver missed the accelerations by {residual:.1g} of themselves",)
+        return Recorded(*motion, stepping, *model.loads(), warnings)
+
+
+def _solver_residual(model: Model, data: Any, answer: Any) -> float:
+    """The residual of MJX's `answer` in the equations that it solves, relative to the accelerations in them.
+
+    Its cost is a parabola, whose least is one step of Newton's away: H^-1 g, H = M + J^T R^-1 J, and g the residual of
+    the forces. `data`: a mujoco.MjData in the state, for M.
+    """
+    rows, solved = np.asarray(answer._impl.efc_J), np.asarray(answer.qacc)
+    if not len(rows):
+        return 0.0
+    mujoco.mj_forward(model.compiled, data)
+    inertia = full_inertia(model.compiled, data)
+    hard, aimed = map(np.asarray, (answer._impl.efc_D, answer._impl.efc_aref))
+    left = inertia @ solved - np.asarray(answer.qfrc_smooth) + rows.T @ (hard * (rows @ solved - aimed))
+    size = max(np.abs(values).max() for values in (solved, np.asarray(answer.qacc_smooth), aimed))
+    try:
+        return float(np.abs(np.linalg.solve(inertia + (rows.T * hard) @ rows, left)).max() / max(size, 1e-300))
+    except np.linalg.LinAlgError:
+        return math.inf
 
 
 DEFAULT = Mjx("default")

@@ -7,13 +7,12 @@ order, as its own examples are written.
 The tree is that of `engines.tree`: revolute joints about z, prismatic ones along a slot, for a body that hangs on
 nothing two prismatic ones and a revolute one, and for a welded one none: its inertia is added to the other's. A Pin
 that closes a loop is a RigidConstraintModel of the type CONTACT_3D, a Weld one of CONTACT_6D: `constraintDynamics`
-holds their accelerations exactly, and what opens is the integrator's error. Their rows out of the plane are empty; the
-proximal solver takes care of that. A Drive has no counterpart: the torque that keeps its rate is worked out in every
-evaluation from the engine's own answer to a unit torque at rest, without weight. Neither have springs, dampers and the
-like: what they do to bodies is worked out by our code, as users do, and given to the engine as external forces.
-Accelerations are the engine's at the sampled instant, so reactions are too. A Slot that closes a loop, a Rod, a Gear, a
-Skate and a Roll are refused: this adapter builds none. A gear would be the engine's JointModelMimic, which `crba` takes
-and `constraintDynamics` refuses.
+holds their accelerations exactly, and gaps are the integrator's error. Their rows out of the plane are empty; the
+proximal solver takes care of that. A Drive has no counterpart: our code works out the torque that keeps its rate in
+every evaluation from the engine's answer to a unit torque at rest, without weight. Neither have springs, dampers and
+the like: our code works out what they do to bodies, as users do, and passes it as external forces. Accelerations are
+the engine's at the sampled instant, so reactions are too. A gear would be the engine's JointModelMimic, which `crba`
+takes and `constraintDynamics` refuses.
 
 `constraintDynamics` adds up forces, and torques about the world's origin, along the tree: a light body that a heavy one
 moves against, or a mechanism far from the origin, loses digits. A body of 2e-7 kg in which 200 kg slide, 144 m away, is
@@ -21,12 +20,12 @@ off by 2e-6 of its motion at any step, and turns by 4e-11 rad instead of 2e-7 to
 
 As shipped nothing pulls an open loop back. With a `correction` c [1/s] the engine's corrector gains are c^2 and 2 c.
 They change the errors of both integrators by a factor, up or down with the motion and the step, so no variant sets
-them. The free four-bar at a step of 1e-3 s: 5.6e-9 rad (rk4) and 0.070 rad (euler) without, 1.5e-9 and 0.051 with the
-gains 100 and 20 (c = 10). Which pin is taken as the loop changes none of these.
+them; the page of engines shows them for the free four-bar. Which pin is taken as the loop changes nothing.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -36,10 +35,10 @@ from numpy.typing import NDArray
 from engines.capability import Capability
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.sampling import sampled, tree_states
-from engines.single_run import Optional, Recorded, SingleRun
+from engines.sampling import sampled
+from engines.single_run import Optional, Recorded
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
-from reference.checks import Name, NonNegative, Positive, validated
+from reference.checks import Name, NonNegative, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -51,16 +50,6 @@ Integrator = Literal["euler", "rk4"]
 REGULARISATION, ACCURACY, ITERATIONS = 1e-10, 1e-14, 20
 EVALUATION_COST = 6e-6  # s, with three bodies
 FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
-CAPABILITY = Capability(
-    "pinocchio",
-    frozenset({Pin, Slot, Drive, Weld}),
-    lacks={
-        Rod: "our adapter of pinocchio holds points and frames together, and no distance between points",
-        Gear: "our adapter calls constraintDynamics, which refuses pinocchio's JointModelMimic",
-        Skate: "our adapter of pinocchio holds whole points, and no velocity across a blade",
-        Roll: "our adapter of pinocchio builds no contact",
-    },
-)
 
 
 @dataclass(frozen=True)
@@ -74,6 +63,16 @@ class Pinocchio(Optional):
     packages = ("pin",)
     modules: ClassVar[tuple[str, ...]] = ("pinocchio",)
     forces_by: ClassVar[Holder] = "ours"
+    capability: ClassVar[Capability] = Capability(
+        "pinocchio",
+        frozenset({Pin, Slot, Drive, Weld}),
+        lacks={
+            Rod: "our adapter of pinocchio holds points and frames together, and no distance between points",
+            Gear: "our adapter calls constraintDynamics, which refuses pinocchio's JointModelMimic",
+            Skate: "our adapter of pinocchio holds whole points, and no velocity across a blade",
+            Roll: "our adapter of pinocchio builds no contact",
+        },
+    )
 
     variant: Name
     integrator: Integrator = "euler"
@@ -103,26 +102,21 @@ class Pinocchio(Optional):
         """Joints are the engine's; the torque of a drive is worked out by our code."""
         return "ours" if isinstance(joint, Drive) and joint not in spanning_tree(mechanism).kept else "engine"
 
-    @validated
-    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
-        """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        CAPABILITY.require(mechanism)
+    def model(self, mechanism: Mechanism, dt: float) -> PinocchioModel:
         tree = spanning_tree(mechanism)
         refuse_slots_in_loops(tree, "pinocchio")
-        self.require()
-        model = Model(mechanism, tree, self.correction)
-        return SingleRun(
-            mechanism, dt, model.size, lambda samples, every: model.record(self.integrator, dt, samples, every)
-        )
+        return PinocchioModel(tree, dt, self.integrator, self.correction)
 
 
-class Model:
+class PinocchioModel:
     """The engine's objects for one mechanism."""
 
-    def __init__(self, mechanism: Mechanism, tree: Tree, correction: float) -> None:
+    def __init__(self, tree: Tree, dt: float, integrator: Integrator, correction: float) -> None:
         import pinocchio
 
-        self.pin, self.mechanism, self.tree, self.correction = pinocchio, mechanism, tree, correction
+        self.pin, self.mechanism, self.tree, self.dt, self.correction = pinocchio, tree.mechanism, tree, dt, correction
+        self.step = runge_kutta_step if integrator == "rk4" else euler_step
+        mechanism = self.mechanism
         self.model = pinocchio.Model()
         self.model.gravity.linear = np.array([*mechanism.gravity, 0.0])
         self.joints: dict[int | None, int] = {None: 0}  # the last joint of each body; the ground is the universe
@@ -133,7 +127,7 @@ class Model:
         self.loops = pinocchio.StdVec_RigidConstraintModel()
         self.loop_data = pinocchio.StdVec_RigidConstraintData()
         for joint in tree.loops:
-            self.loops.append(self._loop(joint, correction))
+            self.loops.append(self._loop(joint))
             self.loop_data.append(self.loops[-1].createData())
         pinocchio.initConstraintDynamics(self.model, self.data, self.loops, self.loop_data)
         self.proximal = pinocchio.ProximalSettings(ACCURACY, REGULARISATION, ITERATIONS)
@@ -178,7 +172,7 @@ class Model:
         self.model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
         self.joints[link.body], self.anchors[link.body] = joint, anchor
 
-    def _loop(self, joint: Pin | Slot | Weld, correction: float) -> Any:
+    def _loop(self, joint: Pin | Slot | Weld) -> Any:
         ends: list[Any] = []
         for name, point in ((joint.first, joint.first_point), (joint.second, joint.second_point)):
             body = None if name is None else self.mechanism.body_index(name)
@@ -187,8 +181,9 @@ class Model:
         kinds = self.pin.ContactType
         kind = kinds.CONTACT_6D if isinstance(joint, Weld) else kinds.CONTACT_3D
         made = self.pin.RigidConstraintModel(kind, self.model, *ends, self.pin.ReferenceFrame.LOCAL)
-        if correction:
-            made.setBaumgarteCorrectorParameters(self.pin.BaumgarteCorrectorParameters(correction**2, 2 * correction))
+        if self.correction:
+            gains = self.pin.BaumgarteCorrectorParameters(self.correction**2, 2 * self.correction)
+            made.setBaumgarteCorrectorParameters(gains)
         return made
 
     def _answer(self, position: Array, velocity: Array, torque: Array) -> Array:
@@ -236,18 +231,15 @@ class Model:
         loaded = pin.computeStaticTorque(self.model, self.data, position, external)
         return np.array(pin.computeGeneralizedGravity(self.model, self.data, position)) - loaded
 
-    def record(self, integrator: Integrator, dt: float, samples: int, every: int) -> Recorded:
-        tree = self.tree
-        shape = (samples + 1, tree.coordinates)
-        position, velocity, acceleration = np.full((3, *shape), np.nan)
-        q, v = np.zeros(tree.coordinates), np.zeros(tree.coordinates)
-        v[self.address] = tree.start_rates()
-        step = self._runge_kutta if integrator == "rk4" else self._euler
+    def record(self, samples: int, every: int) -> Recorded:
+        position, velocity, acceleration = np.full((3, samples + 1, self.tree.coordinates), np.nan)
+        q, v = np.zeros(self.tree.coordinates), np.zeros(self.tree.coordinates)
+        v[self.address] = self.tree.start_rates()
 
         def advance(count: int) -> None:
             nonlocal q, v
             for _ in range(count):
-                q, v = step(q, v, dt)
+                q, v = self.step(self.acceleration, q, v, self.dt)
 
         def record(sample: int) -> bool:
             is_lost = not (np.isfinite(q).all() and np.isfinite(v).all())
@@ -260,30 +252,37 @@ class Model:
         for sample in range(samples + 1):
             if np.isfinite(velocity[sample]).all():
                 acceleration[sample] = self.acceleration(position[sample], velocity[sample])
-        states = tree_states(tree, *(each[:, self.address] for each in (position, velocity, acceleration)))
+        states = self.tree.motion(*(values[:, self.address] for values in (position, velocity, acceleration)))
         return Recorded(*states, stepping, self._inertias(), np.array(self.model.gravity.linear[:2]))
 
     def _inertias(self) -> Array:
-        """What the model holds, back in the order of bodies; NaN of welded ones, of which it holds only the sum."""
-        held = [self.model.inertias[joint] for joint in self._own]
-        told = np.array([(each.mass, each.mass, each.inertia[2, 2]) for each in held])
-        told[[self._own.count(joint) > 1 or joint == 0 for joint in self._own]] = np.nan
-        return told
+        """The inertias of the model, in the order of bodies; NaN of welded ones, of which it holds only the sum."""
+        inertias = [self.model.inertias[joint] for joint in self._own]
+        by_body = np.array([(inertia.mass, inertia.mass, inertia.inertia[2, 2]) for inertia in inertias])
+        by_body[[self._own.count(joint) > 1 or joint == 0 for joint in self._own]] = np.nan
+        return by_body
 
-    def _euler(self, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
-        v = v + dt * self.acceleration(q, v)
-        return q + dt * v, v
 
-    def _runge_kutta(self, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
-        first = self.acceleration(q, v)
-        half = dt / 2
-        v2 = v + half * first
-        second = self.acceleration(q + half * v, v2)
-        v3 = v + half * second
-        third = self.acceleration(q + half * v2, v3)
-        v4 = v + dt * third
-        fourth = self.acceleration(q + dt * v3, v4)
-        return q + dt / 6 * (v + 2 * v2 + 2 * v3 + v4), v + dt / 6 * (first + 2 * second + 2 * third + fourth)
+Acceleration = Callable[[Array, Array], Array]
+
+
+def euler_step(acceleration: Acceleration, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
+    """Semi-implicit: the new velocity drifts."""
+    v = v + dt * acceleration(q, v)
+    return q + dt * v, v
+
+
+def runge_kutta_step(acceleration: Acceleration, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
+    """The classical method of fourth order for q'' = acceleration(q, q')."""
+    first = acceleration(q, v)
+    half = dt / 2
+    v2 = v + half * first
+    second = acceleration(q + half * v, v2)
+    v3 = v + half * second
+    third = acceleration(q + half * v2, v3)
+    v4 = v + dt * third
+    fourth = acceleration(q + dt * v3, v4)
+    return q + dt / 6 * (v + 2 * v2 + 2 * v3 + v4), v + dt / 6 * (first + 2 * second + 2 * third + fourth)
 
 
 DEFAULT = Pinocchio("default")

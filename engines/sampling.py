@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.tree import Tree
 from reference.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -40,6 +40,31 @@ def sampled(
     return time.process_time() - begin
 
 
+def sampled_with_differences(
+    counts: tuple[int, int],
+    dt: float,
+    advance: Callable[[int], object],
+    state: Callable[[], tuple[Any, Any]],
+    velocity: Callable[[], Any],
+) -> tuple[Array, Array, Array, float]:
+    """Positions, velocities and accelerations (samples + 1, ...) of `counts` = (samples, steps between), and CPU time.
+
+    `state()` gives positions and velocities now. Accelerations are changes of `velocity()` over the last step of dt
+    [s], NaN at t = 0.
+    """
+    states: list[tuple[Any, Any]] = []
+    before: list[Any] = []
+    samples, every = counts
+    stepping = sampled(
+        [every] * samples, advance, lambda _: states.append(state()), lambda _: before.append(velocity())
+    )
+    position, speed = (np.array(values, dtype=float) for values in zip(*states, strict=True))
+    acceleration = np.full_like(speed, np.nan)
+    with np.errstate(all="ignore"):
+        acceleration[1:] = (speed[1:] - np.array(before, dtype=float)) / dt
+    return position, speed, acceleration, stepping
+
+
 def reactions(
     mechanism: Mechanism,
     pose: Array,
@@ -58,22 +83,8 @@ def reactions(
     return out
 
 
-def tree_states(tree: Tree, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:
-    """Poses, twists and accelerations of bodies, of tree coordinates (times, coordinates) that may be NaN."""
-    with np.errstate(all="ignore"):
-        return tree.motion(position, velocity, acceleration)
-
-
-def differences(twist: Array, before: Array, dt: float) -> Array:
-    """Accelerations (samples + 1, bodies, 3) as changes of velocity over the last step; NaN at t = 0."""
-    out = np.full_like(twist, np.nan)
-    with np.errstate(all="ignore"):
-        out[1:] = (twist[1:] - before[1:]) / dt
-    return out
-
-
 def unwrapped(angle: Array, rate: Array, start: Array, spacing: float) -> Array:
-    """Angles (times, bodies) that an engine keeps within a turn, each whole turn taken back by what rates predict.
+    """Angles (times, bodies) that an engine wraps into one turn, each whole turn restored from predicted rates.
 
     The prediction is the trapezoidal rule between samples, so it is right while alpha spacing^2 / 12 is below pi.
     """

@@ -1,4 +1,4 @@
-"""What every engine that is an extra shares: how its package is found, and a run that is called once and read out."""
+"""The base of the engines that are extras: whether the package is installed, and a run that is called once."""
 
 from __future__ import annotations
 
@@ -6,19 +6,22 @@ import ctypes
 import os
 import sys
 import tempfile
+from abc import abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.contract import Engine, OneShot, Size, Unsupported
+from engines.capability import Capability
+from engines.contract import Engine, Holder, OneShot, Size, Unsupported
 from engines.sampling import reactions
-from reference.checks import Count, Valid, validated
+from reference.checks import Count, Positive, Valid, validated
+from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
@@ -39,63 +42,33 @@ def _is_loaded(library: str) -> bool:
     return True
 
 
-class Optional(Engine, Valid):
-    """The base of an engine whose package is an extra of this project: a value even where the package is missing.
-
-    The extra has the engine's name. `library`: a shared library of Linux that the wheel of `modules` needs and has not,
-    with the package of Debian that has it; `apart`: what has to be installed besides, since pip can't in one go.
-    """
-
-    library: ClassVar[tuple[str, str] | None] = None
-    apart: ClassVar[str] = ""
-
-    @property
-    def missing(self) -> str:
-        """One sentence that says how to install it; empty where it is installed."""
-        absent = [module for module in self.modules if not _is_found(module)]
-        if not absent:
-            if sys.platform != "linux" or self.library is None or _is_loaded(self.library[0]):
-                return ""
-            name, package = self.library
-            return (
-                f"{self.name} needs the shared library {name}, which is not on this system: apt-get install {package}"
-            )
-        then = f", then {self.apart}" if self.apart else ""
-        return f"{self.name} needs the package {absent[0]}: pip install -e '.[{self.name}]'{then}"
-
-    def require(self) -> None:
-        """Raises Unsupported with the sentence where the package is missing."""
-        if self.missing:
-            raise Unsupported(self.missing)
-
-
 @contextmanager
 def quiet() -> Iterator[None]:
-    """What native code prints in here goes nowhere: file descriptors 1 and 2, which Python's streams don't see."""
+    """Discard what native code prints to file descriptors 1 and 2, which Python's streams do not see."""
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     with tempfile.TemporaryFile() as nowhere:
-        kept = [os.dup(number) for number in (1, 2)]
+        copies = [os.dup(number) for number in (1, 2)]
         try:
             for number in (1, 2):
                 os.dup2(nowhere.fileno(), number)
             yield
         finally:
-            for number, copy in zip((1, 2), kept, strict=True):
+            for number, copy in zip((1, 2), copies, strict=True):
                 os.dup2(copy, number)
                 os.close(copy)
 
 
 @dataclass(frozen=True)
 class Recorded:
-    """What an engine held at the samples, in the mechanism's order and frame; NaN where it could not go on.
+    """The engine's states at the samples, in the mechanism's order and frame; NaN where it could not go on.
 
     `inertias` (bodies, 3) [kg, kg, kg m^2] and `gravity` (2,) [m/s^2] are those of the engine's own objects.
     """
 
     pose: Array  # (samples + 1, bodies, 3)
     twist: Array
-    acceleration: Array  # NaN where it can't be told
+    acceleration: Array  # NaN where it is unknown
     stepping: float  # s
     inertias: Array
     gravity: Array
@@ -115,16 +88,69 @@ class SingleRun(OneShot):
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
         self._mechanism.require_room(samples)
         self.begin()
-        found = self._record(samples, every)
-        pose, twist = found.pose.copy(), found.twist.copy()
+        recorded = self._record(samples, every)
+        pose, twist, acceleration = recorded.pose.copy(), recorded.twist.copy(), recorded.acceleration.copy()
         # Single precision rounds the start, which is the mechanism's and not the engine's.
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
         sound = np.isfinite([pose, twist]).all(axis=(0, 2, 3))
         lost = int(np.argmin(sound)) if not sound.all() else samples + 1
-        acceleration = found.acceleration.copy()
         pose[lost:], twist[lost:], acceleration[lost:] = np.nan, np.nan, np.nan
-        reaction = reactions(self._mechanism, pose, twist, acceleration, found.inertias, found.gravity)
+        reaction = reactions(self._mechanism, pose, twist, acceleration, recorded.inertias, recorded.gravity)
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
-        silent = lost <= samples and not found.warnings
-        warnings = (f"ours: at {t[lost]:.4g} s the engine holds no numbers any more",) if silent else found.warnings
-        return Trajectory(t, pose, twist, reaction, found.stepping, warnings)
+        silent = lost <= samples and not recorded.warnings
+        warnings = (f"ours: at {t[lost]:.4g} s the engine holds no numbers any more",) if silent else recorded.warnings
+        return Trajectory(t, pose, twist, reaction, recorded.stepping, warnings)
+
+
+class Recorder(Protocol):
+    """A model of an engine for steps of a fixed length."""
+
+    @property
+    def size(self) -> Size: ...
+    def record(self, samples: int, every: int) -> Recorded: ...
+
+
+class Optional(Engine, Valid):
+    """The base of an engine whose package is an extra of this project: a value even where the package is missing.
+
+    The extra has the engine's name. `library`: a shared library of Linux that the wheel of `modules` needs and lacks,
+    with the package of Debian that has it; `apart`: what has to be installed besides, since pip can't in one go;
+    `capability`: the elements that the adapter builds.
+    """
+
+    library: ClassVar[tuple[str, str] | None] = None
+    apart: ClassVar[str] = ""
+    capability: ClassVar[Capability]
+
+    @property
+    def missing(self) -> str:
+        """One sentence that says how to install it; empty where it is installed."""
+        absent = [module for module in self.modules if not _is_found(module)]
+        if absent:
+            then = f", then {self.apart}" if self.apart else ""
+            return f"{self.name} needs the package {absent[0]}: pip install -e '.[{self.name}]'{then}"
+        if sys.platform != "linux" or self.library is None or _is_loaded(self.library[0]):
+            return ""
+        name, package = self.library
+        return f"{self.name} needs the shared library {name}, which is not on this system: apt-get install {package}"
+
+    def require(self) -> None:
+        """Raises Unsupported with the sentence where the package is missing."""
+        if self.missing:
+            raise Unsupported(self.missing)
+
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """Every joint is the engine's own."""
+        return "engine"
+
+    @abstractmethod
+    def model(self, mechanism: Mechanism, dt: float) -> Recorder:
+        """The engine's objects for steps of dt [s]; raises Unsupported for what `capability` does not cover."""
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
+        """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
+        self.capability.require(mechanism)
+        self.require()
+        model = self.model(mechanism, dt)
+        return SingleRun(mechanism, dt, model.size, model.record)

@@ -127,9 +127,13 @@ class Tree:
         return rates
 
     def motion(self, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, bodies, 3) of tree motions (times, coordinates) [m, rad, s]."""
+        """Poses, twists and accelerations (times, bodies, 3) of tree motions (times, coordinates) [m, rad, s].
+
+        NaN where these are not finite.
+        """
         pose, twist, change = np.empty((3, len(position), len(self.mechanism.bodies), 3))
-        states = self._states(position.T, velocity.T, acceleration.T, np.cos, np.sin)
+        with np.errstate(all="ignore"):
+            states = self._states(position.T, velocity.T, acceleration.T, np.cos, np.sin)
         for body, state in enumerate(states):
             for part, begin in ((pose, 0), (twist, 3), (change, 6)):
                 part[:, body, 0], part[:, body, 1], part[:, body, 2] = state[begin : begin + 3]

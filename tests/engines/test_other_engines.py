@@ -16,7 +16,7 @@ import pytest
 
 from engines import Size, Unsupported, registry, single_run
 from engines.lagrange.engine import TRUTH
-from engines.pinocchio import Model
+from engines.pinocchio import PinocchioModel
 from engines.units import counted_in
 from reference.forces import Torque
 from reference.joints import Drive, Gear, Pin, Rod
@@ -210,7 +210,7 @@ def test_where_exudyn_gives_up_its_last_samples_are_no_numbers():
 def test_pinocchio_tells_no_inertia_of_bodies_that_are_welded_together():
     held = SimpleNamespace(mass=2.0, inertia=np.diag([0.0, 0.0, 0.3]))
     model = SimpleNamespace(_own=[1, 2, 2, 0], model=SimpleNamespace(inertias=[held] * 3))
-    told = Model._inertias(model)  # type: ignore[arg-type]
+    told = PinocchioModel._inertias(model)  # type: ignore[arg-type]
     assert told[0] == pytest.approx([2.0, 2.0, 0.3])
     assert np.isnan(told[1:]).all()
 
