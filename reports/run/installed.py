@@ -57,13 +57,12 @@ def installed(names: Sequence[str], version: str) -> Path:
     for folder in places.values():
         if folder.is_dir():
             return _used(folder)
-    reasons = []
+    texts = {}
     for name, folder in places.items():
-        why = _install([f"{name}=={version}"], folder)
-        if not why:
+        texts[name] = _install(f"{name}=={version}", folder)
+        if not texts[name]:
             return _used(folder)
-        reasons.append((name, why))
-    raise BadInput(_sentence(version, reasons))
+    raise _refusal(version, texts)
 
 
 def built(path: Path) -> Path:
@@ -83,10 +82,8 @@ def built(path: Path) -> Path:
     else:
         raise BadInput(f"{path}: there is no such folder or wheel; give NAME==VERSION, a .whl file or a folder")
     folder = _place(name)
-    if not folder.is_dir():
-        why = _install([str(path)], folder, wheels_only=path.is_file())
-        if why:
-            raise BadInput(f"{path} can't be installed: {why}")
+    if not folder.is_dir() and (text := _install(str(path), folder, wheels_only=path.is_file())):
+        raise BadInput(f"{path} can't be installed: {_reason(text)}")
     return _used(folder)
 
 
@@ -100,7 +97,7 @@ def sources(name: str, version: str, folder: Path, *options: str) -> Path:
     ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", check=False)
     found = list(folder.glob(f"{name}-*.tar.gz"))
     if ended.returncode or not found:
-        raise BadInput(f"pip could not fetch the source package of {name} {version}: {_reason(ended.stderr, 1)}")
+        raise BadInput(f"pip could not fetch the source package of {name} {version}: {_reason(ended.stderr)}")
     with tarfile.open(found[0], encoding="utf-8") as archive:
         archive.extraction_filter = getattr(tarfile, "data_filter", None)  # Python before 3.11.4 has none
         archive.extractall(folder)
@@ -122,8 +119,8 @@ def _used(folder: Path) -> Path:
     return folder
 
 
-def _install(what: Sequence[str], folder: Path, wheels_only: bool = True) -> str:
-    """Install into the folder, which gets its name when it is whole; why it can't be, empty if it was."""
+def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
+    """Install into the folder, which gets its name when it is whole; pip's words if it failed, empty if it did not."""
     remedy = f"set {CACHE} to a folder that can be written"
     folder_for(folder.parent, remedy)
     try:
@@ -134,10 +131,10 @@ def _install(what: Sequence[str], folder: Path, wheels_only: bool = True) -> str
             command += ["--only-binary", ":all:"] if wheels_only else []
             # From another folder: pip may leave something where it is started.
             run = subprocess.run(
-                [*command, "--", *what], capture_output=True, text=True, errors="replace", cwd=aside, check=False
+                [*command, "--", what], capture_output=True, text=True, errors="replace", cwd=aside, check=False
             )
             if run.returncode or not target.is_dir():
-                return _reason(run.stderr or run.stdout, run.returncode)
+                return run.stderr.strip() or run.stdout.strip() or f"pip ended with status {run.returncode}"
             try:
                 target.rename(folder)
             except OSError:
@@ -151,34 +148,27 @@ def _install(what: Sequence[str], folder: Path, wheels_only: bool = True) -> str
     return ""
 
 
-def _reason(text: str, status: int) -> str:
-    """Of all that pip says the part that tells why."""
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    if any(word in line for line in lines for word in UNCONNECTED):
+def _reason(text: str) -> str:
+    """The last error that pip printed, else its last line; OFFLINE without a connection."""
+    if any(word in text for word in UNCONNECTED):
         return OFFLINE
-    offered = next((match[1] for line in lines if (match := OFFERED.search(line))), None)
-    if offered is not None:
-        return offered
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
     errors = [line for line in lines if line.startswith("ERROR")]
-    return (errors or lines or [f"pip ended with status {status}"])[-1].removeprefix("ERROR: ")
+    return (errors or lines or ["pip failed"])[-1].removeprefix("ERROR: ")
 
 
-def _sentence(version: str, reasons: Sequence[tuple[str, str]]) -> str:
-    """One line on why no distribution has the version, with the nearest that there are."""
-    found: list[str] = []
-    told = []
-    for name, why in reasons:
-        if VERSION.match(why):
-            found += [each for each in why.split(", ") if each not in found]
-        elif why != "none":
-            told.append(f"{name}: {why}")
-    names = " or ".join(name for name, _ in reasons)
-    if all(why == OFFLINE for _, why in reasons):
-        return f"{names} {version} can't be fetched: {OFFLINE}"
+def _refusal(version: str, texts: Mapping[str, str]) -> BadInput:
+    """One line on why no distribution has the version, and the nearest that exist; `texts`: pip's words, by name."""
+    names, reasons = " or ".join(texts), {name: _reason(text) for name, text in texts.items()}
+    if set(reasons.values()) == {OFFLINE}:
+        return BadInput(f"{names} {version} can't be fetched: {OFFLINE}")
     about = f"no wheel of {names} {version} for this Python ({sys.version_info[0]}.{sys.version_info[1]})"
-    if found:
-        return f"{about}; there are {', '.join(nearest_versions(version, found))}"
-    return f"{about}: {'; '.join(told) or 'the package index knows none'}"
+    lists = [match[1] for text in texts.values() for match in OFFERED.finditer(text)]
+    offered = dict.fromkeys(word for words in lists for word in words.split(", ") if VERSION.match(word))
+    if offered:
+        return BadInput(f"{about}; there are {', '.join(nearest_versions(version, list(offered)))}")
+    told = "; ".join(f"{name}: {reason}" for name, reason in reasons.items() if not OFFERED.search(texts[name]))
+    return BadInput(f"{about}: {told or 'the package index knows none'}")
 
 
 def nearest_versions(version: str, offered: Sequence[str]) -> list[str]:

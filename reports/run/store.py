@@ -10,7 +10,7 @@ import sqlite3
 import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, fields, replace
+from dataclasses import asdict, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -41,7 +41,6 @@ REMEDIES = {
 }
 # SQLITE_ERROR: every statement here is valid, so that the file's own schema must be damaged.
 DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_TOOBIG)
-TYPES = {field.name: {"str": str, "int": int, "float": (int, float)}[str(field.type)] for field in fields(Measurement)}
 
 Keyed = TypeVar("Keyed", Cell, Task)
 
@@ -222,27 +221,20 @@ def _put_aside(path: Path) -> Path:
     return aside
 
 
-def _loaded(text: str) -> dict[str, Any]:
-    """The JSON of a stored text. Earlier versions put a digest and a blank before it."""
-    return json.loads(text[max(0, text.find("{")) :])
-
-
 @lru_cache(maxsize=8192)  # a command reads a row more than once: for what is missing, a table, several pages
 def row_of(text: str) -> Measurement | None:
-    """A stored row, None if it can't be read. A field that an older layout lacks has its default (no number)."""
+    """A stored row, None if it can't be read."""
     try:
-        values = {name: value for name, value in _loaded(text).items() if name in TYPES}
-        if not all(isinstance(value, TYPES[name]) for name, value in values.items()):
-            return None
+        values = json.loads(text)
         return Measurement(**{**values, "outcome": Outcome(values["outcome"])})
-    except (ValueError, TypeError, KeyError, AttributeError):
+    except (ValueError, TypeError, KeyError):
         return None
 
 
 def answer_of(text: str) -> Answer | None:
     """A stored answer, None if it can't be read."""
     try:
-        stored = _loaded(text)
+        stored = json.loads(text)
         values = {name: v if isinstance(v, str) else _unpacked(v) for name, v in stored["values"].items()}
         return Answer(Outcome(stored["outcome"]), stored["sentence"], values, stored["limit"])
     except (ValueError, TypeError, KeyError, AttributeError, zlib.error):

@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 from reference.trajectory import Trajectory
-from reports.run.files import PREFIX
 from tests.toys import Toy
 
 
@@ -75,12 +74,6 @@ def kill_self(number: int) -> None:
     time.sleep(5)
 
 
-def install_handlers(toy: RoughToy) -> None:
-    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGALRM, signal.SIGPROF):
-        signal.signal(number, lambda *_: None)
-    signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001)
-
-
 ACTIONS: dict[str, Callable[[RoughToy], Any]] = {
     "segfault": lambda toy: ctypes.string_at(0),
     "kill": lambda toy: kill_self(signal.SIGKILL),
@@ -99,9 +92,10 @@ ACTIONS: dict[str, Callable[[RoughToy], Any]] = {
     "closes files": lambda toy: os.closerange(3, 1000),
     "closes streams": lambda toy: sys.stdout.close(),
     "changes environment": lambda toy: os.environ.update(CROSSCHECK_TOY="was here"),
+    "changes folder": lambda toy: os.chdir("/"),
     "leaves threads": lambda toy: threading.Thread(target=time.sleep, args=(1000,), daemon=True).start(),
-    "installs handlers": install_handlers,
-    "blocks signals": lambda toy: signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals()),
+    "installs handlers": lambda toy: str(signal.signal(signal.SIGTERM, lambda *_: None)),
+    "blocks signals": lambda toy: str(signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM})),
 }
 DAMAGE: list[str] = []
 
@@ -111,8 +105,6 @@ def act(name: str) -> object:
     match name:
         case "process":
             return os.getpid()
-        case "probe":
-            return probe()
         case "damage":
             time.sleep(0.3)
             DAMAGE.append("something in native memory")
@@ -121,21 +113,7 @@ def act(name: str) -> object:
             return os.abort() if DAMAGE else "sound"
         case "unreadable":
             return Unreadable()
-    ACTIONS[name](RoughToy())
-    return probe()
-
-
-def probe() -> list[str]:
-    """What differs from a fresh worker process."""
-    wrong = {
-        "folder": not Path.cwd().name.startswith(PREFIX),
-        "streams": sys.stdout.closed,
-        "handlers": any(callable(handler) for handler in map(signal.getsignal, signal.valid_signals())),
-        "blocked signals": bool(signal.pthread_sigmask(signal.SIG_BLOCK, ())),
-        "threads": threading.active_count() != 2,  # this one, and that which looks after the parent
-        "environment": "CROSSCHECK_TOY" in os.environ,
-    }
-    return [name for name, value in wrong.items() if value]
+    return ACTIONS[name](RoughToy())
 
 
 def dies(*_: object) -> None:

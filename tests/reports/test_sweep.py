@@ -97,6 +97,11 @@ def test_coarse_steps_before_the_asymptotic_slope_do_not_bend_the_order():
     assert 3 <= found.points < len(STEPS)
 
 
+def test_of_two_falling_parts_of_one_length_the_finer_gives_the_order():
+    errors = np.array([4e-2, 4e-2 * (STEPS[1] / STEPS[0]), 1e-2, 1e-2 * (STEPS[3] / STEPS[2]) ** 2])
+    assert fit(STEPS[:4], errors, ROUNDING).order == pytest.approx(2)
+
+
 @pytest.mark.parametrize(
     ("errors", "verdict", "points"),
     [
