@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from engines import Engine, Unsupported, method_name, mujoco, pymunk
+from engines.conformance.worlds import WORLDS
 from engines.lagrange import TRUTH
 from engines.mujoco import Hardened
 from engines.mujoco.methods import ROLLS, SKATES, SLOTS
@@ -44,7 +45,7 @@ from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCr
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import Trajectory
-from tests.mechanisms import bar, four_bar, rolling_disc
+from tests.mechanisms import four_bar, rolling_disc
 
 SPACING = 1e-2  # s, between samples
 FREE_COORDINATES = replace(mujoco.EXTENDED, variant="free coordinates", coordinates="free")
@@ -70,17 +71,6 @@ def across(arm: np.ndarray) -> np.ndarray:
 def placed(name: str, mass: float, inertia: float, centre: Any, angle: float, velocity: Any, rate: float) -> Body:
     x, y, along, up = map(float, (*centre, *velocity))
     return Body(name, mass, inertia, (x, y, angle), (along, up, rate))
-
-
-def elbow() -> Mechanism:
-    """Two bars from the origin, driven against each other where they meet."""
-    upper, lower = bar("upper", (0.0, 0.0), (1.0, 0.0)), bar("lower", (1.0, 0.0), (1.0, -0.7), rate=2.0)
-    joints = (
-        Pin("A", None, "upper", (0.0, 0.0), (-0.5, 0.0)),
-        Pin("B", "upper", "lower", (0.5, 0.0), (-0.35, 0.0)),
-        Drive("motor", "upper", "lower", 2.0, -np.pi / 2),
-    )
-    return Mechanism((upper, lower), joints, (0.0, -9.81))
 
 
 def far_drive() -> Mechanism:
@@ -121,28 +111,6 @@ def slotted_arm(keeps_angle: bool) -> Mechanism:
     return Mechanism((arm, block), (*joints, *held), (0.0, -9.81))
 
 
-def trammel() -> Mechanism:
-    """Of Archimedes: two points of a bar in two slots of the ground, that cross at an angle of 1 rad."""
-    first, second, rate = np.array([0.6, 0.0]), 0.8 * turned(1.0, 1.0, 0.0), 1.5
-    along = second - first
-    length, angle = float(np.hypot(*along)), float(np.arctan2(along[1], along[0]))
-    # v_first = s (1, 0) and v_first + rate across = u (cos 1, sin 1)
-    s = -(rate * (across(along)[0] * math.sin(1.0) - across(along)[1] * math.cos(1.0))) / math.sin(1.0)
-    velocity = np.array([s, 0.0]) + rate * across(along) / 2
-    ends = zip("ab", (0.0, 1.0), ((-length / 2, 0.0), (length / 2, 0.0)), strict=True)
-    slots = tuple(Slot(name, None, "bar", (0.0, 0.0), line, point) for name, line, point in ends)
-    return Mechanism((placed("bar", 1.3, 0.07, (first + second) / 2, angle, velocity, rate),), slots, (0.0, -9.81))
-
-
-def plate() -> Mechanism:
-    """It turns about the ground's point (0.3, 0.1), which slides in it, pulled by gravity."""
-    angle, rate, line, own = 0.5, 2.0, 0.7, (0.25, -0.1)
-    offset = turned(angle, *own)
-    velocity = 0.4 * turned(angle + line, 1.0, 0.0) - rate * across(offset)
-    body = placed("plate", 0.8, 0.03, np.array([0.3, 0.1]) - offset, angle, velocity, rate)
-    return Mechanism((body,), (Slot("slot", "plate", None, own, line, (0.3, 0.1)),), (0.0, -9.81))
-
-
 def runner(first: str | None, point: tuple[float, float]) -> Mechanism:
     """A body's point slides along a line of the ground or of a rail that is free."""
     rail, line = Body("rail", 3.0, 1.0, (0.0, 0.0, 0.3)), 0.4 + (0.3 if first else 0.0)
@@ -150,6 +118,8 @@ def runner(first: str | None, point: tuple[float, float]) -> Mechanism:
     body = placed("runner", 1.0, 0.2, 0.5 * along - arm, 0.9, 0.7 * along - 1.5 * across(arm), 1.5)
     return Mechanism((rail, body), (Slot("slot", first, "runner", (0.0, 0.0), 0.4, point),), (0.3, -1.0))
 
+
+TRAMMEL = next(world.mechanism for world in WORLDS if world.name == "trammel")
 
 # --------------------------------------------------------------------------------------------------------- the table
 
@@ -199,9 +169,6 @@ OF_PYMUNK = (
     # Truncation h^6 with h = 1/2000 s and rates of 10/s is 1e-12 and below; rounding of 8000 steps a second the same. A
     # force is a difference of velocities over a step of 1e-4 s: rounding grows by 1e4.
     *on(pymunk.EXTENDED, (FREE, DRIVEN, MOVING), pose=1e-11, twist=1e-9, reaction=1e-8),
-    # Five sweeps shrink what is open by a few only: the cold start is felt for some samples, in the reactions most.
-    Row(pymunk.LEAPFROG, elbow(), pose=2e-5, reaction=1e-3, since=25),
-    Row(pymunk.EXTENDED, elbow(), pose=1e-12, reaction=1e-7),
     # The first samples have what is left of the first steps, which is no series in the step.
     *on(pymunk.EXTENDED, ROLLING, 3, pose=1e-11, reaction=1e-8, since=2),
     *on(methods.ROLL_PIVOT, ROLLING[:2], order=(2,), room=0.2),
@@ -267,11 +234,9 @@ OF_MUJOCO = (
     *on(mujoco.TUNED, map(slotted_arm, (False, True)), pose=1e-11, twist=1e-10, reaction=1e-9, span=0.2),
     *on(FREE_HALVES, map(slotted_arm, (False, True)), pose=1e-9, reaction=1e-7, span=0.2),
     *on(TUNED_FREE, map(slotted_arm, (False, True)), pose=4e-6, order=(2,), span=0.2),  # a weld's gap
-    *on(mujoco.TUNED, (trammel(),), pose=1e-6, span=0.2),
-    *on(HALVES, (trammel(),), pose=1e-9, span=0.2),
-    *on(mujoco.TUNED, (plate(),), pose=1e-5, reaction=1e-2, span=0.2),
-    *on(HALVES, (plate(),), pose=1e-8, reaction=1e-2, span=0.2),
-    *on(mujoco.EXTENDED, (trammel(), plate()), pose=1e-8, reaction=1e-2, span=0.2),
+    *on(mujoco.TUNED, (TRAMMEL,), pose=1e-6, span=0.2),
+    *on(HALVES, (TRAMMEL,), pose=1e-9, span=0.2),
+    *on(mujoco.EXTENDED, (TRAMMEL,), pose=1e-8, reaction=1e-2, span=0.2),
     *on(SLOTS[0], (SlottedLever(),), order=(2,), room=0.3),  # the spring is tied to the step, as that of the weld
     # Flat at about 0.7 s: the rows lose rank there, and what stands for the missing ones is rounding.
     Row(mujoco.EXTENDED, NFourBar(), pose=1e-6, span=1.5),

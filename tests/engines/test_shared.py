@@ -5,7 +5,6 @@ from __future__ import annotations
 import cmath
 import math
 
-import mpmath as mp
 import numpy as np
 import pytest
 
@@ -87,20 +86,6 @@ def test_places_contacts_and_arms_are_the_references_to_rounding(rolling: Rollin
         assert abs(ground - point) < 1e-13  # m: rounding of an arc of a few metres
         assert abs(fast.arm(angle) - arm) < 1e-13
         assert abs(own + arm * cmath.rect(1.0, -angle)) < 1e-13
-
-
-def test_a_disc_that_nearly_fits_its_hole_is_where_forty_digits_put_it() -> None:
-    """Its contact runs round 1e5 times as fast as it turns; a search for it would leave seven digits only."""
-    clearance, theta = 1e-5, 5.0
-    rolling = rolling_of(DiscInHole(clearance=clearance))
-    with mp.workdps(40):
-        hole, radius = mp.mpf(1.0), mp.mpf(DiscInHole(clearance=clearance).radius)
-        start = mp.mpf(float(rolling.contact(rolling.theta).tangent_angle))
-        angle = start + radius / (radius - hole) * (mp.mpf(theta) - mp.mpf(rolling.theta))
-        arm = complex(-1j * radius * mp.expj(angle))
-    # An angle of 5e5 rad as a double is rounded by 6e-11 rad.
-    assert abs(rolled(rolling).arm(theta) - arm) < 1e-10
-    assert abs(complex(as_complex(rolling.contact(theta).arm)) - arm) < 2e-10  # two such arcs
 
 
 def test_a_pair_that_fits_too_closely_for_a_table_asks_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
