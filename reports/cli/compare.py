@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from reports.cli.terminal import Terminal
     from reports.model.measure import Measurement
     from reports.versions.builds import BuildComparison
-    from reports.versions.comparison import Comparison, Difference
+    from reports.versions.comparison import Difference, RowComparison
 
 WIDTH = 150  # into a file or a pipe
 LONGEST = 300  # letters of a reason
@@ -129,7 +129,7 @@ def _cells(difference: Difference) -> list[str | float]:
     return [label, difference.after.step, difference.value(difference.before), difference.value(difference.after)]
 
 
-def _reasons(found: Comparison) -> tuple[Counter[str], Counter[str]]:
+def _reasons(found: RowComparison) -> tuple[Counter[str], Counter[str]]:
     """Of each side why cells ended as they did, where the other's did not, and how many for each reason."""
     from reports.model.outcomes import Outcome
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from reports.model.measure import Measurement
     from reports.versions.builds import Progress
     from reports.versions.column import VersionColumn
-    from reports.versions.table import Table
+    from reports.versions.table import ReleaseTable
 
 WIDTH = 150  # into a file or a pipe
 USUAL = "Only these scenes (repeatable, or with commas); six short ones if none is named."
@@ -166,16 +166,16 @@ def announce_pip(word: str) -> None:
     print(f"{word}: installed by pip, unless it is there already", file=sys.stderr, flush=True)
 
 
-def _table(name: str, columns: list[VersionColumn]) -> Table:
+def _table(name: str, columns: list[VersionColumn]) -> ReleaseTable:
     from reports.model.catalogue import PAGES
-    from reports.versions.table import Table, entries
+    from reports.versions.table import ReleaseTable, entries
 
     quantities = {scene.name: page.quantity for page in PAGES for scene in page.scenes}
     marks = {(name, each.version): each.trouble or each.mark for each in columns if each.trouble or each.mark}
-    return Table(tuple(entry for each in columns for entry in entries(name, each, quantities)), marks)
+    return ReleaseTable(tuple(entry for each in columns for entry in entries(name, each, quantities)), marks)
 
 
-def _print(console: Terminal, table: Table, name: str) -> None:
+def _print(console: Terminal, table: ReleaseTable, name: str) -> None:
     """Errors at a usual step, a line a scene and method, a column a version; outcomes where there is no error."""
     from reports.cli.terminal import print_table
     from reports.versions.table import changes

@@ -19,7 +19,7 @@ from reports.run.files import temporary_folder
 from reports.run.installed import built, distributions_in, installed
 from reports.versions.catalogue import distributions, engine_of, engines_named
 from reports.versions.column import VersionColumn, VersionRequest, cells_of, column, modules_in
-from reports.versions.comparison import Comparison, compared
+from reports.versions.comparison import RowComparison, compared
 
 STORE = "cells.sqlite"
 # A loop, rolling, a skate, a slide, a chain: one short scene of each kind of joint, with others that are driven.
@@ -39,7 +39,7 @@ def no_progress(label: str, count: int) -> Iterator[tuple[Done, Watch]]:
 
 
 @dataclass(frozen=True)
-class Side:
+class Build:
     """A version or build: its label in tables, and whether its rows are stored: those of a build may change."""
 
     label: str
@@ -52,9 +52,9 @@ class Side:
 class BuildComparison:
     """Two builds, their rows, and the differences."""
 
-    sides: tuple[Side, Side]
+    sides: tuple[Build, Build]
     columns: tuple[VersionColumn, VersionColumn]
-    comparison: Comparison
+    comparison: RowComparison
 
     @property
     def complaint(self) -> str:
@@ -102,7 +102,7 @@ def compare_builds(
     terms: dict[str, Any] = {"every": QUICK, "variants": tuple(dict.fromkeys(method.variant for method in methods))}
     with temporary_folder() as folder:
 
-        def run(side: Side, number: str) -> VersionColumn:
+        def run(side: Build, number: str) -> VersionColumn:
             store = (results if side.stored else folder / number) / STORE
             request = _request(engine or side.engine, side.place, scenes, store, most=LONGEST_CELL, **terms)
             return run_column(side.label, side.label, request, methods, progress)
@@ -146,7 +146,7 @@ def run_column(
         return column(version, request, engines, watch, done)
 
 
-def side_of(word: str, engine: str | None, engines: Sequence[Engine], announce: Callable[[str], None]) -> Side:
+def side_of(word: str, engine: str | None, engines: Sequence[Engine], announce: Callable[[str], None]) -> Build:
     """The build that a word means. Raises BadInput."""
     name, equals, version = word.partition("==")
     if equals:
@@ -156,7 +156,7 @@ def side_of(word: str, engine: str | None, engines: Sequence[Engine], announce: 
             raise BadInput(f"{word}: no engine needs {name!r}; there are {names}")
         announce(word)
         places = distributions(method) if method is not None else (name,)
-        return Side(word, engine or (method.name if method else name), installed(places, version), True)
+        return Build(word, engine or (method.name if method else name), installed(places, version), True)
     if Path(word).exists():
         announce(word)
     place = built(Path(word))
@@ -170,4 +170,4 @@ def side_of(word: str, engine: str | None, engines: Sequence[Engine], announce: 
     packages = ", ".join(f"{package} {number}" for package, number in versions.items())
     # A wheel's name repeats what is in it, with forty letters of platforms.
     name = "wheel" if Path(word).suffix == ".whl" else Path(word).absolute().name
-    return Side(f"{packages} ({name})" if packages else name, engine or (method.name if method else ""), place, False)
+    return Build(f"{packages} ({name})" if packages else name, engine or (method.name if method else ""), place, False)

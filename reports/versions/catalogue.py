@@ -17,7 +17,7 @@ SPARSE = "https://github.com/google-deepmind/mujoco/issues/3767"
 
 
 @dataclass(frozen=True)
-class Release:
+class NamedRelease:
     """`changed`: a clause about a change that is known by name, with its `source`, an address."""
 
     engine: str
@@ -28,33 +28,33 @@ class Release:
 
 # About one release of every minor series, and all about which something is known, oldest first.
 RELEASES = (
-    Release("mujoco", "3.3.0"),
-    Release("mujoco", "3.3.7"),
-    Release("mujoco", "3.4.0"),
-    Release("mujoco", "3.5.0"),
-    Release("mujoco", "3.6.0"),
-    Release(
+    NamedRelease("mujoco", "3.3.0"),
+    NamedRelease("mujoco", "3.3.7"),
+    NamedRelease("mujoco", "3.4.0"),
+    NamedRelease("mujoco", "3.5.0"),
+    NamedRelease("mujoco", "3.6.0"),
+    NamedRelease(
         "mujoco",
         "3.7.0",
         "`connect` and `weld` got the velocity term of their acceleration, -(dJ/dt) v, which they had lacked",
         CHANGELOG,
     ),
-    Release("mujoco", "3.8.1"),
-    Release("mujoco", "3.10.0"),
-    Release("mujoco", "3.12.0"),
-    Release("mujoco", "3.14.0"),
-    Release("mujoco", "3.17.0"),
-    Release(
+    NamedRelease("mujoco", "3.8.1"),
+    NamedRelease("mujoco", "3.10.0"),
+    NamedRelease("mujoco", "3.12.0"),
+    NamedRelease("mujoco", "3.14.0"),
+    NamedRelease("mujoco", "3.17.0"),
+    NamedRelease(
         "mujoco",
         "4.0.0",
         "the sparse Cholesky factor of Newton's Hessian became wrong for some trees that branch and close across",
         SPARSE,
     ),
-    Release("mujoco", "4.0.1", "that factor was mended", SPARSE),
-    Release("pymunk", "7.0.0"),
-    Release("pymunk", "7.1.0"),
-    Release("pymunk", "7.2.0"),
-    Release("pymunk", "7.3.1"),
+    NamedRelease("mujoco", "4.0.1", "that factor was mended", SPARSE),
+    NamedRelease("pymunk", "7.0.0"),
+    NamedRelease("pymunk", "7.1.0"),
+    NamedRelease("pymunk", "7.2.0"),
+    NamedRelease("pymunk", "7.3.1"),
 )
 
 # The release of MuJoCo with which a step as shipped became dearer, measured once beside 3.3.0 (the page says how).
@@ -70,7 +70,7 @@ def compared_versions() -> dict[str, tuple[str, ...]]:
     return {name: tuple(release.version for release in RELEASES if release.engine == name) for name in engines}
 
 
-def changes_between(engine: str, before: str, after: str) -> tuple[Release, ...]:
+def changes_between(engine: str, before: str, after: str) -> tuple[NamedRelease, ...]:
     """Releases after the one up to the other with a change that is known by name."""
     of_engine = [release for release in RELEASES if release.engine == engine and release.changed]
     return tuple(each for each in of_engine if numbers(before) < numbers(each.version) <= numbers(after))

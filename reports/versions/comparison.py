@@ -50,7 +50,7 @@ class OrderChange(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Comparison:
+class RowComparison:
     """`pairs`: rows of one cell, before and after."""
 
     pairs: tuple[tuple[Measurement, Measurement], ...]
@@ -90,15 +90,15 @@ class Comparison:
         """The `cost` of each method that was timed."""
         return {part.method: part.cost for part in self._by("method") if not math.isnan(part.cost)}
 
-    def lines(self) -> list[Comparison]:
+    def lines(self) -> list[RowComparison]:
         """A comparison for each method of each scene, in the order of the rows."""
         return self._by("scene", "method")
 
-    def _by(self, *names: str) -> list[Comparison]:
+    def _by(self, *names: str) -> list[RowComparison]:
         groups: dict[tuple[str, ...], list[tuple[Measurement, Measurement]]] = {}
         for before, after in self.pairs:
             groups.setdefault(tuple(getattr(after, name) for name in names), []).append((before, after))
-        return [Comparison(tuple(pairs)) for pairs in groups.values()]
+        return [RowComparison(tuple(pairs)) for pairs in groups.values()]
 
     @property
     def scene(self) -> str:
@@ -126,11 +126,11 @@ class Comparison:
         return "better" if chief.quantity != "outcome" or Outcome(chief.after.outcome).comparable else "other"
 
 
-def compared(before: Iterable[Measurement], after: Iterable[Measurement]) -> Comparison:
+def compared(before: Iterable[Measurement], after: Iterable[Measurement]) -> RowComparison:
     """Rows of the same cells against each other; a cell that only one has is left out."""
     new = {identity(row): row for row in after}
     old = {identity(row): row for row in before}
-    return Comparison(tuple((row, new[key]) for key, row in old.items() if key in new))
+    return RowComparison(tuple((row, new[key]) for key, row in old.items() if key in new))
 
 
 def _differences(before: Measurement, after: Measurement) -> Sequence[Difference]:

@@ -72,7 +72,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Table:
+class ReleaseTable:
     """All entries; `marks`: by (engine, version) why its numbers are known to be wrong, or why it can't be used."""
 
     entries: tuple[Entry, ...]
@@ -121,7 +121,7 @@ def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> 
     return Entry(engine, version, *method, error, outcome, math.nan, sentence)
 
 
-def as_csv(table: Table) -> str:
+def as_csv(table: ReleaseTable) -> str:
     """The file: marks as comments on top, then a line for each entry, sorted."""
     out = io.StringIO()
     for (engine, version), mark in table.marks.items():
@@ -137,10 +137,10 @@ def _as_text(value: Any) -> str:
     return f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> ReleaseTable:
     """Read such a file; an empty table where there is none. Raises ValueError for a file of another kind."""
     if not path.is_file():
-        return Table((), {})
+        return ReleaseTable((), {})
     lines = path.read_text(encoding="utf-8").splitlines()
     heads = [line[2:].partition(": ") for line in lines if line.startswith("# ")]
     marks = {(name.split(" ")[0], name.split(" ")[-1]): mark for name, _, mark in heads}
@@ -150,11 +150,11 @@ def read(path: Path) -> Table:
         found = tuple(Entry(**{name: kind(row[name]) for name, kind in types.items()}) for row in rows)
     except (KeyError, TypeError, ValueError):
         raise ValueError(f"{path}: it is no table of versions; `crosscheck versions --all` writes one") from None
-    return Table(found, marks)
+    return ReleaseTable(found, marks)
 
 
 @cache
-def released(path: Path = DATA) -> Table:
+def released(path: Path = DATA) -> ReleaseTable:
     """The published table, without releases that the catalogue does not list any more."""
     known, table = compared_versions(), read(path)
 
@@ -162,22 +162,22 @@ def released(path: Path = DATA) -> Table:
         return version in known.get(engine, (version,))
 
     listed = tuple(entry for entry in table.entries if is_listed(entry.engine, entry.version))
-    return Table(listed, {key: mark for key, mark in table.marks.items() if is_listed(*key)})
+    return ReleaseTable(listed, {key: mark for key, mark in table.marks.items() if is_listed(*key)})
 
 
-def merged(old: Table, new: Table) -> Table:
+def merged(old: ReleaseTable, new: ReleaseTable) -> ReleaseTable:
     """The new entries, and the old ones of other versions."""
     renewed = {(entry.engine, entry.version) for entry in new.entries}
     remaining = tuple(entry for entry in old.entries if (entry.engine, entry.version) not in renewed)
     marks = {key: mark for key, mark in old.marks.items() if key not in renewed}
-    return Table((*remaining, *new.entries), {**marks, **new.marks})
+    return ReleaseTable((*remaining, *new.entries), {**marks, **new.marks})
 
 
-def as_published(table: Table, before: Table) -> Table:
+def as_published(table: ReleaseTable, before: ReleaseTable) -> ReleaseTable:
     """The entries, with the numbers of `before` where only rounding, or noise of a CPU time, makes another of them."""
     published = {entry.identity: entry for entry in before.entries}
     renewed = tuple(_as_published(entry, published.get(entry.identity, entry)) for entry in table.entries)
-    return Table(renewed, table.marks)
+    return ReleaseTable(renewed, table.marks)
 
 
 def _as_published(now: Entry, before: Entry) -> Entry:

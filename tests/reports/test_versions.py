@@ -26,11 +26,11 @@ from reports.pages.versions import page
 from reports.run import installed as installation
 from reports.run.installed import built, distributions_in, installed
 from reports.versions import builds
-from reports.versions.builds import BuildComparison, Side, compare_builds
+from reports.versions.builds import Build, BuildComparison, compare_builds
 from reports.versions.catalogue import RELEASES, changes_between
 from reports.versions.column import VersionColumn, VersionRequest, column, modules_in
 from reports.versions.comparison import compared
-from reports.versions.table import Entry, Table, as_csv, as_published, changes, merged, read, released
+from reports.versions.table import Entry, ReleaseTable, as_csv, as_published, changes, merged, read, released
 from reports.versions.trees import miss, trees
 from tests.toys import Disc
 
@@ -76,12 +76,14 @@ def test_changes_are_found_in_the_errors_alone():
 
 
 def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):
-    table = Table((entry("3.6.0", 0.25), entry("4.0.0", NAN, outcome="torn")), {("mujoco", "3.6.0"): "it is: old"})
+    table = ReleaseTable(
+        (entry("3.6.0", 0.25), entry("4.0.0", NAN, outcome="torn")), {("mujoco", "3.6.0"): "it is: old"}
+    )
     path = tmp_path / "versions.csv"
     path.write_text(as_csv(table))
     again = read(path)
     assert (as_csv(again), again.marks) == (as_csv(table), table.marks)
-    newer = merged(again, Table((entry("3.6.0", 0.5),), {}))
+    newer = merged(again, ReleaseTable((entry("3.6.0", 0.5),), {}))
     assert [(each.version, each.error) for each in newer.entries if each.comparable] == [("3.6.0", 0.5)]
     assert newer.marks == {}
     path.write_text("scene\nx\n")
@@ -91,13 +93,13 @@ def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):
 
 def test_a_published_number_keeps_its_text_within_rounding_and_a_time_within_a_tenth():
     known = [entry for entry in released().entries if entry.comparable and entry.quantity == "angle"][:20]
-    before = Table(tuple(known), {})
+    before = ReleaseTable(tuple(known), {})
     moved = tuple(replace(entry, error=entry.error + 1e-12, cpu=1.09 * entry.cpu) for entry in known)
-    assert as_csv(as_published(Table(moved, {}), before)) == as_csv(before)
+    assert as_csv(as_published(ReleaseTable(moved, {}), before)) == as_csv(before)
     changed = tuple(replace(entry, error=1.01 * entry.error + 1e-10, cpu=1.11 * entry.cpu) for entry in known)
-    assert as_published(Table(changed, {}), before).entries == changed
+    assert as_published(ReleaseTable(changed, {}), before).entries == changed
     torn = tuple(replace(entry, outcome=Outcome.TORN) for entry in moved)
-    assert as_published(Table(torn, {}), before).entries == torn
+    assert as_published(ReleaseTable(torn, {}), before).entries == torn
 
 
 def row(angle, outcome=Outcome.FINISHED, every=1, cpu=1.0):
@@ -115,7 +117,7 @@ def test_worse_is_more_than_three_times_as_large_and_cost_and_orders_are_compare
 
 
 def printed(before, after, form="text"):
-    sides = Side("old==1", "mujoco", Path(), False), Side("new==2", "mujoco", Path(), False)
+    sides = Build("old==1", "mujoco", Path(), False), Build("new==2", "mujoco", Path(), False)
     columns = VersionColumn("1", tuple(before)), VersionColumn("2", tuple(after))
     compare.print_comparison(Terminal(compare.WIDTH, form), BuildComparison(sides, columns, compared(before, after)))
 
@@ -152,7 +154,7 @@ def test_random_trees_tell_ideal_constraints_from_wrong_ones():
 
 def test_the_page_counts_changes_and_names_those_that_are_known(monkeypatch):
     entries = (entry("3.6.0", 1e-2), entry("3.7.0", 1e-6), entry("4.0.1", 1e-2))
-    table = Table((*entries, entry("7.0.0", 1e-2, engine="pymunk")), {("mujoco", "3.6.0"): "it is old"})
+    table = ReleaseTable((*entries, entry("7.0.0", 1e-2, engine="pymunk")), {("mujoco", "3.6.0"): "it is old"})
     monkeypatch.setattr(page, "released", lambda: table)
     mujoco, pymunk = page.words(Material({}))["engines"]
     _, _, first, second, third = mujoco["table"].splitlines()
@@ -161,7 +163,7 @@ def test_the_page_counts_changes_and_names_those_that_are_known(monkeypatch):
     assert third.startswith("| 4.0.1 | - | **1** | 1.00 | the sparse Cholesky factor")
     assert (pymunk["name"], len(pymunk["table"].splitlines())) == ("pymunk", 3)
     assert set(page.figures(Material({}))) == {"mujoco_heat", "pymunk_heat"}
-    monkeypatch.setattr(page, "released", lambda: Table((), {}))
+    monkeypatch.setattr(page, "released", lambda: ReleaseTable((), {}))
     assert page.words(Material({}))["engines"] == []
 
 

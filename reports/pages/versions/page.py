@@ -17,7 +17,7 @@ from reports.model.page import Material, Page
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.versions.catalogue import COST_ROSE_IN, changes_between
-from reports.versions.table import ACCELERATION, Entry, Table, changes, relative_cost, released
+from reports.versions.table import ACCELERATION, Entry, ReleaseTable, changes, relative_cost, released
 from reports.write.tables import markdown
 
 
@@ -84,7 +84,7 @@ def _legend(figure: Figure, entries: Sequence[Entry], theme: Theme) -> None:
     figure.legend(patches, list(colours), loc="outside lower center", ncols=4)
 
 
-def version_table(table: Table, engine: str) -> str:
+def version_table(table: ReleaseTable, engine: str) -> str:
     """A line for each version: how many errors became better or worse with it, its cost, and its known changes."""
     entries, versions = table.of(engine), table.versions(engine)
     costs = {method: relative_cost(entries, versions, method) for method in variants(entries)}
