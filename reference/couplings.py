@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import InvalidMechanism, Name, Valid
-from reference.plane import from_body
+from reference.plane import apart, direction_row
 
 AnyArray = NDArray[Any]
 
@@ -43,10 +43,7 @@ class Term(Valid):
         if not self.sliding:
             return self.factor * (second[..., 2] - first[..., 2])
         line = first[..., 2] + self.line_angle
-        first_x, first_y = from_body(first[..., 2], self.first_point)
-        second_x, second_y = from_body(second[..., 2], self.second_point)
-        x = second[..., 0] + second_x - first[..., 0] - first_x
-        y = second[..., 1] + second_y - first[..., 1] - first_y
+        x, y = np.moveaxis(apart(first, second, self.first_point, self.second_point), -1, 0)
         return self.factor * (np.cos(line) * x + np.sin(line) * y)
 
     def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
@@ -55,17 +52,12 @@ class Term(Valid):
 
     def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
         """The derivative (..., 1, 6): columns are the first body's x, y, angle and then the second's."""
+        if self.sliding:
+            line = first[..., 2] + self.line_angle
+            along = self.factor * np.cos(line), self.factor * np.sin(line)
+            return direction_row(first, second, self.second_point, *along)
         rows = np.zeros((*np.broadcast_shapes(first.shape, second.shape)[:-1], 1, 6), np.result_type(first, second))
-        if not self.sliding:
-            rows[..., 0, 2], rows[..., 0, 5] = -self.factor, self.factor
-            return rows
-        line = first[..., 2] + self.line_angle
-        x, y = self.factor * np.cos(line), self.factor * np.sin(line)
-        second_x, second_y = from_body(second[..., 2], self.second_point)
-        arm_x = second[..., 0] + second_x - first[..., 0]
-        arm_y = second[..., 1] + second_y - first[..., 1]
-        rows[..., 0, 0], rows[..., 0, 1], rows[..., 0, 2] = -x, -y, x * arm_y - y * arm_x
-        rows[..., 0, 3], rows[..., 0, 4], rows[..., 0, 5] = x, y, y * second_x - x * second_y
+        rows[..., 0, 2], rows[..., 0, 5] = -self.factor, self.factor
         return rows
 
 

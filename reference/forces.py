@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from reference.checks import Name, NonNegative, Positive, Valid
 from reference.couplings import Term, require_terms
-from reference.joints import apart, distance, length_of, point_rows
-from reference.plane import from_body
+from reference.plane import apart, distance, from_body, length_of, point_rows
 from reference.rows import stacked
 
 Vector = tuple[float, float]

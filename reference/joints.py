@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.checks import Name, Positive, Valid
 from reference.couplings import Coupling
 from reference.kinds import Rule
-from reference.plane import from_body
+from reference.plane import apart, direction_row, distance, point_rows
 from reference.rolling.roll import Roll
 
 Vector = tuple[float, float]
@@ -52,42 +52,6 @@ def bodies_of(names: Sequence[str], masses: Any, inertias: Any, pose: Any, twist
     """A body for each name, of masses and inertias (bodies,), at poses and twists (bodies, 3)."""
     numbers = (np.asarray(each, dtype=float).tolist() for each in (masses, inertias, pose, twist))
     return tuple(Body(name, m, i, tuple(p), tuple(v)) for name, m, i, p, v in zip(names, *numbers, strict=True))
-
-
-def apart(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> AnyArray:
-    """The vector (..., 2) [m] from the first point to the second."""
-    first_x, first_y = from_body(first[..., 2], first_point)
-    second_x, second_y = from_body(second[..., 2], second_point)
-    x = second[..., 0] + second_x - first[..., 0] - first_x
-    y = second[..., 1] + second_y - first[..., 1] - first_y
-    return np.stack([x, y], axis=-1)
-
-
-def point_rows(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> AnyArray:
-    """Its derivative (..., 2, 6): columns are the first body's x, y, angle and then the second's."""
-    first_x, first_y = from_body(first[..., 2], first_point)
-    second_x, second_y = from_body(second[..., 2], second_point)
-    rows = np.zeros((*first_x.shape, 2, 6), dtype=np.result_type(first_x, second_x))
-    rows[..., 0, 0] = rows[..., 1, 1] = -1
-    rows[..., 0, 3] = rows[..., 1, 4] = 1
-    rows[..., 0, 2], rows[..., 0, 5] = first_y, -second_y
-    rows[..., 1, 2], rows[..., 1, 5] = -first_x, second_x
-    return rows
-
-
-def length_of(vector: AnyArray) -> AnyArray:
-    """The length (...) of a vector (..., 2); not its absolute value, so that it stays analytic."""
-    return np.sqrt(vector[..., 0] ** 2 + vector[..., 1] ** 2)
-
-
-def distance(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> tuple[AnyArray, AnyArray]:
-    """The distance (...) [m] of the two points and its derivative (..., 6); NaN where they coincide."""
-    points = first_point, second_point
-    vector, rows = apart(first, second, *points), point_rows(first, second, *points)
-    length = length_of(vector)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        row = (vector[..., 0, None] * rows[..., 0, :] + vector[..., 1, None] * rows[..., 1, :]) / length[..., None]
-    return length, row
 
 
 @dataclass(frozen=True)
@@ -178,25 +142,13 @@ class Slot(_JointOfTwo):
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Distance of the second point from the line, positive to its left (..., 1) [m], for poses (..., 3)."""
         line = first[..., 2] + np.asarray(self.line_angle)
-        first_x, first_y = from_body(first[..., 2], self.first_point)
-        second_x, second_y = from_body(second[..., 2], self.second_point)
-        across_x = second[..., 0] + second_x - first[..., 0] - first_x
-        across_y = second[..., 1] + second_y - first[..., 1] - first_y
+        across_x, across_y = np.moveaxis(apart(first, second, self.first_point, self.second_point), -1, 0)
         return (np.cos(line) * across_y - np.sin(line) * across_x)[..., None]
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
         """Velocity row (..., 1, 6): columns are the first body's x, y, angle and then the second's."""
         line = first[..., 2] + np.asarray(self.line_angle)
-        along, across = np.cos(line), np.sin(line)
-        second_x, second_y = from_body(second[..., 2], self.second_point)
-        arm_x = second[..., 0] + second_x - first[..., 0]
-        arm_y = second[..., 1] + second_y - first[..., 1]
-        rows = np.zeros((*arm_x.shape, 1, 6), dtype=np.result_type(arm_x, along))
-        rows[..., 0, 0], rows[..., 0, 1] = across, -along
-        rows[..., 0, 2] = -along * arm_x - across * arm_y
-        rows[..., 0, 3], rows[..., 0, 4] = -across, along
-        rows[..., 0, 5] = across * second_y + along * second_x
-        return rows
+        return direction_row(first, second, self.second_point, -np.sin(line), np.cos(line))
 
 
 @dataclass(frozen=True)
@@ -221,18 +173,8 @@ class Skate(_JointOfTwo):
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
         """Velocity row (..., 1, 6)."""
-        point_x, point_y = from_body(second[..., 2], self.second_point)
         heading = second[..., 2] + np.asarray(self.angle)
-        left_x, left_y = -np.sin(heading), np.cos(heading)
-        arm_x, arm_y = second[..., 0] + point_x - first[..., 0], second[..., 1] + point_y - first[..., 1]
-        rows = np.zeros((*heading.shape, 1, 6), dtype=heading.dtype)
-        rows[..., 0, 0] = -left_x
-        rows[..., 0, 1] = -left_y
-        rows[..., 0, 2] = arm_y * left_x - arm_x * left_y
-        rows[..., 0, 3] = left_x
-        rows[..., 0, 4] = left_y
-        rows[..., 0, 5] = point_x * left_y - point_y * left_x
-        return rows
+        return direction_row(first, second, self.second_point, -np.sin(heading), np.cos(heading))
 
 
 @dataclass(frozen=True)

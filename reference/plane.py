@@ -1,4 +1,5 @@
-"""Vectors of the plane, once: rotation, k x vector, and the velocity and acceleration that a rotation gives a point.
+"""Vectors of the plane, once: rotation, k x vector, the velocity and acceleration that a rotation gives a point; and
+the vector from a point of one body to a point of another, with its derivatives by their poses (..., 3).
 
 Vectors are arrays (..., 2) and broadcast against angles and rates (...). k points out of the plane, angles are
 counter-clockwise. All functions are analytic, so a complex step passes through them.
@@ -52,3 +53,51 @@ def rotation_acceleration(rate: Any, angular_acceleration: Any, arm: AnyArray) -
 def from_complex(number: Any) -> AnyArray:
     """The vector (..., 2) of a complex number x + i y (...)."""
     return np.stack([np.real(number), np.imag(number)], axis=-1)
+
+
+def apart(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> AnyArray:
+    """The vector (..., 2) [m] from the first point to the second."""
+    first_x, first_y = from_body(first[..., 2], first_point)
+    second_x, second_y = from_body(second[..., 2], second_point)
+    x = second[..., 0] + second_x - first[..., 0] - first_x
+    y = second[..., 1] + second_y - first[..., 1] - first_y
+    return np.stack([x, y], axis=-1)
+
+
+def point_rows(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> AnyArray:
+    """Its derivative (..., 2, 6): columns are the first body's x, y, angle and then the second's."""
+    first_x, first_y = from_body(first[..., 2], first_point)
+    second_x, second_y = from_body(second[..., 2], second_point)
+    rows = np.zeros((*first_x.shape, 2, 6), dtype=np.result_type(first_x, second_x))
+    rows[..., 0, 0] = rows[..., 1, 1] = -1
+    rows[..., 0, 3] = rows[..., 1, 4] = 1
+    rows[..., 0, 2], rows[..., 0, 5] = first_y, -second_y
+    rows[..., 1, 2], rows[..., 1, 5] = -first_x, second_x
+    return rows
+
+
+def length_of(vector: AnyArray) -> AnyArray:
+    """The length (...) of a vector (..., 2); not its absolute value, so that it stays analytic."""
+    return np.sqrt(vector[..., 0] ** 2 + vector[..., 1] ** 2)
+
+
+def distance(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> tuple[AnyArray, AnyArray]:
+    """The distance (...) [m] of the two points and its derivative (..., 6); NaN where they coincide."""
+    points = first_point, second_point
+    vector, rows = apart(first, second, *points), point_rows(first, second, *points)
+    length = length_of(vector)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        row = (vector[..., 0, None] * rows[..., 0, :] + vector[..., 1, None] * rows[..., 1, :]) / length[..., None]
+    return length, row
+
+
+def direction_row(first: AnyArray, second: AnyArray, second_point: Any, x: Any, y: Any) -> AnyArray:
+    """The row (..., 1, 6) of the velocity of a point of the second body along (x, y) (...), relative to the first
+    body's material there: columns are the first body's x, y, angle and then the second's.
+    """
+    point_x, point_y = from_body(second[..., 2], second_point)
+    arm_x, arm_y = second[..., 0] + point_x - first[..., 0], second[..., 1] + point_y - first[..., 1]
+    rows = np.zeros((*arm_x.shape, 1, 6), dtype=np.result_type(arm_x, x))
+    rows[..., 0, 0], rows[..., 0, 1], rows[..., 0, 2] = -x, -y, x * arm_y - y * arm_x
+    rows[..., 0, 3], rows[..., 0, 4], rows[..., 0, 5] = x, y, y * point_x - x * point_y
+    return rows

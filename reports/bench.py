@@ -26,7 +26,7 @@ from engines.lagrange.machine import Machine
 from engines.loading import Kind, registered_by_key
 from reference.scene import Scene
 from reference.scenes.four_bar.scenes import FreeFourBar
-from reference.scenes.many_links import LongPendulum
+from reference.scenes.pendulum.scenes import LongPendulum
 from reports.model.cells import Cell
 from reports.model.ending import BadInput
 from reports.model.measure import measure

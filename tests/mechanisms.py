@@ -12,11 +12,10 @@ from reference.rolling.curves import Circle
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scenes.four_bar.scenes import OverdrivenFourBar, Parallelogram
-from reference.scenes.many_links import LongPendulum, SpinningRing
+from reference.scenes.pendulum.scenes import LongPendulum, SpinningRing
 from reference.scenes.rolling.scenes import DiscInHole, SquareOnCatenaries
-from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
-from reference.scenes.slider_crank.scenes import RodEndInSlot, SliderAtDeadCentre
-from reference.scenes.slider_crank.slotted_lever import SlottedLever
+from reference.scenes.skates import HeldBySkates, SkateOnSlope
+from reference.scenes.slider_crank import RodEndInSlot, SliderAtDeadCentre, SlottedLever
 
 SCENES_OF_LIMITS = (
     *(Parallelogram(), OverdrivenFourBar(), SkateOnSlope(), HeldBySkates(), DiscInHole(), SquareOnCatenaries()),

@@ -17,7 +17,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -80,27 +80,20 @@ def rule_of(stages: int) -> Rule:
     return Rule(weights / 2, integrals.T @ to_coefficients / 2, to_coefficients)
 
 
-class Motion(Protocol):
-    """A motion in steps: call it with times (times,) [s] for states (times, states) in double."""
-
-    @property
-    def times(self) -> Array:
-        """The ends of the steps (steps + 1,) [s]."""
-        ...
-
-    def __call__(self, t: ArrayLike, /) -> Array: ...
-
-
 @dataclass(frozen=True)
 class Windows:
-    """A motion: call it with times (times,) [s] for its angles and rates (times, 2 n), in extended precision."""
+    """A motion: call it with times (times,) [s] for its angles and rates (times, 2 n), rounded to double."""
 
     stages: int
     times: Array  # (windows + 1,)
     states: Extended  # (windows + 1, 2 n)
     slopes: list[Extended]  # of each window, the Legendre coefficients of the accelerations (stages, n)
 
-    def __call__(self, t: ArrayLike) -> Extended:
+    def __call__(self, t: ArrayLike) -> Array:
+        return self.extended(t).astype(float)
+
+    def extended(self, t: ArrayLike) -> Extended:
+        """Angles and rates (times, 2 n) with all digits that were carried."""
         t = np.atleast_1d(np.asarray(t, dtype=float))
         if t.size and not (t.min() >= 0 and t.max() <= self.times[-1]):
             raise ValueError(f"times must lie in [0, {self.times[-1]}] s: the motion integrated")
@@ -176,19 +169,7 @@ def integrate(
     return Windows(stages, np.array(times), np.array(states), slopes)
 
 
-@dataclass(frozen=True)
-class InDouble:
-    """Windows whose states are rounded to double."""
-
-    windows: Windows
-
-    @property
-    def times(self) -> Array:
-        """The ends of the windows (windows + 1,) [s]."""
-        return self.windows.times
-
-    def __call__(self, t: ArrayLike) -> Array:
-        return self.windows(t).astype(float)
+Motion = Windows | integration.Integrated
 
 
 def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarser: float = 1.0) -> Motion:
@@ -208,12 +189,11 @@ def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarse
     stages, pace = STAGES if coarser == 1 else COARSE_STAGES, float(np.asarray(unit)[-1])
     try:
         with np.errstate(all="ignore"):  # a first guess may lead to where no number is finite
-            by = integrate(
+            return integrate(
                 accelerations, state[:half], state[half:], until, pace, stages, coarser * TOLERANCE, FEW_WINDOWS
             )
     except IntegrationFailed:
         return integration.integrate(rates, state, until, coarser * integration.TOLERANCE, unit)
-    return InDouble(by)
 
 
 def error_of(rates: Rates, start: ArrayLike, t: ArrayLike, unit: ArrayLike) -> Array:

@@ -182,7 +182,7 @@ class Andrews(PlacedScene):
         if not times.any():  # a mechanism needs no more than the start
             return np.full((len(times), 2), (self.angle, 0.0), dtype=float)
         until = max(self.duration, float(times.max()))
-        return shared(Andrews._solved, self, until)(times * self.rate_unit).astype(float) * [1.0, self.rate_unit]
+        return shared(Andrews._solved, self, until)(times * self.rate_unit) * [1.0, self.rate_unit]
 
     def _solved(self, until: float) -> windows.Windows:
         """The motion of time in units of 1 / `rate_unit`."""

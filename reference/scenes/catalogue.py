@@ -21,9 +21,8 @@ from reference.scenes.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
-from reference.scenes.skates.pinned_body import FreelyPinnedBody, PinnedBody
-from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.skates import ChaplyginSleigh, FreelyPinnedBody, PinnedBody, SleighBackwards
+from reference.scenes.slider_crank import DrivenSliderCrank, FreeSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart
 

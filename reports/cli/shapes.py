@@ -13,8 +13,7 @@ from reports.model.ending import BadInput, FileTrouble, visible
 from reports.run.files import write_whole
 
 if TYPE_CHECKING:
-    from reference.chapter.centrodes import Centrodes
-    from reference.chapter.shapes import Shapes
+    from reference.chapter.centrodes import Centrodes, Shapes
 
 KINDS = ("csv", "svg", "dxf")
 USUAL = ("csv", "svg")  # dxf needs a package that an installation has only with the extra `dxf`
@@ -52,8 +51,7 @@ def shapes(
     refuse_existing(targets.values(), "--folder", force)
     text = _text(motion)
     # Here, since numpy and scipy take longer to load than all else.
-    from reference.chapter.centrodes import from_poses
-    from reference.chapter.shapes import as_csv, as_dxf, as_svg, poses_from_csv, shapes_of
+    from reference.chapter.centrodes import as_csv, as_dxf, as_svg, from_poses, poses_from_csv, shapes_of
     from reference.checks import InvalidMechanism
 
     writers = {"csv": as_csv, "svg": as_svg, "dxf": as_dxf}

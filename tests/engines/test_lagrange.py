@@ -65,17 +65,16 @@ def test_steps_of_one_length_tell_of_a_dead_end_and_of_a_motion_that_is_lost(met
 
 
 @pytest.mark.parametrize(("gyration", "held"), [(1.0, True), (1e-6, False)])
-@pytest.mark.parametrize("stabilisation", ["none", "baumgarte", "projection"])
-@pytest.mark.parametrize("method", ["euler", "rk4", "dop853"])
-def test_a_joint_whose_row_is_lost_beside_others_is_told(method, stabilisation, gyration, held):
+@pytest.mark.parametrize("method", ["euler none", "rk4 baumgarte", "dop853 projection"])
+def test_a_joint_whose_row_is_lost_beside_others_is_reported(method, gyration, held):
     """A body 2.5 km from its pin, on a slope: the force along its arm is m (gyration / arm)^2 of that across."""
     c, s = np.cos(0.7), np.sin(0.7)
     light = Body("light", 1.0, gyration**2, (0.0, 0.0, 0.7), (82 * c, 82 * s, 0.03))
     rate = (82 * 2 + 2500 * 0.03) / -500
     other = Body("other", 1.0, 2.5e7, (3000 * s, -3000 * c, 0.7), (-82 * c, -82 * s, rate))
     pair = Mechanism((light, other), (Pin("pin", "light", "other", (0.0, -2500.0), (0.0, 500.0)),))
-    run = Lagrange(method, stabilisation).build(pair, 0.02)(5, 1)
-    if stabilisation == "projection":
+    run = Lagrange(*method.split()).build(pair, 0.02)(5, 1)
+    if "projection" in method:
         assert bool(np.abs(slip(pair, run)).max() < 1e-6) is held
     assert (run.warnings == ()) is held
 

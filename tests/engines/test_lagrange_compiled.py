@@ -18,8 +18,7 @@ from reference.couplings import Coupling
 from reference.forces import CoupledForce, Damper, TorsionDamper
 from reference.mechanism import Mechanism
 from reference.scenes.four_bar.scenes import FreeFourBar
-from reference.scenes.many_links import LongPendulum
-from reference.scenes.pendulum.scenes import HundredLinks
+from reference.scenes.pendulum.scenes import HundredLinks, LongPendulum
 from reference.scenes.rolling.scenes import RollingEllipse
 from reference.trajectory import joint_gap, slip
 from reports.gate.judge import in_numpy, integrate

@@ -40,9 +40,8 @@ from reference.scenes.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
-from reference.scenes.skates.sleigh import ChaplyginSleigh
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
-from reference.scenes.slider_crank.slotted_lever import SlottedLever
+from reference.scenes.skates import ChaplyginSleigh
+from reference.scenes.slider_crank import DrivenSliderCrank, FreeSliderCrank, SlottedLever
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import Trajectory
 from tests.mechanisms import four_bar, rolling_disc

@@ -22,8 +22,7 @@ from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.scenes.pendulum.scenes import HundredLinks
 from reference.scenes.rolling.scenes import RollingDisc
-from reference.scenes.slider_crank.scenes import FreeSliderCrank
-from reference.scenes.slider_crank.slotted_lever import SlottedLever
+from reference.scenes.slider_crank import FreeSliderCrank, SlottedLever
 from reference.trajectory import energy
 from tests.engines.test_matrix import FREE_COORDINATES, far_drive
 from tests.mechanisms import bar, four_bar

@@ -24,7 +24,7 @@ from reference.scenes.rolling.scenes import (
     RollingEllipse,
     RollingOnCircle,
 )
-from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.skates import ChaplyginSleigh
 from reference.trajectory import Trajectory
 from tests.engines.test_matrix import SOFT, blade_on_a_board
 from tests.mechanisms import rolling_disc

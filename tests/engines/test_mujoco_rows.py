@@ -21,8 +21,8 @@ from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingEllipse
-from reference.scenes.skates.sleigh import ChaplyginSleigh
-from reference.scenes.slider_crank.slotted_lever import SlottedLever
+from reference.scenes.skates import ChaplyginSleigh
+from reference.scenes.slider_crank import SlottedLever
 from reference.scenes.wheels.cart import Cart
 from tests import ROOT
 from tests.mechanisms import bar

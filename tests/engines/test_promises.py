@@ -18,8 +18,8 @@ from reference.mechanism import Body, Mechanism
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingEllipse
-from reference.scenes.skates.sleigh import ChaplyginSleigh
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.skates import ChaplyginSleigh
+from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.gate.change import Altered
 from reports.write.columns import held_by

@@ -31,8 +31,8 @@ from reference.scene import Scene
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle
-from reference.scenes.skates.sleigh import ChaplyginSleigh
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.skates import ChaplyginSleigh
+from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.trajectory import Trajectory
 from tests import ROOT
 from tests.engines.test_matrix import blade_on_a_board, elbow

@@ -12,12 +12,17 @@ import pytest
 
 from engines.lagrange import Lagrange
 from reference.chapter.centrodes import (
+    as_csv,
+    as_dxf,
+    as_svg,
     centrode_error,
     centrodes,
     from_poses,
     instant_centre,
+    placed_body,
+    poses_from_csv,
+    shapes_of,
 )
-from reference.chapter.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of
 from reference.scenes.four_bar.linkage import FourBar
 from reference.scenes.rolling.scenes import RollingDisc
 from reference.trajectory import Trajectory

@@ -9,11 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reference.chapter.centrodes import centrodes, from_poses
+from reference.chapter.centrodes import centrodes, from_poses, poses_from_csv, shapes_of
 from reference.chapter.integrability import is_integrable
-from reference.chapter.parking import sidestep
-from reference.chapter.shapes import poses_from_csv, shapes_of
-from reference.chapter.skates import coriolis_factors
+from reference.chapter.skates import coriolis_factors, sidestep
 from reference.forces import Damper, Spring, Torque
 from reference.joints import Gear, Joint, Pin, Skate
 from reference.mechanism import Body, Mechanism
@@ -31,8 +29,8 @@ from reference.scenes.pendulum.chain import Chain
 from reference.scenes.person import TwoFeet
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingCam, RollingEllipse
-from reference.scenes.skates.sleigh import ChaplyginSleigh
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.skates import ChaplyginSleigh
+from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.trailers import CarWithTrailers
 from tests.all_elements import ALL, WELD

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import random
-from typing import Any
 
 import numpy as np
 import pytest
@@ -177,42 +175,21 @@ def test_contact_is_common_tangent_and_equally_long_on_both(pair):
     )
 
 
-def test_acceleration_is_as_if_pinned_plus_a_rolling_term_small_when_sharp_and_large_when_conformal():
-    def term(body, ground):
-        rolling = Rolling.at_arcs(body, ground)
-        added = rolling.acceleration(1.0, 2.0, 0.5) - rolling.pinned_acceleration(1.0, 2.0, 0.5)
-        return float(np.linalg.norm(added))
-
-    sharp, plain, conformal = term(Circle(1e-3), Line()), term(Circle(0.5), Line()), term(Circle(0.99), Ring(1.0))
-    assert sharp == pytest.approx(4 * 1e-3, rel=1e-9)
-    assert plain == pytest.approx(4 * 0.5, rel=1e-12)
-    assert conformal == pytest.approx(4 * 99, rel=1e-12)
-
-
-def complex_derivative(function, pose):
-    """d function / d pose (..., 6) of the two bodies' poses by complex steps."""
-    columns = []
-    for i in range(6):
-        step = np.zeros(6, dtype=complex)
-        step[i] = 1e-100j
-        columns.append(function(pose[:3] + step[:3], pose[3:] + step[3:]).imag / 1e-100)
-    return np.stack(columns, axis=-1)
-
-
-@pytest.mark.parametrize("pair", PAIRS)
+@pytest.mark.parametrize("pair", list(PAIRS)[::3])
 def test_the_rows_of_a_roll_are_the_derivative_of_its_gap_between_moving_bodies(pair):
     body, ground = PAIRS[pair]
     rolling = Rolling.at_arcs(body, ground, 0.2, 0.3)
     roll = Roll("roll", "first", "second", rolling)
     rng = np.random.default_rng(5)
-    for _ in range(5):
+    steps = 1e-100j * np.eye(6)
+    for _ in range(2):
         first = rng.uniform(-2, 2, 3)
         x, y, angle = rolling.pose(rolling.theta + rng.uniform(-5, 5))
         cosine, sine = np.cos(first[2]), np.sin(first[2])
         second = np.array([first[0] + cosine * x - sine * y, first[1] + sine * x + cosine * y, first[2] + angle])
         np.testing.assert_allclose(roll.gap(first, second, 0.0), 0, atol=ROUNDING)
-        derivative = complex_derivative(lambda p, q: roll.gap(p, q, 0.0), np.concatenate([first, second]))
-        np.testing.assert_allclose(roll.rows(first, second), derivative, atol=1e-11)
+        derivative = [np.imag(roll.gap(first + step[:3], second + step[3:], 0.0)) / 1e-100 for step in steps]
+        np.testing.assert_allclose(roll.rows(first, second), np.transpose(derivative), atol=1e-11)
 
 
 def test_the_incline_falls_to_minus_x_so_that_the_ellipse_goes_faster():
@@ -267,35 +244,21 @@ def watched(scene, looks=4001):
     return out
 
 
-def some_scene(seed):
-    """Any start: at rest, next to a balance, fast; in any unit of length and of time."""
-    rng = random.Random(seed)
-    length, time = 10 ** rng.choice([0.0, -9.0, 9.0]), 10 ** rng.choice([0.0, -9.0, 9.0])
-    given: dict[str, Any] = {
-        "start_rate": rng.choice([0.0, 1e-6, 1e-3, rng.uniform(-6, 6)]) / time,
-        "start_angle": rng.choice([0.0, rng.uniform(-3, 3)]),
-        "gravity": (0.0, -GRAVITY * length / time**2),
-        "friction": 10 ** rng.uniform(-2, 1.5),
-        "duration": 3 * time,
-    }
-    if rng.random() < 0.6:
-        sizes: dict[str, Any] = {"hill": rng.uniform(0.3, 3) * length, "radius": rng.uniform(0.1, 1) * length}
-        return RollingOnCircle(**given, **sizes, eccentricity=rng.choice([0.0, rng.uniform(0, 0.09)]) * length)
-    if rng.random() < 0.5:
-        return RollingDisc(**given, radius=0.4 * length, eccentricity=rng.uniform(0, 0.39) * length)
-    return RollingEllipse(**given, along_x=0.5 * length, along_y=rng.uniform(0.3, 0.7) * length)
+NANOMETRES = {"hill": 1e-9, "radius": 0.3e-9, "eccentricity": 0.05e-9, "gravity": (0.0, -GRAVITY * 1e-9)}
+SLIPPING = (
+    *(RollingOnCircle(), RollingEllipse(friction=0.25), RollingEllipse(start_rate=6.0), RollingOnCircle(**NANOMETRES)),
+    *(RollingDisc(eccentricity=0.35, start_rate=-5.0, friction=0.03), RollingOnCircle(start_rate=1e-6, friction=20.0)),
+)
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_hops_and_slips_are_the_first_that_looking_finds(seed):
-    scene = some_scene(seed)
-    law = scene.motion_law
-    slips = law.slip(scene.friction, scene.duration)
-    for told, seen in zip((scene.hop, slips), watched(scene), strict=True):
+@pytest.mark.parametrize("scene", SLIPPING)
+def test_hops_and_slips_are_the_first_that_looking_finds(scene):
+    slips = scene.motion_law.slip(scene.friction, scene.duration)
+    for time, seen in zip((scene.hop, slips), watched(scene), strict=True):
         if seen is None:
-            assert told is None
+            assert time is None
         else:
-            assert seen[0] * (1 - 1e-12) <= present(told) <= seen[1]
+            assert seen[0] * (1 - 1e-12) <= present(time) <= seen[1]
 
 
 @pytest.mark.parametrize("scene", [RollingEllipse(), RollingDisc(eccentricity=0.1), RollingInRing()])

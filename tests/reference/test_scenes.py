@@ -23,10 +23,8 @@ from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.person import TwoFeet
 from reference.scenes.rolling.elliptic_gears import EllipticGears
-from reference.scenes.skates.pinned_body import PinnedBody
-from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
-from reference.scenes.skates.slopes import SkateOnSlope
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.skates import ChaplyginSleigh, PinnedBody, SkateOnSlope, SleighBackwards
+from reference.scenes.slider_crank import DrivenSliderCrank, FreeSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart
 from reference.trajectory import Trajectory, energy, joint_gap, slip

@@ -15,13 +15,23 @@ from reference.chapter.integrability import (
     mechanism_is_integrable,
     obstruction,
 )
-from reference.chapter.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
-from reference.chapter.skates import coriolis_factors, frobenius, one_form, skate_of
+from reference.chapter.skates import (
+    Move,
+    commutator,
+    commutator_displacement,
+    coriolis_factors,
+    frobenius,
+    one_form,
+    park,
+    sidestep,
+    skate_of,
+    stops,
+    trace,
+)
 from reference.checks import InvalidMechanism
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
-from reference.scenes.skates.pinned_body import PinnedBody
-from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.skates import ChaplyginSleigh, PinnedBody, SleighBackwards
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart, Casters
 from reference.scenes.wheels.trailers import CarWithTrailers, Tow

@@ -14,7 +14,7 @@ import pytest
 from engines import registry
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
-from reference.chapter.parking import park
+from reference.chapter.skates import park
 from reference.checks import (
     Count,
     Fraction,

@@ -17,7 +17,7 @@ from reference import trajectory as outlines
 from reference.chapter.centrodes import Centrodes
 from reference.joints import Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.slider_crank import DrivenSliderCrank
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.pages.centrodes.page import draw_centrodes, draw_rate

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from engines import Promise, Unpromised
-from reference.scenes.many_links import LongPendulum
-from reference.scenes.pendulum.scenes import LinkPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum, LongPendulum
 from reports.cli.selection import BadInput, steps_per_sample
 from reports.model import measure as measuring
 from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells

@@ -15,13 +15,11 @@ from engines.lagrange import Lagrange
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
 from reference.checks import InvalidMechanism
-from reference.scenes.many_links import SpinningRing
+from reference.scenes.pendulum.scenes import SpinningRing
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import DiscInHole, RollingEllipse, RollingOnCircle, SquareOnCatenaries
-from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
-from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
-from reference.scenes.slider_crank.scenes import RodEndInSlot, SliderAtDeadCentre
-from reference.scenes.slider_crank.slotted_lever import SlottedLever
+from reference.scenes.skates import ChaplyginSleigh, HeldBySkates, SkateOnSlope, SleighBackwards
+from reference.scenes.slider_crank import RodEndInSlot, SliderAtDeadCentre, SlottedLever
 from reference.trajectory import energy, joint_gap, slip
 from reports.gate.prediction import all_tasks
 from reports.model.catalogue import PAGES

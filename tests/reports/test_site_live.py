@@ -22,8 +22,8 @@ from reference.rolling.roll import Roll
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse
-from reference.scenes.skates.sleigh import ChaplyginSleigh
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.skates import ChaplyginSleigh
+from reference.scenes.slider_crank import DrivenSliderCrank
 from reports.site.drawn import demanded, place_of
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders

@@ -98,7 +98,7 @@ class CurveMotion(Valid):
         by = windows.integrate(slopes, np.zeros(4), state, until, float(unit), stages, TOLERANCE)
 
         def states(times: Array) -> Any:
-            found = by(times)[:, 4:]
+            found = by.extended(times)[:, 4:]
             angle = found[:, :3] / unit
             root = np.sqrt(self._inertia(angle, self._direction(angle))) / largest
             return np.column_stack([angle, found[:, 3] / root])

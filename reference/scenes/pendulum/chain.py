@@ -209,8 +209,7 @@ class Chain(Valid):
         start = self._start(angle, rate)
         if self.links > FEW_LINKS:
             return integrate(self.rates, start, until, unit=units_of_motion(self.rates, start))
-        by = self._by_windows(start, until)
-        return lambda t: by(t).astype(float)
+        return self._by_windows(start, until)
 
     def _by_windows(self, start: Array, until: float, coarse: bool = False) -> windows.Windows:
         """The same for a few links; `coarse`: by another rule that lets ten times as much pass."""
@@ -326,7 +325,7 @@ class Chain(Valid):
         if self.links > FEW_LINKS:
             return error_of(self.rates, start, times, unit=units_of_motion(self.rates, start))
         until = max(float(times.max(initial=0.0)), math.ulp(1.0))
-        return windows.bound(*(self._by_windows(start, until, coarse)(times) for coarse in (False, True)))
+        return windows.bound(*(self._by_windows(start, until, coarse).extended(times) for coarse in (False, True)))
 
     def _start(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         return np.concatenate(self._alike(angle, rate))

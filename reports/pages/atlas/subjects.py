@@ -18,8 +18,8 @@ from reference.scenes.n_four_bar import NFourBar
 from reference.scenes.pendulum.link import PointPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.rolling.scenes import RollingEllipse
-from reference.scenes.skates.sleigh import ChaplyginSleigh
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.skates import ChaplyginSleigh
+from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 
 FEWEST = 10  # steps of a run: the largest step is a tenth of the duration

@@ -30,7 +30,7 @@ from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.scenes.pendulum.chain import Chain
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.rolling.scenes import RollingOnCircle
-from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.skates import ChaplyginSleigh
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.tasks import Answer, Task

@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 from engines import Engine, Unsupported
 from engines.mjx import DEFAULT
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.slider_crank import DrivenSliderCrank
 from reports.model.fingerprint import digest
 from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values

@@ -14,9 +14,8 @@ from engines.mujoco import Hardened
 from engines.registry import VARIANTS
 from reference.chapter import errata
 from reference.numerics.calculus import derivative
-from reference.scenes.many_links import SpinningRing
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
-from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, SpinningRing, TenLinks
 from reports.model.page import FEATURED, Failure, Material, Observation, Page
 from reports.model.tasks import Task, Values
 from reports.pages.common import ALL, PUBLIC, cells, described, deviations, sweeps

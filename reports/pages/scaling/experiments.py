@@ -19,8 +19,8 @@ from engines.sampling import sampled
 from reference.checks import Count, Positive, validated
 from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
-from reference.scenes.many_links import LongPendulum, OpenChain
 from reference.scenes.pendulum.chain import Array, Chain
+from reference.scenes.pendulum.scenes import LongPendulum, OpenChain
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.measure import Measurement

@@ -17,7 +17,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 from engines import Engine, method_name, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.pymunk.contraction import LEFT, MOST
-from reference.scenes.many_links import LongPendulum
+from reference.scenes.pendulum.scenes import LongPendulum
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.pages.pendulum import page as pendulum

@@ -15,8 +15,7 @@ from engines.registry import VARIANTS
 from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
-from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
-from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
+from reference.scenes.skates import ChaplyginSleigh, HeldBySkates, SkateOnSlope, SleighBackwards
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation

@@ -13,13 +13,21 @@ from matplotlib.figure import Figure
 from engines import Engine, Promise
 from engines.registry import VARIANTS
 from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
-from reference.chapter.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
-from reference.chapter.skates import coriolis_factors, frobenius, skate_of
+from reference.chapter.skates import (
+    Move,
+    commutator,
+    commutator_displacement,
+    coriolis_factors,
+    frobenius,
+    park,
+    sidestep,
+    skate_of,
+    stops,
+    trace,
+)
 from reference.joints import Triple
 from reference.scene import Scene
-from reference.scenes.skates.pinned_body import FreelyPinnedBody, PinnedBody
-from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
-from reference.scenes.skates.slopes import SkateOnSlope
+from reference.scenes.skates import ChaplyginSleigh, FreelyPinnedBody, PinnedBody, SkateOnSlope, SleighBackwards
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.convergence import by_method, groups, sweeps

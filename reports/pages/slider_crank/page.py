@@ -14,8 +14,13 @@ from engines import pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco.methods import SLOTS
 from engines.registry import VARIANTS
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank, RodEndInSlot, SliderAtDeadCentre
-from reference.scenes.slider_crank.slotted_lever import SlottedLever
+from reference.scenes.slider_crank import (
+    DrivenSliderCrank,
+    FreeSliderCrank,
+    RodEndInSlot,
+    SliderAtDeadCentre,
+    SlottedLever,
+)
 from reports.model.page import Failure, Material, Observation, Page
 from reports.model.tasks import Task, Values
 from reports.pages.common import ALL, cells, described, deviations, read_answers, refusals

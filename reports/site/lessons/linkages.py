@@ -8,7 +8,7 @@ from functools import cache
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.slider_crank import DrivenSliderCrank, FreeSliderCrank
 from reports.pages.centrodes.page import exact
 from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Lesson
 from reports.site.live.sliders import Live, Point, Slider

@@ -10,8 +10,8 @@ import numpy as np
 
 from reference.scenes.four_bar.linkage import FourBar
 from reference.scenes.pendulum.link import Pendulum
-from reference.scenes.skates.sleigh import ChaplyginSleigh
-from reference.scenes.slider_crank.scenes import SliderCrank
+from reference.scenes.skates import ChaplyginSleigh
+from reference.scenes.slider_crank import SliderCrank
 from reference.scenes.wheels.trailers import Tow
 from tests.reference.laws.law import Law, Outside, angle, decades
 

@@ -1,0 +1,359 @@
+"""Bodies on a pin and on skates, exact: pinned, sliding, on a slope, held; and Chaplygin's sleigh.
+
+The sleigh is a body on one ideal skate, with its centre of mass ahead of or behind it, coasting; exact.
+
+With u the skate's speed along i', w the turning rate, a the offset of the centre of mass ahead of the skate:
+u' = a w^2, (I + m a^2) w' = -m a u w (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m
+the energy m (u^2 + k^2 w^2)/2 = m V^2/2 is constant, and u = V tanh p, w = (V/k) sech p with p = c + a V t/k^2.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.checks import InvalidMechanism, NonNegative, Positive, validated
+from reference.joints import Pin, Skate, Triple, Vector, bodies_of
+from reference.kinds import Floats
+from reference.mechanism import Body, Mechanism
+from reference.numerics.calculus import Antiderivative
+from reference.plane import rotation_acceleration, rotation_velocity
+from reference.scene import Scene
+from reference.scenes.pendulum.link import Pendulum
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+def alone(scene: Scene, mass: float, inertia: float, joint: Pin | Skate, gravity: Vector = (0.0, 0.0)) -> Mechanism:
+    """The mechanism of one body that a joint holds to the ground, where the scene's motion begins."""
+    start, name = scene.motion(0.0), joint.second or ""
+    return Mechanism(bodies_of((name,), (mass,), (inertia,), start.pose[0], start.twist[0]), (joint,), gravity)
+
+
+@validated
+def pinned_pose(angle: ArrayLike, constants: Vector, point: Vector) -> Array:
+    """Poses (..., 3) of the pinned body at an angle [rad]: (18.63) solved for x_O' and y_O'."""
+    angle = np.asarray(angle, dtype=float)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    x = constants[0] - cosine * point[0] + sine * point[1]
+    y = constants[1] - sine * point[0] - cosine * point[1]
+    return np.stack([x, y, angle], axis=-1)
+
+
+@dataclass(frozen=True)
+class PinnedBody(Scene):
+    """mass [kg], inertia [kg m^2] about the centre of mass; the body's `point` [m], from there, is pinned at `pin` [m].
+
+    angle [rad] of the body and turning_rate [rad/s] at t = 0; gravity [m/s^2] in any direction, or none. Under gravity
+    the line from the pin to the centre of mass is a pendulum, frequency^2 = m g r / (I + m r^2), swinging or whirling.
+    Raises InvalidMechanism for numbers not finite, or mass or inertia not positive.
+    """
+
+    name: ClassVar[str] = "pinned_body"
+    source: ClassVar[str] = "box 18.3, eqs. 18.62-18.63"
+
+    mass: Positive = 2.0
+    inertia: Positive = 0.3
+    point: Vector = (-0.5, 0.0)
+    pin: Vector = (0.0, 0.0)
+    angle: float = 0.5
+    turning_rate: float = 2.0
+    gravity: Vector = (0.0, -9.81)
+    duration: Positive = 3.0
+    horizon: Positive = 3.0  # an error in the energy makes the phase drift in proportion to time
+
+    @cached_property
+    def _lag(self) -> float:
+        """What to add to the body's angle to have the pendulum's, from the direction of gravity [rad]."""
+        return math.atan2(-self.point[1], -self.point[0]) - math.atan2(self.gravity[1], self.gravity[0])
+
+    @cached_property
+    def frequency(self) -> float:
+        """Of small swings [rad/s]; zero without gravity, or pinned at the centre of mass: then it only turns."""
+        arm, pull = math.hypot(*self.point), math.hypot(*self.gravity)
+        return math.sqrt(self.mass * pull * arm / (self.inertia + self.mass * arm**2))
+
+    def _turning(self, t: Array) -> tuple[Array, Array, Array]:
+        """Angle [rad], rate [rad/s] and acceleration [rad/s^2] of the body."""
+        if self.frequency == 0:
+            return self.angle + self.turning_rate * t, np.full(t.shape, self.turning_rate), np.zeros(t.shape)
+        pendulum = Pendulum(self.frequency, self.angle + self._lag, self.turning_rate)
+        angle, rate, acceleration = pendulum.motion(t)
+        return angle - self._lag, rate, acceleration
+
+    def mechanism(self) -> Mechanism:
+        return alone(self, self.mass, self.inertia, Pin("pin", None, "body", self.pin, self.point), self.gravity)
+
+    def _motion(self, times: Array) -> Trajectory:
+        angle, rate, acceleration = self._turning(times)
+        pose = pinned_pose(angle, self.pin, self.point)
+        arm = pose[:, :2] - np.array(self.pin)
+        twist = np.concatenate([rotation_velocity(rate, arm), rate[:, None]], axis=-1)
+        pull = rotation_acceleration(rate, acceleration, arm) - np.array(self.gravity)
+        return Trajectory(times, pose[:, None, :], twist[:, None, :], self.mass * pull)
+
+
+@dataclass(frozen=True)
+class FreelyPinnedBody(PinnedBody):
+    """The pinned body seen from above: nothing pulls, it turns evenly for ever."""
+
+    name: ClassVar[str] = "pinned_body_free"
+
+    gravity: Vector = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class ChaplyginSleigh(Scene):
+    """mass [kg], inertia [kg m^2] about the centre of mass, which is `offset` [m] ahead of the skate (< 0: behind).
+
+    speed [m/s] of the skate along its heading and turning_rate [rad/s] at t = 0, of either sign or zero; start is the
+    skate's pose. Zero inertia is a point mass: its motion is known, but no mechanism of bodies can have it. Raises
+    InvalidMechanism for numbers not finite, mass not positive, or an inertia of zero with an offset of zero.
+    """
+
+    name: ClassVar[str] = "sleigh"
+    source: ClassVar[str] = "box 18.3, eqs. 18.64-18.65; ideal wheels and skates, looking down"
+
+    mass: Positive = 2.0
+    inertia: NonNegative = 0.3
+    offset: float = 0.5
+    speed: float = 1.0
+    turning_rate: float = 2.0
+    start: Triple = (0.0, 0.0, 0.0)
+    duration: Positive = 3.0
+    horizon: Positive = 3.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.inertia == 0 and self.offset == 0:
+            raise InvalidMechanism(
+                f"{self._owner()}: inertia and offset are both 0, so nothing resists turning; "
+                "one of them must differ from zero"
+            )
+
+    @cached_property
+    def _arm(self) -> float:
+        """k, the radius of gyration about the skate [m]."""
+        return math.hypot(math.sqrt(self.inertia / self.mass), self.offset)
+
+    @cached_property
+    def _top_speed(self) -> float:
+        """V, the speed when all the energy is in sliding [m/s]."""
+        return math.hypot(self.speed, self._arm * self.turning_rate)
+
+    @cached_property
+    def _phase(self) -> float:
+        """c; only used when the sleigh turns."""
+        return math.asinh(self.speed / (self._arm * abs(self.turning_rate)))
+
+    def growth_rate(self) -> float:
+        """The rate of exp(rate t) at which a small turning grows on the straight run at this speed [1/s].
+
+        w' = -(m a u / (I + m a^2)) w: with the centre of mass behind the skate in the sense of travel it grows, and the
+        sleigh turns round.
+        """
+        return -self.offset * self.speed / self._arm**2
+
+    @validated
+    def rates(self, t: ArrayLike) -> tuple[Array, Array]:
+        """The skate's speed u [m/s] and the turning rate w [rad/s] at times t."""
+        t = np.asarray(t, dtype=float)
+        if self.turning_rate == 0 or self.offset == 0:
+            return np.full(t.shape, self.speed), np.full(t.shape, self.turning_rate)
+        phase = self._phase + self.offset * self._top_speed / self._arm**2 * t
+        decayed = np.exp(-np.abs(phase))
+        sech = 2 * decayed / (1 + decayed**2)
+        return self._top_speed * np.tanh(phase), math.copysign(self._top_speed / self._arm, self.turning_rate) * sech
+
+    @validated
+    def heading(self, t: ArrayLike) -> Array:
+        """theta at times t [rad, not wrapped]: a difference of Gudermannians, k/a (gd p - gd c), free of cancellation.
+
+        gd(c + 2 s) - gd c = 2 atan(sinh s / cosh(c + s)).
+        """
+        t = np.asarray(t, dtype=float)
+        if self.turning_rate == 0 or self.offset == 0:
+            return self.start[2] + self.turning_rate * t
+        half = 0.5 * self.offset * self._top_speed / self._arm**2 * t
+        middle = np.abs(self._phase + half)
+        # |half| - |phase + half|, without the cancellation of a late time.
+        same = half * (self._phase + half) >= 0
+        lead = np.sign(half) * np.where(same, -self._phase, self._phase + 2 * half)
+        ratio = np.exp(lead) * -np.expm1(-2 * np.abs(half)) / (1 + np.exp(-2 * middle))
+        turned = 2 * self._arm / abs(self.offset) * np.arctan(ratio)
+        return self.start[2] + math.copysign(1.0, self.turning_rate) * turned
+
+    @cached_property
+    def _settled(self) -> float:
+        """When it slides straight to far below rounding [s]: a stiff sleigh would else need panels without end."""
+        phase = math.copysign(45 + 2 * math.log1p(self._arm / abs(self.offset)), self.offset)
+        return max(0.0, (phase - self._phase) * self._arm**2 / (self.offset * self._top_speed))
+
+    @cached_property
+    def _moved(self) -> Antiderivative:
+        def velocity(t: Array) -> NDArray[Any]:
+            return self.rates(t)[0] * np.exp(1j * (self.heading(t) - self.start[2]))
+
+        fastest = self._top_speed / self._arm * max(1.0, abs(self.offset) / self._arm)
+        return Antiderivative(velocity, 1 / fastest if fastest > 0 else 1.0)
+
+    def skate_pose(self, t: ArrayLike) -> Array:
+        """Pose of the skate (times, 3); heading in closed form, position by quadrature to rounding of the distance."""
+        return self._skate_pose(self.times(t))
+
+    def _skate_pose(self, t: Array) -> Array:
+        heading, (x, y, angle) = self.heading(t), self.start
+        if self.turning_rate == 0 or self.offset == 0:
+            half = 0.5 * self.turning_rate * t
+            moved = self.speed * t * np.sinc(half / np.pi) * np.exp(1j * (half + angle))
+        else:
+            early = np.minimum(t, self._settled)
+            straight = math.copysign(self._top_speed, self.offset) * (t - early) * np.exp(1j * (heading - angle))
+            moved = (self._moved(early) + straight) * np.exp(1j * angle)
+        return np.stack([x + np.real(moved), y + np.imag(moved), heading], axis=-1)
+
+    def lateral_force(self, t: ArrayLike) -> Array:
+        """The skate's force on the body, to the left of its heading [N]: I u w / k^2."""
+        return self._lateral_force(*self.rates(self.times(t)))
+
+    def _lateral_force(self, speed: Array, turning_rate: Array) -> Array:
+        return self.inertia * speed * turning_rate / self._arm**2
+
+    def mechanism(self) -> Mechanism:
+        return alone(self, self.mass, self.inertia, Skate("skate", None, "sleigh", (-self.offset, 0.0)))
+
+    def _motion(self, times: Array) -> Trajectory:
+        t = times
+        pose = self._skate_pose(t)
+        speed, turning = self.rates(t)
+        cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        across = self.offset * turning
+        centre = pose + np.stack([self.offset * cosine, self.offset * sine, np.zeros_like(t)], axis=-1)
+        twist = np.stack([speed * cosine - across * sine, speed * sine + across * cosine, turning], axis=-1)
+        return Trajectory(t, centre[:, None, :], twist[:, None, :], self._lateral_force(speed, turning)[:, None])
+
+
+@dataclass(frozen=True)
+class SleighBackwards(ChaplyginSleigh):
+    """The sleigh sliding with its centre of mass behind the skate: a small turning grows, until it has turned round."""
+
+    name: ClassVar[str] = "sleigh_backwards"
+
+    speed: float = -1.0
+    turning_rate: float = 1e-3
+    duration: Positive = 10.0
+    horizon: Positive = 0.8  # 1 / growth rate: later, errors grow exponentially until the sleigh has turned round
+
+
+@dataclass(frozen=True)
+class SkateOnSlope(Scene):
+    """A body with its skate under the centre of mass on an incline: `gravity` [m/s^2] is g's part along it, to -y.
+
+    Nothing turns it, so theta = heading + turning_rate t, and along the blade u' = -gravity sin theta: in closed form a
+    cycloid, which gains no height and loses none (Neimark and Fufaev). With turning_rate 0 and the blade across the
+    slope (heading 0) it rests for ever, its force being all of m g. mass [kg], inertia [kg m^2], speed [m/s] along the
+    blade at t = 0. Raises InvalidMechanism for numbers not finite, or masses not positive.
+    """
+
+    name: ClassVar[str] = "skate_on_slope"
+    source: ClassVar[str] = "box 18.3, eq. 18.64, under gravity"
+
+    mass: Positive = 2.0
+    inertia: Positive = 0.3
+    gravity: float = 1.0
+    heading: float = 0.0
+    speed: float = 0.0
+    turning_rate: float = 0.0
+    duration: Positive = 5.0
+    horizon: Positive = 5.0
+
+    def mechanism(self) -> Mechanism:
+        blade = Skate("blade", None, "skate", (0.0, 0.0))
+        return alone(self, self.mass, self.inertia, blade, (0.0, -self.gravity))
+
+    def _motion(self, times: Floats) -> Trajectory:
+        t = times
+        first, rate = self.heading, self.turning_rate
+        angle, half = first + rate * t, 0.5 * rate * t
+        # (cos theta - cos first)/rate = -t sin(first + half) sinc(half): no cancellation at a small rate.
+        chord = t * np.sinc(half / math.pi)
+        speed = self.speed - self.gravity * chord * np.sin(first + half)
+        x, y = self._way(t)
+        pose = np.stack([x, y, angle], axis=-1)
+        twist = np.stack([speed * np.cos(angle), speed * np.sin(angle), np.full_like(t, rate)], axis=-1)
+        force = self.mass * (speed * rate + self.gravity * np.cos(angle))
+        return Trajectory(t, pose[:, None, :], twist[:, None, :], force[:, None])
+
+    def _way(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """x and y of the blade [m]: the integrals of u cos theta and u sin theta."""
+        first, rate, pull = self.heading, self.turning_rate, self.gravity
+        if abs(rate) * float(t.max(initial=0.0)) < 1:
+            # The closed form divides by the rate's square. Within a radian a few nodes are as exact as rounding.
+            nodes, weights = np.polynomial.legendre.leggauss(12)
+            when = 0.5 * t[..., None] * (1 + nodes)
+            angle, half = first + rate * when, 0.5 * rate * when
+            speed = self.speed - pull * when * np.sinc(half / math.pi) * np.sin(first + half)
+            share = 0.5 * t[..., None] * weights * speed
+            return np.sum(share * np.cos(angle), axis=-1), np.sum(share * np.sin(angle), axis=-1)
+        angle = first + rate * t
+        chord = 2 * np.sin(0.5 * rate * t) / rate  # of a circle with unit speed, along the mean heading
+        middle = first + 0.5 * rate * t
+        # u = free + (pull/rate) cos theta, free = speed - (pull/rate) cos first.
+        free = self.speed - pull / rate * math.cos(first)
+        twice = (np.sin(2 * angle) - math.sin(2 * first)) / (4 * rate)
+        x = free * chord * np.cos(middle) + pull / rate * (0.5 * t + twice)
+        y = free * chord * np.sin(middle) + pull / rate * (np.sin(angle) ** 2 - math.sin(first) ** 2) / (2 * rate)
+        return x, y
+
+
+@dataclass(frozen=True)
+class HeldBySkates(Scene):
+    """A body on skates whose axles do not meet in one point: no freedom of velocity is left, and it stays, on a slope.
+
+    Two skates always leave one freedom (their axles meet in a point, the centre of rotation, or are parallel); so it
+    takes a third, elsewhere. points [m] from the centre of mass, angles [rad] of the blades against the body; `gravity`
+    [m/s^2] is g's part along the incline, to -y. Raises InvalidMechanism unless the skates hold the body.
+    """
+
+    name: ClassVar[str] = "held_by_skates"
+    source: ClassVar[str] = "box 18.3, degrees of freedom by rank"
+
+    mass: Positive = 2.0
+    inertia: Positive = 0.3
+    points: tuple[Vector, ...] = ((0.5, 0.0), (-0.5, 0.0), (0.0, 0.4))
+    angles: tuple[float, ...] = (0.5, -0.5, 1.5)
+    gravity: float = 1.0
+    pose: Triple = (0.0, 0.0, 0.3)
+    duration: Positive = 3.0
+    horizon: Positive = 3.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        owner = f"scene {self.name!r}"
+        if len(self.points) != len(self.angles):
+            words = f"{len(self.points)} points and {len(self.angles)} angles; each skate has one"
+            raise InvalidMechanism(f"{owner}: {words}")
+        _, freedoms = self.mechanism().degrees_of_freedom()
+        if freedoms:
+            raise InvalidMechanism(
+                f"{owner}: these {len(self.points)} skates leave {freedoms} freedom of velocity, so the body moves; "
+                f"their axles must not all be parallel or meet in one point"
+            )
+
+    def mechanism(self) -> Mechanism:
+        joints = tuple(
+            Skate(f"skate {index + 1}", None, "body", point, angle)
+            for index, (point, angle) in enumerate(zip(self.points, self.angles, strict=True))
+        )
+        return Mechanism((Body("body", self.mass, self.inertia, self.pose),), joints, (0.0, -self.gravity))
+
+    def _motion(self, times: Floats) -> Trajectory:
+        pose = np.broadcast_to(np.array(self.pose, dtype=float), (len(times), 1, 3)).copy()
+        still = np.zeros_like(pose)
+        return Trajectory(times, pose, still, self.mechanism().reaction(pose, still))
