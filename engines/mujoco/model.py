@@ -212,7 +212,7 @@ def _keep_small_offsets(compiled: Any) -> None:
     """Let MuJoCo read where sites and shapes are: it puts those within 1e-6 m of their body's origin there.
 
     It marks them as in their body's frame when it compiles, and never reads `site_pos`: a spring at an arm of a tenth
-    of a micrometre then turns nothing (4.0.1, asked by a test in `tests/engines/test_mujoco.py`).
+    of a micrometre then turns nothing (4.0.1, asked by a test in `tests/engines/test_mujoco_joints.py`).
     """
     kinds = mujoco.mjtSameFrame
     tables = (compiled.site_pos, compiled.site_sameframe), (compiled.geom_pos, compiled.geom_sameframe)

@@ -23,7 +23,7 @@ def known_wrong(version: str) -> str:
     """Why the motions of a release can't be trusted, one sentence; empty for all others.
 
     Before 3.7: the changelog of 3.7.0. 4.0.0: the changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767;
-    `tests/engines/test_mujoco_factorisation.py` compares the two.
+    `tests/engines/test_mujoco_upstream.py` compares the two.
     """
     numbers = tuple(int(part) for part in re.findall(r"\d+", version)[:3])
     if numbers < (3, 7):

@@ -47,7 +47,7 @@ class Shipped(_Spring):
     """MuJoCo's defaults: a time constant of 0.02 s whatever the step, and an impedance that grows with the gap.
 
     It is 0.9 with the gap closed, and 0.95 where it is open by a millimetre and more: R is 0.11 of the inverse inertia
-    and falls to 0.053 (checked against `efc_KBIP` by a test in `tests/engines/test_mujoco.py`).
+    and falls to 0.053 (checked against `efc_KBIP` by a test in `tests/engines/test_mujoco_upstream.py`).
     """
 
     impedance: ClassVar[tuple[float, float, float, float, float]] = (0.9, 0.95, 0.001, 0.5, 2.0)
@@ -63,8 +63,8 @@ class TiedToStep(_Spring):
     The gap is R f / k, so it falls as the square of the step: the only way to let it vanish without touching the model.
     With its flag `refsafe`, which is on unless it is disabled, MuJoCo clamps a shorter time constant at two steps
     (mjDSBL_REFSAFE in mjtype.h). Its integrator "discrete" is another matter: there an equality is not clamped, and a
-    contact at about one step (4.0.1; a test in `tests/engines/test_mujoco.py` asks it for both). The time constant here
-    is that of all other integrators.
+    contact at about one step (4.0.1; a test in `tests/engines/test_mujoco_upstream.py` asks it for both). The time
+    constant here is that of all other integrators.
     """
 
     steps: Positive = 5.0

@@ -175,59 +175,6 @@ def test_an_overwritten_crank_tears_the_loop_at_any_step() -> None:
     assert gaps[1] > 0.5 * gaps[0] > 5e-3
 
 
-ONE_OF_EACH = """
-<mujoco>
-  <option timestep="1e-3" integrator="{integrator}"><flag refsafe="{refsafe}"/></option>
-  <worldbody>
-    <geom name="ground" type="plane" size="1 1 1"/>
-    <body pos="0 0 0.0999"><joint type="slide" axis="0 0 1"/><geom name="ball" size="0.1"/></body>
-    <body name="held" pos="3 0 1"><joint type="slide" axis="0 0 1"/><geom size="0.1" conaffinity="0"/></body>
-  </worldbody>
-  <contact><pair geom1="ground" geom2="ball" solref="{constant} 1" solimp="0.9 0.9 0.001"/></contact>
-  <equality>
-    <connect body1="world" body2="held" anchor="3 0 1" solref="{constant} 1" solimp="{impedance}"/>
-  </equality>
-</mujoco>
-"""
-
-
-@pytest.mark.parametrize("refsafe", ["enable", "disable"])
-@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast", "discrete"])
-def test_upstream_short_time_constants_are_clamped_at_two_steps_but_not_all_by_the_discrete_integrator(
-    integrator: str, refsafe: str
-) -> None:
-    text = ONE_OF_EACH.format(integrator=integrator, refsafe=refsafe, constant=1e-4, impedance="0.9 0.9 0.001")
-    model = mujoco.MjModel.from_xml_string(text)
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    equality = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
-    assert equality.any()
-    assert not equality.all()
-    # The damping of a row is 2 / (dmax timeconst).
-    constant = 2 / 0.9 / data.efc_KBIP[:, 1]
-    of_equality = of_contact = 2e-3
-    if integrator == "discrete":
-        of_equality, of_contact = 1e-4, 1e-3 / 0.9**0.5  # the contact's stiffness is then 1 / dt^2
-    if refsafe == "disable":
-        of_equality = of_contact = 1e-4
-    assert constant[equality] == pytest.approx(of_equality)
-    assert constant[~equality] == pytest.approx(of_contact)
-
-
-def test_upstream_the_shipped_impedance_grows_with_the_gap_from_nine_tenths() -> None:
-    impedance = " ".join(map(str, Shipped().impedance))
-    text = ONE_OF_EACH.format(integrator="Euler", refsafe="enable", constant=0.02, impedance=impedance)
-    model = mujoco.MjModel.from_xml_string(text)
-    data = mujoco.MjData(model)
-    found = []
-    for gap in (0.0, 5e-4, 1e-3, 1e-2):
-        data.qpos[1] = gap
-        mujoco.mj_forward(model, data)
-        equality = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
-        found.append(data.efc_KBIP[equality, 2].max())
-    assert found == pytest.approx([0.9, 0.925, 0.95, 0.95])
-
-
 @pytest.mark.parametrize("stiffness", [Shipped(), TiedToStep(), TiedToStep(1.0), Hardened()])
 def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
     mechanism, dt = four_bar(crank_rate=10.0), 1e-3

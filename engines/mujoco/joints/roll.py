@@ -44,7 +44,7 @@ class RollContact(Valid):
     `friction`: the coefficient. `steps`: the contact's time constant in steps (clamped as `engines.mujoco.stiffness`
     says) with its impedance at the limit; None for the shipped 0.02 s. `stick`: slip dies as fast as the integrator
     allows, at the rate 1/dt, and 2/dt for Runge-Kutta's; MuJoCo reads `solreffriction` with the elliptic cone only (a
-    test in `tests/engines/test_mujoco_joints.py` asks it).
+    test in `tests/engines/test_mujoco_upstream.py` asks it).
     """
 
     friction: Positive = 1.0

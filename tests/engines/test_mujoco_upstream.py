@@ -1,0 +1,130 @@
+"""Facts about MuJoCo itself on which the adapter relies: clamps, impedances, friction, sparse factorisation."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from engines.mujoco import TUNED, Shipped
+from reference.scenes.catalogue import scene
+
+ONE_OF_EACH = """
+<mujoco>
+  <option timestep="1e-3" integrator="{integrator}"><flag refsafe="{refsafe}"/></option>
+  <worldbody>
+    <geom name="ground" type="plane" size="1 1 1"/>
+    <body pos="0 0 0.0999"><joint type="slide" axis="0 0 1"/><geom name="ball" size="0.1"/></body>
+    <body name="held" pos="3 0 1"><joint type="slide" axis="0 0 1"/><geom size="0.1" conaffinity="0"/></body>
+  </worldbody>
+  <contact><pair geom1="ground" geom2="ball" solref="{constant} 1" solimp="0.9 0.9 0.001"/></contact>
+  <equality>
+    <connect body1="world" body2="held" anchor="3 0 1" solref="{constant} 1" solimp="{impedance}"/>
+  </equality>
+</mujoco>
+"""
+
+
+def one_of_each(
+    integrator="Euler", refsafe="enable", constant=0.02, impedance="0.9 0.9 0.001", gap=0.0
+) -> tuple[Any, Any]:
+    """MuJoCo's rows (stiffness, damping, impedance, ...) of an equality open by a gap, and of a contact."""
+    text = ONE_OF_EACH.format(integrator=integrator, refsafe=refsafe, constant=constant, impedance=impedance)
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    data.qpos[1] = gap
+    mujoco.mj_forward(model, data)
+    equality = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+    return data.efc_KBIP[equality], data.efc_KBIP[~equality]
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast", "discrete"])
+def test_upstream_short_time_constants_are_clamped_at_two_steps_but_not_all_by_the_discrete_integrator(
+    integrator: str,
+) -> None:
+    for refsafe in ("enable", "disable"):
+        of_equality = of_contact = 2e-3
+        if integrator == "discrete":
+            of_equality, of_contact = 1e-4, 1e-3 / 0.9**0.5  # the contact's stiffness is then 1 / dt^2
+        if refsafe == "disable":
+            of_equality = of_contact = 1e-4
+        # The damping of a row is 2 / (dmax timeconst).
+        for rows, wanted in zip(one_of_each(integrator, refsafe, 1e-4), (of_equality, of_contact), strict=True):
+            assert len(rows)
+            assert 2 / 0.9 / rows[:, 1] == pytest.approx(wanted)
+
+
+def test_upstream_the_shipped_impedance_grows_with_the_gap_from_nine_tenths() -> None:
+    impedance = " ".join(map(str, Shipped().impedance))
+    grown = [one_of_each(impedance=impedance, gap=gap)[0][:, 2].max() for gap in (0.0, 5e-4, 1e-3, 1e-2)]
+    assert grown == pytest.approx([0.9, 0.925, 0.95, 0.95])
+
+
+@pytest.mark.parametrize(("cone", "rates"), [("pyramidal", {20.0}), ("elliptic", {20.0, 500.0})])
+def test_upstream_friction_has_a_rate_of_its_own_in_the_elliptic_cone_only(cone: str, rates: set[float]) -> None:
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option cone="{cone}"/><worldbody>
+        <geom name="ground" type="plane" size="1 1 1"/>
+        <body pos="0 0 0.0999"><freejoint/><geom name="ball" size="0.1"/></body></worldbody><contact>
+        <pair geom1="ground" geom2="ball" condim="3" solref="-100 -20" solreffriction="-1e-9 -500"/>
+        </contact></mujoco>"""
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    # MuJoCo divides both dampings by dmax, 0.95 as shipped.
+    assert set(np.round(data.efc_KBIP[:, 1] * 0.95, 9)) == rates
+
+
+# MuJoCo's sparse factorisation: release 4.0.0's Newton solver had other accelerations, without a warning, for some
+# trees that branch: its Hessian's sparse Cholesky factor was wrong (changelog of 4.0.1,
+# github.com/google-deepmind/mujoco/issues/3767).
+
+# Of the largest acceleration: the two differ in the order of their sums alone, so by rounding times a condition.
+AGREEMENT = 1e-8
+SPREAD = 0.3  # rad or m: how far the states stand from the model's own, so that no symmetry hides an entry
+# Three links on the tip of the first, a fifth on one of them, two loops across: the smallest that 4.0.0 gets wrong.
+PARENTS = (-1, 0, 0, 0, 2)
+CROSSING = ((2, 1), (3, 1))
+
+
+def branching_tree() -> Any:
+    def link(index: int) -> str:
+        carried = "".join(link(child) for child, parent in enumerate(PARENTS) if parent == index)
+        place = "0 0 0" if index == 0 else "1 0 0"
+        return (
+            f'<body name="link {index}" pos="{place}"><joint axis="0 0 1"/>'
+            f'<inertial pos="0.5 0 0" mass="1" diaginertia="0.1 0.1 0.1"/>{carried}</body>'
+        )
+
+    loops = "".join(f'<connect body1="link {a}" body2="link {b}" anchor="1 0 0"/>' for a, b in CROSSING)
+    return mujoco.MjModel.from_xml_string(
+        '<mujoco><option gravity="0 -9.81 0"><flag contact="disable"/></option>'
+        f"<worldbody>{link(0)}</worldbody><equality>{loops}</equality></mujoco>"
+    )
+
+
+def disagreement(model: Any, states: int = 5) -> float:
+    """The largest relative difference of accelerations in the model's own state and random ones."""
+    random, worst, pairs = np.random.default_rng(0), 0.0, []
+    for kind in (mujoco.mjtJacobian.mjJAC_DENSE, mujoco.mjtJacobian.mjJAC_SPARSE):
+        own = copy.copy(model)
+        own.opt.jacobian, own.opt.tolerance = kind, min(model.opt.tolerance, 1e-20)
+        pairs.append((own, mujoco.MjData(own)))
+    for state in range(states):
+        step, rates = random.normal(size=(2, model.nv)) * [[SPREAD * (state > 0)], [1.0]]
+        for own, data in pairs:
+            mujoco.mj_resetData(own, data)
+            mujoco.mj_integratePos(own, data.qpos, step, 1.0)
+            data.qvel[:] = rates
+            mujoco.mj_forward(own, data)
+        dense, sparse = (data.qacc for _, data in pairs)
+        worst = max(worst, float(np.abs(dense - sparse).max() / np.abs(dense).max()))
+    return worst
+
+
+def test_this_release_has_the_same_accelerations_dense_and_sparse() -> None:
+    own = TUNED.model(scene("person_two_feet").mechanism(), 1e-3).compiled
+    assert max(map(disagreement, (branching_tree(), own))) < AGREEMENT
