@@ -22,23 +22,26 @@ from tests.toys import Disc, Toy
 LAGRANGE = next(engine for engine in VARIANTS if engine.name == "lagrange")
 
 
-def key(*values: Any, folders: tuple[str, ...] = MEASURING) -> str:
-    """The fingerprint as another process computes it."""
+def forget() -> None:
     for name in ("_versions", "_our_files", "_required"):
         getattr(fingerprint, name).cache_clear()
+
+
+def key(*values: Any, folders: tuple[str, ...] = MEASURING) -> str:
+    """The fingerprint as another process computes it."""
+    forget()
     return fingerprint.fingerprint(*values, folders=folders)
 
 
 @pytest.fixture(autouse=True)
 def _fresh():
     yield
-    key()
+    forget()
 
 
 @pytest.mark.parametrize(
     ("path", "rows", "tasks"),
     [
-        ("reference/rows.py", True, True),
         ("reports/model/errors.py", True, True),
         ("reports/pages/four_bar/page.py", False, True),
         ("reports/pages/four_bar/page.md", False, False),
