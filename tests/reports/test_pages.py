@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from reports.check.picture_data import PictureData, Pose
-from reports.cli.drawing import drawn, material_of
+from reports.cli.report import drawn, material_of
 from reports.cli.selection import shown_cells
 from reports.gate.prediction import all_tasks
 from reports.gate.pytest_plugin import _engines
