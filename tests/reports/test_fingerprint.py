@@ -149,9 +149,11 @@ def test_every_number_of_a_cell_is_in_its_key():
     assert Motion(cell).key != Motion(others[0]).key
 
 
-def test_a_release_of_another_name_changes_the_key_of_rows(monkeypatch):
+def test_a_release_of_another_name_is_in_the_key_of_rows(monkeypatch):
     """MuJoCo 3.6 is the distribution mujoco, 4.0 is mujoco-core, and both hold the package mujoco."""
     known = dict(fingerprint._distributions())
-    monkeypatch.setattr(fingerprint, "_distributions", lambda: {**known, "mujoco": ["mujoco-core", "mujoco"]})
-    assert fingerprint._rivals(["mujoco_core"]) == {"mujoco-core", "mujoco"}
+    assert "pytest" not in versions_of(Disc(), DEFAULT)
+    monkeypatch.setattr(fingerprint, "_distributions", lambda: {**known, "pymunk": ["pymunk", "pytest"]})
+    forget()
+    assert "pytest" in versions_of(Disc(), DEFAULT)
     assert fingerprint._rivals(["nothing"]) == set()
