@@ -20,6 +20,7 @@ from reports.site.build import build, tasks
 from reports.site.folder import REMEDY, refuse_strangers, serve_folder, server, write_site
 from reports.site.generator import require_packages
 from reports.site.lesson import Source
+from reports.site.packages import npm_trouble
 from reports.write.provenance import versions
 
 CACHE = "npm"  # the folder in that of the results with the packages that were fetched
@@ -56,8 +57,8 @@ def site(
         contributing=_of_checkout("CONTRIBUTING.md"),
         lecture=_of_checkout("lecture.ipynb"),
     )
-    if source.registry.trouble:  # at once, for the rest takes a while
-        said(f"parts of the site will be missing: {source.registry.trouble}")
+    if trouble := npm_trouble(source.cache):  # at once, for the rest takes a while
+        said(f"parts of the site will be missing: {trouble}")
     source.answers = _answers(terminal, results)
     files = build(source)
     with kept() as check:

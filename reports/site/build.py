@@ -24,8 +24,7 @@ from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import data, first_picture
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED
 from reports.site.markdown import cards, render_html, section, title
-from reports.site.munk2d import compiled
-from reports.site.packages import PACKAGES, NotFetched
+from reports.site.packages import PACKAGES, NotFetched, compile_munk2d, fetch_package
 from reports.site.rows import explored
 from reports.write.templates import CODE, inert_page
 
@@ -72,8 +71,8 @@ def _extra_files(source: Source, lessons: tuple[Lesson, ...]) -> Files:
     files: Files = {path.name: path.read_bytes() for path in sorted((HERE / "assets").iterdir())}
     files |= {"colours.css": colours().encode(), "front.svg": _front_picture(source).encode()}
     parts: dict[str, Callable[[], Files]] = {
-        **{f"{package.name} ({package.use})": partial(source.registry.fetched, package) for package in PACKAGES},
-        "Munk2D (the engine in pymunk)": lambda: {ENGINE_FILES["munk2d"]: compiled(source.cache)},
+        **{f"{package.name} ({package.use})": partial(fetch_package, package, source.cache) for package in PACKAGES},
+        "Munk2D (the engine in pymunk)": lambda: {ENGINE_FILES["munk2d"]: compile_munk2d(source.cache)},
     }
     for name, make in parts.items():
         try:

@@ -34,7 +34,7 @@ from reports.site.lesson import Part, Source, part_of
 from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import forces
 from reports.site.markdown import render_html, section
-from reports.site.packages import NotFetched, Package, Registry, printed
+from reports.site.packages import NotFetched, Package, fetch_package, printed
 from reports.site.rows import explored
 from tests import ROOT
 
@@ -173,7 +173,7 @@ def test_a_package_of_another_digest_is_refused(tmp_path):
     path = tmp_path / "some-1.0.tgz"
     path.write_bytes(b"something else")
     with pytest.raises(NotFetched, match="another digest"):
-        Registry(tmp_path).fetched(package)
+        fetch_package(package, tmp_path)
     assert not path.exists()
 
 
