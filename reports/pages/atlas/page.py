@@ -285,8 +285,6 @@ PAGE = Page(
     name="atlas",
     title="Failure atlas",
     lesson="Where methods fail: step against the parameter that breaks a scene, and where borders could be expected.",
-    scenes=(),
-    engines=(),
     words=words,
     figures=figures,
 )

@@ -1,17 +1,16 @@
-"""The page of engines: what each builds, how exact each is, and why engines of one order differ by a factor of 20.
-
-Each table is made from rows or answers, and empty where there are none.
-"""
+"""The page of engines; each table is made from rows or answers, and empty where there are none."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from math import inf
 from typing import Any
 
 from matplotlib.figure import Figure
 
 from engines import method_name, registry
+from reports.model.cells import Cell
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
@@ -41,7 +40,7 @@ from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, 
 from reports.plots.work_precision import work_precision
 from reports.write.columns import Column, column_of
 from reports.write.provenance import told_versions
-from reports.write.tables import NOTHING, markdown, number
+from reports.write.tables import error_words, markdown, number
 
 
 def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
@@ -56,21 +55,21 @@ def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
     ]
 
 
-def missed(row: Measurement, field: str) -> float:
-    return getattr(row, field) if Outcome(row.outcome).comparable and getattr(row, field) > 0 else float("inf")
+def missed(row: Measurement | None, field: str = "angle") -> float:
+    """The error of a run that can be compared; infinite for any other."""
+    usable = row is not None and Outcome(row.outcome).comparable and getattr(row, field) > 0
+    return getattr(row, field) if usable else inf
 
 
-def line_of(material: Material, cells: Mapping[float, Any]) -> list[tuple[float, float]]:
-    return [
-        (share, material.rows[cell].angle)
-        for share, cell in cells.items()
-        if cell in material.rows and missed(material.rows[cell], "angle") < float("inf")
-    ]
+def line_of(material: Material, cells: Mapping[float, Cell]) -> list[tuple[float, float]]:
+    """(share, angle error [rad]) of the cells that can be compared."""
+    errors = ((share, missed(material.rows.get(cell))) for share, cell in cells.items())
+    return [(share, error) for share, error in errors if error < inf]
 
 
 def matrix(answers: Mapping[Capabilities, Answer]) -> str:
     """A column an engine, from what it built; empty where nothing was asked yet."""
-    engines = [task.of for task in answers]
+    engines = [task.method for task in answers]
     body = [[what, *(verdict(str(answer.values[what])) for answer in answers.values())] for what in ASKED]
     body += [[what, *(str(answer.values[what]) for answer in answers.values())] for what in ("reactions", "width")]
     body.append(["version", *(told_versions([engine]) for engine in engines)])
@@ -89,7 +88,7 @@ def verdict(told: str) -> str:
 def sentences(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str, str]]:
     """(engine, what, the word, the sentence) of what is not built."""
     return [
-        (task.of.name, what, verdict(told), told)
+        (task.method.name, what, verdict(told), told)
         for task, answer in answers.items()
         for what in ASKED
         if (told := str(answer.values[what])) not in (YES, CONTACT, CODE)
@@ -103,22 +102,21 @@ def share_table(material: Material) -> str:
     return markdown(header, body, left=0) if any(lines.values()) else ""
 
 
-def _told(row: Measurement | None) -> str:
-    """The angle error, or what became of the run."""
-    if row is None:
-        return NOTHING
-    return number(row.angle) if Outcome(row.outcome).comparable else f"**{row.outcome}**"
-
-
 def moves_table(material: Material) -> str:
-    """What moves each engine: as it was, and with one setting turned; lines that were not run are left out."""
+    """The setting that moves each engine: as it was, and turned; lines that were not run are left out."""
     body = [
-        [engine, what, _told(material.rows.get(before)), _told(material.rows.get(after))]
-        for engine, what, before, after in MOVES
-        if before in material.rows or after in material.rows
+        [engine, setting, *(_words(material.rows.get(cell)) for cell in cells)]
+        for engine, setting, *cells in MOVES
+        if any(cell in material.rows for cell in cells)
     ]
     header = ["engine", "what is turned", "angle error before [rad]", "after [rad]"]
     return markdown(header, body, left=2) if body else ""
+
+
+def _words(row: Measurement | None) -> str:
+    """The angle error, or how the run ended."""
+    words = error_words(row, "angle")
+    return words if row is None or Outcome(row.outcome).comparable else f"**{words}**"
 
 
 LOOKS = (("first", "o", "-"), ("second", "s", "--"))
@@ -184,7 +182,7 @@ def figures(material: Material) -> dict[str, str]:
     """Work and precision by quantity, and the error against the share of a gap that is closed."""
     drawn: dict[str, str] = {}
     for field, names in CHARTED.items():
-        rows = [row for row in rows_of(material, names) if missed(row, field) < float("inf") and row.cpu > 0]
+        rows = [row for row in rows_of(material, names) if missed(row, field) < inf and row.cpu > 0]
         if rows:
             chosen = shown(rows, field)
             figure = work_precision(rows, lambda row, chosen=chosen: (row.scene, row.method) in chosen, field)
@@ -206,7 +204,7 @@ def figures(material: Material) -> dict[str, str]:
 
 def _terms(material: Material) -> str:
     body = [
-        [method_name(task.of), *(number(float(answer.array(name).max())) for name in ("with", "without"))]
+        [method_name(task.method), *(number(float(answer.array(name).max())) for name in ("with", "without"))]
         for task in TERMS
         if (answer := material.finished(task)) is not None
     ]
@@ -231,8 +229,6 @@ PAGE = Page(
     name=NAME,
     title="Engines side by side",
     lesson="What each engine builds, what it costs, how near it comes; and why engines of one order differ twentyfold.",
-    scenes=(),
-    engines=(),
     companions=(FREE,),
     borrowed=BORROWED,
     cells=SWEPT,
