@@ -199,9 +199,9 @@ def once(monkeypatch):
     run, known = builds.column, {}
 
     def column(label, request, *others):
-        if request.place not in known:
-            known[request.place] = run(label, request, *others)
-        return known[request.place]
+        if request.location not in known:
+            known[request.location] = run(label, request, *others)
+        return known[request.location]
 
     monkeypatch.setattr(builds, "column", column)
 
