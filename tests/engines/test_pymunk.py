@@ -35,8 +35,8 @@ from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.trajectory import Trajectory
 from tests import ROOT
-from tests.engines.test_matrix import blade_on_a_board, elbow
-from tests.mechanisms import four_bar, rolling_disc
+from tests.engines.test_matrix import blade_on_a_board
+from tests.mechanisms import elbow, four_bar, rolling_disc
 
 FREE, MOVING, DRIVEN = four_bar(), four_bar(10.0), four_bar(10.0, drive=10.0)
 every_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
