@@ -1,5 +1,5 @@
-"""Experiments on engines: rows of other pages, compiled models at one step, the gap that stays open; and beside cells
-the joints and forces that they build, and the velocity term of their rows.
+"""Experiments on engines: rows of other pages, compiled models at one step; and beside cells the joints and forces that
+they build, and the velocity term of their rows.
 
 The velocity term of loops: reactions at instants of the exact motion, where every gap and slip is zero, are compared
 with two laws. In the tree's coordinates q a loop's rows are J q'' = -J' q' with the term and J q'' = 0 without it. Rows
@@ -15,15 +15,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Unsupported, method_name, registry
-from engines.box2d import Box2D
-from engines.bullet import Bullet
+from engines import Unsupported, method_name, registry
 from engines.conformance.moving import FORCES
 from engines.conformance.worlds import MOVING, WORLDS
-from engines.mujoco.engine import MuJoCo
-from engines.mujoco.stiffness import TiedToStep
-from engines.pinocchio import Pinocchio
-from engines.pymunk.engine import SHIPPED_ERROR_BIAS, Pymunk
 from engines.tree import spanning_tree
 from reference.joints import Gear, Pin, Rod, Skate, Weld
 from reference.mechanism import Body, Mechanism
@@ -178,48 +172,3 @@ COMPILED = tuple(
 )
 BORROWED = sweep_cells(CHARTED_SCENES, registry.VARIANTS, FULL)
 SWEPT = beside_cells(CHARTED_SCENES, registry.OTHERS, sweep=True)
-
-# The share of a gap that is closed in a step of a millisecond; the second is about pymunk's as shipped.
-SHARES = (0.002, 1 - SHIPPED_ERROR_BIAS**1e-3, 0.02, 0.06, 0.2, 0.6, 1.0)
-FEW = (1, 4)  # sub-steps of Box2D in a millisecond
-STIFFER = 0.25  # the frequency of Box2D's pins, times the length of a sub-step
-CORRECTIONS = (0.0, 300.0)  # 1/s, of Pinocchio's loops; explicit steps of a millisecond bear no more than about 500
-
-
-def _cell(engine: Engine) -> Cell:
-    return Cell(FREE, engine, MILLISECOND, "failure")
-
-
-# The cells by the share that a setting closes in a step.
-PYMUNK = {share: _cell(Pymunk(f"closes {share:.2g} of a gap", 30, (1 - share) ** 1000)) for share in SHARES}
-BULLET = {share: _cell(Bullet(f"closes {share:.2g} of a gap", 200, 0.0, share)) for share in SHARES}
-CLOSING = {"pymunk, all four pins": PYMUNK, "bullet, the pin of the loop": BULLET}
-CLOSED_AT = {(count, 0.0): _cell(Box2D(f"{count} sub-steps", count)) for count in FEW} | {
-    (count, STIFFER): _cell(Box2D(f"{count} sub-steps, pins of {STIFFER:g} a sub-step", count, STIFFER))
-    for count in FEW
-}
-CORRECTED = {rate: _cell(Pinocchio(f"euler, correction {rate:g}", "euler", rate)) for rate in CORRECTIONS}
-
-
-def _sprung(coordinates: str, steps: float) -> Cell:
-    """All pins as springs of some steps (free coordinates), or only that of the loop (tree)."""
-    variant = f"{coordinates} coordinates, springs of {steps:g} steps"
-    return _cell(MuJoCo(variant, stiffness=TiedToStep(steps), coordinates=coordinates))
-
-
-SPRUNG = {(kind, steps): _sprung(kind, steps) for kind in ("free", "tree") for steps in (20.0, 2.0)}
-CONSTANTS, SHARE = "their time constant, 20 steps and 2", "share of a gap that a step closes"
-# The setting that moves each engine from one family to the other: in words, as it was, and turned.
-MOVES: tuple[tuple[str, str, Cell, Cell], ...] = (
-    ("pymunk", SHARE, PYMUNK[SHARES[1]], PYMUNK[1.0]),
-    ("box2d", "frequency of the pins", CLOSED_AT[4, 0.0], CLOSED_AT[4, STIFFER]),
-    ("mujoco, pins that are all springs", CONSTANTS, SPRUNG["free", 20.0], SPRUNG["free", 2.0]),
-    ("mujoco, the loop's pin alone", CONSTANTS.replace("their", "its"), SPRUNG["tree", 20.0], SPRUNG["tree", 2.0]),
-    ("bullet, the loop's pin alone", SHARE, BULLET[SHARES[0]], BULLET[1.0]),
-    (
-        "pinocchio, Euler steps, the loop's pin alone",
-        "correction of the loop, none and 300 / s",
-        *(CORRECTED[rate] for rate in CORRECTIONS),
-    ),
-)
-CLOSED_BY = (*PYMUNK.values(), *BULLET.values())

@@ -7,10 +7,7 @@ from dataclasses import replace
 from math import inf
 from typing import Any
 
-from matplotlib.figure import Figure
-
 from engines import method_name, registry
-from reports.model.cells import Cell
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
@@ -19,28 +16,21 @@ from reports.pages.engines.experiments import (
     ASKED,
     BORROWED,
     CHARTED,
-    CLOSED_AT,
-    CLOSED_BY,
-    CLOSING,
     CODE,
     COMPILED,
     CONTACT,
-    CORRECTED,
     FREE,
-    MOVES,
-    SHARES,
-    SPRUNG,
     SWEPT,
     TOO_OLD,
     YES,
     Capabilities,
     VelocityTerm,
 )
-from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
+from reports.plots.theme import svg
 from reports.plots.work_precision import work_precision
 from reports.write.columns import Column, column_of
 from reports.write.provenance import told_versions
-from reports.write.tables import error_words, markdown, number
+from reports.write.tables import markdown, number
 
 
 def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
@@ -59,12 +49,6 @@ def missed(row: Measurement | None, field: str = "angle") -> float:
     """The error of a run that can be compared; infinite for any other."""
     usable = row is not None and Outcome(row.outcome).comparable and getattr(row, field) > 0
     return getattr(row, field) if usable else inf
-
-
-def line_of(material: Material, cells: Mapping[float, Cell]) -> list[tuple[float, float]]:
-    """(share, angle error [rad]) of the cells that can be compared."""
-    errors = ((share, missed(material.rows.get(cell))) for share, cell in cells.items())
-    return [(share, error) for share, error in errors if error < inf]
 
 
 def matrix(answers: Mapping[Capabilities, Answer]) -> str:
@@ -95,54 +79,6 @@ def sentences(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, st
     ]
 
 
-def share_table(material: Material) -> str:
-    lines = {name: dict(line_of(material, cells)) for name, cells in CLOSING.items()}
-    body = [[number(share), *(number(lines[name].get(share, float("nan"))) for name in lines)] for share in SHARES]
-    header = ["share closed in a step", *(f"{name}: angle error [rad]" for name in lines)]
-    return markdown(header, body, left=0) if any(lines.values()) else ""
-
-
-def moves_table(material: Material) -> str:
-    """The setting that moves each engine: as it was, and turned; lines that were not run are left out."""
-    body = [
-        [engine, setting, *(_words(material.rows.get(cell)) for cell in cells)]
-        for engine, setting, *cells in MOVES
-        if any(cell in material.rows for cell in cells)
-    ]
-    header = ["engine", "what is turned", "angle error before [rad]", "after [rad]"]
-    return markdown(header, body, left=2) if body else ""
-
-
-def _words(row: Measurement | None) -> str:
-    """The angle error, or how the run ended."""
-    words = error_words(row, "angle")
-    return words if row is None or Outcome(row.outcome).comparable else f"**{words}**"
-
-
-LOOKS = (("first", "o", "-"), ("second", "s", "--"))
-
-
-def draw_shares(
-    found: Mapping[str, Sequence[tuple[float, float]]], shipped: Mapping[str, tuple[float, float]], theme: Theme = LIGHT
-) -> Figure:
-    """`found`: by name (share, angle error [rad]), by rising share; `shipped`: marked points, by what they are."""
-    with settings():
-        figure = new_figure(3.6, theme, 6.6)
-        axes = figure.subplots()
-        for (name, points), (role, mark, line) in zip(found.items(), LOOKS, strict=False):
-            colour = getattr(theme, role)
-            axes.loglog(*zip(*points, strict=True), linestyle=line, marker=mark, color=colour, markersize=5, label=name)
-        for name, (share, error) in shipped.items():
-            axes.plot([share], [error], marker="o", markersize=13, fillstyle="none", color=theme.ink, linestyle="none")
-            axes.annotate(name, (share, error), xytext=(11, 8), textcoords="offset points", color=theme.ink, fontsize=8)
-        axes.set_xlabel("share of a gap that a step of 1 ms closes")
-        axes.set_ylabel("largest angle error [rad]")
-        style_axes(axes, theme)
-        axes.margins(0.08, 0.15)
-        axes.legend(loc="lower left")
-    return figure
-
-
 NAME = "engines"
 # One of each, as shipped where that is a variant: what is built does not depend on settings, but for constructions.
 ASKED_OF = tuple({engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}.values())[::-1]
@@ -154,11 +90,6 @@ TERMS = tuple(
     if engine.variant == "tuned" and (soft := engine.softness(FREE.mechanism(), 1e-3)) is not None and soft.compliance
 )
 EXPERIMENTS = (
-    Failure(
-        title="How much of a gap a step closes",
-        expected="The share that a step closes decides how far pins stay open, and so the error, at equal step.",
-        cells=tuple(dict.fromkeys((*CLOSED_BY, *CLOSED_AT.values(), *SPRUNG.values(), *CORRECTED.values()))),
-    ),
     Failure(
         title="Compiled models",
         expected="The same model as in C, with an error that no step makes smaller where a loop turns.",
@@ -179,7 +110,7 @@ def shown(rows: Sequence[Measurement], field: str) -> set[tuple[str, str]]:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Work and precision by quantity, and the error against the share of a gap that is closed."""
+    """Work and precision by quantity."""
     drawn: dict[str, str] = {}
     for field, names in CHARTED.items():
         rows = [row for row in rows_of(material, names) if missed(row, field) < inf and row.cpu > 0]
@@ -189,16 +120,6 @@ def figures(material: Material) -> dict[str, str]:
             drawn[f"work_{field}"] = svg(
                 figure, f"Each engine as shipped and at its best: {field} error against CPU time"
             )
-    lines = {name: points for name, cells in CLOSING.items() if (points := line_of(material, cells))}
-    if lines:
-        marked = ("as shipped", SHARES[1]), ("its usual erp", 0.2)
-        shipped = {
-            words: point
-            for (words, share), name in zip(marked, CLOSING, strict=True)
-            for point in lines.get(name, ())
-            if point[0] == share
-        }
-        drawn["shares"] = svg(draw_shares(lines, shipped), "Angle error against the share of a gap that a step closes")
     return drawn
 
 
@@ -218,8 +139,6 @@ def words(material: Material) -> Mapping[str, Any]:
     return {
         "matrix": matrix(answers),
         "refused": sentences(answers),
-        "shares": share_table(material),
-        "moves": moves_table(material),
         "terms": _terms(material),
         "absent": list(registry.ABSENT.values()),
     }

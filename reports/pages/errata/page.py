@@ -201,11 +201,6 @@ def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...],
     return tuple(sorted(found, key=lambda ruling: ruling.number)), lost
 
 
-FIELD = re.compile(r"^- ([\w ]+): (.*)$", re.MULTILINE)
-FORMULA = re.compile(r"```math\n(.*?)\n```", re.DOTALL)
-SCRIPT = re.compile(r"```python\n(.*?)```", re.DOTALL)
-
-
 @dataclass(frozen=True)
 class Erratum:
     """One slip of the chapter. printed, right: both formulas in a line; quoted, corrected: the same in LaTeX.
@@ -245,15 +240,13 @@ class Erratum:
 def read_slip(path: Path) -> Erratum:
     """The slip of a document."""
     text = path.read_text("utf-8")
-    fields, formulas, script = dict(FIELD.findall(text)), FORMULA.findall(text), SCRIPT.search(text)
+    fields = dict(re.findall(r"^- ([\w ]+): (.*)$", text, re.MULTILINE))
+    quoted, corrected = re.findall(r"```math\n(.*?)\n```", text, re.DOTALL) or ("", "")
+    (script,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL) or ("",)
+    where, dimensions = text.splitlines()[0].partition(": ")[2], fields.get("shown by") == "dimensions"
+    words = {name: fields.get(name, "") for name in ("printed", "right", "reason", "unit", "deciding")}
     return Erratum(
-        number=int(path.stem),
-        where=text.splitlines()[0].partition(": ")[2],
-        **{name: fields.get(name, "") for name in ("printed", "right", "reason", "unit", "deciding")},
-        dimensions=fields.get("shown by") == "dimensions",
-        quoted=formulas[0] if formulas else "",
-        corrected=formulas[1] if formulas else "",
-        script=script[1] if script else "",
+        int(path.stem), where, **words, dimensions=dimensions, quoted=quoted, corrected=corrected, script=script
     )
 
 
@@ -281,9 +274,9 @@ def verdict(erratum: Erratum, values: Values, ruled: Sequence[Ruling]) -> str:
     if erratum.by_tolerance:
         integration = missed(erratum, "{} at a relative tolerance of {}", " and ")
         misses = (
-            f"The closed form misses it by {right}. The integration misses it by {integration}: the tolerance is ours,"
+            f"The closed form misses it by {right}. The integration misses it by {integration}: "
+            "the tolerance is ours, since the chapter states none."
         )
-        misses += " since the chapter states none."
         pattern = "the closed form misses their motion by {1} at most."
     text = f"Decides ({erratum.deciding}): {digits(values.decides)} {erratum.unit}. {misses}"
     if not ruled:
