@@ -17,7 +17,7 @@ REFINEMENTS = 3
 
 @dataclass(frozen=True, eq=False)
 class Constrained:
-    """Accelerations or velocities (bodies, 3), and the forces or impulses of the rows (rows,)."""
+    """Accelerations or velocities, shaped as the free ones, and the forces or impulses of the rows (rows,)."""
 
     motion: Array
     force: Array
@@ -44,4 +44,4 @@ def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: A
         residual = left.T @ ((short - rows @ pushed) / norm)
         motion = motion + pushed + (right_vectors.T @ (residual / sizes))[: len(root)] / root
         force = force + left @ (residual / sizes**2) / norm
-    return Constrained(motion.reshape(-1, 3), force)
+    return Constrained(motion.reshape(free.shape), force)

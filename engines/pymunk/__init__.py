@@ -9,14 +9,13 @@ Two readings:
 
 - As a user reads it (`leapfrog` False): `body.velocity` is the velocity at t_n. As the first drift used the velocity
   at 0, not at dt/2, the motion is half a kick off: first order. (From rest this is a delay of dt/2, which the kick in
-  the last step happens to make up for in the velocities: they alone are then of second order.)
-- As a leapfrog (`leapfrog` True): one kick of half a step, without drift, comes before the first step. What the engine
-  then holds is v at t_n + dt/2, and the velocity at t_n is the mean of the two around it: second order.
+  the last step makes up for in the velocities: they alone are then of second order.)
+- As a leapfrog (`leapfrog` True): one kick of half a step, without drift, comes before the first step. The engine then
+  holds v at t_n + dt/2, and the velocity at t_n is the mean of the two around it: second order.
 
 The force of step n is evaluated at p_n, so in both readings (change of velocity over step n) / dt is an acceleration
 at t_n, along the rows at p_n; `Mechanism.reaction` turns it into reactions with their signs (`constraint.impulse` is
-only a magnitude). In the first reading the whole motion is of first order, hence so is this. No step lies before the
-first sample: `PymunkRun` says what stands there.
+only a magnitude). No step lies before the first sample: see `PymunkRun`.
 
 A joint closes the fraction 1 - error_bias ** dt of its gap in a step. As shipped this is about 6.3 dt, so that a gap of
 the order of dt remains; with error_bias 0 all of it is closed every step, and what remains is of the order of dt ** 2.

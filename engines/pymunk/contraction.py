@@ -4,25 +4,17 @@ A sweep over the joints solves A x = b, A = J M^-1 J^T, joint by joint. The resi
 rho, the spectral radius of S = 1 - L^-1 A, with L the lower block triangle of A. rho is near 1 for long chains (N
 equal links: 1 - rho = pi^2/(4 N^2)) and for heavy bodies on light ones (1 - rho = 1/100 for a hundredfold mass).
 
-Impulses are kept for the next step, with those that closed a gap. For one mode with gap g, velocity v and kept impulse
-l, of which k sweeps leave r = rho^k, a step of length 1 that closes gamma of a gap is
-
-    v + l - (1 - r)(v + l + gamma g) -> v,   l - (1 - r)(v + l + gamma g) -> l,   g + v -> g,
-
-which is stable up to gamma = (1 - r)/r: the whole gap may be closed if r is below 1/2; beyond it a chain explodes.
-
-Sweeps over three joints or more have complex modes, of which k sweeps leave r = sigma^k, sigma complex. With the whole
-gap closed the map has an eigenvalue mu where r = mu^3 / (3 mu^2 - 3 mu + 1), so that mu = exp(i phi), phi from pi/3 to
-pi, is the rim of stability: from 1/2 at the angle 0 of r down to 1/7 at pi. With no gap closed it is r = mu^2 / (2 mu -
-1), from 1 down to 1/3. A complex mode counts as the real one that needs as many sweeps.
-
-If some rows close no gap (a motor knows no angle, a blade has no gap), the modes of the sweeps do not decouple. With
-R = S^k and B a 1 for each row that closes gamma of its gap, a step makes of velocities u, impulses l and gaps g of rows
+Impulses are kept for the next step, with those that closed a gap. With R = S^k after k sweeps and B a 1 for each row
+that closes gamma of its gap, a step of length 1 makes of velocities u, impulses l and gaps g of rows
 
     g' = g + u,   l' = R l - (1 - R) A^-1 (u + gamma B g'),   u' = u + A l',
 
-whose spectral radius is `growth`. There k rises until the map is stable with 2 R in place of R; where B is 1, that is
-the same as half of the stable residual.
+whose spectral radius is `growth`. Where B is 1 the modes decouple: one of which k sweeps leave r = rho^k is stable up
+to gamma = (1 - r)/r, so the whole gap may be closed if r is below 1/2; beyond it a chain explodes. Sweeps over three
+joints or more have complex modes, with r = mu^3 / (3 mu^2 - 3 mu + 1) for an eigenvalue mu of the map; mu = exp(i phi),
+phi from pi/3 to pi, is the rim of stability: from 1/2 at the angle 0 of r down to 1/7 at pi. A complex mode counts as
+the real one that needs as many sweeps. Where B is not 1 (a motor knows no angle, a blade has no gap), k rises until
+the map is stable with 2 R in place of R, which is half of the stable residual.
 """
 
 from __future__ import annotations

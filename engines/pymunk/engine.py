@@ -11,12 +11,11 @@ from pymunk.constraints import PivotJoint
 from engines import Around, Engine, Holder, Instant, Promise, Run, Softness, Unpromised
 from engines.extrapolated import Extrapolated
 from engines.motions import over_three
-from engines.pymunk import declared, theory
+from engines.pymunk import declared
 from engines.pymunk.contraction import CONTACT_CONVERGED, FEWEST, Sweeping, Whole, sweeping, swept_by
 from engines.pymunk.expected import worst_contraction
 from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstruction
-from engines.pymunk.joints.skate import SkateConstruction
-from engines.pymunk.joints.slot import SlotConstruction
+from engines.pymunk.joints.slide import SkateConstruction, SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
 from engines.pymunk.running import PymunkRun
 from reference.checks import Count, Fraction, Name, NonNegative, Positive, Valid, validated
@@ -52,7 +51,7 @@ class Pymunk(Engine, Valid):
     sweeps become fewer, from as many as leave nothing; 0 for none.
     `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
     never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
-    (`engines.pymunk.joints.skate`, `.roll`, `.slot`), `contact` how contact is set where it stands for a Roll.
+    (`engines.pymunk.joints.slide`, `.roll`), `contact` how contact is set where it stands for a Roll.
 
     A `gain` below 1 in every step would be an error_bias ** dt; that power underflows to 0 at small steps, which is a
     gain of 1. Models by "contraction" are therefore built in a unit of time in which the step is 1, where that matters.
@@ -83,8 +82,8 @@ class Pymunk(Engine, Valid):
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        """See `engines.pymunk.theory`."""
-        return theory.promise(self, mechanism)
+        """See `engines.pymunk.declared`."""
+        return declared.promise(self, mechanism)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
@@ -94,8 +93,8 @@ class Pymunk(Engine, Valid):
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
-        """See `engines.pymunk.theory`."""
-        return theory.holder(self, joint, mechanism)
+        """See `engines.pymunk.declared`."""
+        return declared.holder(self, joint, mechanism)
 
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """How joints give way with steps of dt [s], None where they are set for the pose after the drift.
@@ -174,6 +173,25 @@ class Pymunk(Engine, Valid):
             self.contact,
         )
         return build_model(mechanism, settings)
+
+
+@dataclass(frozen=True)
+class LimitedGroove(Pymunk):
+    """A groove for a skate that slips when it would have to give more than `limit` [N], like dry friction."""
+
+    limit: Positive = 1.0
+
+    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Sweeping) -> Model:
+        model = super().swept_model(mechanism, dt, sweeping)
+        for constraint in model.space.constraints:
+            constraint.max_force = self.limit
+        return model
+
+
+@validated
+def limited_groove(limit: Positive) -> LimitedGroove:
+    """The groove with a limit [N] on its force."""
+    return LimitedGroove("groove with max_force", 5, 0.0, skate="groove", limit=limit)
 
 
 @dataclass(frozen=True)

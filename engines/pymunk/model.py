@@ -1,26 +1,40 @@
-"""A mechanism as pymunk objects: one body for a body, and for every joint what its own file makes of it."""
+"""A mechanism as pymunk objects: a body for each body, for every joint what its own file makes of it, and forces.
+
+A spring is a kick at the pose after the drift, like gravity, and costs no order. A damper takes part in the sweeps: it
+shrinks the velocity that they have reached so far by exp(-damping dt / mass felt), after the kicks of the same step and
+not half before and half after them. That is of first order. Chipmunk forgets a body's force and torque in every step,
+and adds them after the drift, so they are set for the pose that the drift will lead to, which is known exactly.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import cos, sin
 from typing import Any
 
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
-from pymunk.constraints import Constraint, GearJoint, GrooveJoint, PinJoint, PivotJoint, SimpleMotor
+from pymunk.constraints import (
+    Constraint,
+    DampedRotarySpring,
+    DampedSpring,
+    GearJoint,
+    GrooveJoint,
+    PinJoint,
+    PivotJoint,
+    SimpleMotor,
+)
 
 from engines import Size, Unsupported
 from engines.capability import Capability
-from engines.pymunk.forces import applied, spring
 from engines.pymunk.joints.drive import crank_body, find_cranks, find_turned, motor, turned_body
 from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, extent_of, touching
-from engines.pymunk.joints.skate import SkateConstruction, blade
-from engines.pymunk.joints.slot import SlotConstruction, slide
+from engines.pymunk.joints.slide import SkateConstruction, SlotConstruction, blade, slide
 from reference.couplings import Coupling
-from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -30,6 +44,7 @@ CAPABILITY = Capability(
     frozenset({Pin, Weld, Gear, Rod, Slot, Drive, Skate, Roll}),
     frozenset({Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}),
 )
+Locate = Callable[[str | None, Vector], Vector]  # a point of a body [m], from the engine's origin
 # Scalar constraints of each kind of pymunk constraint; its solver has no others.
 ROWS = {PivotJoint: 2, SimpleMotor: 1, GrooveJoint: 1, PinJoint: 1, GearJoint: 1}
 
@@ -256,3 +271,69 @@ class _Builder:
                 f"joint {joint.name!r} joins two bodies whose motion is already prescribed; "
                 "a pymunk constraint needs one that forces can move"
             )
+
+
+def spring(
+    element: ForceElement, first: pymunk.Body, second: pymunk.Body, own: Locate, unit: float
+) -> Constraint | None:
+    """pymunk's spring for an element, in the `unit` [s] of time; None for one that is applied, or that moves nothing.
+
+    A body whose motion is prescribed feels no force, and a spring between two of those would divide by zero.
+    """
+    match element:
+        case Spring() | Damper() if pymunk.Body.DYNAMIC in (first.body_type, second.body_type):
+            anchors = own(element.first, element.first_point), own(element.second, element.second_point)
+            if isinstance(element, Spring):
+                return DampedSpring(first, second, *anchors, element.rest_length, element.stiffness * unit * unit, 0.0)
+            return DampedSpring(first, second, *anchors, 0.0, 0.0, element.damping * unit)
+        case TorsionSpring() | TorsionDamper() if _turns(first) or _turns(second):
+            # Chipmunk's relative angle is that of the first against the second (cpDampedRotarySpring.c).
+            if isinstance(element, TorsionSpring):
+                return DampedRotarySpring(first, second, -element.rest_angle, element.stiffness * unit * unit, 0.0)
+            return DampedRotarySpring(first, second, 0.0, 0.0, element.damping * unit)
+    return None
+
+
+def _turns(body: pymunk.Body) -> bool:
+    """Whether a torque would change a body's rate."""
+    return body.body_type == pymunk.Body.DYNAMIC and body.moment < float("inf")
+
+
+def applied(
+    forces: Sequence[ForceElement], bodies: dict[str, pymunk.Body], own: Locate, unit: float
+) -> list[Callable[[float], None]]:
+    """What sets constant forces and torques before a step: one function a body, none for a body without."""
+    points: dict[str, list[tuple[Vector, Vector]]] = {}
+    torques: dict[str, float] = {}
+    for element in forces:
+        match element:
+            case Force():
+                x, y = element.force
+                own_point = own(element.second, element.second_point)
+                points.setdefault(element.second, []).append((own_point, (x * unit * unit, y * unit * unit)))
+            case Torque():
+                for name, sign in ((element.first, -1.0), (element.second, 1.0)):
+                    if name is not None:
+                        torques[name] = torques.get(name, 0.0) + sign * element.torque * unit * unit
+            case _:
+                pass
+    return [
+        _pushing(bodies[name], points.get(name, []), torques.get(name, 0.0))
+        for name in dict.fromkeys((*points, *torques))
+        if bodies[name].body_type == pymunk.Body.DYNAMIC
+    ]
+
+
+def _pushing(body: pymunk.Body, points: list[tuple[Vector, Vector]], torque: float) -> Callable[[float], None]:
+    pointer = body._body
+    x, y = sum(force[0] for _, force in points), sum(force[1] for _, force in points)
+    # The moment of all forces at the angle 0, and a quarter of a turn later.
+    across = sum(point[0] * force[1] - point[1] * force[0] for point, force in points)
+    along = -sum(point[0] * force[0] + point[1] * force[1] for point, force in points)
+
+    def push(ahead: float) -> None:
+        angle = lib.cpBodyGetAngle(pointer) + lib.cpBodyGetAngularVelocity(pointer) * ahead
+        lib.cpBodySetForce(pointer, (x, y))
+        lib.cpBodySetTorque(pointer, torque + cos(angle) * across + sin(angle) * along)
+
+    return push

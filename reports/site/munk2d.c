@@ -64,7 +64,7 @@ static void add_record(World *world, int part, const double *own, int numbers, d
     }
 }
 
-// A groove laid under the blade where it will stand after the drift; as AimedGroove in engines/pymunk/joints/skate.py.
+// A groove laid under the blade where it will stand after the drift; as AimedGroove in engines/pymunk/joints/slide.py.
 static void aim(World *world, const double *own, double dt)
 {
     cpBody *body = world->bodies[(int)own[0]];
@@ -76,7 +76,7 @@ static void aim(World *world, const double *own, double dt)
     cpGrooveJointSetGrooveB(groove, cpv(x + own[4] * cos(angle), y + own[4] * sin(angle)));
 }
 
-// The velocity across the blade taken away; as Zeroed in engines/pymunk/joints/skate.py.
+// The velocity across the blade taken away; as Zeroed in engines/pymunk/joints/slide.py.
 static void zero(World *world, const double *own)
 {
     cpBody *body = world->bodies[(int)own[0]];

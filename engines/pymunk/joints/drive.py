@@ -7,6 +7,7 @@ infinite moment of inertia: no impulse changes its rate, so it keeps its angle, 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import pymunk
 from pymunk.constraints import SimpleMotor
@@ -22,44 +23,38 @@ class Crank:
 
     pin: Pin
     drive: Drive
-    own_point: Vector  # m, the pin in the body's frame
-    ground_point: Vector  # m, the pin in the world
-    turning_rate: float  # rad/s, of the body in the world
+
+    @property
+    def own_point(self) -> Vector:
+        """The pin in the body's frame [m]."""
+        return self.pin.first_point if self.pin.second is None else self.pin.second_point
+
+    @property
+    def ground_point(self) -> Vector:
+        """The pin in the world [m]."""
+        return self.pin.second_point if self.pin.second is None else self.pin.first_point
 
 
 @validated
 def find_cranks(mechanism: Mechanism) -> dict[str, Crank]:
     """The bodies that are pinned to the ground and driven against it, by name; each by its first pin and drive."""
-    pins: dict[str, Pin] = {}
-    for joint in mechanism.joints:
-        if isinstance(joint, Pin) and (name := _grounded(joint)) is not None:
-            pins.setdefault(name, joint)
-    cranks: dict[str, Crank] = {}
-    for joint in mechanism.joints:
-        if isinstance(joint, Drive) and (name := _grounded(joint)) in pins and name not in cranks:
-            pin = pins[name]
-            own, ground = pin.second_point, pin.first_point
-            if pin.second is None:
-                own, ground = ground, own
-            cranks[name] = Crank(pin, joint, own, ground, _rate(joint))
-    return cranks
+    pins = _grounded(mechanism, Pin)
+    return {name: Crank(pins[name], drive) for name, drive in _grounded(mechanism, Drive).items() if name in pins}
 
 
 @validated
 def find_turned(mechanism: Mechanism) -> dict[str, Drive]:
     """The first drive against the ground of every body that has one, cranks or not, by the body's name."""
-    turned: dict[str, Drive] = {}
+    return _grounded(mechanism, Drive)
+
+
+def _grounded(mechanism: Mechanism, kind: type[Any]) -> dict[str, Any]:
+    """The first joint of a kind between each body and the ground, by the body's name."""
+    found: dict[str, Any] = {}
     for joint in mechanism.joints:
-        if isinstance(joint, Drive) and (name := _grounded(joint)) is not None:
-            turned.setdefault(name, joint)
-    return turned
-
-
-def _grounded(joint: Pin | Drive) -> str | None:
-    """The name of the body that the joint holds to the ground, if it holds one to the ground."""
-    if joint.first is None:
-        return joint.second
-    return joint.first if joint.second is None else None
+        if isinstance(joint, kind) and None in (joint.first, joint.second):
+            found.setdefault(str(joint.second if joint.first is None else joint.first), joint)
+    return found
 
 
 def _rate(joint: Drive) -> float:
@@ -74,7 +69,7 @@ def crank_body(crank: Crank, body: Body, unit: float) -> pymunk.Body:
     """
     kinematic = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     kinematic.position, kinematic.angle = crank.ground_point, body.pose[2]
-    kinematic.angular_velocity = crank.turning_rate * unit
+    kinematic.angular_velocity = _rate(crank.drive) * unit
     return kinematic
 
 

@@ -11,8 +11,8 @@ from typing import ClassVar
 import pymunk
 
 from engines.consistent_start import closed_positions, with_consistent_start
-from engines.pymunk.reading.joints import BODIES, CONSTRAINTS, described
-from engines.pymunk.reading.own_model import OwnPymunk, moved_to, switch_off
+from engines.pymunk.reading.joints import BODIES, CONSTRAINTS, described, moved_to
+from engines.pymunk.reading.own_model import OwnPymunk, switch_off
 from engines.pymunk.reading.script import made, rewritten
 from engines.reading import Note, Reading, Source, refuse_at_start
 from reference.checks import InvalidMechanism

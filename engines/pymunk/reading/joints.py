@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import inf, isinf
 from typing import Any
 
+import numpy as np
 import pymunk
+from numpy.typing import NDArray
 from pymunk.constraints import (
     Constraint,
     DampedRotarySpring,
@@ -20,11 +23,12 @@ from pymunk.constraints import (
     SlideJoint,
 )
 
-from engines.pymunk.joints.slot import groove_is_exact
+from engines.pymunk.joints.slide import groove_is_exact
 from engines.reading import MOST_BODIES, Names, Note, refuse
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Slot, Vector
 
+Array = NDArray[np.float64]
 LIMITS = (SlideJoint, RotaryLimitJoint)
 EQUALITY = "its min and max are equal, so it is taken as a {}; pymunk's {} holds from both sides at once"
 SAME = 1e-12  # rad, or of a length: ends of a limit that differ by rounding
@@ -283,3 +287,34 @@ def _geared(out: Described, gear: GearJoint, label: str) -> Joint:
     if a is None:
         return Drive(label, None, b, 0.0, -phase / ratio)
     return Gear(label, b, a, ratio, phase)
+
+
+def copied(described: Described) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """A copy of the space, and its bodies in the mechanism's order."""
+    given, space = described.space, described.space.copy()
+    # No body falls asleep in what is judged (`sleepers`), and pymunk (7.3.1) aborts after some copies in which
+    # bodies do.
+    space.sleep_time_threshold = inf
+    copies = dict(zip(given.bodies, space.bodies, strict=True))
+    for own, mine in copies.items():
+        if own.center_of_gravity.length:
+            # pymunk (7.3.1) places a copy before it knows where the centre of mass is, and so elsewhere.
+            mine.angle, mine.position = own.angle, own.position
+    for mine, own in zip(space.constraints, given.constraints, strict=True):
+        if isinstance(own, PinJoint):
+            mine.distance = own.distance  # a copy of pymunk (7.3.1) takes the distance at which its bodies are
+    return space, [copies[body] for body in described.moving]
+
+
+def moved_to(described: Described, pose: Array) -> pymunk.Space:
+    """A copy of the space with the centres of mass and angles of the moving bodies at a pose (bodies, 3)."""
+    space, bodies = copied(described)
+    place(bodies, pose)
+    return space
+
+
+def place(bodies: Sequence[pymunk.Body], pose: Array) -> None:
+    """Put centres of mass and angles at a pose (bodies, 3)."""
+    for body, (x, y, angle) in zip(bodies, pose.tolist(), strict=True):
+        body.angle = angle
+        body.position = pymunk.Vec2d(x, y) - body.center_of_gravity.rotated(angle)

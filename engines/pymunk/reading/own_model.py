@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
-from pymunk.constraints import Constraint, GrooveJoint, PinJoint, RotaryLimitJoint, SlideJoint
+from pymunk.constraints import Constraint, GrooveJoint, RotaryLimitJoint, SlideJoint
 
 from engines.pymunk.contraction import gain, sweeps
 from engines.pymunk.expected import worst_contraction
 from engines.pymunk.methods import WORK
-from engines.pymunk.reading.joints import LIMITS, Described, both_sided, is_equality
+from engines.pymunk.reading.joints import LIMITS, Described, both_sided, copied, is_equality, place
 from engines.reading import Change, Give, Note, Obstacle, left_out, refuse
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -52,40 +52,24 @@ def switch_off(space: pymunk.Space, element: str) -> None:
 
 @dataclass(frozen=True, eq=False)
 class OwnPymunk:
-    """A space and what it describes; see `engines.reading.OwnModel`. `step` [s]: the user's."""
+    """A space and what it describes; see `engines.reading.OwnModel`. `dt` [s]: the user's step."""
 
     described: Described
     mechanism: Mechanism
-    step: float
+    dt: float
     unknown_step: bool  # the space has not been stepped, and no step was named
     ahead: bool = False  # the user's own lines bring velocities half a step ahead before the first step
-
-    @property
-    def engine(self) -> str:
-        return "pymunk"
-
-    @property
-    def dt(self) -> float:
-        return self.step
+    engine: str = "pymunk"
+    softly_held: bool = False
+    # How far joints give way follows from steps and sweeps: pymunk declares no law without them.
+    declares: bool = False
+    elements: Sequence[str] = ("contact", "limit")
 
     @property
     def assumed(self) -> str:
         if not self.unknown_step:
             return ""
-        return f"a step of {self.step:.4g} s, since the space has not been stepped (give yours with --step)"
-
-    @property
-    def softly_held(self) -> bool:
-        return False
-
-    @property
-    def declares(self) -> bool:
-        """How far joints give way follows from steps and sweeps: pymunk declares no law without them."""
-        return False
-
-    @property
-    def elements(self) -> Sequence[str]:
-        return ("contact", "limit")
+        return f"a step of {self.dt:.4g} s, since the space has not been stepped (give yours with --step)"
 
     @property
     def own_twist(self) -> Array:
@@ -98,30 +82,24 @@ class OwnPymunk:
     @property
     def settings(self) -> Mapping[str, str]:
         space = self.described.space
-        known = ", assumed" if self.assumed else ""
-        out = {
-            "step": f"{self.step:.6g} s{known}",
+        return {
+            "step": f"{self.dt:.6g} s{', assumed' if self.assumed else ''}",
             "iterations": f"{space.iterations}",
             "gravity": f"{space.gravity.x:g}, {space.gravity.y:g}",
+            "error_bias": ", ".join(f"{bias:.4g}" for bias in sorted({each.error_bias for each in space.constraints})),
         }
-        biases = sorted({joint.error_bias for joint in space.constraints})
-        out["error_bias"] = ", ".join(f"{bias:.4g}" for bias in biases)
-        return out
 
     def start(self) -> Array:
-        return self._start(None)
+        return self.without(None)
 
-    def without(self, element: str) -> Array:
-        return self._start(element)
-
-    def _start(self, element: str | None) -> Array:
-        """What small steps make of the velocities; extrapolated, since a step drifts before it kicks."""
+    def without(self, element: str | None) -> Array:
+        """Accelerations of small steps from the start; extrapolated, since a step drifts before it kicks."""
         steps = [SMALL * self.mechanism.time_scale, SMALL / 2 * self.mechanism.time_scale]
         first, second = (self._kicked(step, element) for step in steps)
         return 2 * second - first
 
     def _kicked(self, step: float, element: str | None) -> Array:
-        space, bodies = self._fresh()
+        space, bodies = copied(self.described)
         if element is not None:
             switch_off(space, element)
         for limit in [each for each in space.constraints if is_equality(each)]:
@@ -139,10 +117,7 @@ class OwnPymunk:
         return Give(none, none, np.diag(none), np.full_like(none, np.nan))
 
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
-        space, bodies = self._fresh()
-        words, labels = list(self.described.words.values()), list(self.described.constraints.values())
-        asleep = sleepers(self.described, self.step, t, twist)
-        met = [*asleep, *obstacles(space, bodies, words, labels, t, pose)]
+        met = [*sleepers(self.described, self.dt, t, twist), *obstacles(self.described, t, pose)]
         return sorted(met, key=lambda each: each.t)
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
@@ -155,7 +130,7 @@ class OwnPymunk:
         out = []
         for kind in dict.fromkeys([(own, None, self.ahead), (more, None, self.ahead), *closed]):
             for divisor in FURTHER if further else DIVISORS:
-                dt = self.step / divisor
+                dt = self.dt / divisor
                 if dt < smallest:
                     break
                 out.append(self._change(*kind, dt))
@@ -177,8 +152,8 @@ class OwnPymunk:
         return ()
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
-        space, bodies = self._fresh()
-        dt, spacing, ahead = self.step, every * self.step, self.ahead
+        space, bodies = copied(self.described)
+        dt, spacing, ahead = self.dt, every * self.dt, self.ahead
         if change is not None:
             options, dt = dict(change.options), change.dt
             ahead = options["ahead"]
@@ -192,21 +167,23 @@ class OwnPymunk:
         pose, twist, acceleration = (np.full(shape, np.nan) for _ in range(3))
         pose[0], twist[0] = self.mechanism.pose, self.mechanism.twist
         stepping = 0.0
-        if ahead:
+
+        def advance(count: int) -> None:
+            nonlocal stepping
             begin = time.process_time()
+            for _ in range(count):
+                step(dt)
+            stepping += time.process_time() - begin
+
+        if ahead:
             for body in bodies:
                 body.position -= body.velocity * (dt / 2)
                 body.angle -= body.angular_velocity * dt / 2
             step(dt / 2)
-            stepping += time.process_time() - begin
         for sample in range(1, samples + 1):
-            begin = time.process_time()
-            for _ in range(steps - 1):
-                step(dt)
-            stepping += time.process_time() - begin
-            before, begin = _twists(bodies), time.process_time()
-            step(dt)
-            stepping += time.process_time() - begin
+            advance(steps - 1)
+            before = _twists(bodies)
+            advance(1)
             pose[sample], after = _poses(bodies), _twists(bodies)
             twist[sample] = (before + after) / 2 if ahead else after
             # The kick of a step is of the pose after its drift: this is the acceleration at the sample.
@@ -218,7 +195,9 @@ class OwnPymunk:
         sound = np.isfinite(acceleration).all(axis=(1, 2)) & np.isfinite(pose).all(axis=(1, 2))
         if self.mechanism.row_count and sound.any():
             reaction[sound] = self.mechanism.reaction(pose[sound], acceleration[sound], twist=twist[sound])
-            reaction[:, self._prescribed] = np.nan
+            # No force of pymunk holds the joints that only say how a body moves.
+            held = [(joint.name, joint.size) for joint in self.mechanism.joints]
+            reaction[:, [name in self.described.prescribed for name, size in held for _ in range(size)]] = np.nan
         return Trajectory(t, pose, twist, reaction, stepping)
 
     def _stepper(self, space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> Callable[[float], None]:
@@ -233,45 +212,6 @@ class OwnPymunk:
             space.step(dt)
 
         return step
-
-    @property
-    def _prescribed(self) -> NDArray[np.bool_]:
-        """Rows (rows,) that only say how a body moves: no force of pymunk holds them."""
-        names = [joint.name for joint in self.mechanism.joints for _ in range(joint.size)]
-        return np.array([name in self.described.prescribed for name in names], dtype=bool)
-
-    def _fresh(self) -> tuple[pymunk.Space, list[pymunk.Body]]:
-        return copied(self.described)
-
-
-def copied(described: Described) -> tuple[pymunk.Space, list[pymunk.Body]]:
-    """A copy of the space, and its bodies in the mechanism's order."""
-    given = described.space
-    order = list(given.bodies)
-    places = [order.index(body) for body in described.moving]
-    space = given.copy()
-    # No body falls asleep in what is judged (`sleepers`), and pymunk (7.3.1) aborts after some copies in which
-    # bodies do.
-    space.sleep_time_threshold = inf
-    copies = list(space.bodies)
-    for mine, own in zip(copies, order, strict=True):
-        if own.center_of_gravity.length:
-            # pymunk (7.3.1) places a copy before it knows where the centre of mass is, and so elsewhere.
-            mine.angle, mine.position = own.angle, own.position
-    for mine, own in zip(space.constraints, given.constraints, strict=True):
-        if isinstance(own, PinJoint):
-            mine.distance = own.distance  # a copy of pymunk (7.3.1) takes the distance at which its bodies are
-    bodies = [copies[place] for place in places]
-    return space, bodies
-
-
-def moved_to(described: Described, pose: Array) -> pymunk.Space:
-    """A copy of the space with the centres of mass and angles of the moving bodies at a pose (bodies, 3)."""
-    space, bodies = copied(described)
-    for body, (x, y, angle) in zip(bodies, pose.tolist(), strict=True):
-        body.angle = angle
-        body.position = pymunk.Vec2d(x, y) - body.center_of_gravity.rotated(angle)
-    return space
 
 
 def start_ahead(name: str, space: pymunk.Space, dt: float) -> list[str]:
@@ -299,18 +239,9 @@ def _twists(bodies: Sequence[pymunk.Body]) -> Array:
     return np.array([(*body.velocity, body.angular_velocity) for body in bodies])
 
 
-def obstacles(
-    space: pymunk.Space,
-    bodies: Sequence[pymunk.Body],
-    words: Sequence[str],
-    labels: Sequence[str],
-    t: Array,
-    pose: Array,
-) -> list[Obstacle]:
-    """The first of each on poses (times, bodies, 3); `bodies` of the space by `words`, its constraints by `labels`.
-
-    The space is used up: its bodies are moved. Raises Unsupported for too many shapes.
-    """
+def obstacles(described: Described, t: Array, pose: Array) -> list[Obstacle]:
+    """The first of each kind on poses (times, bodies, 3). Raises Unsupported for too many shapes."""
+    space, bodies = copied(described)
     found: dict[str, Obstacle] = {}
 
     def meets(at: float, words: str, remedy: str) -> None:
@@ -323,14 +254,12 @@ def obstacles(
     pairs = [pair for pair in itertools.combinations(shapes, 2) if _may_touch(*pair, in_space)]
     limits = [
         (mine, label)
-        for mine, label in zip(space.constraints, labels, strict=True)
+        for mine, label in zip(space.constraints, described.constraints.values(), strict=True)
         if isinstance(mine, SlideJoint | RotaryLimitJoint | GrooveJoint) and not is_equality(mine)
     ]
-    names = {id(body): word for body, word in zip(bodies, words, strict=True)}
+    names = {id(body): word for body, word in zip(bodies, described.words.values(), strict=True)}
     for at, poses in zip(t, pose, strict=True):
-        for body, (x, y, angle) in zip(bodies, poses, strict=True):
-            body.angle = float(angle)
-            body.position = pymunk.Vec2d(float(x), float(y)) - body.center_of_gravity.rotated(float(angle))
+        place(bodies, poses)
         for shape in shapes:
             shape.cache_bb()
         for one, other in pairs:
@@ -341,7 +270,7 @@ def obstacles(
             if _reached(limit):
                 groove = isinstance(limit, GrooveJoint)
                 meets(at, f"{label} reaches its end", "give a longer groove" if groove else left_out("limit"))
-    return sorted(found.values(), key=lambda each: each.t)
+    return list(found.values())
 
 
 def sleepers(found: Described, step: float, t: Array, twist: Array) -> list[Obstacle]:
@@ -355,11 +284,11 @@ def sleepers(found: Described, step: float, t: Array, twist: Array) -> list[Obst
         return []
     allowed = space.idle_speed_threshold or space.gravity.length * step
     out = []
-    for place, (body, word) in enumerate(found.words.items()):
+    for index, (body, word) in enumerate(found.words.items()):
         if body.body_type != pymunk.Body.DYNAMIC:
             continue
-        speed = np.hypot(twist[:, place, 0], twist[:, place, 1])
-        turning = 0.0 if isinf(body.moment) else body.moment / body.mass * twist[:, place, 2] ** 2
+        speed = np.hypot(twist[:, index, 0], twist[:, index, 1])
+        turning = 0.0 if isinf(body.moment) else body.moment / body.mass * twist[:, index, 2] ** 2
         since = np.inf
         for at, idle in zip(t, speed**2 + turning <= allowed**2, strict=True):
             since = min(since, at) if idle else np.inf

@@ -16,7 +16,7 @@ from engines.mujoco import MuJoCo
 from engines.mujoco.model import Model as TreeModel
 from engines.mujoco.writers import mjcf
 from engines.pymunk import Pymunk
-from engines.pymunk.joints.skate import AimedGroove, Zeroed
+from engines.pymunk.joints.slide import AimedGroove, Zeroed
 from engines.pymunk.model import Model
 from reference.joints import Pin, Skate, Slot
 from reference.mechanism import Mechanism
