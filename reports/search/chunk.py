@@ -20,7 +20,7 @@ from engines import Engine
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Answer, Task, Values
 from reports.run.store import Store
-from reports.search.claims import REPORTED
+from reports.search.motions import REPORTED
 from reports.search.parts import SINGULAR
 from reports.search.subjects import Adapted, Result, Subject, is_shaped
 
@@ -51,20 +51,19 @@ class Chunk(Task):
     def engine(self) -> Engine | None:
         return self.subject.engine if isinstance(self.subject, Adapted) else None
 
+    def draw(self, number: int) -> Any:
+        """The case of this number."""
+        return self.subject.draw(self.seed, number, self.kinds, self.decades)
+
     def run(self) -> Values:
         """The results as JSON, one a case."""
         results = []
         for number in range(self.first, self.first + self.count):
-            case: Any = self.subject.draw(self.seed, number, self.kinds, self.decades)
+            case = self.draw(number)
             result = self.subject.ask(case, number, self.oracles)
-            errors = {check: (float(error), float(bound)) for check, (error, bound) in result.errors.items()}
-            results.append([list(case.kinds), errors, list(result.skipped), result.words])
+            errors = {check: [float(value) for value in pair] for check, pair in result.errors.items()}
+            results.append([case.kinds, errors, result.skipped, result.words])
         return {"results": json.dumps(results)}
-
-    @property
-    def single(self) -> tuple[Chunk, ...]:
-        """Its cases, each a piece of its own."""
-        return tuple(replace(self, first=number, count=1) for number in range(self.first, self.first + self.count))
 
 
 @dataclass(frozen=True)
@@ -77,37 +76,23 @@ class CaseResult:
     result: Result
 
 
-def results_of(answer: Answer) -> list[tuple[tuple[str, ...], Result]]:
-    """(kinds, result) of each case of a piece; none of one that has to be asked case by case."""
-    if not answer.finished:
-        return []
-    return [
-        (
-            tuple(kinds),
-            Result({check: (error, bound) for check, (error, bound) in pairs.items()}, tuple(skipped), words),
-        )
-        for kinds, pairs, skipped, words in json.loads(str(answer.values["results"]))
-    ]
-
-
 def case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
-    """The cases of these pieces. One whose process ended is a fault without a number."""
+    """The cases of these pieces. One whose process ended is a fault without a number; a piece of several cases that
+    did not finish has none, since it is asked again case by case."""
     for chunk, answer in answers.items():
-        if not answer.finished and chunk.count == 1:
+        if answer.finished:
+            rows = json.loads(str(answer.values["results"]))
+            for number, (kinds, pairs, skipped, words) in enumerate(rows, chunk.first):
+                errors = {check: (error, bound) for check, (error, bound) in pairs.items()}
+                yield CaseResult(chunk, number, tuple(kinds), Result(errors, tuple(skipped), words))
+        elif chunk.count == 1:
             fault = answer.outcome in (Outcome.ABORTED, Outcome.TIMED_OUT, Outcome.FAILED)
             errors = {str(answer.outcome): (np.inf, 0.0)} if fault else {}
             yield CaseResult(chunk, chunk.first, chunk.kinds, Result(errors, words=answer.sentence))
-        for place, (kinds, result) in enumerate(results_of(answer)):
-            yield CaseResult(chunk, chunk.first + place, kinds, result)
 
 
 def chunks(
-    subjects: Sequence[Subject],
-    seed: int,
-    cases: int,
-    kinds: Sequence[str],
-    decades: int,
-    oracles: tuple[str, ...],
+    subjects: Sequence[Subject], seed: int, cases: int, kinds: Sequence[str], decades: int, oracles: tuple[str, ...]
 ) -> list[Chunk]:
     """The pieces of the first cases of a seed, those of all subjects in turn; all kinds of a subject if none."""
     out = []
@@ -122,7 +107,7 @@ def chunks(
 def lost(answers: Mapping[Chunk, Answer]) -> list[Chunk]:
     """The cases, one by one, of pieces whose process ended or whose time was used up."""
     ended = [chunk for chunk, answer in answers.items() if not answer.finished and chunk.count > 1]
-    return [single for chunk in ended for single in chunk.single]
+    return [replace(chunk, first=chunk.first + n, count=1) for chunk in ended for n in range(chunk.count)]
 
 
 def stored(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
@@ -191,19 +176,12 @@ FOUND = ("subject", "check", "error", "may be", "seed", "decades", "case", "kind
 
 def findings(cases: Iterable[CaseResult]) -> list[list[str]]:
     """Rows of a table under FOUND, one for each check that fails in a case."""
-    return [
-        [
-            case.chunk.subject.name,
-            check,
-            *map(_short, case.result.errors[check]),
-            str(case.chunk.seed),
-            str(case.chunk.decades),
-            str(case.number),
-            ",".join(case.kinds),
-        ]
-        for case in cases
-        for check in case.result.faults
-    ]
+    out = []
+    for case in cases:
+        drawn = [str(case.chunk.seed), str(case.chunk.decades), str(case.number), ",".join(case.kinds)]
+        for check in case.result.faults:
+            out.append([case.chunk.subject.name, check, *map(_short, case.result.errors[check]), *drawn])
+    return out
 
 
 def skip_reasons(cases: Iterable[CaseResult]) -> list[tuple[str, str, int]]:

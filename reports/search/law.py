@@ -9,23 +9,29 @@ combined runs, gaps that are closed although they are but rounded.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.conformance.same import Described, Isometry
+from engines import Engine, Instant, Unpromised
+from engines.conformance.same import Described, Isometry, Three
 from engines.constrained import constrained
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
+from reference.trajectory import Trajectory
 from reports.gate.change import Nudge
 
 Array = NDArray[np.float64]
 
 MARGIN = 10.0  # noise is the largest of a few draws
 NUDGES, NUDGED = 3, 1e-3  # of its place and of a radian: what depends on these themselves changes as little
+LAW = 1e-9  # of one instant: rounding makes a thousandth of it where rows are independent
+ROUNDINGS = 10.0  # of an engine of lower precision
+STEP, STEPS = 0.01, 5  # a step of the mechanism's own time scale, and how many are asked
 Errors = Mapping[str, tuple[float, float]]  # by check (error, what it may be)
 
 
@@ -103,3 +109,67 @@ def driving_force(mechanism: Mechanism, twist: Array) -> float:
     acting = mechanism.inertias * mechanism.unconstrained(mechanism.pose, mechanism.twist)
     acting = np.abs(acting / np.array([1.0, 1.0, mechanism.length_scale])).max()
     return float(max(mechanism.inertias[:, 0].max() * pull, acting))
+
+
+def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | Skip:
+    """Errors of what an engine computes at one instant, in its first steps, against the law that it declares there
+    (`engines.Engine.instants`), relative to the largest of what enters the law."""
+    here = _instants(engine, mechanism)
+    if isinstance(here, Unpromised):
+        return Skip(here.reason)
+    bound = max(LAW, ROUNDINGS * engine.precision)
+    missed: dict[str, float] = {}
+    for instant in here:
+        missed[instant.check] = max(missed.get(instant.check, 0.0), _missed(mechanism, instant))
+    noise = dict.fromkeys(missed, 0.0)
+    if all(error <= bound for error in missed.values()):
+        return {check: (error, bound) for check, error in missed.items()}
+    for nudged, back in nudges(mechanism):
+        others = _instants(engine, nudged)
+        if not isinstance(others, Unpromised):
+            for instant, other in zip(here, others, strict=False):  # the later states of one may be left out
+                noise[instant.check] = max(noise[instant.check], _apart(mechanism, instant, other, back))
+    return {check: (error, max(bound, MARGIN * noise[check])) for check, error in missed.items()}
+
+
+def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | Unpromised:
+    """Instants of the first steps; only the start if something turns by a radian in a step, or rolls: rows of a roll
+    are those of a closed gap, and turn by an open one over the radius of curvature.
+    """
+    dt = STEP * mechanism.time_scale
+
+    def followed(instant: Instant) -> bool:
+        return turned_in_a_step(mechanism, dt, *instant.state) <= 1
+
+    rolls = any(isinstance(joint, Roll) for joint in mechanism.joints)
+    short = turned_in_a_step(mechanism, dt, mechanism.pose, mechanism.twist) <= 1 and not rolls
+    found = engine.within(mechanism).instants(mechanism, dt, STEPS if short else 0)
+    if isinstance(found, Unpromised):
+        return found
+    first = len({instant.check for instant in found})
+    return [instant for place, instant in enumerate(found) if place < first or followed(instant)]
+
+
+def _missed(mechanism: Mechanism, instant: Instant) -> float:
+    if instant.found.ndim == 1:
+        force = np.full(mechanism.row_count, driving_force(mechanism, instant.state[1]))
+        force[mechanism.turning] *= mechanism.length_scale
+        return force_difference(mechanism, instant.found, instant.expected, (force, *instant.scales))
+    return difference(mechanism, instant.found, instant.expected, instant.scales)
+
+
+def _apart(mechanism: Mechanism, instant: Instant, other: Instant, back: Callable[[Trajectory], Three]) -> float:
+    """By how much another description changes what is computed, and what is expected."""
+
+    def described_back(values: Array) -> Array:
+        motion, force = np.zeros((1, len(mechanism.bodies), 3)), np.zeros((1, mechanism.row_count))
+        (force if values.ndim == 1 else motion)[0] = values
+        _, twist, reaction = back(Trajectory(np.zeros(1), motion, motion, force, 0.0))
+        return reaction[0] if values.ndim == 1 else twist[0]
+
+    scales = (*instant.scales, instant.expected)
+    pairs = (other.found, instant.found), (other.expected, instant.expected)
+    return sum(
+        _missed(mechanism, replace(instant, found=described_back(new), expected=old, scales=scales))
+        for new, old in pairs
+    )

@@ -2,24 +2,21 @@
 
     from reports.search.mechanisms import mechanism, recipe
     for number in range(2000):
-        drawn = mechanism(seed=1, number=number)                          # all kinds of joints
-        pins = mechanism(1, number, kinds=("pin",))                       # trees and loops of pins alone
+        drawn = mechanism(seed=1, number=number)                          # all kinds of joints of the first days
         wide = mechanism(1, number, kinds=("pin", "slot", "skate"), decades=2)
-    whole = mechanism(1, number, kinds=EVERY)                         # rods, gears, welds and forces too
+        whole = mechanism(1, number, kinds=EVERY)                         # rods, gears, welds and forces too
 
-A case depends on its own seed, number, kinds and decades alone, not on those drawn before: numpy's PCG64 gives its
-whole numbers, which are the same on every machine, and `recipe` tells them (velocities are computed from them by linear
-algebra, so they may differ by a rounding).
-
-What comes out: 1 to 6 bodies; most hang on an earlier body or on the ground by a joint of the kinds asked for, and up
-to three further joints close loops. Bodies, blades, slots and contacts stand at odd angles and off the centres of mass.
-Half of the mechanisms are pulled by gravity, three quarters move; never is there neither. The joints' rows are
-independent (`recipe.LEAST_RANK`), and something is free to move or a drive turns.
+A case depends on its own seed, number, kinds and decades alone: numpy's PCG64 gives its whole numbers, which are the
+same on every machine. There are 1 to 6 bodies; most hang on an earlier body or on the ground by a joint of the kinds
+asked for, and up to three further joints close loops. Bodies, blades, slots and contacts stand at odd angles and off
+the centres of mass. Half of the mechanisms are pulled by gravity, three quarters move; never is there neither. The
+joints' rows are independent (`recipe.LEAST_RANK`), and something is free to move or a drive turns.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from typing import Annotated
@@ -33,7 +30,6 @@ from reference.mechanism import Mechanism
 from reports.search.parts import EVERY, FOLD, FORCES, KINDS, SINGULAR, TOGGLE, Link, Part, Recipe, Rim
 from reports.search.recipe import Held, Standing, build
 
-ALL = KINDS
 MOST_BODIES, MOST_LOOPS = 6, 3
 MOST_DECADES = 6
 # The first rim and the second of a roll: which pairs of shapes can roll whatever their sizes are.
@@ -53,13 +49,13 @@ Kinds = Sequence[str]
 
 
 @validated
-def mechanism(seed: Seed, number: Seed, kinds: tuple[str, ...] = ALL, decades: Decades = 0) -> Mechanism:
+def mechanism(seed: Seed, number: Seed, kinds: tuple[str, ...] = KINDS, decades: Decades = 0) -> Mechanism:
     """The mechanism of `recipe` with the same arguments."""
     return build(recipe(seed, number, kinds, decades))
 
 
 @validated
-def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = ALL, decades: Decades = 0) -> Recipe:
+def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = KINDS, decades: Decades = 0) -> Recipe:
     """Case `number` of a seed, of joints and forces of these `kinds` alone (of `EVERY`; in whatever order).
 
     Masses are from 0.1 to 10 kg, lengths from 0.1 m to some metres, rates some rad/s. With `decades`, masses and sizes
@@ -110,11 +106,12 @@ class _Draw:
             )
             for index in range(count)
         )
-        decades = (self._unit(), self._unit(), self._unit())
+        length, mass, time = (self.whole(-self._decades, self._decades) for _ in range(3))
+        decades = length, mass, time
         links = [self._link(part.parent, index, parts) for index, part in enumerate(parts, start=1)]
         for _ in range(self.whole(0, MOST_LOOPS)):
             links.append(self._link(*self._pair(count), parts))
-        links = [each for link in links for each in self._pinned(link)]
+        links = [each for link in links for each in _pinned(link)]
         standing = Standing(Recipe(parts, (), pull, decades))
         kept, held = self._independent(standing, links)
         moved = kept and (any(pull) or standing.allowed(held).any())
@@ -139,14 +136,6 @@ class _Draw:
                 held, freedom = more, left
                 kept.append(link)
         return tuple(kept), held
-
-    def _pinned(self, link: Link) -> tuple[Link, ...]:
-        if link.kind == FOLD:
-            return Link("pin", 0, link.first, link.far), Link("pin", 0, link.second, link.at), link
-        return (Link("pin", link.first, link.second, link.at), link) if link.kind == TOGGLE else (link,)
-
-    def _unit(self) -> int:
-        return self.whole(-self._decades, self._decades)
 
     def _pair(self, count: int) -> tuple[int, int]:
         first, second = self.whole(0, count), self.whole(1, count)
@@ -192,6 +181,13 @@ class _Draw:
         return Link(kind, first, second, at, turn, more, strength=strength, rest=rest if "spring" in kind else 0)
 
 
+def _pinned(link: Link) -> tuple[Link, ...]:
+    """A link after the pins that it needs."""
+    if link.kind == FOLD:
+        return Link("pin", 0, link.first, link.far), Link("pin", 0, link.second, link.at), link
+    return (Link("pin", link.first, link.second, link.at), link) if link.kind == TOGGLE else (link,)
+
+
 SHAPES = 6  # of a search, of each set of kinds; every second one with a loop
 RUN = 10  # cases after which the next shape comes
 MOST_TRIED = 400  # shapes that an engine may refuse
@@ -217,53 +213,40 @@ def _shapes(engine: Engine, seed: int, kinds: tuple[str, ...], decades: int) -> 
         if len(found) % 2 and len(joints) <= len(drawn.parts):
             continue
         mechanism = build(drawn)
-        try:
+        with suppress(Unsupported):
             engine.build(mechanism, mechanism.time_scale)
-        except Unsupported:
-            continue
-        found.append(drawn)
+            found.append(drawn)
         if len(found) == SHAPES:
             break
     return tuple(found)
 
 
 def renumbered(shape: Recipe, whole: Whole) -> Recipe:
-    """The same shape with other numbers, in the ranges of `mechanisms`; `whole(low, high)` draws one, both included."""
+    """The same shape with other numbers, in the ranges of `recipe`; `whole(low, high)` draws one, both included.
+
+    Zero stays zero, since a drive at rest is held otherwise than one that turns. A ratio of gears is compiled in.
+    """
+
+    def part(old: Part) -> Part:
+        velocity = (whole(-4, 4), whole(-4, 4), whole(-6, 6)) if moving else (0, 0, 0)
+        offset, angle, gyration = (whole(-8, 8), whole(-8, 8)), whole(-10, 10), whole(-3, 0)
+        size, mass = old.size + whole(-1, 1), old.mass + whole(-1, 1)
+        return replace(old, offset=offset, angle=angle, size=size, mass=mass, gyration=gyration, velocity=velocity)
+
+    def link(old: Link) -> Link:
+        new = {"turn": whole(-10, 10) or 1, "strength": whole(-2, 4) or 1, "rest": whole(-10, 10) or 1}
+        new |= {"more": whole(1, 8) * (1 if whole(0, 1) else -1)} if old.kind != "gear" else {}
+        changed = {name: value for name, value in new.items() if getattr(old, name)}
+        return replace(old, at=(whole(-6, 6), whole(-6, 6)), **changed)
+
     while True:
         moving = whole(1, 4) > 1
         pull = (whole(-10, 10), whole(-10, 10)) if not moving or whole(0, 1) else (0, 0)
-        parts = tuple(_part(part, whole, moving) for part in shape.parts)
-        drawn = replace(shape, parts=parts, links=tuple(_link(link, whole) for link in shape.links), gravity=pull)
+        parts, links = tuple(map(part, shape.parts)), tuple(map(link, shape.links))
+        drawn = replace(shape, parts=parts, links=links, gravity=pull)
         try:
             mechanism = build(drawn)
         except InvalidMechanism:  # rows that are nearly dependent
             continue
         if any(pull) or mechanism.twist.any():
             return drawn
-
-
-def _part(part: Part, whole: Whole, moving: bool) -> Part:
-    velocity = (whole(-4, 4), whole(-4, 4), whole(-6, 6)) if moving else (0, 0, 0)
-    return replace(
-        part,
-        offset=(whole(-8, 8), whole(-8, 8)),
-        angle=whole(-10, 10),
-        size=part.size + whole(-1, 1),
-        mass=part.mass + whole(-1, 1),
-        gyration=whole(-3, 0),
-        velocity=velocity,
-    )
-
-
-def _link(link: Link, whole: Whole) -> Link:
-    """What is zero stays so: a drive at rest is held otherwise than one that turns. A ratio of gears is compiled in."""
-    changed = replace(link, at=(whole(-6, 6), whole(-6, 6)))
-    if link.turn:
-        changed = replace(changed, turn=whole(-10, 10) or 1)
-    if link.more and link.kind != "gear":
-        changed = replace(changed, more=whole(1, 8) * (1 if whole(0, 1) else -1))
-    if link.strength:
-        changed = replace(changed, strength=whole(-2, 4) or 1)
-    if link.rest:
-        changed = replace(changed, rest=whole(-10, 10) or 1)
-    return changed

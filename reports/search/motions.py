@@ -1,10 +1,9 @@
 """A short motion and its reactions against the judge, at two steps or more, with the order that the engine promises.
 
-An order shows where steps are short against all that happens: a rod that turns fast, impulses that settle in many
-steps, a gap that is closed in a time of its own. So they are halved, up to FINEST parts, until it shows for poses and
-for reactions; an error that was small by chance does not count against the next. A step at which the motion is lost, as
-anybody sees, is too long, if it is right at shorter ones. What never falls is a fault, unless it is noise
-(`reports.search.law`), what joints that give way as declared leave, or what a textbook method does not show either.
+An order shows where steps are short against all that happens. So they are halved, up to FINEST parts, until it shows
+for poses and for reactions; an error that was small by chance does not count against the next. A step at which the
+motion is lost is too long, if it is right at shorter ones. An error that never falls is a fault, unless it is noise
+(`reports.search.law`), the error of joints that give way as declared, or a textbook method shows no order either.
 """
 
 from __future__ import annotations
@@ -16,7 +15,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Promise, Unpromised
+from engines import CLAIM, Engine, Promise, Unpromised
+from engines.constraint_error import FORCES, largest_force
 from engines.lagrange import HELD, TRUTH
 from engines.lagrange.dynamics import inverse_inertia
 from engines.remembered import by_identity
@@ -204,29 +204,23 @@ class _Case:
 
     def noise(self, run: Trajectory, parts: int) -> Floors:
         """How much errors change with the roundings of the run and of the judge, and with what its solver leaves."""
-        found = dict.fromkeys(LEAST, 0.0)
-
-        def compare(other: Trajectory, with_: Trajectory) -> None:
-            for name, value in self.apart(other, with_).items():
-                found[name] = max(found[name], value)
-
+        pairs: list[tuple[Trajectory, Trajectory]] = []
         for nudged, back in nudges(self.mechanism):
-            for plain, other in (
-                (run, _run(self.engine, nudged, self.dt, parts)),
-                (self.truth, judged.__wrapped__(nudged)),  # pyright: ignore[reportFunctionMemberAccess]
-            ):
+            truth = judged.__wrapped__(nudged)  # pyright: ignore[reportFunctionMemberAccess]
+            for plain, other in ((run, _run(self.engine, nudged, self.dt, parts)), (self.truth, truth)):
                 pose, twist, reaction = back(other)
-                compare(replace(other, pose=pose, twist=twist, reaction=reaction), plain)
+                pairs.append((replace(other, pose=pose, twist=twist, reaction=reaction), plain))
         stricter = self.engine.alike(self.mechanism)
         if stricter is not None:
-            compare(_run(stricter, self.mechanism, self.dt, parts), run)
-        return found
+            pairs.append((_run(stricter, self.mechanism, self.dt, parts), run))
+        differences = [self.apart(*pair) for pair in pairs]
+        return {name: max(each[name] for each in differences) for name in LEAST}
 
     def resolved(self, parts: int) -> bool:
         """Whether a textbook method of the promised order, or 4, shows it up to these parts, twice in a row.
 
-        A spring that shrinks to nothing for less than a step pushes one way and then the other: what a method makes of
-        that depends on where its stages fall, and its error on no power of the step.
+        A spring that shrinks to nothing for less than a step pushes one way and then the other: the error depends on
+        where a method's stages fall, and on no power of the step.
         """
         usual = Promise(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
         spacing, parts = SPAN * self.mechanism.time_scale / SAMPLES, max(4, parts)
@@ -246,12 +240,10 @@ class _Case:
     def as_declared(self, run: Trajectory, parts: int) -> dict[str, tuple[float, float]]:
         """How far a run is from the judge's with joints that give way as declared at its step, and how far it may be.
 
-        A softness that is tied to the step falls with its power only where it is small: a light body's gear that turns
-        a heavy one gives way by a radian, and a row without its term of velocities loses the energy of a short rod's
-        end until the row turns little in its own time constant. The judge's own run shows that, at the same steps, and
-        the engine may be ROOM times as far from it as its numbers are open: by the steps, which it takes in other
-        coordinates, as far as double steps lead; and by the compliance, a share of an inverse inertia, which the judge
-        takes at each pose and MuJoCo at the start: as far as their largest ratio leads.
+        A softness that is tied to the step falls with its power only where it is small. The judge's own run shows that,
+        at the same steps, and the engine may be ROOM times as far from it as its numbers are open: by the steps, which
+        it takes in other coordinates, as far as double steps lead; and by the compliance, a share of an inverse inertia
+        that the judge takes at each pose and MuJoCo at the start, as far as their largest ratio leads.
         """
         mechanism, spacing = self.mechanism, SPAN * self.mechanism.time_scale / SAMPLES
         softness = self.engine.softness(mechanism, self.dt / parts)
@@ -259,28 +251,25 @@ class _Case:
             return {}
         order, gives = int(self.promise.step("angle")), giving_way(mechanism, softness)
 
-        def judged_as(compliance: float, finer: float = 1.0) -> Trajectory:
+        def judged_as(
+            compliance: float, every: int
+        ) -> Trajectory:  # SAMPLES x COARSE samples, so that fast rows are met
             soft = replace(softness, compliance=compliance * softness.compliance)
-            every = max(1, int(finer * parts))  # of SAMPLES x COARSE samples, so that fast rows are met
             return in_numpy(mechanism, SAMPLES * COARSE, spacing / COARSE, order, every, soft, least=0.0)
 
-        def at_samples(soft: Trajectory) -> Trajectory:
-            names = ("t", "pose", "twist", "reaction")
-            return replace(soft, **{name: getattr(soft, name)[::COARSE] for name in names})
-
         try:
-            right = judged_as(1.0)
+            right = judged_as(1.0, parts)
             products = [(rows / mechanism.inertias.reshape(-1)) @ rows.T for rows in mechanism.rows(right.pose)]
             share = np.array([inverse_inertia(product, gives, 0.0)[gives] for product in products])
-            others = judged_as(1.0, 0.5), judged_as(float((share.max(axis=0) / share.min(axis=0)).max()))
+            ratio = float((share.max(axis=0) / share.min(axis=0)).max())
+            runs = right, judged_as(1.0, max(1, parts // 2)), judged_as(ratio, parts)
         except ValueError:  # curves can't touch where it goes
             return {}
-        right = at_samples(right)
-        open_by = [self.apart(at_samples(other), right) for other in others]
-        return {
-            name: (error, max(LEAST[name], ROOM * max(each[name] for each in open_by)))
-            for name, error in self.apart(run, right).items()
-        }
+        names = ("t", "pose", "twist", "reaction")
+        right, *others = (replace(soft, **{name: getattr(soft, name)[::COARSE] for name in names}) for soft in runs)
+        open_by = [self.apart(other, right) for other in others]
+        bounds = {name: max(least, ROOM * max(each[name] for each in open_by)) for name, least in LEAST.items()}
+        return {name: (error, bounds[name]) for name, error in self.apart(run, right).items()}
 
     def estimated(self, run: Trajectory) -> float:
         """The error that the estimates of a run and of the judge let pass."""
@@ -294,3 +283,53 @@ class _Case:
         if missed > bound:
             bound = max(bound, MARGIN * self.noise(run, parts)["motion"])
         return missed, min(bound, LOST)
+
+
+LASTS = 2.0  # times the mechanism's own time scale
+CLAIM_STEPS, EVERY = (40, 100, 200), (1, 2, 5)  # in that time, and between samples: in turn, by the case's number
+CLAIMED, REACTIONS, REPORTED = "claimed", "claimed of reactions", "reported, though right"
+
+
+def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | Skip:
+    """(error, claim) of a method with an estimate of its own, over a longer motion, at steps as users take.
+
+    Poses, in radians or parts of the length, are right to CLAIM until `unresolved_at`, and reactions to FORCES of the
+    largest force, unless it warns of them. A warning of another kind takes the claim back. REPORTED, which is 1 or 0,
+    counts the warnings of motions that are right from beginning to end: no fault.
+    """
+    steps, every = CLAIM_STEPS[number % len(CLAIM_STEPS)], EVERY[number // len(CLAIM_STEPS) % len(EVERY)]
+    dt = LASTS * mechanism.time_scale / steps
+    run = engine.build(mechanism, dt)(steps // every, every)
+    if run.estimate is None:
+        return Skip("it has no estimate of its own error")
+    truth = _judged_longer(mechanism)
+    if truth.unresolved_at is not None or truth.warnings or not np.isfinite(truth.pose).all():
+        return Skip(f"the judge itself does not hold {HELD:g}, as it says")
+    return compared(mechanism, run, truth)
+
+
+def compared(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str, tuple[float, float]]:
+    """The same of a run, whose samples are among those of the judge."""
+    at = np.linspace(0, len(truth.t) - 1, len(run.t)).round().astype(int)
+    length, arm = mechanism.length_scale, np.where(mechanism.turning, mechanism.length_scale, 1.0)
+    missed = np.nan_to_num(np.abs(run.pose - truth.pose[at]) / [length, length, 1.0], nan=np.inf).max(axis=(1, 2))
+    until = run.t < (np.inf if run.unresolved_at is None else run.unresolved_at)
+    of_reactions = [words for words in run.warnings if "reactions are" in words]
+    told = run.unresolved_at is not None or len(of_reactions) < len(run.warnings)
+    out = {}
+    if run.unresolved_at is not None or not told:
+        out[CLAIMED] = (float(missed[until].max(initial=0.0)), CLAIM)
+    if missed.max() <= CLAIM:
+        out[REPORTED] = (float(told), 1.0)
+    if mechanism.row_count and not told and not of_reactions:
+        off = np.nan_to_num(run.reaction[1:] - truth.reaction[at][1:]) / arm
+        largest = largest_force(mechanism, truth.pose[at], truth.twist[at], truth.reaction[at])
+        out[REACTIONS] = (float(np.abs(off).max()) / largest, FORCES)
+    return out
+
+
+@by_identity(ASKED)
+def _judged_longer(mechanism: Mechanism) -> Trajectory:
+    """The judge's motion, at all instants at which any run is sampled."""
+    samples = int(np.lcm.reduce(CLAIM_STEPS))
+    return TRUTH.build(mechanism, LASTS * mechanism.time_scale / samples)(samples, 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import shlex
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -18,11 +19,10 @@ from reports.run.store import Store
 from reports.search import plan
 from reports.search.chunk import CaseResult, case_results, chunk_from_json, refused, skip_reasons, stored
 from reports.search.mechanisms import SHAPES
-from reports.search.mujoco_alone import BESIDE, CURVED
 from reports.search.planted import FAULTS, SIZES, Control, controls
 from reports.search.recipe import LEAST_RANK, NEAREST
 from reports.search.relations import NAMES
-from reports.search.release import release_of
+from reports.search.release import BESIDE, CURVED, release_of
 from reports.search.shrinking import Shrink, line_of, worst_of
 from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 from reports.write.tables import number
@@ -138,17 +138,14 @@ def _counts(cases: Sequence[CaseResult]) -> list[list[str]]:
     subjects: dict[str, list[CaseResult]] = {}
     for case in cases:
         subjects.setdefault(case.chunk.subject.name, []).append(case)
-    return [
-        [name, str(len(some)), str(sum(refused(some).values())), *(_judged(some, group) for group in GROUPS)]
-        for name, some in subjects.items()
-    ]
-
-
-def _judged(cases: Sequence[CaseResult], group: str) -> str:
-    """'119', or '119, **2 wrong**'; a dash where nothing of the group was asked."""
-    count = sum(any(_group(check) == group for check in case.result.errors) for case in cases)
-    wrong = sum(any(_group(check) == group for check in case.result.faults) for case in cases)
-    return (f"{count}, **{wrong} wrong**" if wrong else str(count)) if count or wrong else "-"
+    out = []
+    for name, some in subjects.items():
+        judged = Counter(group for case in some for group in {_group(check) for check in case.result.errors})
+        wrong = Counter(group for case in some for group in {_group(check) for check in case.result.faults})
+        marks = {group: f", **{count} wrong**" for group, count in wrong.items()}
+        cells = [f"{judged[group]}{marks.get(group, '')}" if judged[group] else "-" for group in GROUPS]
+        out.append([name, str(len(some)), str(sum(refused(some).values())), *cells])
+    return out
 
 
 def _skipped(cases: Sequence[CaseResult]) -> list[list[str]]:
@@ -184,14 +181,14 @@ def _command(case: CaseResult) -> str:
 
 def _planted(answers: Mapping[Control, Answer]) -> list[list[str]]:
     """A line for each fault: the case that found it in each engine, and how large it had to be if not 1e-6."""
-    known = {(task.fault, task.name): answer for task, answer in answers.items()}
+    known = {(task.fault, task.name): _how_soon(answer) for task, answer in answers.items()}
     names = dict.fromkeys(task.name for task in answers)
-    return [[fault, *(_how_soon(known.get((fault, name))) for name in names)] for fault in FAULTS if answers]
+    return [[fault, *(known.get((fault, name), "") for name in names)] for fault in FAULTS if answers]
 
 
-def _how_soon(answer: Answer | None) -> str:
-    if answer is None or not answer.finished:
-        return answer.told if answer else ""
+def _how_soon(answer: Answer) -> str:
+    if not answer.finished:
+        return answer.told
     if not answer.number("built"):
         return "not built"
     if not answer.number("asked"):

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from decimal import Decimal
-from typing import Any
+from typing import Any, TypeVar, get_args, get_type_hints
+
+Case = TypeVar("Case")
 
 KINDS = ("pin", "slot", "skate", "roll", "drive")  # from the beginning; the same seed still gives the same of them
 LINKS = ("rod", "gear", "weld")
@@ -103,34 +105,32 @@ def ladder(step: int) -> Decimal:
     return Decimal((1, 2, 5)[step % 3]).scaleb(step // 3)
 
 
-def as_text(recipe: Recipe) -> str:
-    """JSON, with what is as usual left out."""
+def as_text(case: Any) -> str:
+    """A recipe, or another case of `parts` and `links`, as JSON without its default values."""
 
-    def short(value: Any) -> dict[str, Any]:
-        usual = {field.name: field.default for field in fields(value)}
-        own = {name: getattr(value, name) for name in usual if name not in ("parts", "links", "rims")}
-        return {name: each for name, each in own.items() if each != usual[name]}
+    def plain(value: Any) -> Any:
+        if not is_dataclass(value):
+            return [plain(item) for item in value] if isinstance(value, tuple) else value
+        items = {field.name: (getattr(value, field.name), field.default) for field in fields(value)}
+        return {name: plain(item) for name, (item, default) in items.items() if item != default}
 
-    def linked(link: Link) -> dict[str, Any]:
-        return short(link) | ({"rims": [short(rim) for rim in link.rims]} if link.rims else {})
-
-    parts, links = [short(part) for part in recipe.parts], [linked(link) for link in recipe.links]
-    return json.dumps({**short(recipe), "parts": parts, "links": links}, sort_keys=True)
+    return json.dumps(plain(case), sort_keys=True)
 
 
-def from_text(text: str) -> Recipe:
-    """The recipe that `as_text` wrote. Raises ValueError for text that is none."""
+def from_text(text: str, kind: type[Case]) -> Case:
+    """The case of this kind that `as_text` wrote. Raises ValueError for other text."""
+
+    def made(values: dict[str, Any], kind: type) -> Any:
+        hints = get_type_hints(kind)
+        return kind(**{name: frozen(value, hints[name]) for name, value in values.items()})
+
+    def frozen(value: Any, hint: Any) -> Any:
+        if not isinstance(value, list):
+            return value
+        item: Any = get_args(hint)[0]
+        return tuple(made(each, item) if isinstance(item, type) and is_dataclass(item) else each for each in value)
+
     try:
-        told = json.loads(text)
-        parts = tuple(Part(**{k: _frozen(v) for k, v in part.items()}) for part in told.pop("parts"))
-        links = []
-        for link in told.pop("links"):
-            rims = tuple(Rim(**rim) for rim in link.pop("rims", ()))
-            links.append(Link(**{k: _frozen(v) for k, v in link.items()}, rims=rims))
-        return Recipe(parts, tuple(links), **{k: _frozen(v) for k, v in told.items()})
+        return made(json.loads(text), kind)
     except (TypeError, KeyError, AttributeError) as error:
-        raise ValueError(f"recipe: this is no recipe ({error}); it must be what `as_text` writes") from None
-
-
-def _frozen(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
+        raise ValueError(f"this is no {kind.__name__.lower()} ({error}); it must be what `as_text` writes") from None

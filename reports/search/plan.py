@@ -27,7 +27,7 @@ CASES, ALONE = 100, 1000  # of an engine for each seed; of MuJoCo alone
 COMPILED = 20
 NEAR = 60  # of each engine that knows pins and rods, with rows that nearly depend on each other
 TRIED = 60  # mechanisms of one kind, by which is known whether an engine takes it
-# A slot as users of pymunk build it, wherever its point is: see `engines.pymunk.joints.slot`.
+# A slot as users of pymunk build it, wherever its point is: see `engines.pymunk.joints.slide`.
 GROOVE = Adapted(replace(pymunk.DEFAULT, variant="slots as grooves", slot="groove"))
 
 

@@ -28,11 +28,12 @@ from reports.search import relations
 from reports.search.mechanisms import RUN, SHAPES
 from reports.search.parts import EVERY
 from reports.search.plan import taken
-from reports.search.subjects import Adapted, Result
+from reports.search.subjects import Adapted
 
 Array = NDArray[np.float64]
 
-# By kind the number that is off: a part of it, or of a length where it is a point, or so many radians.
+# By fault, which begins with a kind, the number that is off: by a part of it, of a length if it is a point, or so many
+# radians.
 NUMBER = {
     "pin": "second_point",
     "slot": "line_angle",
@@ -48,9 +49,11 @@ NUMBER = {
     "torsion-damper": "damping",
     "force": "second_point",
     "torque": "torque",
+    "spring rest_length": "rest_length",
+    "torsion-spring rest_angle": "rest_angle",
+    "force force": "force",
 }
 ANGLES = ("line_angle", "angle", "rest_angle")
-FURTHER = ("spring rest_length", "torsion-spring rest_angle", "force force")  # other numbers of these kinds
 CLOSING_STEPS = 6  # of Newton's method, which closes the joints of a wrong model: quadratic from a miss of 1e-2
 
 
@@ -64,7 +67,7 @@ class Misbuilt(Mechanism):
     right: Mechanism = field(kw_only=True)
 
     def _refuse_a_bad_start(self) -> None:
-        pass
+        """Accept any."""
 
     def reaction(
         self,
@@ -95,7 +98,7 @@ class Off:
 
     @property
     def kind(self) -> str:
-        return self.fault.split()[0] if self.fault in FURTHER else self.fault
+        return self.fault.split()[0] if self.fault in NUMBER else self.fault
 
     @property
     def is_relation(self) -> bool:
@@ -111,7 +114,7 @@ class Off:
         if self.kind == "turned":
             x, y = mechanism.gravity
             return replace(mechanism, gravity=((1 + self.relative) * x, y))
-        if self.kind not in NUMBER:
+        if self.fault not in NUMBER:
             bodies = tuple(self._heavier(mechanism, body) for body in mechanism.bodies)
             return replace(mechanism, bodies=bodies)
         length = mechanism.length_scale
@@ -125,19 +128,16 @@ class Off:
     def _wrong(self, part: Any, length: float) -> Any:
         if kind_of(part) != self.kind:
             return part
-        name = self.fault.split()[1] if self.fault in FURTHER else NUMBER[self.kind]
-        value = getattr(part, name)
-        if isinstance(value, Rolling):
-            curve = Placed(value.body, shift=(self.relative * length, 0.0))
-            off: Any = Rolling.at_angle(curve, value.ground, value.theta, value.ground_arc)
-        elif name in ANGLES:
-            off = value + self.relative
-        elif isinstance(value, tuple) and name != "force":
-            off = (value[0] + self.relative * length, value[1])
-        elif isinstance(value, tuple):
-            off = tuple((1 + self.relative) * each for each in value)
-        else:
-            off = (1 + self.relative) * value
+        name = NUMBER[self.fault]
+        match getattr(part, name):
+            case Rolling() as rolling:
+                curve = Placed(rolling.body, shift=(self.relative * length, 0.0))
+                off: Any = Rolling.at_angle(curve, rolling.ground, rolling.theta, rolling.ground_arc)
+            case (x, y):
+                off = ((1 + self.relative) * x, (1 + self.relative) * y)
+                off = off if name == "force" else (x + self.relative * length, y)
+            case value:
+                off = value + self.relative if name in ANGLES else (1 + self.relative) * value
         return replace(part, **{name: off})
 
     def _heavier(self, mechanism: Mechanism, body: Body) -> Body:
@@ -159,7 +159,7 @@ def kind_of(part: Any) -> str:
     return re.sub(r"(?<!^)(?=[A-Z])", "-", type(part).__name__).lower()
 
 
-FAULTS = ("inertia", *EVERY, *FURTHER, *relations.NAMES)
+FAULTS = ("inertia", *NUMBER, *relations.NAMES)
 # By engine, the variants of which the own error hides least: one for the law of an instant, one for a motion.
 LEAST: Mapping[str, tuple[Engine, ...]] = {
     "pymunk": (pymunk.LEAPFROG, pymunk.EXTENDED),
@@ -200,45 +200,44 @@ class Control(Task):
     def run(self) -> Values:
         """The size, and the check and the number of the case that finds it, NaN where none does; whether the engine
         builds this kind, and how many times it was asked until then."""
-        kind, asked = Off(self.fault, 0.0).kind, 0
-        built = kind not in EVERY or kind in taken(LEAST[self.name][0])
+        engines, kind, asked = LEAST[self.name], Off(self.fault, 0.0).kind, 0
+        built = kind not in EVERY or kind in taken(engines[0])
         size, case, check = np.nan, np.nan, ""
         for tried in self.sizes if built else ():
-            for number, result, found in searched(LEAST[self.name], Off(self.fault, tried), self.cases):
-                asked += bool(result.errors)
-                if found:
-                    size, case, check = tried, number, found
+            for number, was_asked, check in searched(engines, Off(self.fault, tried), self.cases):
+                asked += was_asked
+                if check:
+                    size, case = tried, number
             if check or not asked:
                 break
         numbers = {"size": size, "case": case, "built": built, "asked": asked}
         return {name: np.array(value) for name, value in numbers.items()} | {"check": check}
 
 
-def searched(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[tuple[int, Result, str]]:
-    """(case, result, the check that fails by this change and not without it), by number until one does."""
-    for number in range(cases):
+def searched(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[tuple[int, bool, str]]:
+    """(case, whether it was judged, the check that fails by this change and not without it), until one does."""
+    of_motion = ("instant",) if any(engine.building for engine in engines) else ("instant", "motions")
+    oracles = ("relations",) if change.is_relation else of_motion  # one is enough where each shape is compiled
+    for number, engine in product(range(cases), engines):
         if change.is_relation and relations.NAMES[number % len(relations.NAMES)] != change.kind:
             continue
-        for engine in engines:
-            right, wrong = Adapted(engine), Adapted(Altered(engine, change))
-            case = right.draw(SEED, number, change.kinds, 0)
-            if change.kind in EVERY and change.kind not in case.kinds:
+        right, wrong = Adapted(engine), Adapted(Altered(engine, change))
+        case = right.draw(SEED, number, change.kinds, 0)
+        if change.kind in EVERY and change.kind not in case.kinds:
+            continue
+        for oracle in oracles:
+            try:
+                result = wrong.ask(case, number, (oracle,))
+            except (InvalidMechanism, np.linalg.LinAlgError):  # with the fault this one is no mechanism
                 continue
-            # Where a program is compiled for each shape, one oracle is enough.
-            motion = ("instant",) if engine.building else ("instant", "motions")
-            for oracle in ("relations",) if change.is_relation else motion:
-                try:
-                    result = wrong.ask(case, number, (oracle,))
-                except (InvalidMechanism, np.linalg.LinAlgError):  # with the fault this one is no mechanism
-                    continue
-                checks = [name for name in result.faults if name != "raised"]
-                checks = [name for name in checks if not change.is_relation or name == change.kind]
-                if checks:
-                    before = right.ask(case, number, (oracle,)).faults
-                    checks = [name for name in checks if name not in before]
-                yield number, result, f"{engine.variant}: {checks[0]}" if checks else ""
-                if checks:
-                    return
+            faults = [check for check in result.faults if check != "raised"]
+            faults = [check for check in faults if not change.is_relation or check == change.kind]
+            if faults:
+                before = right.ask(case, number, (oracle,)).faults
+                faults = [check for check in faults if check not in before]
+            yield number, bool(result.errors), f"{engine.variant}: {faults[0]}" if faults else ""
+            if faults:
+                return
 
 
 def controls() -> list[Control]:

@@ -29,174 +29,8 @@ from reference.rolling.roll import Roll
 from reference.scales import length_scale
 from reports.search.parts import ANGLE, EVERY, FORCES, RATE, SHAPES, SINGULAR, Link, Recipe, Rim, ladder
 
-Point = tuple[Decimal, Decimal]
-
-
-@dataclass(frozen=True, eq=False)
-class Joining:
-    """The bodies of a recipe where they stand, with their `places` [m] and `sizes` [m], the ground's first, and the
-    unit of `time` [s]: what a link needs to become a joint or a force.
-    """
-
-    bodies: Sequence[Body]
-    places: Sequence[Point]
-    sizes: Sequence[Decimal]
-    time: Decimal
-
-    def check(self, link: Link, number: int) -> None:
-        """Raise InvalidMechanism for a link of bodies that are not there, or of an unknown kind."""
-        count = len(self.bodies)
-        if not (0 <= link.first <= count and 0 < link.second <= count and link.first != link.second):
-            raise InvalidMechanism(
-                f"recipe: joint {number} is between bodies {link.first} and {link.second}; the first must be from 0 "
-                f"to {count}, the second from 1, and they must differ"
-            )
-        if link.kind not in (*EVERY, *SINGULAR) or (link.kind == "roll" and len(link.rims) != 2):
-            raise InvalidMechanism(
-                f"recipe: joint {number} is a {link.kind!r} of {len(link.rims)} rims; it must be one of "
-                f"{', '.join(EVERY)}, a roll with two rims"
-            )
-
-    def joint(self, link: Link, number: int) -> Joint:
-        """The joint of a link that is one, `number` being its own. Raises InvalidMechanism for one that can't be."""
-        self.check(link, number)
-        size, name, ends = self.sizes[link.second], f"{link.kind} {number}", self._ends(link)
-        (first, second), (first_angle, second_angle) = self._points(link), self._angles(link)
-        direction = float(link.turn * ANGLE)
-        match link.kind:
-            case "pin":
-                return Pin(name, *ends, first, second)
-            case "slot":
-                along, line = float(link.more * size / 10), direction - first_angle
-                through = (first[0] + along * math.cos(line), first[1] + along * math.sin(line))
-                return Slot(name, *ends, through, line, second)
-            case "skate":
-                return Skate(name, *ends, second, direction - second_angle)
-            case "drive":
-                return Drive(name, *ends, float(link.more * RATE / self.time), second_angle - first_angle)
-            case "roll":
-                ground, ground_arc = _touching(link.rims[0], size, first, direction - first_angle)
-                curve, arc = _touching(link.rims[1], size, second, direction + math.pi - second_angle)
-                return Roll(name, *ends, Rolling(curve, ground, second_angle - first_angle, ground_arc, arc))
-            case "rod":
-                return Rod(name, *ends, self._far_point(link), second, abs(float(link.more * size / 10)))
-            case "toggle":
-                along = float(link.more * size / 10)
-                miss = float(size.scaleb(-link.strength))
-                line = direction - second_angle
-                second = (
-                    second[0] - along / 2 * math.cos(line) - miss * math.sin(line),
-                    second[1] - along / 2 * math.sin(line) + miss * math.cos(line),
-                )
-                return Rod(name, *ends, self._far_point(link), second, math.hypot(1.5 * along, miss))
-            case "fold":
-                pin, other = self._at(link), beside(self.places[link.first], link.far, self.sizes[link.first])
-                across, up = float(other[0] - pin[0]), float(other[1] - pin[1])
-                if not math.hypot(across, up) > 0:
-                    raise InvalidMechanism(f"recipe: joint {number} is a fold whose two pins are at one place")
-                beyond, miss = link.more / 10, 10.0**-link.strength
-                further = beyond * (1 + link.rest / 10)
-                one = self._moved(link.first, other, beyond * across, beyond * up)
-                two = self._moved(link.second, pin, further * across - miss * up, further * up + miss * across)
-                length = math.hypot(across, up) * math.hypot(1 + beyond - further, miss)
-                return Rod(name, *ends, one, two, length)
-            case "gear":
-                ratio = float(link.more * RATE)
-                return Gear(name, *ends, ratio, second_angle - ratio * first_angle)
-        return Weld(name, *ends, first, second, second_angle - first_angle)
-
-    def force(self, link: Link, number: int) -> ForceElement:
-        """The force of a link that is one. Raises InvalidMechanism for one that can't be.
-
-        Its strength is counted in the second body's own: its mass, its inertia, its size, and the unit of time.
-        """
-        self.check(link, number)
-        body, name, ends = self.bodies[link.second - 1], f"{link.kind} {number}", self._ends(link)
-        strength, rate = float(ladder(link.strength)), 1 / float(self.time)
-        _, second = self._points(link)
-        between = self._far_point(link), second
-        first_angle, second_angle = self._angles(link)
-        match link.kind:
-            case "spring":
-                rest = abs(float(link.more * self.sizes[link.second] / 10)) * (1 + link.rest / 10)
-                return Spring(name, *ends, *between, strength * body.mass * rate**2, rest)
-            case "damper":
-                return Damper(name, *ends, *between, strength * body.mass * rate)
-            case "torsion-spring":
-                rest = second_angle - first_angle + float(link.rest * ANGLE)
-                return TorsionSpring(name, *ends, strength * body.inertia * rate**2, rest)
-            case "torsion-damper":
-                return TorsionDamper(name, *ends, strength * body.inertia * rate)
-            case "torque":
-                return Torque(name, *ends, float(link.more * RATE) * body.inertia * rate**2)
-        pull = float(link.more * RATE * self.sizes[link.second]) * body.mass * rate**2
-        direction = float(link.turn * ANGLE)
-        return Force(name, body.name, second, (pull * math.cos(direction), pull * math.sin(direction)))
-
-    def _ends(self, link: Link) -> tuple[str | None, str]:
-        return self.bodies[link.first - 1].name if link.first else None, self.bodies[link.second - 1].name
-
-    def _at(self, link: Link) -> Point:
-        return beside(self.places[link.second], link.at, self.sizes[link.second])
-
-    def _points(self, link: Link) -> tuple[Vector, Vector]:
-        """The link's place in the frames of both bodies [m]."""
-        at = self._at(link)
-        return self._own(link.first, at), self._own(link.second, at)
-
-    def _far_point(self, link: Link) -> Vector:
-        """The point [m] of the first body that lies `more` tenths along `turn` from the link's place."""
-        x, y = self._own(link.first, self._at(link))
-        along, line = (
-            float(link.more * self.sizes[link.second] / 10),
-            float(link.turn * ANGLE) - self._angle(link.first),
-        )
-        return x + along * math.cos(line), y + along * math.sin(line)
-
-    def _moved(self, body: int, place: Point, x: float, y: float) -> Vector:
-        """The point [m] of a body that lies x and y [m] from a place of the world."""
-        own_x, own_y = self._own(body, place)
-        more_x, more_y = components(-self._angle(body), x, y)
-        return own_x + more_x, own_y + more_y
-
-    def _angles(self, link: Link) -> tuple[float, float]:
-        return self._angle(link.first), self._angle(link.second)
-
-    def _angle(self, body: int) -> float:
-        return self.bodies[body - 1].pose[2] if body else 0.0
-
-    def _own(self, body: int, point: Point) -> Vector:
-        """A point of the world in a body's frame."""
-        x, y = (float(point[axis] - self.places[body][axis]) for axis in (0, 1))
-        return tuple(components(-self._angle(body), x, y))
-
-
-def beside(place: Point, tenths: tuple[int, int], size: Decimal) -> Point:
-    """A place [m] so many tenths of a size beside another."""
-    return place[0] + tenths[0] * size / 10, place[1] + tenths[1] * size / 10
-
-
-def _touching(rim: Rim, unit: Decimal, point: Vector, tangent: float) -> tuple[Curve, float]:
-    """The curve through `point` in the direction `tangent` [rad], both in its body's frame, and its arc there [m]."""
-    size = float(ladder(rim.size) * unit)
-    match rim.shape:
-        case "line":
-            return Line(tangent, point), 0.0
-        case "circle" | "ring":
-            sense = 1.0 if rim.shape == "circle" else -1.0
-            polar = tangent - sense * math.pi / 2
-            centre = (point[0] - size * math.cos(polar), point[1] - size * math.sin(polar))
-            return (Circle if sense > 0 else Ring)(size, centre), sense * size * polar
-        case "ellipse":
-            curve = Ellipse(size, float(ladder(rim.size) * ladder(rim.ratio) * unit))
-            parameter = np.asarray(float(rim.place * ANGLE))
-            turn = tangent - float(curve.angle_of(parameter))
-            x, y = (point - rotated(np.asarray(turn), curve.point_of(parameter))).tolist()
-            return Placed(curve, (x, y), turn), float(curve.arc_of(parameter))
-    raise InvalidMechanism(f"recipe: a rim is a {rim.shape!r}; it must be one of {', '.join(SHAPES)}")
-
-
 Array = NDArray[np.float64]
+Point = tuple[Decimal, Decimal]
 # Rows of which a combination is smaller than this, beside the largest, are left out: their forces, and what becomes of
 # the motion, depend on digits that no engine keeps.
 LEAST_RANK = 1e-3
@@ -231,24 +65,148 @@ class Standing:
         self._recipe = recipe
         self._length, mass, self._time = (Decimal(1).scaleb(decade) for decade in recipe.decades)
         self.bodies: list[Body] = []
-        places, sizes = [(Decimal(0), Decimal(0))], [Decimal(0)]
+        self._places, self._sizes = [(Decimal(0), Decimal(0))], [Decimal(0)]  # the ground's first
         for index, part in enumerate(recipe.parts, start=1):
             if not 0 <= part.parent < index:
                 raise InvalidMechanism(
                     f"recipe: body {index} has the parent {part.parent}; it must be from 0 to {index - 1}"
                 )
             size, weight = ladder(part.size) * self._length, ladder(part.mass) * mass
-            places.append(beside(places[part.parent], part.offset, size))
-            sizes.append(size)
-            x, y = places[-1]
+            x, y = place = _beside(self._places[part.parent], part.offset, size)
             inertia = weight * (ladder(part.gyration) * size) ** 2
             pose = (float(x), float(y), float(part.angle * ANGLE))
             self.bodies.append(Body(f"body {index}", float(weight), float(inertia), pose))
-        self.joining = Joining(self.bodies, places, sizes, self._time)
+            self._places.append(place)
+            self._sizes.append(size)
+
+    def _check(self, link: Link, number: int) -> None:
+        """Raise InvalidMechanism for a link of bodies that are not there, or of an unknown kind."""
+        count = len(self.bodies)
+        if not (0 <= link.first <= count and 0 < link.second <= count and link.first != link.second):
+            raise InvalidMechanism(
+                f"recipe: joint {number} is between bodies {link.first} and {link.second}; the first must be from 0 "
+                f"to {count}, the second from 1, and they must differ"
+            )
+        if link.kind not in (*EVERY, *SINGULAR) or (link.kind == "roll" and len(link.rims) != 2):
+            raise InvalidMechanism(
+                f"recipe: joint {number} is a {link.kind!r} of {len(link.rims)} rims; it must be one of "
+                f"{', '.join(EVERY)}, a roll with two rims"
+            )
+
+    def _joint(self, link: Link, number: int) -> Joint:
+        """The joint of a link. Raises InvalidMechanism for one that can't be."""
+        self._check(link, number)
+        size, name, ends = self._sizes[link.second], f"{link.kind} {number}", self._ends(link)
+        (first, second), (first_angle, second_angle) = self._points(link), self._angles(link)
+        direction, along = float(link.turn * ANGLE), float(link.more * size / 10)
+        match link.kind:
+            case "pin":
+                return Pin(name, *ends, first, second)
+            case "slot":
+                line = direction - first_angle
+                through = (first[0] + along * math.cos(line), first[1] + along * math.sin(line))
+                return Slot(name, *ends, through, line, second)
+            case "skate":
+                return Skate(name, *ends, second, direction - second_angle)
+            case "drive":
+                return Drive(name, *ends, float(link.more * RATE / self._time), second_angle - first_angle)
+            case "roll":
+                ground, ground_arc = _touching(link.rims[0], size, first, direction - first_angle)
+                curve, arc = _touching(link.rims[1], size, second, direction + math.pi - second_angle)
+                return Roll(name, *ends, Rolling(curve, ground, second_angle - first_angle, ground_arc, arc))
+            case "rod":
+                return Rod(name, *ends, self._far_point(link), second, abs(along))
+            case "toggle":
+                miss, line = float(size.scaleb(-link.strength)), direction - second_angle
+                second = (
+                    second[0] - along / 2 * math.cos(line) - miss * math.sin(line),
+                    second[1] - along / 2 * math.sin(line) + miss * math.cos(line),
+                )
+                return Rod(name, *ends, self._far_point(link), second, math.hypot(1.5 * along, miss))
+            case "fold":
+                return self._fold(link, number)
+            case "gear":
+                ratio = float(link.more * RATE)
+                return Gear(name, *ends, ratio, second_angle - ratio * first_angle)
+        return Weld(name, *ends, first, second, second_angle - first_angle)
+
+    def _fold(self, link: Link, number: int) -> Rod:
+        """A rod beside the line through two pins of the ground."""
+        pin, other = self._at(link), _beside(self._places[link.first], link.far, self._sizes[link.first])
+        across, up = float(other[0] - pin[0]), float(other[1] - pin[1])
+        if not math.hypot(across, up) > 0:
+            raise InvalidMechanism(f"recipe: joint {number} is a fold whose two pins are at one place")
+        beyond, miss = link.more / 10, 10.0**-link.strength
+        further = beyond * (1 + link.rest / 10)
+        one = self._moved(link.first, other, beyond * across, beyond * up)
+        two = self._moved(link.second, pin, further * across - miss * up, further * up + miss * across)
+        length = math.hypot(across, up) * math.hypot(1 + beyond - further, miss)
+        return Rod(f"{link.kind} {number}", *self._ends(link), one, two, length)
+
+    def _force(self, link: Link, number: int) -> ForceElement:
+        """The force of a link. Raises InvalidMechanism for one that can't be.
+
+        Its strength is counted in the second body's own mass, inertia and size, and in the unit of time.
+        """
+        self._check(link, number)
+        body, name, ends = self.bodies[link.second - 1], f"{link.kind} {number}", self._ends(link)
+        strength, rate = float(ladder(link.strength)), 1 / float(self._time)
+        size, (first_angle, second_angle) = self._sizes[link.second], self._angles(link)
+        second = self._points(link)[1]
+        match link.kind:
+            case "spring":
+                rest = abs(float(link.more * size / 10)) * (1 + link.rest / 10)
+                return Spring(name, *ends, self._far_point(link), second, strength * body.mass * rate**2, rest)
+            case "damper":
+                return Damper(name, *ends, self._far_point(link), second, strength * body.mass * rate)
+            case "torsion-spring":
+                rest = second_angle - first_angle + float(link.rest * ANGLE)
+                return TorsionSpring(name, *ends, strength * body.inertia * rate**2, rest)
+            case "torsion-damper":
+                return TorsionDamper(name, *ends, strength * body.inertia * rate)
+            case "torque":
+                return Torque(name, *ends, float(link.more * RATE) * body.inertia * rate**2)
+        pull, direction = float(link.more * RATE * size) * body.mass * rate**2, float(link.turn * ANGLE)
+        return Force(name, body.name, second, (pull * math.cos(direction), pull * math.sin(direction)))
+
+    def _ends(self, link: Link) -> tuple[str | None, str]:
+        return self.bodies[link.first - 1].name if link.first else None, self.bodies[link.second - 1].name
+
+    def _at(self, link: Link) -> Point:
+        return _beside(self._places[link.second], link.at, self._sizes[link.second])
+
+    def _points(self, link: Link) -> tuple[Vector, Vector]:
+        """The link's place in the frames of both bodies [m]."""
+        at = self._at(link)
+        return self._local(link.first, at), self._local(link.second, at)
+
+    def _far_point(self, link: Link) -> Vector:
+        """The point [m] of the first body that lies `more` tenths along `turn` from the link's place."""
+        x, y = self._local(link.first, self._at(link))
+        along = float(link.more * self._sizes[link.second] / 10)
+        line = float(link.turn * ANGLE) - self._angles(link)[0]
+        return x + along * math.cos(line), y + along * math.sin(line)
+
+    def _moved(self, body: int, place: Point, x: float, y: float) -> Vector:
+        """The point [m] of a body that lies x and y [m] from a place of the world."""
+        local_x, local_y = self._local(body, place)
+        more_x, more_y = components(-self._angle(body), x, y)
+        return local_x + more_x, local_y + more_y
+
+    def _angles(self, link: Link) -> tuple[float, float]:
+        return self._angle(link.first), self._angle(link.second)
+
+    def _angle(self, body: int) -> float:
+        return self.bodies[body - 1].pose[2] if body else 0.0
+
+    def _local(self, body: int, point: Point) -> Vector:
+        """A point of the world in a body's frame."""
+        x, y = (float(point[axis] - self._places[body][axis]) for axis in (0, 1))
+        return tuple(components(-self._angle(body), x, y))
 
     def held(self, link: Link, number: int) -> Held:
         """The joint of a link, `number` being the joint's own. Raises InvalidMechanism for one that can't be."""
-        joint = self.joining.joint(link, number)
+        joint = self._joint(link, number)
         poses = [np.array(self.bodies[body - 1].pose) if body else np.zeros(3) for body in (link.first, link.second)]
         assert not isinstance(joint, Coupling), "a link joins two bodies"
         block = joint.rows(*poses)
@@ -264,7 +222,7 @@ class Standing:
         twists = self.allowed(held).tolist()
         bodies = tuple(_with(body, twist=tuple(own)) for body, own in zip(self.bodies, twists, strict=True))
         down_x, down_y = (float(pull * self._length / self._time**2) for pull in self._recipe.gravity)
-        acting = tuple(self.joining.force(link, number) for link, number in forces)
+        acting = tuple(self._force(link, number) for link, number in forces)
         return Mechanism(bodies, joints, (down_x, down_y), acting)
 
     def independent(self, held: Sequence[Held]) -> bool:
@@ -312,3 +270,28 @@ def _with(value: Any, **changed: Any) -> Any:
     """As dataclasses.replace, for what has fields that its own class computes."""
     own = {field.name: getattr(value, field.name) for field in fields(value)}
     return type(value)(**(own | changed))
+
+
+def _beside(place: Point, tenths: tuple[int, int], size: Decimal) -> Point:
+    """A place [m] so many tenths of a size beside another."""
+    return place[0] + tenths[0] * size / 10, place[1] + tenths[1] * size / 10
+
+
+def _touching(rim: Rim, unit: Decimal, point: Vector, tangent: float) -> tuple[Curve, float]:
+    """The curve through `point` in the direction `tangent` [rad], both in its body's frame, and its arc there [m]."""
+    size = float(ladder(rim.size) * unit)
+    match rim.shape:
+        case "line":
+            return Line(tangent, point), 0.0
+        case "circle" | "ring":
+            sense = 1.0 if rim.shape == "circle" else -1.0
+            polar = tangent - sense * math.pi / 2
+            centre = (point[0] - size * math.cos(polar), point[1] - size * math.sin(polar))
+            return (Circle if sense > 0 else Ring)(size, centre), sense * size * polar
+        case "ellipse":
+            curve = Ellipse(size, float(ladder(rim.size) * ladder(rim.ratio) * unit))
+            parameter = np.asarray(float(rim.place * ANGLE))
+            turn = tangent - float(curve.angle_of(parameter))
+            x, y = (point - rotated(np.asarray(turn), curve.point_of(parameter))).tolist()
+            return Placed(curve, (x, y), turn), float(curve.arc_of(parameter))
+    raise InvalidMechanism(f"recipe: a rim is a {rim.shape!r}; it must be one of {', '.join(SHAPES)}")

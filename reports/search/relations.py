@@ -17,15 +17,13 @@ from reference.joints import Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
-from reports.search.law import MARGIN, Errors, Fault, Skip, difference, nudges, turned_in_a_step
+from reports.search.law import MARGIN, STEP, STEPS, Errors, Fault, Skip, difference, nudges, turned_in_a_step
 from reports.search.parts import Recipe
 from reports.search.recipe import build
 
 Array = NDArray[np.float64]
 State = tuple[Array, Array]  # pose and twist (bodies, 3) after the last step, in the mechanism's own description
 
-STEP = 0.01  # of the mechanism's own time scale
-STEPS = 5
 # Rounding alone differs. A method that combines runs carries up to a hundred times as much of it, one that hardens its
 # constraints gives away half of the digits.
 SAME = 1e-7
@@ -55,9 +53,7 @@ def errors(engine: Engine, recipe: Recipe, number: int) -> Errors | Skip:
     if _turns(mechanism, mechanism.pose, mechanism.twist):
         return TOO_LONG
     name = NAMES[number % len(NAMES)]
-    if (
-        name in UNITS and engine.variant == "default"
-    ):  # an impedance that grows over a millimetre, a slop of a decimetre
+    if name in UNITS and engine.variant == "default":  # an impedance grows over a millimetre, a slop is a decimetre
         return Skip("settings as shipped have lengths in them")
     described = described_otherwise(recipe, mechanism, name)
     if isinstance(described, Skip):
@@ -92,11 +88,6 @@ def described_otherwise(
     return changed, last
 
 
-def run(engine: Engine, mechanism: Mechanism) -> Trajectory:
-    """The short motion that descriptions are compared in."""
-    return engine.build(mechanism, STEP * mechanism.time_scale)(1, STEPS)
-
-
 def _compared(
     engine: Engine,
     mechanism: Mechanism,
@@ -105,7 +96,11 @@ def _compared(
     stricter: Engine | None = None,
 ) -> tuple[float, float] | Skip:
     """(error, what it may be): see `law` for the noise that is let pass."""
-    first, second = run(engine, mechanism), run(engine, changed)
+
+    def run(described: Mechanism) -> Trajectory:
+        return engine.build(described, STEP * described.time_scale)(1, STEPS)
+
+    first, second = run(mechanism), run(changed)
     if any(each.unresolved_at is not None and np.isfinite(each.pose).all() for each in (first, second)):
         return Skip("it says itself that it is unresolved in one of the descriptions")
     away, duration = float(np.abs(changed.pose[:, :2]).max()), STEPS * STEP * mechanism.time_scale
@@ -149,7 +144,7 @@ def _compared(
     for of, plain in ((mechanism, first), (changed, second)):
         here = plain.pose[-1], plain.twist[-1]
         for nudged, undo in nudges(of, away):
-            pose, twist, _ = undo(run(engine, nudged))
+            pose, twist, _ = undo(run(nudged))
             noise = max(noise, apart((pose[-1], twist[-1]), here, of))
     if MARGIN * noise > USELESS:
         return Skip("rounding, or what its solver leaves, changes the motion by more than a hundredth")

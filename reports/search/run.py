@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
@@ -14,7 +15,7 @@ from reports.run.cluster import Workforce, pool
 from reports.run.running import missing, run_into
 from reports.run.store import Store
 from reports.search import plan
-from reports.search.chunk import CaseResult, Chunk, case_results, chunk_to_json, chunks, lost, results_of, stored
+from reports.search.chunk import CaseResult, Chunk, case_results, chunk_to_json, chunks, lost, stored
 from reports.search.parts import ORACLES
 from reports.search.planted import controls
 from reports.search.shrinking import Shrink, worst_of
@@ -99,11 +100,8 @@ class Search:
 
         All at once where there is time for all: between two waves workers wait for the last of the first.
         """
-        with self.progress(self.store, batch, LIMIT, "pieces", size=lambda piece: piece.count) as (
-            waiting,
-            done,
-            watch,
-        ):
+        progress = self.progress(self.store, batch, LIMIT, "pieces", size=lambda piece: piece.count)
+        with progress as (waiting, done, watch):
             size = len(waiting) if self.seconds is None else WAVE * self.crew.threads
 
             def count(answer: Answer, single: int = 0) -> None:
@@ -120,11 +118,12 @@ class Search:
 
     def _count(self, answer: Answer, single: int) -> int:
         """The cases in an answer; `single`: in one that may have ended its process."""
-        results = results_of(answer)
+        results = json.loads(str(answer.values["results"])) if answer.finished else []
         count = len(results) or single
         self.cases += count
-        fault = single and not answer.finished
-        if not self.first and (fault or any(result.faults for _, result in results)):
+        pairs = [pair for _, errors, *_ in results for pair in errors.values()]
+        fault = (single and not answer.finished) or any(not error <= bound for error, bound in pairs)
+        if not self.first and fault:
             self.first = f" The first finding came after {self.spent:.1f} s, within {self.cases} cases."
         return count
 

@@ -21,18 +21,18 @@ from engines.pymunk.declared import MOST_SWEEPS, first_law
 from engines.pymunk.written_script import object_lines
 from reference.forces import Force, Torque
 from reference.mechanism import Mechanism
-from reports.search import instants, motions, mujoco_alone, relations
-from reports.search.law import Skip
+from reports.search import motions, mujoco_alone, relations
+from reports.search.law import STEP, STEPS, Skip
 from reports.search.parts import Recipe
 from reports.search.recipe import build
-from reports.search.release import release
+from reports.search.release import answer
 from reports.search.subjects import Alone, Subject
 
 # What a script imports, by the engine's name, with a function for the poses of bodies.
 BODIES = """
 
 def poses(model, data, start):
-    bodies = [model.body(f"body {number}").id for number in range(len(start))]
+    bodies = [model.body(f"body {number}").id for number, _ in enumerate(start, 1)]
     turned = [math.atan2(data.xmat[body][3], data.xmat[body][0]) for body in bodies]
     return [(*data.xipos[body][:2], angle + turn) for body, angle, turn in zip(bodies, start, turned)]"""
 IMPORTS = {
@@ -92,7 +92,7 @@ def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list
     if check in (*relations.NAMES, "relations"):
         changed = relations.described_otherwise(recipe, mechanism, name)
         both = [("as it is", mechanism)] + ([] if isinstance(changed, Skip) else [(name, changed[0])])
-        return [(title, each, relations.STEP * each.time_scale, relations.STEPS) for title, each in both]
+        return [(title, each, STEP * each.time_scale, STEPS) for title, each in both]
     steps = motions.SAMPLES * motions.COARSE
     dt = motions.SPAN * mechanism.time_scale / steps
     return [("at this step", mechanism, dt, steps), ("at half of it", mechanism, dt / 2, 2 * steps)]
@@ -115,7 +115,7 @@ def _motion(engine: Any, title: str, mechanism: Mechanism, dt: float, steps: int
 
 def _of_velocities(engine: Any, mechanism: Mechanism) -> str:
     """pymunk's objects before one step, the step, and the velocities that its joints ask for."""
-    dt = instants.STEP * mechanism.time_scale
+    dt = STEP * mechanism.time_scale
     model = engine.model(mechanism, dt)
     for aim in model.aims:
         aim(dt / model.unit)
@@ -132,14 +132,14 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
     by_mjx = engine.name == "mjx"
     method = engine.settings if by_mjx else engine
     method = replace(method, tolerance=min(method.tolerance, SOLVED), estimates=False)
-    dt, term = instants.STEP * mechanism.time_scale, check != WITHOUT
+    dt, term = STEP * mechanism.time_scale, check != WITHOUT
     text, model = method.text(mechanism, dt), method.model(mechanism, dt, unit=1.0)
     run = method.build(mechanism, dt)
-    finite = np.isfinite(run(1, instants.STEPS).pose).all()
+    finite = np.isfinite(run(1, STEPS).pose).all()
     answer = "jax.jit(mjx.forward)(mjx.put_model(model), mjx.put_data(model, data))" if by_mjx else "data"
     read = f"np.array({answer}.qacc)[{model.address!r}]"
     begin, blocks = [*_model_lines(text), "mujoco.mj_resetDataKeyframe(model, data, 0)"], []
-    states = {"at the start": model.start()} | ({f"{instants.STEPS} steps later": run.data} if finite else {})
+    states = {"at the start": model.start()} | ({f"{STEPS} steps later": run.data} if finite else {})
     for title, state in states.items():
         data = model.start()
         data.time, data.qpos[:], data.qvel[:] = state.time, state.qpos, state.qvel
@@ -153,17 +153,11 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
 
 def _of_mujoco_alone(model: mujoco_alone.Model, other: str) -> str:
     """One call of mj_forward, and the accelerations that the constraints ask for; `other`: another release."""
-    judge = mujoco_alone.judged(model)
-    if other:
-        expected, version = np.array(release(other).asked(model)["expected"]), other
-    else:
-        import mujoco
-
-        expected, version = mujoco_alone.found_and_expected(model, judge)[1], mujoco.__version__
+    rates, told = mujoco_alone.judged(model).rates, answer(model, other)
     names = ", ".join(f"b{body} {what}" for body, what in mujoco_alone.coordinates(model))
-    lines = [f"data.qvel[:] = {judge.rates.tolist()!r}", "mujoco.mj_forward(model, data)"]
-    title = f"accelerations of {names}; expected with the R of MuJoCo {version}"
-    block = Block(title, [*_model_lines(mujoco_alone.xml(model)), *lines], "data.qacc", expected)
+    lines = [f"data.qvel[:] = {rates.tolist()!r}", "mujoco.mj_forward(model, data)"]
+    title = f"accelerations of {names}; expected with the R of MuJoCo {told['version']}"
+    block = Block(title, [*_model_lines(mujoco_alone.xml(model)), *lines], "data.qacc", told["expected"])
     return _written(None, [block], DECLARED)
 
 

@@ -5,20 +5,17 @@ from __future__ import annotations
 import json
 import re
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, TypeVar
+from typing import Any
 
 from engines import Engine
 from reference.checks import InvalidMechanism
 from reports.model.tasks import Answer, Task, Values
-from reports.search import mujoco_alone
-from reports.search.chunk import CaseResult
-from reports.search.parts import CLAIMS, ORACLES, Recipe
+from reports.search.chunk import CaseResult, Chunk
+from reports.search.parts import CLAIMS, ORACLES, Case, as_text, from_text
 from reports.search.scripts import script
-from reports.search.subjects import Adapted, Result, Subject
-
-Case = TypeVar("Case")
+from reports.search.subjects import Result, Subject
 
 
 def shrunk(case: Case, still: Callable[[Case], bool], seconds: float) -> Case:
@@ -42,82 +39,31 @@ def shrunk(case: Case, still: Callable[[Case], bool], seconds: float) -> Case:
 
 def _with_less(case: Any) -> Iterator[Any]:
     """Without a body, or without a joint; bodies first, since joints go with them."""
-    if isinstance(case, Recipe):
-        for body in range(len(case.parts), 0, -1):
-            if len(case.parts) > 1:
-                yield _without_part(case, body)
-        for link in range(len(case.links)):
-            yield replace(case, links=case.links[:link] + case.links[link + 1 :])
-    else:
-        for body in range(len(case.links), 0, -1):
-            if len(case.links) > 1:
-                yield _without_link(case, body)
-        for equality in range(len(case.equalities)):
-            yield replace(case, equalities=case.equalities[:equality] + case.equalities[equality + 1 :])
-        yield from _with_fewer_coordinates(case)
+    for removed in range(len(case.parts), 0, -1):
+        if len(case.parts) > 1:
+            yield _without_part(case, removed)
+    for link in range(len(case.links)):
+        yield replace(case, links=case.links[:link] + case.links[link + 1 :])
 
 
-def _after(removed: int, parent: int, body: int) -> int:
-    """A body's number when one is gone; its parent stands for the one that is gone."""
-    return parent if body == removed else body - (body > removed)
-
-
-def _without_part(case: Recipe, removed: int) -> Recipe:
+def _without_part(case: Any, removed: int) -> Any:
+    """Without a body and its joints; its parent takes its place as the parent of others."""
     parent = case.parts[removed - 1].parent
-    parts = [
-        replace(part, parent=_after(removed, parent, part.parent))
-        for body, part in enumerate(case.parts, 1)
-        if body != removed
-    ]
+
+    def renumbered(body: int) -> int:
+        return parent if body == removed else body - (body > removed)
+
+    parts = [replace(p, parent=renumbered(p.parent)) for body, p in enumerate(case.parts, 1) if body != removed]
     links = [
-        replace(link, first=_after(removed, 0, link.first), second=_after(removed, 0, link.second))
+        replace(link, first=renumbered(link.first), second=renumbered(link.second))
         for link in case.links
         if removed not in (link.first, link.second)
     ]
     return replace(case, parts=tuple(parts), links=tuple(links))
 
 
-def _without_link(case: mujoco_alone.Model, removed: int) -> mujoco_alone.Model:
-    parent = case.links[removed - 1].parent
-    links = [
-        replace(link, parent=_after(removed, parent, link.parent))
-        for body, link in enumerate(case.links, 1)
-        if body != removed
-    ]
-    return _of_links(case, links, removed)
-
-
-def _of_links(case: mujoco_alone.Model, links: Sequence[mujoco_alone.RawBody], removed: int = 0) -> mujoco_alone.Model:
-    """The model with other links, one of them perhaps gone, and those of its equalities that still have both ends."""
-    before = mujoco_alone.coordinates(case)
-    after = mujoco_alone.coordinates(replace(case, links=tuple(links), equalities=()))
-    places = {each: number for number, each in enumerate(after)}
-
-    def end(each: mujoco_alone.Equality, which: int) -> int | None:
-        if each.kind in ("connect", "weld"):
-            return None if removed and which == removed else _after(removed, 0, which) if removed else which
-        if which >= len(before) or before[which][0] == removed:
-            return None
-        body, what = before[which]
-        return places.get((_after(removed, 0, body) if removed else body, what))
-
-    equalities = []
-    for each in case.equalities:
-        first, second = end(each, each.first), end(each, each.second)
-        if first is not None and second is not None:
-            equalities.append(replace(each, first=first, second=second))
-    return replace(case, links=tuple(links), equalities=tuple(equalities))
-
-
-def _with_fewer_coordinates(case: mujoco_alone.Model) -> Iterator[mujoco_alone.Model]:
-    for place, link in enumerate(case.links):
-        for fewer in (replace(link, slides=max(link.slides - 1, 0)), replace(link, turns=False)):
-            if fewer != link and (fewer.slides or fewer.turns):
-                yield _of_links(case, [*case.links[:place], fewer, *case.links[place + 1 :]])
-
-
 # Which bodies are joined is no number that is small or large.
-NAMES = {"parent", "first", "second", "kind", "shape", "slides", "turns"}
+NAMES = {"parent", "first", "second", "kind", "shape"}
 
 
 def _with_smaller_numbers(value: Any) -> Iterator[Any]:
@@ -149,21 +95,15 @@ MOST = 2  # findings of one check of a subject that are made smaller
 
 @dataclass(frozen=True)
 class Shrink(Task):
-    """A case of a subject in which a check fails; see `chunk.Chunk` for the numbers."""
+    """A case in which a check fails. `chunk`: the piece that is this case alone."""
 
-    subject: Subject
-    seed: int
-    number: int
-    kinds: tuple[str, ...]
-    decades: int
     check: str
-    oracles: tuple[str, ...]
+    chunk: Chunk
 
     @classmethod
     def of(cls, check: str, case: CaseResult) -> Shrink:
-        """What makes a finding smaller."""
-        chunk = case.chunk
-        return cls(chunk.subject, chunk.seed, case.number, chunk.kinds, chunk.decades, check, chunk.oracles)
+        """The task of making a finding smaller."""
+        return cls(check, replace(case.chunk, first=case.number, count=1))
 
     @property
     def cost(self) -> float:
@@ -171,55 +111,61 @@ class Shrink(Task):
 
     @property
     def label(self) -> str:
-        spread = f" with {self.decades} decades" if self.decades else ""
-        return f"{self.subject.name}, {self.check}, case {self.number} of seed {self.seed}{spread}"
+        spread = f" with {self.chunk.decades} decades" if self.chunk.decades else ""
+        return f"{self.subject.name}, {self.check}, case {self.chunk.first} of seed {self.chunk.seed}{spread}"
+
+    @property
+    def subject(self) -> Subject:
+        """The engine, or MuJoCo alone."""
+        return self.chunk.subject
 
     @property
     def engine(self) -> Engine | None:
-        return self.subject.engine if isinstance(self.subject, Adapted) else None
+        return self.chunk.engine
 
     def run(self) -> Values:
         """The smallest case, in a line and as JSON (`replayed` reads it), and a script of it."""
-        case: Any = self.subject.draw(self.seed, self.number, self.kinds, self.decades)
+        subject, number = self.subject, self.chunk.first
+        case = self.chunk.draw(number)
         oracles = self._oracle(case)
-        whole = self.subject.ask(case, self.number, oracles)
+        whole = subject.ask(case, number, oracles)
         why, least = _kind_of(whole), KEPT * whole.errors[self.check][0]
 
         def still(smaller: Any) -> bool:
             try:
-                result = self.subject.ask(smaller, self.number, oracles)
+                result = subject.ask(smaller, number, oracles)
             except InvalidMechanism:
                 return False
             return self.check in result.faults and result.errors[self.check][0] >= least and _kind_of(result) == why
 
         small = shrunk(case, still, self.cost)
-        result = self.subject.ask(small, self.number, oracles)
+        result = subject.ask(small, number, oracles)
         error, bound = result.errors[self.check]
         finite = error < float("inf")
         finding = {
-            "subject": self.subject.name,
+            "subject": subject.name,
             "check": self.check,
             "oracles": list(oracles),
-            "number": self.number,
-            "seed": self.seed,
+            "number": number,
+            "seed": self.chunk.seed,
             "error": error if finite else None,
             "bound": bound,
             "words": result.words,
-            "case": json.loads(self.subject.text(small)),
+            "case": json.loads(as_text(small)),
         }
         line = f"{' '.join(small.kinds)}: {f'{error:.1e}' if finite else 'lost'}"
         return {
             "line": f"{line}{'; ' + result.words if result.words else ''}",
             "finding": json.dumps(finding, indent=1),
-            "script": script(self.subject, small, self.check, self.number),
+            "script": script(subject, small, self.check, number),
         }
 
     def _oracle(self, case: Any) -> tuple[str, ...]:
         """The one oracle that finds this fault, so that the others are not asked again and again."""
-        for oracle in (name for name in (*ORACLES, CLAIMS) if name in self.oracles):
-            if self.check in self.subject.ask(case, self.number, (oracle,)).faults:
+        for oracle in (name for name in (*ORACLES, CLAIMS) if name in self.chunk.oracles):
+            if self.check in self.subject.ask(case, self.chunk.first, (oracle,)).faults:
                 return (oracle,)
-        return self.oracles
+        return self.chunk.oracles
 
 
 def _kind_of(result: Result) -> str:
@@ -249,7 +195,7 @@ def files_of(task: Shrink, answer: Answer) -> dict[str, str]:
     """A finding's files by name; none of one that could not be made smaller."""
     if not answer.finished:
         return {}
-    stem = re.sub(r"\W+", "_", f"{task.subject.name} {task.check} {task.seed} {task.number}").strip("_")
+    stem = re.sub(r"\W+", "_", f"{task.subject.name} {task.check} {task.chunk.seed} {task.chunk.first}").strip("_")
     files = {f"{stem}.json": f"{answer.values['finding']}\n"}
     if answer.values["script"]:
         files[f"{stem}.py"] = str(answer.values["script"])
@@ -258,5 +204,5 @@ def files_of(task: Shrink, answer: Answer) -> dict[str, str]:
 
 def replayed(finding: dict[str, Any], subject: Subject) -> Result:
     """The present result of a finding that was written before."""
-    case: Any = subject.read(json.dumps(finding["case"]))
+    case: Any = from_text(json.dumps(finding["case"]), subject.case)
     return subject.ask(case, finding["number"], tuple(finding["oracles"]))

@@ -5,28 +5,28 @@ from __future__ import annotations
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
+from typing import ClassVar
 
 import numpy as np
 
 from engines import Around, Engine, Unsupported
 from reference.mechanism import Mechanism
-from reports.search import claims, instants, mechanisms, motions, mujoco_alone, relations
-from reports.search.law import Errors, Fault, Skip
+from reports.search import mechanisms, motions, mujoco_alone, relations
+from reports.search.law import LAW, Errors, Fault, Skip, instant_errors
 from reports.search.mechanisms import of_a_shape
-from reports.search.parts import CLAIMS, EVERY, Recipe, as_text, from_text
+from reports.search.parts import CLAIMS, EVERY, Recipe
 from reports.search.recipe import build
-from reports.search.release import release
+from reports.search.release import answer
 
 OURS = "our own error"  # of an oracle that raises: no fault of the engine
-LAW = 1e-9  # of MuJoCo alone: rounding makes a thousandth of it
 
 Oracle = Callable[[Engine, Mechanism, Recipe, int], Errors | Skip]
 ASKING: Mapping[str, Oracle] = {
-    "instant": lambda engine, mechanism, recipe, number: instants.errors(engine, mechanism),
+    "instant": lambda engine, mechanism, recipe, number: instant_errors(engine, mechanism),
     "relations": lambda engine, mechanism, recipe, number: relations.errors(engine, recipe, number),
     "motions": lambda engine, mechanism, recipe, number: motions.errors(engine, mechanism),
-    CLAIMS: lambda engine, mechanism, recipe, number: claims.errors(engine, mechanism, number),
+    CLAIMS: lambda engine, mechanism, recipe, number: motions.claim_errors(engine, mechanism, number),
 }
 
 
@@ -54,6 +54,7 @@ class Adapted:
     """An engine, on recipes of joints."""
 
     engine: Engine
+    case: ClassVar[type] = Recipe
 
     @property
     def name(self) -> str:
@@ -70,18 +71,10 @@ class Adapted:
 
     def ask(self, case: Recipe, number: int, oracles: Sequence[str]) -> Result:
         """All that these oracles ask of one case. Raises InvalidMechanism for a case that is none."""
-        mechanism, engine = _built(case), self.engine
-
-        def asking(oracle: Oracle) -> Callable[[], Errors | Skip]:
-            return lambda: oracle(engine, mechanism, case, number)
-
-        return _asked({name: asking(oracle) for name, oracle in ASKING.items() if name in oracles}, engine)
-
-    def text(self, case: Recipe) -> str:
-        return as_text(case)
-
-    def read(self, text: str) -> Recipe:
-        return from_text(text)
+        asked = self.engine, _built(case), case, number
+        return _asked(
+            {name: partial(oracle, *asked) for name, oracle in ASKING.items() if name in oracles}, self.engine
+        )
 
 
 @dataclass(frozen=True)
@@ -92,6 +85,7 @@ class Alone:
     """
 
     release: str = ""
+    case: ClassVar[type] = mujoco_alone.Model
 
     @property
     def name(self) -> str:
@@ -106,19 +100,10 @@ class Alone:
 
     def ask(self, case: mujoco_alone.Model, number: int, oracles: Sequence[str]) -> Result:
         def instant() -> Errors:
-            told = {"errors": mujoco_alone.errors(case)} if not self.release else release(self.release).asked(case)
-            if "raised" in told:
-                raise Fault(told["raised"])
-            return {name: (error, LAW) for name, error in told["errors"].items()}
+            return {name: (error, LAW) for name, error in answer(case, self.release)["errors"].items()}
 
         mujoco_alone.judged(case)  # a case that is none is no fault
         return _asked({"instant": instant} if "instant" in oracles else {}, None)
-
-    def text(self, case: mujoco_alone.Model) -> str:
-        return mujoco_alone.as_text(case)
-
-    def read(self, text: str) -> mujoco_alone.Model:
-        return mujoco_alone.from_text(text)
 
 
 Subject = Adapted | Alone
@@ -161,13 +146,11 @@ def _asked(oracles: Mapping[str, Callable[[], Errors | Skip]], engine: Engine | 
 
 def _passed_through(error: Exception, engine: Engine) -> bool:
     """Whether an exception came out of the engine's own code, and not of what asks it alone."""
-    owners = set()
-    while True:
-        module = type(engine).__module__
-        # A package of an engine is all of it; beside modules of engines stand others, the judge's among them.
-        owners.add(module if module.count(".") < 2 else module.rpartition(".")[0])
-        if not isinstance(engine, Around):
-            break
+    modules = [type(engine).__module__]
+    while isinstance(engine, Around):
         engine = engine.engine
+        modules.append(type(engine).__module__)
+    # A package of an engine is all of it; beside modules of engines stand others, the judge's among them.
+    owners = {module if module.count(".") < 2 else module.rpartition(".")[0] for module in modules}
     called = [frame.f_globals.get("__name__", "") for frame, _ in traceback.walk_tb(error.__traceback__)]
     return any(name == owner or name.startswith(f"{owner}.") for name in called for owner in owners)

@@ -1,4 +1,5 @@
-"""Scenes and engines that exit, hang or lie, and wrong command lines: an outcome or one line, never a traceback."""
+"""Scenes and engines that exit, hang or lie, wrong command lines, and numbers that are valid each and have no finite
+motion together: an outcome or one line, never a traceback."""
 
 from __future__ import annotations
 
@@ -6,14 +7,23 @@ import os
 import random
 import re
 import time
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar
 
+import numpy as np
 import pytest
+import typer
 
 from engines.loading import load
-from reports.cli import commands, known
+from reference.checks import InvalidMechanism
+from reference.mechanism import Mechanism
+from reference.numerics.integration import IntegrationFailed
+from reference.scene import NoMotion, Scene, with_settings
+from reference.trajectory import Trajectory
+from reports.cli import known
+from reports.cli.commands import app
 from reports.model import catalogue
+from reports.model.catalogue import SCENES
 from reports.model.cells import Cell, estimated_cost
 from reports.model.ending import BROKEN, FINE, REFUSED, BadInput
 from reports.model.measure import blank, measure
@@ -25,73 +35,39 @@ from reports.write.csv_files import as_csv
 from reports.write.templates import inert_page
 from tests.reports.rough_toys import is_free, wait_until
 from tests.reports.test_command_line import call, here, one_line
+from tests.reports.test_measure import Given, disc
 from tests.toys import Disc, Toy
 
 __all__ = ["here"]
 SCENE = """
-import os, signal, time
+import os, time
 from dataclasses import dataclass
 from typing import ClassVar
-import numpy as np
-from tests.toys import Disc, turning
+from tests.toys import Disc
 
 @dataclass(frozen=True)
 class Odd(Disc):
     name: ClassVar[str] = "odd"
 
 """
-DEEDS = {
-    "raises": "raise RuntimeError('no such thing')",
-    "refuses": "raise ValueError('no such thing')",
-    "exits": "os._exit(0)",
-    "leaves": "raise SystemExit(0)",
-    "interrupts": "raise KeyboardInterrupt",
-    "traps": "os.kill(os.getpid(), signal.SIGILL)",
-    "sleeps": "time.sleep(1e6)",
-}
-OF_SCENES = {
-    "mechanism": "def mechanism(self):",
-    "__eq__": "__hash__ = Disc.__hash__\n    def __eq__(self, other):",
-    "__hash__": "def __hash__(self):",
-    "__repr__": "def __repr__(self):",
-    "samples": "@property\n    def samples(self):",
-    "__post_init__": "def __post_init__(self):",
-}
-
-
-def member(text, head, deed):
-    return f"{text}    {head}\n        {DEEDS[deed]}\n"
-
-
-def told_in_a_line(capfd):
-    told = one_line(capfd.readouterr().err)
-    assert "Traceback" not in told
-    return told
-
-
-SAID = {
-    "raises": "RuntimeError: no such thing",
-    "refuses": "ValueError: no such thing",
-    "exits": "the process ended by itself with exit status 0",
-    "leaves": "SystemExit: 0",
-    "interrupts": "KeyboardInterrupt",
-    "traps": "aborted with signal 4 (SIGILL)",
-    "sleeps": "did not end within 10 s",
-}
 
 
 @pytest.mark.parametrize(
-    ("name", "deed"),
-    [("mechanism", "exits"), ("__eq__", "raises"), pytest.param("mechanism", "sleeps", marks=pytest.mark.slow)],
+    ("head", "deed", "sentence"),
+    [
+        ("mechanism(self):", "os._exit(0)", "the process ended by itself with exit status 0"),
+        ("__eq__(self, other):", "raise RuntimeError('no such thing')", "RuntimeError: no such thing"),
+        pytest.param("mechanism(self):", "time.sleep(1e6)", "did not end within 10 s", marks=pytest.mark.slow),
+    ],
 )
-def test_what_a_scene_s_own_code_does_is_one_line(here, monkeypatch, capfd, name, deed):
-    if deed == "sleeps":  # a loaded machine imports for seconds
+def test_what_a_scene_s_own_code_does_is_one_line(here, monkeypatch, capfd, head, deed, sentence):
+    if "sleep" in deed:  # a loaded machine imports for seconds
         monkeypatch.setattr(known, "SLEEPING", 10.0)
-    (here / "odd_scene.py").write_text(member(SCENE, OF_SCENES[name], deed))
+    (here / "odd_scene.py").write_text(f"{SCENE}    __hash__ = Disc.__hash__\n    def {head}\n        {deed}\n")
     assert call("run", "odd_scene.py") == REFUSED
-    told = told_in_a_line(capfd)
+    told = one_line(capfd.readouterr().err)
     assert told.startswith("crosscheck: odd_scene.py: ")
-    assert name == "__post_init__" or SAID[deed] in told
+    assert sentence in told
     assert not (here / "crosscheck-results").exists()
 
 
@@ -100,7 +76,6 @@ def test_what_a_scene_s_own_code_does_is_one_line(here, monkeypatch, capfd, name
     [
         ("duration: ClassVar[float] = float('inf')", "duration is inf"),
         ("horizon: ClassVar[float] = 0.0", "horizon is 0.0"),
-        ("samples: ClassVar[int] = 0", "samples is 0"),
         ("samples: ClassVar[int] = 2**40", "samples is 1099511627776"),
         ("samples = property(lambda self: 0)", "samples is 0"),
     ],
@@ -180,8 +155,8 @@ def test_a_page_of_a_scene_with_tags_in_its_name_has_none():
 
 
 COMMANDS = {
-    name: [option for each in commands.command(name).params for option in each.opts if option.startswith("--")]
-    for name in sorted(commands.COMMANDS)
+    name: [option for each in command.params for option in each.opts if option.startswith("--")]
+    for name, command in sorted(vars(typer.main.get_command(app))["commands"].items())
 }
 FREE = ("", " ", "\x1b[31m", "\udcff", "file\nname", "x" * 5000, "é" * 300)  # and what a shell would split
 SEVERAL = """
@@ -190,8 +165,6 @@ crank=0 x.py x.py:A a:b:c reference:SCENES os:path model.xml <b> [bold] * ' " %s
 CON
 """
 WORDS = (*FREE, *SEVERAL.split(), "9" * 30, "mujoco tuned")
-# A command that is right would do its work: each has something that no command takes, or that is nothing.
-WRONG = ("nope_nope", "nope_nope", "nope_nope", "--nonsense")
 
 
 def wrong_line(chance: random.Random) -> list[str]:
@@ -200,26 +173,22 @@ def wrong_line(chance: random.Random) -> list[str]:
     for _ in range(chance.randint(0, 3)):
         words += [chance.choice(COMMANDS[name]), chance.choice(WORDS)] if chance.random() < 0.7 else []
         words += [chance.choice(WORDS)] if chance.random() < 0.3 else []
-    words.insert(1 if chance.random() < 0.5 else len(words), chance.choice(WRONG))
-    return words
-
-
-def one_end(words, capfd):
-    status = call(*words)
-    out, err = capfd.readouterr()
-    assert status in (FINE, BROKEN, REFUSED), words
-    assert "Traceback" not in out + err, words
-    assert (out + err).replace("\n", "").isprintable(), words
-    if status == REFUSED:  # above the line there may be one of progress
-        told = [line.startswith("crosscheck: ") for line in err.splitlines()]
-        assert sum(told) == 1, (words, err)
-        assert told[-1], (words, err)
+    words.insert(1 if chance.random() < 0.5 else len(words), "nope_nope" if chance.random() < 0.75 else "--nonsense")
+    return words  # each has something that no command takes: a right one would do its work
 
 
 def test_a_wrong_command_line_is_one_line(here, capfd):
     chance = random.Random(22)
     for _ in range(40):
-        one_end(wrong_line(chance), capfd)
+        words = wrong_line(chance)
+        status = call(*words)
+        out, err = capfd.readouterr()
+        assert status in (FINE, BROKEN, REFUSED), words
+        assert "Traceback" not in out + err, words
+        assert (out + err).replace("\n", "").isprintable(), words
+        if status == REFUSED:  # above the line there may be one of progress
+            told = [line.startswith("crosscheck: ") for line in err.splitlines()]
+            assert (sum(told), told[-1]) == (1, True), (words, err)
 
 
 @pytest.mark.parametrize(
@@ -256,6 +225,97 @@ def test_a_file_called_minus_is_standard_output(here, capfd):
 
 def test_results_in_a_file_are_refused_without_advice_to_write_there(here, capfd):
     (here / "file").write_text("mine")
-    for words in (("report",), ("show", "free_four_bar")):
-        assert call(*words, "--results", "file") == REFUSED
-        assert "'file', and file is a file; give a folder" in capfd.readouterr().err
+    assert call("show", "free_four_bar", "--results", "file") == REFUSED
+    assert "'file', and file is a file; give a folder" in capfd.readouterr().err
+
+
+# Numbers without a motion
+
+BY_NAME = {scene.name: scene for scene in SCENES}
+EXTREMES = ("1e200", "1e-200", "-1", "nan")
+
+
+# A hundred links have the fields of ten, and take a quarter of a minute.
+@pytest.mark.parametrize("scene", [scene for scene in SCENES if scene.name != "pendulum_100"], ids=lambda s: s.name)
+def test_every_number_of_every_scene_gives_a_finite_start_or_a_refusal(scene: Scene):
+    for field in fields(scene):  # type: ignore[arg-type]
+        for text in EXTREMES:
+            try:
+                start = with_settings(scene, {field.name: text}).motion(0.0)
+            except InvalidMechanism:
+                continue
+            assert np.isfinite([start.pose, start.twist]).all(), (field.name, text)
+
+
+@pytest.mark.parametrize(
+    ("name", "number", "text", "reason"),
+    [
+        ("driven_slider_crank", "rate", "1e200", "body 'crank': its kinetic energy at t = 0 is inf J"),
+        ("driven_four_bar", "rate", "-1e170", "kinetic energy"),
+        ("pendulum_1", "length", "1e200", "its numbers make no mechanism: .*out of range"),
+        ("rolling_cam", "gyration", "1e180", "its numbers make no mechanism"),
+        ("free_four_bar", "crank", "2", "at crank angle"),
+        ("free_four_bar", "coupler", "1e-200", "the loop can't close"),
+    ],
+)
+def test_settings_without_a_mechanism_are_refused_by_the_promised_exception(name, number, text, reason):
+    with pytest.raises(InvalidMechanism, match=rf"(?s){reason}"):
+        with_settings(BY_NAME[name], {number: text})
+
+
+@pytest.mark.parametrize(
+    ("name", "number", "reason"),
+    [
+        ("free_slider_crank", "gravity", "the motion stops"),
+        ("pendulum_2", "tip", "positive definite"),
+        ("cart", "trail", "the reactions that its accelerations need are not finite"),
+    ],
+)
+def test_a_motion_that_can_not_be_computed_is_held_against_no_engine(name, number, reason):
+    scene = with_settings(BY_NAME[name], {number: "1e200"})
+    with pytest.raises(NoMotion, match=rf"scene '{name} {number}=1e\+200': no motion is known up to .*{reason}"):
+        scene.motion(np.linspace(0.0, scene.duration, 3))
+
+
+@dataclass(frozen=True)
+class Wrong(Disc):
+    """Somebody's scene whose truth goes wrong in one of several ways."""
+
+    name: ClassVar[str] = "wrong"
+    how: str = ""
+
+    def _motion(self, times: np.ndarray) -> Trajectory:
+        good = super()._motion(times)
+        arrays = {"pose": good.pose.copy(), "twist": good.twist.copy(), "reaction": good.reaction.copy()}
+        part, _, value = self.how.partition("=")
+        if part in arrays:
+            arrays[part][-1] = float(value)
+        elif part == "raise":
+            raise {"1/0": ZeroDivisionError, "diverged": IntegrationFailed}[value](value)
+        return replace(good, **arrays)
+
+
+@pytest.mark.parametrize(
+    "how", ["pose=nan", "pose=inf", "twist=nan", "twist=1e200", "reaction=inf", "raise=1/0", "raise=diverged"]
+)
+def test_a_users_truth_that_is_not_finite_is_refused_by_name_and_the_engine_is_not_graded(how):
+    row = measure(Cell(Wrong(how=how), Given(disc()), 1), repeat=False)
+    assert row.outcome == "refused"
+    assert row.sentence.startswith("scene 'wrong': no motion is known up to ")
+
+
+def test_a_reaction_that_nobody_knows_is_no_refusal():
+    assert measure(Cell(Wrong(how="reaction=nan"), Given(disc()), 1), repeat=False).outcome == "finished"
+
+
+def test_a_scene_whose_arithmetic_fails_refuses_its_mechanism_in_words():
+    @dataclass(frozen=True)
+    class Heavy(Disc):
+        name: ClassVar[str] = "heavy"
+        radius: float = 1e200
+
+        def mechanism(self) -> Mechanism:
+            return self.radius**2  # pyright: ignore[reportReturnType]
+
+    with pytest.raises(NoMotion, match=r"scene 'heavy': its numbers make no mechanism: .*out of range"):
+        Heavy().mechanism()

@@ -62,16 +62,23 @@ def test_a_toggle_holds_its_bodies_together_by_rows_that_nearly_depend_on_each_o
     assert "toggle" not in {link.kind for number in CASES for link in recipe(5, number, EVERY).links}
 
 
-@pytest.mark.parametrize("kind", FORCES)
-def test_the_units_of_forces_are_units(kind):
-    """In other units of length, mass and time a force element gives the same accelerations, scaled."""
-    for number in range(12):
-        drawn = recipe(8, number, ("pin", kind))
+@pytest.mark.parametrize("kind", ["all", *FORCES])
+def test_units_are_units(kind):
+    """In other units of length, mass and time rows, masses, rates and accelerations scale, and nothing else changes."""
+    for number in CASES if kind == "all" else range(12):
+        drawn = recipe(8, number, KINDS if kind == "all" else ("pin", kind))
         plain, scaled = build(drawn), build(replace(drawn, decades=(-3, 2, 1)))
+        assert np.allclose(scaled.pose, plain.pose * [1e-3, 1e-3, 1], rtol=1e-12, atol=1e-15)
+        # Velocities are solved for: rounding times the condition of the rows, of the largest.
+        speed = np.abs(plain.twist[:, 2]).max() + np.abs(plain.twist[:, :2]).max() + 1
+        assert np.allclose(scaled.twist, plain.twist * [1e-4, 1e-4, 0.1], rtol=1e-9, atol=1e-12 * speed)
+        assert np.allclose(scaled.inertias, plain.inertias * [1e2, 1e2, 1e-4], rtol=1e-12)
         before, after = (one.unconstrained(one.pose, one.twist) for one in (plain, scaled))
         size = np.array([1e-5, 1e-5, 1e-2])  # m/s^2 and rad/s^2: 1e-3 / 10^2, 1 / 10^2
         largest = np.abs(before).max(axis=(0, 1)) + np.abs(plain.twist).max() + 1
         assert np.allclose(after / size, before, rtol=1e-9, atol=1e-11 * largest)
+        if plain.length_scale != 1:  # a metre stands for none at all
+            assert scaled.time_scale == pytest.approx(10 * plain.time_scale, rel=1e-9)
 
 
 def test_a_shape_keeps_its_ratios_of_gears_and_gets_other_numbers_for_all_else():
@@ -87,21 +94,7 @@ def test_a_shape_keeps_its_ratios_of_gears_and_gets_other_numbers_for_all_else()
 def test_a_recipe_survives_being_written():
     for number in CASES:
         drawn = recipe(7, number, decades=1)
-        assert from_text(as_text(drawn)) == drawn
-
-
-def test_units_are_units():
-    """The same mechanism in millimetres, tonnes and minutes-like units: rows, masses and rates scale, nothing else."""
-    for number in CASES:
-        drawn = recipe(8, number)
-        plain, scaled = build(drawn), build(replace(drawn, decades=(-3, 2, 1)))
-        assert np.allclose(scaled.pose, plain.pose * [1e-3, 1e-3, 1], rtol=1e-12, atol=1e-15)
-        # Velocities are solved for: rounding times the condition of the rows, of the largest.
-        speed = np.abs(plain.twist[:, 2]).max() + np.abs(plain.twist[:, :2]).max() + 1
-        assert np.allclose(scaled.twist, plain.twist * [1e-4, 1e-4, 0.1], rtol=1e-9, atol=1e-12 * speed)
-        assert np.allclose(scaled.inertias, plain.inertias * [1e2, 1e2, 1e-4], rtol=1e-12)
-        if plain.length_scale != 1:  # a metre stands for none at all
-            assert scaled.time_scale == pytest.approx(10 * plain.time_scale, rel=1e-9)
+        assert from_text(as_text(drawn), Recipe) == drawn
 
 
 @pytest.mark.parametrize(
@@ -128,4 +121,4 @@ def test_kinds_that_are_none_are_refused():
     with pytest.raises(InvalidMechanism, match="one or some of"):
         recipe(0, 0, ())
     with pytest.raises(ValueError, match="no recipe"):
-        from_text('{"parts": [{"colour": 1}], "links": []}')
+        from_text('{"parts": [{"colour": 1}], "links": []}', Recipe)
