@@ -71,3 +71,14 @@ def rolling_disc(
     vx, vy = (float(value) for value in rolling.velocity(rolling.theta, rate))
     inertia = cast(Circle, rolling.body).radius ** 2 / 2
     return Body(name, 1.0, inertia, (x, y, angle), (vx, vy, rate)), Roll(f"{name} rolls", first, name, rolling)
+
+
+def elbow() -> Mechanism:
+    """Two bars from the origin, driven against each other where they meet."""
+    upper, lower = bar("upper", (0.0, 0.0), (1.0, 0.0)), bar("lower", (1.0, 0.0), (1.0, -0.7), rate=2.0)
+    joints = (
+        Pin("A", None, "upper", (0.0, 0.0), (-0.5, 0.0)),
+        Pin("B", "upper", "lower", (0.5, 0.0), (-0.35, 0.0)),
+        Drive("motor", "upper", "lower", 2.0, -np.pi / 2),
+    )
+    return Mechanism((upper, lower), joints, (0.0, -9.81))

@@ -173,13 +173,13 @@ def _numbers(mechanism: Mechanism, place: Integers) -> tuple[Floats, ...]:
     return (
         np.append(1 / mechanism.inertias, ground),
         np.array(mechanism.gravity, dtype=float),
-        np.array([parameters(joint) for joint in mechanism.joints], dtype=float).reshape(-1),
+        np.array([_parameters(joint, PARAMETERS) for joint in mechanism.joints], dtype=float).reshape(-1),
         rate,
         unit,
         unit / mechanism.time_scale,
         np.array(rolls, dtype=float).reshape(len(rolls) * 2 * CONSTANTS),
         *(np.zeros_like(rate),) * 4,
-        np.array([force_parameters(force) for force in mechanism.forces], dtype=float).reshape(-1),
+        np.array([_parameters(force, FORCE_PARAMETERS) for force in mechanism.forces], dtype=float).reshape(-1),
         np.array(_summand_parameters(mechanism), dtype=float).reshape(-1),
         np.append(mechanism.pose, ground),
         np.append(mechanism.twist, ground),
@@ -199,41 +199,25 @@ def _dependent(mechanism: Mechanism) -> bool:
     return rank(mechanism.rows(mechanism.pose), mechanism.length_scale) < rows
 
 
-def parameters(joint: Joint) -> tuple[float, ...]:
-    match joint:
-        case Pin():
-            return (*joint.first_point, *joint.second_point, 0.0, 0.0, 0.0)
-        case Slot():
-            return (*joint.first_point, *joint.second_point, joint.line_angle, 0.0, 0.0)
-        case Skate():
-            return (0.0, 0.0, *joint.second_point, joint.angle, 0.0, 0.0)
-        case Drive():
-            return (0.0, 0.0, 0.0, 0.0, 0.0, joint.turning_rate, joint.offset)
-        case Rod():
-            return (*joint.first_point, *joint.second_point, joint.length, 0.0, 0.0)
-        case Gear():
-            return (0.0, 0.0, 0.0, 0.0, 0.0, joint.ratio, joint.phase)
-        case Weld():
-            return (*joint.first_point, *joint.second_point, joint.angle, 0.0, 0.0)
-    return (0.0,) * PARAMETERS
+# The numbers of a joint and of a force after its two points, by their fields; "" is zero.
+_FIELDS: dict[type, tuple[str, ...]] = {
+    **{Slot: ("line_angle",), Skate: ("angle",), Rod: ("length",), Weld: ("angle",)},
+    **{Drive: ("", "turning_rate", "offset"), Gear: ("", "ratio", "phase")},
+    **{Spring: ("stiffness", "rest_length"), Damper: ("damping",), Torque: ("torque",)},
+    **{TorsionSpring: ("stiffness", "rest_angle"), TorsionDamper: ("damping",)},
+}
 
 
-def force_parameters(force: ForceElement) -> tuple[float, ...]:
-    match force:
-        case Spring():
-            return (*force.first_point, *force.second_point, force.stiffness, force.rest_length)
-        case Damper():
-            return (*force.first_point, *force.second_point, force.damping, 0.0)
-        case TorsionSpring():
-            return (0.0, 0.0, 0.0, 0.0, force.stiffness, force.rest_angle)
-        case TorsionDamper():
-            return (0.0, 0.0, 0.0, 0.0, force.damping, 0.0)
-        case Torque():
-            return (0.0, 0.0, 0.0, 0.0, force.torque, 0.0)
-        case Force():
-            return (0.0, 0.0, *force.second_point, *force.force)
-        case CoupledForce():
-            return (force.force, force.stiffness, force.damping, force.rest, 0.0, 0.0)
+def _parameters(member: Joint | ForceElement, count: int) -> tuple[float, ...]:
+    """The numbers of a joint or a force (count,): points on both bodies, then those of its fields."""
+    if isinstance(member, Roll | Coupling):
+        return (0.0,) * count
+    if isinstance(member, CoupledForce):
+        return (member.force, member.stiffness, member.damping, member.rest, 0.0, 0.0)
+    points = (*getattr(member, "first_point", (0.0, 0.0)), *getattr(member, "second_point", (0.0, 0.0)))
+    own = _FIELDS.get(type(member), ())
+    numbers = member.force if isinstance(member, Force) else [getattr(member, name) if name else 0.0 for name in own]
+    return (*points, *numbers, *(0.0,) * (count - 4 - len(numbers)))
 
 
 def _places(ends: Integers, size: Integers, bodies: int) -> Integers:

@@ -25,7 +25,7 @@ from engines import Instant, Softness, Unpromised
 from engines.constrained import Constrained, constrained
 from engines.mujoco.joints.skate import STEPWISE, slip_damping
 from engines.mujoco.model import Model
-from reference.joints import Drive, Joint, Skate
+from reference.joints import Drive, Skate
 from reference.mechanism import Mechanism
 
 if TYPE_CHECKING:
@@ -183,21 +183,17 @@ def _declared(
             damping = slip_damping(mechanism) if isinstance(joint, Skate) else softness.damping
             aimed[part] = -softness.stiffness * gap[part] - damping * slip[part]
             continue
-        # Each of MuJoCo's rows has a stiffness of its own. A clock is not quite where the rate would have it: forces
-        # accelerate even so large an inertia a little.
+        # Each of MuJoCo's rows has a stiffness of its own. A clock begins at zero, and is not quite where the rate
+        # would have it: forces accelerate even so large an inertia a little.
+        rate = joint.turning_rate if isinstance(joint, Drive) else 0.0
+        clocks = data.qpos[beside] - rate * data.time, data.qvel[beside] - rate
+        ahead, faster = (lines[matching][:, beside] @ late for late in clocks)
         stiffness, damping, impedance, _ = data.efc_KBIP[matching].T
-        ahead, faster = (lines[matching][:, beside] @ late for late in _clocks_ahead(joint, data, beside))
         pull = -stiffness * impedance * (factors @ gap[part] + ahead) - damping * (factors @ slip[part] + faster)
         aimed[part] = np.linalg.solve(factors, pull)
     if waiting:
         raise RuntimeError(f"constraint {waiting[0]} of MuJoCo's is none of the mechanism's rows")
     return give, aimed, solved
-
-
-def _clocks_ahead(joint: Joint, data: Any, beside: list[int]) -> tuple[Array, Array]:
-    """By what angles [rad] and rates [rad/s] clocks are ahead of a drive; they begin at zero."""
-    rate = joint.turning_rate if isinstance(joint, Drive) else 0.0
-    return data.qpos[beside] - rate * data.time, data.qvel[beside] - rate
 
 
 def _is_written(compiled: Any, equality: int) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -44,17 +43,14 @@ class MuJoCo(Engine, Valid):
     """A mechanism in MuJoCo; every field but `variant` is a setting.
 
     `coordinates`: "tree" hinges bodies on one another and closes only the loops, "free" gives every body three
-    coordinates and makes every pin a constraint. `drive`: a driven joint turns steadily because nothing can accelerate
-    it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature); or
-    its state is overwritten after every step, which the solver does not know ("overwrite"; see
-    `engines.mujoco.joints.links`). `solvers` are tried at the start in this order, and the first that solves it is
-    taken. `tolerance`: MuJoCo's, relative to the inertia of what is not driven.
-    `slots`, `skates`, `rolls`, `rods`: what holds them, see `engines.mujoco.joints`; skates whose rows change once a
-    step are stepped by Euler, since four stages of the same stale row cost more and gain nothing. `estimates`: a run of
-    steps twice as long, and where that leaves it open one of half steps, tell the error, if it falls with the fourth
-    power of the step. The displacement that would close the joints' gaps (`engines.constraint_error`) is added: the
-    error of soft rows, which the runs share near singular positions. Where the estimate is above `engines.CLAIM` the
-    motion is unresolved.
+    coordinates and makes every pin a constraint. `drive`: see `engines.mujoco.joints.links`; with "inertia" the
+    armature of a driven joint is `armature` times the mechanism's own inertia (the rate is missed by about 0.1 /
+    armature). `solvers` are tried at the start in this order, and the first that solves it is taken. `tolerance`:
+    MuJoCo's, relative to the inertia of what is not driven. `slots`, `skates`, `rolls`, `rods`: the constructions that
+    hold them, see `engines.mujoco.joints`; skates whose rows change once a step are stepped by Euler, since four stages
+    of the same stale row cost more and gain nothing. `estimates`: error estimate by step doubling, with half steps
+    where double ones are inconclusive, if the error falls with the fourth power of the step; see
+    `engines.mujoco.running`. Where the estimate is above `engines.CLAIM` the motion is unresolved.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
@@ -89,7 +85,7 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        """The integrator's order, unless the rows of skates, contacts or loops know less than it asks for."""
+        """The integrator's order, reduced where a constraint row is of lower order."""
         tree = self._tree(mechanism)
         skating, rolling = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Skate, Roll))
         driven = any(isinstance(joint, Drive) and joint not in tree.kept for joint in mechanism.joints)
@@ -148,24 +144,26 @@ class MuJoCo(Engine, Valid):
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """How loops, skates and rolls give way with steps of dt [s]; None where the tree holds every joint."""
         tree = self._tree(mechanism)
-        soft = [tree.closes_by(joint) or isinstance(joint, Skate | Roll) for joint in mechanism.joints]
-        if not any(soft):
+        soft = [joint for joint in mechanism.joints if tree.closes_by(joint) or isinstance(joint, Skate | Roll)]
+        if not soft:
             return None
-        stiffness, lacking = self.stiffness, False
-        if isinstance(self.rolls, RollContact) and any(isinstance(joint, Roll) for joint in mechanism.joints):
+        rods, skates, rolls = (
+            any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Rod, Skate, Roll)
+        )
+        stiffness = self.stiffness
+        lacking = (rods and self.rods == "tendon") or (skates and self.skates == "blade")
+        if rolls and isinstance(self.rolls, RollContact):
             stiffness, lacking = Shipped() if self.rolls.steps is None else TiedToStep(self.rolls.steps), True
-        skating = any(isinstance(joint, Skate) for joint in mechanism.joints)
-        lacking |= skating and self.skates == "blade"
-        lacking |= self.rods == "tendon" and any(isinstance(joint, Rod) for joint in mechanism.joints)
         gain, damping = stiffness.gains(mechanism, dt)
-        if self.skates == "rows" and all(
-            isinstance(joint, Skate) for joint in itertools.compress(mechanism.joints, soft)
-        ):
+        if self.skates == "rows" and all(isinstance(joint, Skate) for joint in soft):
             damping = slip_damping(mechanism)  # which such a row brings along, whatever the springs of loops have
+        softening = stiffness.softening
+        if stiffness is self.stiffness and isinstance(stiffness, Hardened) and stiffness.eased:
+            with suppress(Unsupported):  # only a model has the softening of rows that are eased
+                softening = self.model(mechanism, dt).softening or softening
         # The impedance of a gap of a millimetre and more; as shipped a closed gap is about twice as soft.
-        softening = stiffness.softening if stiffness is not self.stiffness else self._softening(mechanism, dt)
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * softening
-        rows = tuple(which for joint, which in zip(mechanism.joints, soft, strict=True) for _ in range(joint.size))
+        rows = tuple(joint in soft for joint in mechanism.joints for _ in range(joint.size))
         return Softness(gain, damping, compliance, rows, complete=not lacking)
 
     def instants(
@@ -194,12 +192,10 @@ class MuJoCo(Engine, Valid):
             rows=model.rows + (len(model.driven) if self.drive != "overwrite" else 0),
             solver_rows=data.nefc,
         )
-        promised = self.order(mechanism) if self.estimates else None
-        fourth = isinstance(promised, Promise) and promised.order >= ORDER
-        if not fourth:
-            return MuJoCoRun(model, data, size)
-
-        return MuJoCoRun(model, data, size, lambda other: self.build(mechanism, other))
+        order = self.order(mechanism) if self.estimates else None
+        if isinstance(order, Promise) and order.order >= ORDER:
+            return MuJoCoRun(model, data, size, lambda other: self.build(mechanism, other))
+        return MuJoCoRun(model, data, size)
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, unit: Positive | None = None) -> Model:
@@ -228,13 +224,6 @@ class MuJoCo(Engine, Valid):
         if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
             return replace(model, softening=ease(model, self.stiffness.softening, start))
         return model
-
-    def _softening(self, mechanism: Mechanism, dt: float) -> float:
-        """By how much rows give way more than as shipped: of those that are eased only a model tells it."""
-        if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
-            with suppress(Unsupported):
-                return self.model(mechanism, dt).softening or self.stiffness.softening
-        return self.stiffness.softening
 
 
 def _refuse_what_is_huge(data: Any) -> None:

@@ -25,18 +25,13 @@ def known_wrong(version: str) -> str:
     Before 3.7: the changelog of 3.7.0. 4.0.0: the changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767;
     `tests/engines/test_mujoco_upstream.py` compares the two.
     """
-    numbers = tuple(int(part) for part in re.findall(r"\d+", version)[:3])
+    numbers, reason = tuple(int(part) for part in re.findall(r"\d+", version)[:3]), ""
     if numbers < (3, 7):
-        return (
-            f"MuJoCo {version} is {MARK}: it leaves the velocity term out of its loop constraints, which "
-            "3.7 and later have"
-        )
+        reason = "it leaves the velocity term out of its loop constraints, which 3.7 and later have"
     if numbers == (4, 0, 0):
-        return (
-            f"MuJoCo {version} is {MARK}: it factorises the Hessian of its Newton solver wrongly where the Jacobian of "
-            "the constraints is sparse, for some trees that branch, which 4.0.1 mended"
-        )
-    return ""
+        reason = "it factorises the Hessian of its Newton solver wrongly where the Jacobian of the constraints is "
+        reason += "sparse, for some trees that branch, which 4.0.1 mended"
+    return f"MuJoCo {version} is {MARK}: {reason}" if reason else ""
 
 
 def full_inertia(compiled: Any, data: Any) -> NDArray[np.float64]:

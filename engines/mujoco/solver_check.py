@@ -83,13 +83,11 @@ def _lost(compiled: Any, data: Any) -> float:
 
 
 def ease(model: Model, softening: float, start: Any) -> float:
-    """Let every row give way tenfold, up to as shipped, until Newton's iterations lose no more than LOST in rounding.
+    """Multiply compliances by 10, at most to MuJoCo's default, until Newton's iterations lose at most LOST in rounding.
 
-    Returns the softening that this leads to.
-
-    `start`: a mujoco.MjData at the start, solved by the model's solver. `softening` is by how much rows are harder than
-    as shipped. A compliance of 1e-12 of a row's own inverse inertia is too little where a light body carries a heavy
-    one. Other solvers, which build no such matrix, keep what they have.
+    Returns the softening that this leads to. `start`: a mujoco.MjData at the start, solved by the model's solver;
+    `softening`: the compliances as a part of MuJoCo's default. 1e-12 is too little where a light body carries a heavy
+    one. Other solvers than Newton's build no such matrix, and keep the compliances.
     """
     compiled = model.compiled
     if compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON or not unsolved(compiled, start) < SOLVED:

@@ -176,25 +176,6 @@ class Pymunk(Engine, Valid):
 
 
 @dataclass(frozen=True)
-class LimitedGroove(Pymunk):
-    """A groove for a skate that slips when it would have to give more than `limit` [N], like dry friction."""
-
-    limit: Positive = 1.0
-
-    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Sweeping) -> Model:
-        model = super().swept_model(mechanism, dt, sweeping)
-        for constraint in model.space.constraints:
-            constraint.max_force = self.limit
-        return model
-
-
-@validated
-def limited_groove(limit: Positive) -> LimitedGroove:
-    """The groove with a limit [N] on its force."""
-    return LimitedGroove("groove with max_force", 5, 0.0, skate="groove", limit=limit)
-
-
-@dataclass(frozen=True)
 class Extended(Around, Valid):
     """The extrapolation whose powers fit the mechanism: pymunk has two orders.
 

@@ -97,16 +97,9 @@ def refuse_conformal(contact: Contact) -> None:
     with np.errstate(divide="ignore", invalid="ignore"):
         near = ~(contact.conformality >= NEAR_CONFORMAL)
     if np.any(near):
-        theta, arc, on_body, a, b = (
-            float(value[near].flat[0])
-            for value in (
-                np.broadcast_to(contact.theta, near.shape),
-                np.broadcast_to(contact.ground_arc, near.shape),
-                np.broadcast_to(contact.body_arc, near.shape),
-                contact.ground_curvature,
-                contact.body_curvature,
-            )
-        )
+        arcs = (contact.theta, contact.ground_arc, contact.body_arc)
+        values = np.broadcast_arrays(*arcs, contact.ground_curvature, contact.body_curvature)
+        theta, arc, on_body, a, b = (float(value[near].flat[0]) for value in values)
         raise InvalidMechanism(
             f"rolling: at theta = {theta:.9g} rad (arc {arc:.9g} m of the ground, {on_body:.9g} m of the body) the "
             f"curvatures are {a:.9g} and {b:.9g} 1/m; their sum must be positive, and above "
@@ -145,9 +138,9 @@ def _circle(curve: Curve) -> tuple[Array, float] | None:
     if isinstance(curve, Circle | Ring):
         return np.asarray(curve.centre, dtype=float), curve.sense * curve.radius
     inner = _circle(curve.curve) if isinstance(curve, Placed) else None
-    if inner is None or not isinstance(curve, Placed):
-        return None
-    return rotated(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
+    if inner and isinstance(curve, Placed):
+        return rotated(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
+    return None
 
 
 Place = Annotated[ArrayLike, of_shape("...", 2)]

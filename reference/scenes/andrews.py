@@ -1,14 +1,8 @@
 """Andrews' squeezing mechanism as a scene, with the numbers and the names of the test set for initial value problems.
 
-A crank from the origin (body 1) carries a rod (2), whose end P a bar (3) from the pivot B holds on a circle; a spring
-pulls at that bar, from C. P carries two more pairs of bars, (4) and (5), and (6) and (7), to the pivot A. So there are
-three pairs, and in closed form all angles are functions of the crank's, phi, and so are the reduced inertia and the
-potential of the one freedom:
-
-    m(phi) = sum of mass |r'|^2 + inertia angle'^2,   m phi'' = -m' phi'^2 / 2 - V',   V = c0 (L - l0)^2 / 2 - T phi.
-
-Numbers: F. Mazzia, C. Magherini, Test set for initial value problem solvers, II-17, after E. Hairer, G. Wanner, Solving
-Ordinary Differential Equations II, VII.7. Vectors of the plane are complex.
+Three pairs of bars are functions of the crank's angle phi in closed form, and so are the reduced inertia and the
+potential of the one freedom: see "Andrews' squeezing mechanism" in `reference/scenes/derivations.md`. Vectors of the
+plane are complex.
 """
 
 from __future__ import annotations

@@ -1,15 +1,7 @@
 """N four-bars side by side, the benchmark whose one freedom becomes N + 1 twice a turn: an exact motion by symmetry.
 
-N + 1 cranks of length l stand on pivots l apart and carry N couplers of length l; uniform bars of mass m. In the
-symmetric motion all cranks have one angle and the couplers only translate, so with phi from the downward vertical
-
-    T = (4N + 1)/6 m l^2 phi'^2,   V = -(3N + 1)/2 m g l cos(phi),   phi'' = -f^2 sin(phi),  f^2 = 3(3N + 1) g / (2(4N
-    + 1) l):
-
-the whole chain is one pendulum, and `Pendulum` has it exactly. When the cranks lie along the couplers, phi = +-90
-degrees, N rows depend on the others and N more freedoms open. There, for N > 1, the cranks' own balances disagree (an
-inner crank carries twice the coupler weight of an outer one), and the forces along the couplers that keep them
-together grow like 1/cos of the angle from upright: they have no limit at the singular position.
+The whole chain is one pendulum, and `Pendulum` has it exactly; where the cranks lie along the couplers N rows depend on
+the others, and forces have no limit for N > 1: see "N four-bars side by side" in `reference/scenes/derivations.md`.
 """
 
 from __future__ import annotations

@@ -1,18 +1,7 @@
 """A person on one foot, as trunk, thighs and shanks: an open chain of five links that falls without a muscle.
 
-A standing foot rests on the ground and is part of it, so its shank is the leg without the foot; a lifted foot goes with
-its shank. The ankles are pins in the ground, at y = 0.
-
-The truth uses as many coordinates as there are freedoms, and no joint force (embedding): every pose is a function of
-them, velocities V = T u', and T^T M T u'' = T^T (f - M dT/dt u'). On one foot u are the five angles. On two
-feet they are the hip and the trunk's angle: each leg follows from the hip by the intersection of two circles.
-
-Upright with all segments in line is an equilibrium. Of the five modes of small motions about it two swing, both mostly
-of the lifted leg (4.1 and 9.3 rad/s), and three grow, the fastest by e in 0.03 s: the standing knee.
-
-Segments are fractions of the body's mass and height (D. A. Winter, Biomechanics and Motor Control of Human Movement,
-4th edition, Wiley 2009): masses, centres and radii of gyration from table 4.1 (after Dempster 1955), lengths from
-figure 4.1 (after Drillis and Contini 1966). The trunk is Winter's HAT: head, arms and trunk, between hip and shoulder.
+Coordinates, modes and the sources of the segments: "A person on one foot" in `reference/scenes/derivations.md`. The
+ankles are pins in the ground, at y = 0.
 """
 
 from __future__ import annotations

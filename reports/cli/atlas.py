@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from engines.registry import VARIANTS
 from reports.cli.options import FOLDER, STORE, Folder, Scheduler, Workers, listed
-
-if TYPE_CHECKING:
-    from reports.model.cells import Cell
-    from reports.model.measure import Measurement
-    from reports.pages.atlas.subjects import Subject
+from reports.cli.report import published, refuse_outside_a_checkout, write_files
+from reports.cli.terminal import Terminal, interruptible, opened
+from reports.model.cells import Cell
+from reports.model.measure import Measurement
+from reports.pages.atlas.columns import FILE, as_csv, columns_of, line_of, read, run_columns
+from reports.pages.atlas.subjects import SUBJECTS
+from reports.run import cluster
+from reports.run.running import run_into
 
 LIMIT = 600.0  # CPU seconds of one cell, far above any that is known
 STRIDE = 4  # of so many steps one is run, and those between only where a border is; in small maps all
@@ -35,21 +39,15 @@ def atlas(
     ] = False,
 ) -> None:
     """Map where methods fail: step against the parameter that breaks a scene. It is no part of a full run."""
-    from engines.registry import VARIANTS
-    from reports.cli.report import published, refuse_outside_a_checkout, write_files
-    from reports.cli.terminal import Terminal, interruptible, opened
-    from reports.pages.atlas.columns import FILE, as_csv, columns_of, line_of, read, run_columns
-    from reports.run.cluster import elsewhere, pool
-    from reports.run.running import run_into
-
-    subjects = chosen(scenes)
+    known = {subject.name: subject for subject in SUBJECTS}
+    names = tuple(known) if scenes is None else listed("--scenes", [scenes], known)
     if publish:
         refuse_outside_a_checkout()
     engines = tuple(engine for engine in VARIANTS if engine.variant in VARIANTS_SHOWN)
-    columns = [column for subject in subjects for column in columns_of(subject, engines, points)]
+    columns = [column for name in names for column in columns_of(known[name], engines, points)]
     terminal, run_now = Terminal(140), 0
-    with elsewhere(scheduler) as cluster, opened(results / STORE) as store:
-        crew = cluster or pool(workers)
+    with cluster.elsewhere(scheduler) as connected, opened(results / STORE) as store:
+        crew = connected or cluster.pool(workers)
 
         def run(cells: list[Cell]) -> Mapping[Cell, Measurement]:
             nonlocal run_now
@@ -62,15 +60,6 @@ def atlas(
     lines = [line_of(column, some) for column, some in zip(columns, rows, strict=True)]
     cells = sum(line.run for line in lines)
     for folder in (results / ATLAS, *([published()] if publish else [])):
-        names = {subject.name for subject in subjects}
         others = [line for line in read(folder / FILE) if line.subject not in names]
         write_files({folder / FILE: as_csv([*lines, *others])}, f"{cells} cells written to {folder / FILE}")
     terminal.say(f"{run_now} of {cells} cells were run, the others were stored")
-
-
-def chosen(scenes: str | None) -> tuple[Subject, ...]:
-    """The maps of these names. Raises BadInput."""
-    from reports.pages.atlas.subjects import SUBJECTS
-
-    known = {subject.name: subject for subject in SUBJECTS}
-    return SUBJECTS if scenes is None else tuple(known[word] for word in listed("--scenes", [scenes], known))

@@ -8,8 +8,25 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.options import Scenes
-from reports.cli.site import SITE
+from engines import method_name
+from engines.registry import ENGINES
+from reports.bench import (
+    COMMAND_TURNS,
+    measure_command,
+    measure_grid,
+    measure_judge,
+    measure_loops,
+    measure_site,
+    measure_truths,
+)
+from reports.cli.known import choose
+from reports.cli.options import SITE, Scenes
+from reports.cli.selection import choose_cells
+from reports.cli.terminal import Terminal, print_table
+from reports.run.installed import installed
+from reports.versions.catalogue import distributions, engines_named
+from reports.write.provenance import machine, versions
+from reports.write.tables import number
 
 COMPARED = ("mujoco==3.17.0", "mujoco==4.0.1")
 MODEL = Path(__file__).parents[1] / "pages" / "your_model" / "models" / "four_bar.xml"
@@ -26,51 +43,35 @@ def bench(
     `bench suite [SCENES]`: CPU time of a grid by part, method and scene. `bench judge`: exact multipliers and truths.
     `bench answers`: whole commands, cold. `bench site`: sizes and times of the site.
     """
-    word, *scenes = scene or [""]
-    if word == "suite":
-        _print_grid(scenes, full)
-    elif word == "judge":
-        _print_judge()
-    elif word == "answers":
-        _print_commands()
-    elif word == "site":
-        from reports.bench import measure_site
-
-        _print_rows("the site", measure_site(site))
-    else:
-        _print_loops(scene or [])
-    from reports.write.provenance import machine, versions
-
+    match scene or []:
+        case ["suite", *scenes]:
+            _print_grid(scenes, full)
+        case ["judge", *_]:
+            _print_judge()
+        case ["answers", *_]:
+            _print_commands()
+        case ["site", *_]:
+            _print_rows("the site", measure_site(site))
+        case scenes:
+            _print_loops(scenes)
     print(f"{versions()}; {machine()}")
 
 
 def _print(title: str, header: Sequence[str], body: Sequence[Sequence[str]]) -> None:
-    from reports.cli.terminal import Terminal, print_table
-
     terminal = Terminal(140)
-    print_table(terminal, title, list(header), list(map(tuple, body)), 1)
+    print_table(terminal, title, header, body, 1)
     terminal.print()
 
 
 def _print_rows(title: str, rows: Iterable[tuple[str, float, str]]) -> None:
-    from reports.write.tables import number
-
     _print(title, ("quantity", "measured", "unit"), [(name, number(value), unit) for name, value, unit in rows])
 
 
 def _print_loops(scenes: Sequence[str]) -> None:
-    from engines import method_name
-    from engines.registry import ENGINES
-    from reports.bench import measure_loops
-    from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_scenes
-    from reports.write.tables import number
-
-    known, names, _ = with_words(registered(), scenes, None)
-    for chosen in choose_scenes(names, known.scenes, known.pages):
+    for chosen in choose(scenes).scenes:
         body = [
-            (method_name(c.engine), number(1e6 * c.bare), number(1e6 * c.run), f"{c.ratio:.3f}")
-            for c in measure_loops(ENGINES, chosen)
+            (method_name(loop.engine), number(1e6 * loop.bare), number(1e6 * loop.run), f"{loop.ratio:.3f}")
+            for loop in measure_loops(ENGINES, chosen)
         ]
         if body:
             header = ("method", "bare loop [us/step]", "run [us/step]", "ratio [1]")
@@ -78,13 +79,8 @@ def _print_loops(scenes: Sequence[str]) -> None:
 
 
 def _print_grid(scenes: Sequence[str], full: bool) -> None:
-    from reports.bench import measure_grid
-    from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_cells, choose_engines, choose_scenes
-
-    known, names, _ = with_words(registered(), scenes, None)
-    chosen = choose_scenes(names, known.scenes, known.pages)
-    cells = choose_cells(chosen, choose_engines(None, None, known.engines), known.pages, full)
+    choice = choose(scenes)
+    cells = choose_cells(choice.scenes, choice.engines, choice.known.pages, full)
     for name, spent in measure_grid(cells).items():
         ordered, total = sorted(spent.items(), key=lambda pair: -pair[1]), sum(spent.values())
         rest = ("all others", sum(seconds for _, seconds in ordered[MOST_LINES:]))
@@ -93,23 +89,18 @@ def _print_grid(scenes: Sequence[str], full: bool) -> None:
 
 
 def _print_judge() -> None:
-    from reports.bench import measure_judge, measure_truths
-    from reports.cli.known import registered
-    from reports.cli.selection import choose_cells
-
-    known = registered()
-    scenes = dict.fromkeys(cell.scene for cell in choose_cells(known.scenes, known.engines, known.pages, True))
+    choice = choose()
+    scenes = dict.fromkeys(
+        cell.scene for cell in choose_cells(choice.scenes, choice.engines, choice.known.pages, full=True)
+    )
     truths = measure_truths(scenes)  # first, since some motions are cached
     total = ("all truths of the full grid", sum(seconds for _, seconds, _ in truths), "s")
     _print_rows("the judge: CPU time", [*measure_judge(), *truths[:MOST_LINES], total])
 
 
 def _print_commands() -> None:
-    from reports.bench import COMMAND_TURNS, measure_command
-    from reports.cli.versions import installed_once
-    from reports.write.tables import number
-
-    installed_once(COMPARED)
+    for name, _, release in (word.partition("==") for word in COMPARED):
+        installed(distributions(engines_named(name)[0]), release)
     commands = (
         ("--help",),
         ("check", str(MODEL)),

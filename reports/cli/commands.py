@@ -1,65 +1,70 @@
-"""The commands of the command line, and its help; each command has a file of its own."""
+"""The table of commands, and how one is run: its module is imported when it is called, so that others start soon."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
 
 import typer
 
-from reports.cli.animate import animate
-from reports.cli.atlas import atlas
-from reports.cli.bench import bench
-from reports.cli.check import check
-from reports.cli.compare import compare
-from reports.cli.conform import conform
-from reports.cli.errata import errata
-from reports.cli.export import export, view
-from reports.cli.report import report
-from reports.cli.run import run
-from reports.cli.search import search
-from reports.cli.shapes import shapes
-from reports.cli.show import list_command, show
-from reports.cli.site import site
 from reports.cli.streams import written
-from reports.cli.versions import versions
 from reports.model.ending import FINE, STATUSES
 
-app = typer.Typer(
-    help="How far a physics engine's constraints are from ideal ones, on planar mechanisms with an analytic truth.",
-    epilog=STATUSES,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
-app.command("list")(list_command)
-app.command("run")(run)
-app.command("show")(show)
-app.command("report")(report)
-app.command("bench")(bench)
-app.command("shapes")(shapes)
-app.command("errata")(errata)
-app.command("conform")(conform)
-app.command("search")(search)
-app.command("atlas")(atlas)
-app.command("versions")(versions)
-app.command("compare")(compare)
-app.command("animate")(animate)
-app.command("site")(site)
-app.command("check")(check)
-app.command("export")(export)
-app.command("view")(view)
+# By the word of each command: the function in `reports.cli`, and the first sentence of its help.
+COMMANDS = {
+    "list": ("show:list_command", "Scenes, engines and variants, and what is unsupported, with the reason."),
+    "run": ("run:run", "Run the cells that are not stored yet; what is done survives an interruption."),
+    "show": ("show:show", "Print a scene's stored numbers: every run, order and plateau, and its experiments."),
+    "report": ("report:report", "Write pages, charts, errors.csv and timings.csv from what is stored."),
+    "bench": ("bench:bench", "Time `run` against bare loops; asserts nothing."),
+    "shapes": ("shapes:shapes", "Write the two shapes that generate a motion when the one rolls on the other."),
+    "errata": ("errata:errata", "The chapter's printed slips: each formula's value as printed and as it must be."),
+    "conform": ("conform:conform", "Check that an engine keeps the contract: signs, instants, orders, refusals."),
+    "search": ("search:search", "Search random mechanisms for faults; each finding is made small and written."),
+    "atlas": ("atlas:atlas", "Map where methods fail: step against the parameter that breaks a scene."),
+    "versions": ("versions:versions", "Run scenes in released versions of an engine; each is installed once."),
+    "compare": ("compare:compare", "Print what changed in error, order, outcome and cost from A to B."),
+    "animate": ("animate:animate", "Write a picture that moves: the exact motion, and what engines make of it."),
+    "site": ("site:site", "Write the results as a static site: lessons, tables, charts, engines in the page."),
+    "check": ("check:check", "Check a model of your own against ideal joints: how wrong, why, what is enough."),
+    "export": ("export:export", "Write a scene as a file that runs without this suite, with its truth in comments."),
+    "view": ("export:view", "Look at a scene: in an engine's viewer, or else as an animation in a file."),
+}
+LOOK: Any = {"add_completion": False, "pretty_exceptions_enable": False, "rich_markup_mode": None}
+
+
+def command(name: str) -> Any:
+    """The command of this name, with its options."""
+    module, _, function = COMMANDS[name][0].partition(":")
+    app = typer.Typer(**LOOK)
+    app.command(name)(getattr(import_module(f"reports.cli.{module}"), function))
+    return typer.main.get_command(app)
+
+
+def program() -> Any:
+    """What prints the help, and refuses a word that names no command."""
+    about = "How far a physics engine's constraints are from ideal ones, on planar mechanisms with an analytic truth."
+    app = typer.Typer(help=about, epilog=STATUSES, **LOOK)
+    for name, (_, words) in COMMANDS.items():
+        app.command(name, help=words)(lambda: None)
+    return typer.main.get_command(app)
 
 
 def invoke(arguments: Sequence[str]) -> int:
     """Run a command; its exit status. Raises what it raises, and the usage errors of typer."""
-    command = typer.main.get_command(app)
+    words = list(arguments) or ["--help"]
     status = FINE
     try:
         # Not its own `main`: that turns a closed pipe and Ctrl-C into statuses of its own.
         with written():  # the help, if it is asked for
-            context = command.make_context("crosscheck", list(arguments) or ["--help"])
+            if words[0] in COMMANDS:
+                parser, called, words = command(words[0]), f"crosscheck {words[0]}", words[1:]
+            else:
+                parser, called = program(), "crosscheck"
+            context = parser.make_context(called, words)
         with context:
-            command.invoke(context)
+            parser.invoke(context)
     except typer.Exit as done:
         status = done.exit_code
     with written():

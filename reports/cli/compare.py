@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, REFERENCES, AsJson, AsMarkdown, Folder
+from reports.cli.terminal import Terminal, print_table, telling
 from reports.cli.versions import USUAL, announce_pip, named_scenes, progress_of
+from reports.gate.change import DEAR
 from reports.model.ending import BadInput, Broken
-
-if TYPE_CHECKING:
-    from reports.cli.terminal import Terminal
-    from reports.model.measure import Measurement
-    from reports.versions.builds import BuildComparison
-    from reports.versions.comparison import Difference, RowComparison
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import quantity
+from reports.versions.builds import BuildComparison, compare_builds
+from reports.versions.comparison import Difference, RowComparison
 
 WIDTH = 150  # into a file or a pipe
 LONGEST = 300  # letters of a reason
@@ -41,9 +42,6 @@ def compare(
     """Print what changed in error, order, outcome and cost from A to B; status 1 if an error became 3 times larger."""
     if cost is not None and not 0 < cost < math.inf:
         raise BadInput(f"--cost is {cost:g}; give a number above 0, such as 1.5")
-    from reports.cli.terminal import telling
-    from reports.versions.builds import compare_builds
-
     chosen = named_scenes(scenes) if scenes else None
     with telling(WIDTH, as_json, as_markdown) as console:
         with kept() as check:
@@ -69,9 +67,6 @@ def compare(
 
 def print_comparison(console: Terminal, builds: BuildComparison) -> None:
     """A line for each method of each scene, what became worse in full, then orders, cost, and one sentence."""
-    from reports.cli.terminal import print_table
-    from reports.gate.change import DEAR
-
     found, (first, second) = builds.comparison, (side.label for side in builds.sides)
     lines = sorted(found.lines(), key=lambda line: (line.scene, line.method))
     other = tuple(each for each in found.differences if not each.worse)
@@ -122,8 +117,6 @@ def print_comparison(console: Terminal, builds: BuildComparison) -> None:
 
 def _cells(difference: Difference) -> list[str | float]:
     """The quantity in its unit, at which step, before and after."""
-    from reports.model.quantities import quantity
-
     name = difference.quantity
     label = name if name in ("outcome", "reaction_rows") else f"{name} [{quantity(name).unit}]"
     return [label, difference.after.step, difference.value(difference.before), difference.value(difference.after)]
@@ -131,7 +124,6 @@ def _cells(difference: Difference) -> list[str | float]:
 
 def _reasons(found: RowComparison) -> tuple[Counter[str], Counter[str]]:
     """Of each side why cells ended as they did, where the other's did not, and how many for each reason."""
-    from reports.model.outcomes import Outcome
 
     def reason(row: Measurement) -> str:
         # Of the engine's words alone: what our adapter adds to them is the same in other words.

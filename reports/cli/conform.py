@@ -1,20 +1,35 @@
-"""`crosscheck conform`: whether an engine does what the contract of `engines` says, one line a check."""
+"""`crosscheck conform`: whether an engine does what the contract of `engines` says, one line a check.
+
+Checks run in supervised processes, so that one that native code ends, or that hangs, is reported too. An engine
+travels as the words that name it, since not every object that is checked can be pickled: that is one of the checks.
+"""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
 from itertools import groupby
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
+from engines import Engine
+from engines.conformance import Case, Result, Status, cases
+from engines.registry import ENGINES, INSTALLED, method_name, mislabelled
+from reports.cli.known import engines_named
 from reports.cli.options import REFERENCES, AsJson, AsMarkdown
+from reports.cli.terminal import print_table, telling
 from reports.model.ending import BadInput, Broken
+from reports.model.outcomes import Loss, Outcome
+from reports.run.files import temporary_folder
+from reports.run.running import TIME_LIMIT
+from reports.run.supervisor import supervise
 
-if TYPE_CHECKING:
-    from engines.conformance import Case, Result, Status
-
-WIDTH = 150  # into a file or a pipe
+MODELS = 20  # that a check may build, where each takes seconds: every mechanism of the checks once
+Answers = Sequence[tuple[Case, Result]]
 
 
 def conform(
@@ -24,57 +39,137 @@ def conform(
     as_markdown: AsMarkdown = False,
 ) -> None:
     """Check that an engine keeps the contract: signs, instants, orders, refusals, and any description alike."""
-    from engines.registry import method_name, mislabelled
-    from reports.cli.supervised_checks import Named, asked
-    from reports.cli.terminal import print_table, telling
-
     if sentence := mislabelled():
         raise BadInput(sentence)
-    with telling(WIDTH, as_json, as_markdown) as screen:
+    with telling(150, as_json, as_markdown) as screen:
         broken = []
-        for each, results in asked(Named.here(engine, variant)):
-            name = method_name(each)
+        for method, results in asked(Named.here(engine, variant)):
+            name = method_name(method)
             screen.say(name)
             lines = []
             for status, line in verdicts(results):
                 screen.say(f"  {status:<14} {line}")  # as it comes: some checks take seconds
                 lines.append((status, line))
             count = sum(status == "fails" for status, _ in lines)
-            told = "every check holds" if not count else f"{count} checks fail"
+            summary = "every check holds" if not count else f"{count} checks fail"
             if screen.form == "text":
-                screen.say(f"  {told}")
+                screen.say(f"  {summary}")
             else:
-                print_table(screen, f"{name}: {told}", ("answer", "check"), lines, 2)
-            if count:
-                broken.append(name)
+                print_table(screen, f"{name}: {summary}", ("answer", "check"), lines, 2)
+            broken += [name] if count else []
         if broken:
             raise Broken(f"{', '.join(broken)}: not as the contract of an engine says")
 
 
 def verdicts(results: Iterator[tuple[Case, Result]]) -> Iterator[tuple[Status, str]]:
-    """The status and the line of every check, and a line for every reason why something was not asked, once."""
-    said: set[str] = set()
-    for check, group in groupby(results, key=lambda found: found[0].check):
-        told = list(group)
-        failed, held = _of(told, "fails"), _of(told, "holds")
+    """The status and the line of every check, and a line for every reason why a check did not apply, once."""
+    printed: set[str] = set()
+    for check, group in groupby(results, key=lambda pair: pair[0].check):
+        answers = list(group)
+        failed, held = _with_status(answers, "fails"), _with_status(answers, "holds")
         if failed:
-            yield "fails", f"{_names(failed)}{failed[0][1].sentence}"
+            yield "fails", f"{_places(failed)}{failed[0][1].sentence}"
         elif held:
-            share = "" if not check.worlds else f" ({len(held)} of {len(told)} mechanisms)"
+            share = "" if not check.worlds else f" ({len(held)} of {len(answers)} mechanisms)"
             yield "holds", f"{check.name}{share}"
         for status in ("not supported", "not asked"):
-            for case, result in _of(told, status):
-                words = f"{_names([(case, result)])}{result.sentence}"
-                if words not in said:
+            for case, result in _with_status(answers, status):
+                words = f"{_places([(case, result)])}{result.sentence}"
+                if words not in printed:
                     yield status, words if held or failed or case.world is None else f"{check.name}: {words}"
-                said.add(words)
+                printed.add(words)
 
 
-def _of(told: Sequence[tuple[Case, Result]], status: str) -> list[tuple[Case, Result]]:
-    return [found for found in told if found[1].status == status]
+def _with_status(answers: Answers, status: str) -> list[tuple[Case, Result]]:
+    return [(case, result) for case, result in answers if result.status == status]
 
 
-def _names(told: Sequence[tuple[Case, Result]]) -> str:
+def _places(answers: Answers) -> str:
     """In which mechanisms, and with which joints."""
-    names = [f"{case.world.name} ({', '.join(case.world.kinds)})" for case, _ in told if case.world is not None]
+    names = [f"{case.world.name} ({', '.join(case.world.kinds)})" for case, _ in answers if case.world is not None]
     return f"in {'; '.join(names)}: " if names else ""
+
+
+@dataclass(frozen=True)
+class Named:
+    """What the command is given: an engine's name or a reference, counted from `folder`; and a variant."""
+
+    word: str
+    variant: str | None
+    folder: str
+
+    @staticmethod
+    def here(word: str, variant: str | None) -> Named:
+        return Named(word, variant, os.getcwd())
+
+    def engines(self) -> tuple[Engine, ...]:
+        """Raises BadInput where nothing has this name."""
+        return engines_named(self.word, self.variant, (*ENGINES, *INSTALLED), Path(self.folder))
+
+
+@dataclass(frozen=True)
+class Question:
+    """A check, by its name, of the engine at this place among those that are named.
+
+    `notes`: a folder for a file of the check's name, into which the number of the current mechanism is written.
+    """
+
+    named: Named
+    place: int
+    check: str
+    notes: str
+
+
+@cache
+def _cases(named: Named, place: int) -> tuple[Case, ...]:
+    """Once in a process: what an engine has run for one check is there for the next."""
+    return tuple(cases(named.engines()[place]))
+
+
+def ask(question: Question) -> tuple[Result, ...]:
+    """In a worker: the results of the check, in each of its mechanisms."""
+    results = []
+    for number, case in enumerate(_of_check(_cases(question.named, question.place), question.check)):
+        Path(question.notes, question.check).write_text(str(number), encoding="utf-8")
+        results.append(case.result())
+    return tuple(results)
+
+
+def asked(named: Named, limit: float = TIME_LIMIT) -> Iterator[tuple[Engine, Iterator[tuple[Case, Result]]]]:
+    """Every engine that is named, and the results of its checks, in their order. `limit`: CPU seconds of a check, and
+    more where an engine declares that its models take long to build.
+
+    One worker at a time, so that what an engine has run is kept. Raises BadInput, and WorkersLost (`supervise`).
+    """
+    for place, engine in enumerate(named.engines()):
+        yield engine, _answers(named, place, engine, limit + MODELS * engine.building)
+
+
+def _answers(named: Named, place: int, engine: Engine, limit: float) -> Iterator[tuple[Case, Result]]:
+    every = tuple(cases(engine))
+    names = [name for name, _ in groupby(case.check.name for case in every)]
+    with temporary_folder() as notes:
+        questions = [Question(named, place, name, str(notes)) for name in names]
+        answers: dict[str, Answers] = {}
+        for question, results, earlier in supervise(ask, questions, limit, workers=1):
+            members = _of_check(every, question.check)
+            if isinstance(results, Loss):
+                note = Path(notes, question.check)  # the case that was running
+                case = members[int(note.read_text(encoding="utf-8"))] if note.is_file() else members[0]
+                start = "It" if results.outcome == Outcome.TIMED_OUT else "Its process was lost:"
+                answers[question.check] = [_failed(case, f"{start} {results.sentence}")]
+            elif earlier:
+                words = f"It ended its process at the first try: {earlier}; the second went through"
+                answers[question.check] = [_failed(members[0], words)]
+            else:
+                answers[question.check] = list(zip(members, results, strict=True))
+            while names and names[0] in answers:  # a check that is tried again is answered late
+                yield from answers[names.pop(0)]
+
+
+def _failed(case: Case, words: str) -> tuple[Case, Result]:
+    return case, Result("fails", f"{case.check.name}: {case.check.asks} {words}")
+
+
+def _of_check(every: Sequence[Case], name: str) -> list[Case]:
+    return [case for case in every if case.check.name == name]

@@ -6,18 +6,13 @@ from typing import Annotated
 
 import typer
 
+from reports.cli.terminal import Terminal, print_table
 from reports.model.ending import BadInput
+from reports.pages.errata.page import engine_rows, slip_rows
 
-HEADER = (
-    "no.",
-    "where",
-    "printed, and its value",
-    "right, and its value",
-    "derivative, and all values' unit",
-    "verdict",
-)
+VALUES = ("printed, and its value", "right, and its value", "derivative, and all values' unit", "verdict")
 ENGINES_HEADER = ("no.", "engine", "its motion", "unit", "printed misses by", "right misses by")
-WIDTH = 150  # into a file or a pipe
+CAUCHY = "The derivative is that of a position (11: of a velocity; 19: the loop's closure), by Cauchy's integral."
 
 
 def errata(
@@ -25,24 +20,17 @@ def errata(
     engines: Annotated[bool, typer.Option("--engines", help="What engines say of it too (some seconds).")] = False,
 ) -> None:
     """The chapter's printed slips: each formula's value as printed and as it must be, and what decides."""
-    from reports.cli.terminal import Terminal, print_table
-    from reports.pages.errata.page import engine_rows, slip_rows
-
     rows = slip_rows()
     known = [int(row[0]) for row in rows]
-    for one in number or ():
-        if one not in known:
-            raise BadInput(f"no slip has the number {one}; there are {', '.join(map(str, known))}")
-    wide, chosen = Terminal(WIDTH), number or known
-    shown = [row for row in rows if int(row[0]) in chosen]
-    print_table(wide, "Printed slips of the chapter", HEADER, shown, len(HEADER))
-    wide.print(
-        "\nThe derivative is that of a position (11: of a velocity; 19: the loop's closure), by Cauchy's integral."
-    )
+    if unknown := [word for word in number or () if word not in known]:
+        raise BadInput(f"no slip has the number {unknown[0]}; there are {', '.join(map(str, known))}")
+    terminal, chosen = Terminal(150), number or known
+    header = ("no.", "where", *VALUES)
+    print_table(terminal, "Printed slips of the chapter", header, [r for r in rows if int(r[0]) in chosen], len(header))
+    terminal.print(f"\n{CAUCHY}")
     if engines:
-        found, lost = engine_rows()
-        wide.print()
-        shown = [row for row in found if int(row[0]) in chosen]
-        print_table(wide, "Engines as referees", ENGINES_HEADER, shown, 4)
+        rows, lost = engine_rows()
+        terminal.print()
+        print_table(terminal, "Engines as referees", ENGINES_HEADER, [r for r in rows if int(r[0]) in chosen], 4)
         for sentence in lost:
-            wide.print(sentence, markup=False)
+            terminal.print(sentence, markup=False)

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+import numpy as np
 import typer
 
+from engines import Unsupported
+from engines.loading import Kind, registered_by_key
+from reference.scene import Scene
+from reports.cli.known import one_scene
 from reports.cli.options import REFERENCES, STDOUT, refuse_existing
 from reports.cli.streams import written
 from reports.model.ending import BadInput, visible
 from reports.run.files import is_stream, write_whole
+from reports.site.animated import animation, shown
+from reports.site.lessons import take_like
 
-if TYPE_CHECKING:
-    from reference.scene import Scene
-
-INSTANTS = 10  # at which the truth is told
+INSTANTS = 10  # of the truth in the comments
 MEMBERS = ("suffix", "write", "commented")
 
 SceneName = Annotated[str, typer.Argument(help=f"A scene's name, or {REFERENCES}.")]
@@ -37,9 +42,13 @@ def export(
         raise BadInput(f"--to is {to!r}; it must be one of {', '.join(sorted(known))}")
     if not 0 < step < float("inf"):
         raise BadInput(f"--step is {step:g}; it must be a finite time above zero")
-    from reports.cli.known import one_scene
-
-    _write(out or STDOUT, _written(known[to], one_scene(scene)[1], step, variant), force)
+    chosen = one_scene(scene)[1]
+    try:
+        text = known[to].write(chosen.mechanism(), step, variant)
+    except (Unsupported, ValueError) as reason:
+        raise BadInput(f"{chosen.name}: {reason}") from None
+    comments = [*truth_lines(chosen), f"Settings of the variant {variant!r}, with a step of {step:g} s."]
+    _write(out or STDOUT, known[to].commented(text, comments), force)
 
 
 def view(
@@ -49,13 +58,10 @@ def view(
     force: Force = False,
 ) -> None:
     """Look at a scene: in an engine's viewer where there is a display, or else as an animation in a file."""
-    from engines import Unsupported
-    from reports.cli.known import one_scene
-
     _, chosen = one_scene(scene)
     if out is None:
         try:
-            for show in _viewers().values():
+            for show in _registered("viewer", lambda value: "" if callable(value) else "it is none").values():
                 show(writers()["mjcf"].write(chosen.mechanism(), 1e-3, variant))
                 return
         except Unsupported as reason:
@@ -63,56 +69,34 @@ def view(
         except ValueError as reason:
             raise BadInput(f"{chosen.name}: {reason}") from None
         out = Path(f"{chosen.name}.svg")
-    from reports.site.animated import animation, shown
-    from reports.site.lessons import take_like
-
     motion = shown(take_like(chosen, ()), {})
     _write(out, animation(motion, f"{chosen.name.replace('_', ' ')}: the exact motion"), force)
 
 
 def writers() -> dict[str, Any]:
     """What writes files, by the words of --to: the entry point group `crosscheck.writers`."""
-    from engines.loading import Kind, registered_by_key
-
     lacking = f"it lacks {', '.join(MEMBERS)}"
-    kind = Kind("writer", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
-    return registered_by_key("crosscheck.writers", kind)
+    return _registered("writer", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
 
 
-def _viewers() -> dict[str, Any]:
-    from engines.loading import Kind, registered_by_key
-
-    return registered_by_key(
-        "crosscheck.viewers", Kind("viewer", lambda value: "" if callable(value) else "it is none")
-    )
+def _registered(name: str, trouble: Callable[[Any], str]) -> dict[str, Any]:
+    return registered_by_key(f"crosscheck.{name}s", Kind(name, trouble))
 
 
-def _written(writer: Any, scene: Scene, step: float, variant: str) -> str:
-    from engines import Unsupported
-
-    mechanism = scene.mechanism()
-    try:
-        text = writer.write(mechanism, step, variant)
-    except (Unsupported, ValueError) as reason:
-        raise BadInput(f"{scene.name}: {reason}") from None
-    return writer.commented(text, [*told(scene), f"Settings of the variant {variant!r}, with a step of {step:g} s."])
-
-
-def told(scene: Scene) -> list[str]:
+def truth_lines(scene: Scene) -> list[str]:
     """The truth at ten instants: poses of all bodies, in the plane of the scene."""
-    import numpy as np
-
     mechanism = scene.mechanism()
-    names = [body.name for body in mechanism.bodies]
     times = np.linspace(0.0, scene.duration, INSTANTS)
-    lines = [f"{scene.name} ({scene.source}): where the centres of mass are [m], and the angles [rad], in truth."]
     x, y = mechanism.gravity
-    lines.append(f"Gravity: {x:.12g}, {y:.12g} m/s^2 in the plane, x and y as below; some formats can't hold it.")
+    lines = [
+        f"{scene.name} ({scene.source}): where the centres of mass are [m], and the angles [rad], in truth.",
+        f"Gravity: {x:.12g}, {y:.12g} m/s^2 in the plane, x and y as below; some formats can't hold it.",
+    ]
     for t, poses in zip(times, scene.motion(times).pose, strict=True):
         lines.append(f"t = {t:.6g} s")
         lines += [
-            f"    {name}: x {x:.12g}, y {y:.12g}, angle {angle:.12g}"
-            for name, (x, y, angle) in zip(names, poses, strict=True)
+            f"    {body.name}: x {x:.12g}, y {y:.12g}, angle {angle:.12g}"
+            for body, (x, y, angle) in zip(mechanism.bodies, poses, strict=True)
         ]
     return lines
 

@@ -1,4 +1,4 @@
-"""Scenes, engines and pages that a command knows: registered ones, and those that its words or its store name."""
+"""Scenes, engines and pages that a command can name: registered ones, and those that its words or its store name."""
 
 from __future__ import annotations
 
@@ -15,19 +15,21 @@ import numpy as np
 from engines import Engine, method_name, registry
 from engines.loading import is_reference, load
 from reference.scene import Scene, told_apart, with_settings
-from reports.cli.selection import choose_scenes, known_engines
+from reports.cli.selection import choose_engines, choose_scenes, known_engines
 from reports.cli.streams import said
 from reports.model import catalogue
 from reports.model.cells import Cell, estimated_cost
 from reports.model.ending import BadInput, nearest
 from reports.model.outcomes import Loss
 from reports.model.page import Page
+from reports.run import supervisor
+from reports.run.running import TIME_LIMIT
 
 SLEEPING = 120.0  # s of wall time for code of somebody else that does not use its CPU time
 
 
 @dataclass(frozen=True)
-class Given:
+class Reference:
     """A scene or an engine that is not registered, in words that find it again: a store keeps these, no objects.
 
     word: a reference (`engines.loading`), or a registered scene's name; folder: where it counts from; settings: the
@@ -43,120 +45,130 @@ class Given:
         return json.dumps([self.kind, self.word, self.folder, self.settings])
 
     @classmethod
-    def of_text(cls, text: str) -> Given:
-        """Raises ValueError for a text that is none of these."""
-        try:
-            kind, word, folder, settings = json.loads(text)
-            return cls(str(kind), str(word), str(folder), tuple((str(name), str(value)) for name, value in settings))
-        except (TypeError, ValueError):
-            raise ValueError(f"{text!r} names no scene or engine") from None
+    def of_text(cls, text: str) -> Reference:
+        """Raises ValueError and TypeError for another text."""
+        kind, word, folder, settings = json.loads(text)
+        return cls(str(kind), str(word), str(folder), tuple((str(name), str(value)) for name, value in settings))
+
+    def values(self) -> tuple[Any, ...]:
+        """The scenes or engines. Raises ValueError, a sentence."""
+        if self.kind == "engine":
+            return registry.load(self.word, Path(self.folder))
+        if is_reference(self.word):
+            scenes = load(self.word, catalogue.SCENE, Path(self.folder))
+        else:
+            scenes = tuple(scene for scene in catalogue.SCENES if scene.name == self.word)
+        if not scenes:
+            raise ValueError(f"no scene is called {self.word!r}")
+        return told_apart(tuple(with_settings(scene, dict(self.settings)) for scene in scenes))
 
 
 @dataclass(frozen=True)
 class Known:
-    """Scenes and engines that can be named, and pages that tell of all of them; `given`: those that words brought."""
+    """Scenes and engines that can be named, and pages of all of them; `given`: the references that brought some."""
 
     scenes: tuple[Scene, ...]
     engines: tuple[Engine, ...]
     pages: tuple[Page, ...]
-    given: tuple[Given, ...] = ()
+    given: tuple[Reference, ...] = ()
 
-    def with_(self, given: Given) -> tuple[Known, tuple[Any, ...]]:
-        """(this and what is given, the scenes or engines that it stands for). Raises ValueError, a sentence."""
-        found = values_of(given)
-        if given.kind == "engine":
-            new = _new(found, self.engines, method_name, given)
+    def with_(self, reference: Reference) -> tuple[Known, tuple[Any, ...]]:
+        """(this and what the reference brings, the scenes or engines that it stands for). Raises ValueError."""
+        values = reference.values()
+        if reference.kind == "engine":
+            new = _new(values, self.engines, method_name, reference)
             pages = catalogue.with_engines(self.pages, new)
             out = replace(self, engines=(*self.engines, *new), pages=pages)
         else:
-            new = _new(found, self.scenes, lambda scene: scene.name, given)
-            compared = tuple(dict.fromkeys([*registry.VARIANTS, *self._given_engines()]))
-            pages = catalogue.with_scenes(self.pages, new, compared)
+            new = _new(values, self.scenes, lambda scene: scene.name, reference)
+            registered_engines = set(known_engines(catalogue.PAGES))
+            more = (engine for engine in self.engines if engine not in registered_engines)
+            pages = catalogue.with_scenes(self.pages, new, tuple(dict.fromkeys([*registry.VARIANTS, *more])))
             out = replace(self, scenes=(*self.scenes, *new), pages=pages)
-        return replace(out, given=(*out.given, given)) if new else out, found
-
-    def _given_engines(self) -> tuple[Engine, ...]:
-        registered = set(known_engines(catalogue.PAGES))
-        return tuple(engine for engine in self.engines if engine not in registered)
+        return replace(out, given=(*out.given, reference)) if new else out, values
 
 
-def values_of(given: Given) -> tuple[Any, ...]:
-    """The scenes or engines that are given. Raises ValueError, a sentence."""
-    if given.kind == "engine":
-        return registry.load(given.word, Path(given.folder))
-    if is_reference(given.word):
-        scenes = load(given.word, catalogue.SCENE, Path(given.folder))
-    else:
-        scenes = tuple(scene for scene in catalogue.SCENES if scene.name == given.word)
-    if not scenes:
-        raise ValueError(f"no scene is called {given.word!r}")
-    return told_apart(tuple(with_settings(each, dict(given.settings)) for each in scenes))
-
-
-def _new(found: Iterable[Any], known: Iterable[Any], name: Callable[[Any], str], given: Given) -> tuple[Any, ...]:
+def _new(
+    values: Iterable[Any], known: Iterable[Any], name: Callable[[Any], str], reference: Reference
+) -> tuple[Any, ...]:
     """Those that are not known yet. Raises ValueError for another one of a known name."""
-    by_name = {name(each): each for each in known}
+    by_name = {name(value): value for value in known}
     new = []
-    for each in found:
-        if name(each) not in by_name:
-            by_name[name(each)] = each
-            new.append(each)
-        elif by_name[name(each)] != each:
-            raise ValueError(f"{given.word}: another {given.kind} is called {name(each)!r}; give this one another name")
+    for value in values:
+        if name(value) not in by_name:
+            new.append(value)
+        if by_name.setdefault(name(value), value) != value:
+            raise ValueError(
+                f"{reference.word}: another {reference.kind} is called {name(value)!r}; give this one another name"
+            )
     return tuple(new)
 
 
 def registered() -> Known:
-    """What is registered. What is wrong there is told on stderr, a line each, and left out."""
+    """What is registered. What is wrong there is printed on stderr, a line each, and left out."""
     for line in catalogue.TROUBLES:
         said(line)
     return Known(catalogue.SCENES, known_engines(catalogue.PAGES), catalogue.PAGES)
 
 
 def with_remembered(known: Known, texts: Iterable[str], motion: bool = False) -> Known:
-    """What a store remembers too. What can't be found any more is told on stderr, a line each, and left out.
+    """What a store remembers too. What can't be loaded any more is named on stderr, a line each, and left out.
 
-    motion: of a command that asks scenes for their motion.
+    motion: of a command that computes the motion of scenes.
     """
-    given = []
+    references = []
     for text in texts:
-        with suppress(ValueError):  # a text of another version
-            given.append(Given.of_text(text))
-    bad = refused(given, motion)
-    for each in given:
+        with suppress(ValueError, TypeError):  # a text of another version
+            references.append(Reference.of_text(text))
+    bad = refused(references, motion)
+    for reference in references:
         try:
-            if each in bad:
-                raise ValueError(bad[each])
-            known, _ = known.with_(each)
+            if reference in bad:
+                raise ValueError(bad[reference])
+            known, _ = known.with_(reference)
         except ValueError as reason:
             said(f"left out, since it is not as it was when it was run: {reason}")
     return known
 
 
-def with_words(
-    known: Known, scenes: Sequence[str], engine: str | None, settings: Sequence[str] = (), motion: bool = False
-) -> tuple[Known, tuple[str, ...], tuple[Engine, ...]]:
-    """(known with what the words name, names of the scenes, the engines if `engine` is a reference). Raises BadInput.
+@dataclass(frozen=True)
+class Choice:
+    """What the words of a command choose, and all that it knows then."""
 
-    Names that are no references are left for `choose_scenes`, unless numbers of theirs are set. motion: of a command
-    that calls the motion of scenes.
+    known: Known
+    scenes: tuple[Scene, ...]
+    engines: tuple[Engine, ...]
+
+
+def choose(
+    words: Sequence[str] = (),
+    engine: str | None = None,
+    variant: str | None = None,
+    settings: Sequence[str] = (),
+    known: Known | None = None,
+    motion: bool = False,
+) -> Choice:
+    """The scenes and engines of these words, all if there are none. Raises BadInput.
+
+    words: names of scenes or pages, or references; settings: NAME=VALUE for numbers of these scenes; motion: of a
+    command that computes the motion of scenes.
     """
-    folder = str(Path.cwd())
-    values = _settings(settings)
-    if values and not scenes:
+    known = known or registered()
+    folder, values = str(Path.cwd()), _settings(settings)
+    if values and not words:
         raise BadInput("--set changes the numbers of scenes: name a scene before it")
+    words = [name for word in words for name in (_scene_names(known, word) if values else [word])]
+    references = {
+        word: Reference("scene", word, folder, tuple(values.items())) for word in words if values or is_reference(word)
+    }
+    of_engine = Reference("engine", engine, folder) if engine is not None and is_reference(engine) else None
     names: list[str] = []
-    engines: tuple[Engine, ...] = ()
     try:
-        words = [name for word in scenes for name in (_words_of(known, word) if values else [word])]
-        references = {
-            word: Given("scene", word, folder, tuple(values.items())) for word in words if values or is_reference(word)
-        }
-        of_engine = [Given("engine", engine, folder)] if engine is not None and is_reference(engine) else []
-        for reason in refused([*of_engine, *references.values()], motion).values():
+        for reason in refused([*filter(None, [of_engine]), *references.values()], motion).values():
             raise BadInput(reason)
-        for reference in of_engine:
-            known, engines = known.with_(reference)
+        engines: tuple[Engine, ...] = ()
+        if of_engine is not None:
+            known, engines = known.with_(of_engine)
         for word in words:
             loaded: tuple[Any, ...] = ()
             if word in references:
@@ -164,19 +176,32 @@ def with_words(
             names += [scene.name for scene in loaded] or [word]
     except ValueError as reason:
         raise BadInput(str(reason)) from None
-    return known, tuple(names), engines
+    scenes = choose_scenes(names, known.scenes, known.pages)
+    return Choice(known, scenes, choose_engines(None if engines else engine, variant, engines or known.engines))
 
 
 def one_scene(word: str, settings: Sequence[str] = ()) -> tuple[Known, Scene]:
-    """(what is known, the scene) of a command that asks one for its motion. Raises BadInput."""
-    known, names, _ = with_words(registered(), [word], None, settings, motion=True)
-    found = choose_scenes(names, known.scenes, known.pages)
-    if len(found) != 1:
-        raise BadInput(f"{word!r} names {len(found)} scenes; give one of {', '.join(each.name for each in found)}")
-    return known, found[0]
+    """(what is known, the scene) of a command that computes the motion of one. Raises BadInput."""
+    choice = choose([word], settings=settings, motion=True)
+    if len(choice.scenes) != 1:
+        names = ", ".join(scene.name for scene in choice.scenes)
+        raise BadInput(f"{word!r} names {len(choice.scenes)} scenes; give one of {names}")
+    return choice.known, choice.scenes[0]
 
 
-def _words_of(known: Known, word: str) -> list[str]:
+def engines_named(
+    word: str | None, variant: str | None, known: Sequence[Engine], folder: Path | None = None
+) -> tuple[Engine, ...]:
+    """The engines of a reference, or those of this name among `known`, of this variant. Raises BadInput."""
+    if word is None or not is_reference(word):
+        return choose_engines(word, variant, known)
+    try:
+        return choose_engines(None, variant, registry.load(word, folder))
+    except ValueError as reason:
+        raise BadInput(str(reason)) from None
+
+
+def _scene_names(known: Known, word: str) -> list[str]:
     """A reference or a scene's name as it is; a page's name as those of its scenes. Raises BadInput."""
     if is_reference(word) or any(word == scene.name for scene in catalogue.SCENES):
         return [word]
@@ -190,13 +215,12 @@ def _settings(words: Sequence[str]) -> dict[str, str]:
     """Numbers to set, by name. Raises BadInput."""
     out: dict[str, str] = {}
     for word in words:
-        name, equals, value = word.partition("=")
-        name = name.strip()
-        if not (name and equals and value.strip()):
+        name, _, value = (part.strip() for part in word.partition("="))
+        if not (name and value):
             raise BadInput(f"--set is {word!r}; give NAME=VALUE")
         if name in out:
             raise BadInput(f"--set gives {name} twice")
-        out[name] = value.strip()
+        out[name] = value
     return out
 
 
@@ -206,10 +230,10 @@ class Trial:
 
     motion: bool
 
-    def __call__(self, given: Given) -> str:
+    def __call__(self, reference: Reference) -> str:
         """The sentence that says why it can't be used; empty if it can."""
         try:
-            for value in values_of(given):
+            for value in reference.values():
                 # As the tables, dictionaries and lists of a command do.
                 if not (isinstance(hash(value), int) and value == value and isinstance(repr(value), str)):
                     raise ValueError("it is not equal to itself")
@@ -228,20 +252,17 @@ class Trial:
         return ""
 
 
-def refused(given: Sequence[Given], motion: bool = False) -> dict[Given, str]:
+def refused(references: Sequence[Reference], motion: bool = False) -> dict[Reference, str]:
     """Why some references can't be used, a sentence each. Raises WorkersLost.
 
     A worker tries them first: somebody else's code may end its process.
     """
-    from reports.run.running import TIME_LIMIT
-    from reports.run.supervisor import supervise
-
-    if not given or multiprocessing.parent_process() is not None:  # a worker asks for itself
+    if not references or multiprocessing.parent_process() is not None:  # a worker tries them itself
         return {}
-    found = {}
-    for each, result, _ in supervise(Trial(motion), given, TIME_LIMIT, workers=1, wall=SLEEPING):
+    sentences = {}
+    for reference, result, _ in supervisor.supervise(Trial(motion), references, TIME_LIMIT, workers=1, wall=SLEEPING):
         if isinstance(result, Loss):
-            found[each] = f"{each.word}: its own code can't be used: {result.sentence}"
-        elif result:
-            found[each] = result
-    return found
+            result = f"{reference.word}: its own code can't be used: {result.sentence}"
+        if result:
+            sentences[reference] = result
+    return sentences

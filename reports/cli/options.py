@@ -17,6 +17,7 @@ FOLDER = Path("crosscheck-results")
 STORE = "cells.sqlite"
 STDOUT = Path("-")  # as a file that is written: standard output
 SEARCH = "search"  # the folder in it with what random mechanisms gave
+SITE = Path("crosscheck-site")  # the folder of a site
 REFERENCES = "package.module:NAME, or path/to/file.py"
 
 Folder = Annotated[Path, typer.Option("--results", help="Folder of the stored results, and of the pages.")]

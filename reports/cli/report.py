@@ -1,26 +1,51 @@
-"""`crosscheck report`: pages and charts from what is stored, in the folder of the results or published."""
+"""`crosscheck report`: pages and charts from what is stored, in the folder of the results or published.
+
+Pictures are nearly all of the work: where there are many rows, workers render pages, one on each processor.
+"""
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from engines import registry
+from reports.cli import selection
 from reports.cli.interruption import kept
+from reports.cli.known import registered, with_remembered
 from reports.cli.options import FOLDER, SEARCH, STORE, Folder, refuse_file, with_folder
+from reports.cli.terminal import Terminal
+from reports.gate.prediction import all_tasks
+from reports.model import catalogue
 from reports.model.ending import BadInput
+from reports.model.outcomes import Loss
+from reports.model.page import Material, Page
+from reports.pages import index, rendering
+from reports.pages.claims import contradicted
+from reports.pages.four_bar.page import MOVED, MOVING, MOVING_EVERY, MOVING_PICTURE
 from reports.run.files import write_whole
-
-if TYPE_CHECKING:
-    from reports.model.page import Material, Page
+from reports.run.running import missing, worker_count
+from reports.run.store import Store
+from reports.run.supervisor import WorkersLost, supervise
+from reports.search import page as search_page
+from reports.search import plan
+from reports.site.animated import animation, shown
+from reports.site.lessons import take_like
+from reports.write.csv_files import DIGESTS, as_published, digests_csv, read_published
+from reports.write.tables import step_words
+from reports.write.templates import without_links_to_nothing
 
 CHECKOUT = Path(__file__).parents[2]
 SEARCHED = ("search.md", "search_errors.svg")
-LARGE = 2**20  # bytes of a store: smaller ones have too few rows for workers (`reports.cli.drawing`)
-Materials = Mapping["Page", "Material"]
+MANY = 1000  # rows: of fewer, pages are rendered sooner than workers have started
+LIMIT = 600.0  # CPU seconds of one page
+Materials = Mapping[Page, Material]
 
 
 def report(
@@ -30,8 +55,6 @@ def report(
     ] = False,
 ) -> None:
     """Write pages, charts, errors.csv and timings.csv from what is stored."""
-    from reports.cli.terminal import Terminal
-
     for sentence in write_report(results, publish).sentences:
         Terminal(140).say(sentence)
 
@@ -56,51 +79,47 @@ def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport
     if not (results / STORE).exists():
         if not searched:
             raise nothing
-        line = f"{len(searched)} files written to {folder}: the search alone, since no cells are stored"
         write_files({folder / name: text for name, text in searched.items()})
+        line = f"{len(searched)} files written to {folder}: the search alone, since no cells are stored"
         return WrittenReport(folder, tuple(searched), (line,))
-    if (results / STORE).stat().st_size > LARGE:
-        from reports.run.worker import start_early
-
-        start_early("reports.cli.drawing")  # imported while this process imports the rest
-    from reports.pages.index import render_readme
-    from reports.write.csv_files import DIGESTS, digests_csv
-
     if publish:  # the searches are run by a command of their own: their published pages stay
-        standing = ((name, folder / name) for name in SEARCHED)
-        searched = searched or {name: path.read_text(encoding="utf-8") for name, path in standing if path.is_file()}
-    material, remembered, missing = stored_material(results, publish)
+        paths = {name: folder / name for name in SEARCHED if (folder / name).is_file()}
+        searched = searched or {name: path.read_text(encoding="utf-8") for name, path in paths.items()}
+    material, remembered, left = stored_material(results, publish)
     if not any(stored.rows for stored in material.values()):
         raise nothing
     if publish:
-        material = publishable(material, missing)
+        material = publishable(material, left)
     files = rendered(folder, material, remembered, searched, publish)
     files[DIGESTS] = digests_csv(files)
     texts = {folder / name: text for name, text in files.items()}
     if publish:
         readme = CHECKOUT / "README.md"
-        texts[readme] = render_readme(readme.read_text(encoding="utf-8"), material)
+        texts[readme] = index.render_readme(readme.read_text(encoding="utf-8"), material)
     write_files(texts)
     line = f"{len(files)} files written. Read this first: {folder / 'index.md'}"
-    return WrittenReport(folder, tuple(files), (line, missing) if missing else (line,))
+    return WrittenReport(folder, tuple(files), (line, left) if left else (line,))
+
+
+def material_of(page: Page, store: Store) -> Material:
+    """All that is stored of a page."""
+    return Material(store.get(selection.shown_cells(page)), store.answers(all_tasks(page)))
 
 
 def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str, ...], str]:
-    """(what is stored of each page, the references that the store remembers, a sentence on missing cells or "")."""
-    from reports.cli.drawing import known_to, material_of
-    from reports.cli.selection import page_cells, page_tasks
-    from reports.model.catalogue import PAGES
-    from reports.run.running import missing
-    from reports.run.store import Store
+    """(what is stored of each page, the references that the store remembers, a sentence on missing cells or "").
 
+    A published report has the pages that are registered, another also those of what else was run.
+    """
     with Store.read(results / STORE) as store:
-        known = known_to(store, publish)
-        # A borrowed cell belongs to the full grid as far as the page that it is borrowed from runs it.
-        whole = tuple(dict.fromkeys(item for page in PAGES for item in (*page_cells(page), *page_tasks(page))))
-        left = len(missing(whole, store))
-        names = {page.name for page in PAGES}
-        material = {page: material_of(page, store) for page in known.pages}
         remembered = () if publish else tuple(store.remembered())
+        pages = with_remembered(registered(), remembered, motion=True).pages
+        # A borrowed cell belongs to the full grid as far as the page that it is borrowed from runs it.
+        items = [(*selection.page_cells(page), *selection.page_tasks(page)) for page in catalogue.PAGES]
+        whole = tuple(dict.fromkeys(item for members in items for item in members))
+        left = len(missing(whole, store))
+        material = {page: material_of(page, store) for page in pages}
+    names = {page.name for page in catalogue.PAGES}
     # A page of which nothing is stored has nothing to show: it was not run, or its sources have changed since.
     material = {
         page: stored
@@ -111,15 +130,16 @@ def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str,
     return material, remembered, grid + with_folder("crosscheck run --full", results) if left else ""
 
 
-def publishable(material: Materials, missing: str) -> Materials:
-    """The material, with published digits of rows that are as before. Raises BadInput if it may not be published."""
-    from reports.pages.claims import contradicted
-    from reports.write.csv_files import as_published, read_published
+def publishable(material: Materials, left: str) -> Materials:
+    """The material, with published digits of rows that are as before. Raises BadInput if it may not be published.
 
+    Rows of an engine that is not installed would be lost.
+    """
     before = read_published(published())
-    refuse_without(before.engines)
-    if missing:
-        raise BadInput(f"nothing is published, {missing}")
+    if absent := [registry.ABSENT[engine] for engine in before.engines if engine in registry.ABSENT]:
+        raise BadInput(f"nothing is published, since rows of engines are that are not installed; {'; '.join(absent)}")
+    if left:
+        raise BadInput(f"nothing is published, {left}")
     material = {page: replace(stored, rows=as_published(stored.rows, before)) for page, stored in material.items()}
     if wrong := contradicted(material):
         raise BadInput(f"nothing is published, since rows contradict these claims of pages: {'; '.join(wrong)}")
@@ -130,59 +150,78 @@ def rendered(
     folder: Path, material: Materials, remembered: tuple[str, ...], searched: Mapping[str, str], publish: bool
 ) -> dict[str, str]:
     """The files of a report into this folder by their names, but for their digests."""
-    from reports.cli.drawing import MANY, drawn
-    from reports.pages.rendering import render_all
-    from reports.write.templates import without_links_to_nothing
-
     command = "make publish" if publish else "crosscheck report"
     many = sum(len(stored.rows) for stored in material.values()) > MANY
     pages = drawn(material, remembered, command, published()) if many else {}
-    files = render_all(material, command, searched, pages)
+    files = rendering.render_all(material, command, searched, pages)
     files |= moving_picture(material.values())
-    if not publish:
+    if publish:
+        timings = published() / "timings.csv"
+        if timings.is_file() and "timings.csv" in files:
+            old = timings.read_text(encoding="utf-8")
+            same = old.partition("\n")[2] == files["timings.csv"].partition("\n")[2]  # but for the date
+            files["timings.csv"] = old if same else files["timings.csv"]
+        return files
 
-        def is_page(name: str) -> bool:
-            return name in files or (folder / name).is_file()
+    def is_page(name: str) -> bool:
+        return name in files or (folder / name).is_file()
 
-        return {
-            name: without_links_to_nothing(text, is_page) if name.endswith(".md") else text
-            for name, text in files.items()
-        }
-    timings = published() / "timings.csv"
-    if timings.is_file() and "timings.csv" in files:
-        old = timings.read_text(encoding="utf-8")
-        files["timings.csv"] = old if same_but_for_the_date(old, files["timings.csv"]) else files["timings.csv"]
+    return {
+        name: without_links_to_nothing(text, is_page) if name.endswith(".md") else text for name, text in files.items()
+    }
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """The work of a worker on (a page's name, what is stored of it). words: references that the store remembers."""
+
+    words: tuple[str, ...]
+    command: str
+
+    def __call__(self, item: tuple[str, Material]) -> dict[str, str]:
+        name, material = item
+        page = _pages(self.words)[name]  # it holds functions, which can't be sent
+        gc.disable()  # it would look through all that was imported; what one page leaves is little
+        try:
+            return rendering.render_page(page, material, self.command)
+        finally:
+            gc.enable()
+            gc.collect()
+
+
+@lru_cache(maxsize=1)
+def _pages(words: tuple[str, ...]) -> dict[str, Page]:
+    pages = {page.name: page for page in with_remembered(registered(), words).pages}
+    gc.freeze()
+    return pages
+
+
+def drawn(material: Materials, words: Iterable[str], command: str, order: Path) -> dict[str, dict[str, str]]:
+    """The files of the pages that a worker could render, by the pages' names; the caller renders the others.
+
+    words: references that the store remembers; order: a folder with a report: pages with the largest pictures begin.
+    """
+
+    def size(pair: tuple[str, Material]) -> int:
+        return sum(file.stat().st_size for file in order.glob(f"{pair[0]}_*.svg"))
+
+    pages = sorted(((page.name, stored) for page, stored in material.items()), key=size, reverse=True)
+    files: dict[str, dict[str, str]] = {}
+    with suppress(WorkersLost):
+        for (name, _), result, _ in supervise(Drawing(tuple(words), command), pages, LIMIT, worker_count()):
+            if not isinstance(result, Loss):
+                files[name] = result
     return files
 
 
 def moving_picture(material: Iterable[Material]) -> dict[str, str]:
     """The moving picture of README, by its name; nothing where not all of its motions are stored."""
-    from reports.pages.four_bar.page import MOVED, MOVING, MOVING_EVERY, MOVING_PICTURE
-    from reports.site.animated import animation, shown
-    from reports.site.lessons import take_like
-    from reports.write.tables import step_words
-
     answers = {task: answer for stored in material for task, answer in stored.answers.items() if task in MOVED}
     if any(task not in answers for task in MOVED):
         return {}
-    scene = MOVED[0].cell.scene
-    take = take_like(scene, tuple((word, engine, MOVING_EVERY) for word, engine in MOVING.items()))
+    take = take_like(MOVED[0].cell.scene, tuple((word, engine, MOVING_EVERY) for word, engine in MOVING.items()))
     title = f"A four-bar linkage falls: the exact motion, and engines at steps of {step_words(MOVED[0].cell.step)}"
     return {MOVING_PICTURE: animation(shown(take, answers), title)}
-
-
-def same_but_for_the_date(old: str, new: str) -> bool:
-    """Whether two timings.csv differ in nothing but their first line."""
-    return old.partition("\n")[2] == new.partition("\n")[2]
-
-
-def refuse_without(engines: Iterable[str]) -> None:
-    """Raises BadInput if one of these engines, whose rows are published, is not installed: its rows would be lost."""
-    from engines.registry import ABSENT
-
-    absent = [ABSENT[engine] for engine in engines if engine in ABSENT]
-    if absent:
-        raise BadInput(f"nothing is published, since rows of engines are that are not installed; {'; '.join(absent)}")
 
 
 def write_files(texts: Mapping[Path, str], line: str = "") -> None:
@@ -191,8 +230,6 @@ def write_files(texts: Mapping[Path, str], line: str = "") -> None:
         write_whole(texts, "the pages that were there stay as they were")
         check()
     if line:
-        from reports.cli.terminal import Terminal
-
         Terminal(140).say(line)
 
 
@@ -200,14 +237,9 @@ def search_files(results: Path, publish: bool = False) -> dict[str, str]:
     """The page of the stored searches, and its picture; to be published, those of the last commit's seeds alone."""
     if not (results / SEARCH / STORE).exists():
         return {}
-    from reports.pages.index import foot
-    from reports.run.store import Store
-    from reports.search import plan
-    from reports.search.page import files, read
-
     planned = sum(piece.count for piece in plan.published()) if publish else 0
     with Store.read(results / SEARCH / STORE) as store:
-        return files(*read(store, publish), foot("crosscheck search"), planned)
+        return search_page.files(*search_page.read(store, publish), index.foot("crosscheck search"), planned)
 
 
 def published() -> Path:

@@ -8,10 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from engines import method_name
+from engines.lagrange.loading import is_cold
+from reports.cli.known import Choice, choose
 from reports.cli.options import (
     FOLDER,
     STORE,
@@ -27,18 +30,18 @@ from reports.cli.options import (
     Workers,
     with_folder,
 )
+from reports.cli.selection import choose_cells, choose_tasks, grid_engines, left_out
+from reports.cli.terminal import Terminal, interruptible, opened, print_table, telling
+from reports.model.cells import Cell
+from reports.model.convergence import judged
 from reports.model.ending import BadInput, Broken
-
-if TYPE_CHECKING:
-    from engines import Engine
-    from reference.scene import Scene
-    from reports.cli.known import Known
-    from reports.cli.terminal import Terminal
-    from reports.model.cells import Cell
-    from reports.model.measure import Measurement
-    from reports.model.tasks import Task
-    from reports.run.cluster import Workforce
-    from reports.run.store import Store
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.tasks import Task
+from reports.run import cluster
+from reports.run.running import run_into
+from reports.run.store import Store
+from reports.write.tables import SUMMARY_HEADER, summary_rows
 
 LIMIT = 60.0  # CPU seconds of a cell
 
@@ -60,18 +63,14 @@ def run(
     results: Folder = FOLDER,
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
-    from engines import method_name
-    from reports.cli.terminal import opened, telling
-    from reports.run.cluster import elsewhere, pool
-
     chosen = Selection(
         tuple(scene or ()), engine, variant, tuple(settings or ()), full, tuple(every or ()), tuple(step or ()), limit
     )
     items = chosen.items
     with telling(140, as_json, as_markdown) as console:
-        with elsewhere(scheduler) as crew, opened(results / STORE) as store:
+        with cluster.elsewhere(scheduler) as crew, opened(results / STORE) as store:
             store.remember(chosen.references)
-            count = run_interruptible(console, store, items, fresh, limit, crew or pool(workers))
+            count = run_interruptible(console, store, items, fresh, limit, crew or cluster.pool(workers))
             rows = list(store.get(chosen.cells).values())
             print_summary(console, rows)
         for cell, why in chosen.left_out:
@@ -106,18 +105,13 @@ class Selection:
             raise BadInput(f"--limit is {self.limit}; it must be a finite number of seconds greater than zero")
 
     @cached_property
-    def _chosen(self) -> tuple[Known, tuple[Scene, ...], tuple[Engine, ...]]:
-        from reports.cli.known import registered, with_words
-        from reports.cli.selection import choose_engines, choose_scenes
-
-        known, names, given = with_words(registered(), self.scenes, self.engine, self.settings)
-        scenes = choose_scenes(names, known.scenes, known.pages)
-        return known, scenes, choose_engines(None if given else self.engine, self.variant, given or known.engines)
+    def choice(self) -> Choice:
+        return choose(self.scenes, self.engine, self.variant, self.settings)
 
     @property
     def references(self) -> list[str]:
         """Texts by which a store finds unregistered scenes and engines again."""
-        return [reference.text() for reference in self._chosen[0].given]
+        return [reference.text() for reference in self.choice.known.given]
 
     @property
     def _alone(self) -> bool:
@@ -126,25 +120,19 @@ class Selection:
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
         """The cells that are run."""
-        from reports.cli.selection import choose_cells
-
-        known, scenes, engines = self._chosen
+        scenes, engines, pages = self.choice.scenes, self.choice.engines, self.choice.known.pages
         named = self.engine is not None
-        return choose_cells(
-            scenes, engines, known.pages, self.full, self.every, self.steps, named=named, alone=self._alone
-        )
+        return choose_cells(scenes, engines, pages, self.full, self.every, self.steps, named=named, alone=self._alone)
 
     @cached_property
     def items(self) -> Sequence[Cell | Task]:
         """The cells, and the tasks of pages: not where steps are named, nor in a quick run of scenes that are named."""
-        from engines import method_name
-        from reports.cli.selection import choose_tasks, grid_engines
-
-        known, scenes, engines = self._chosen
-        tasks = () if self.every or self.steps or self._alone else choose_tasks(scenes, engines, known.pages, self.full)
+        known, scenes = self.choice.known, self.choice.scenes
+        only_cells = self.every or self.steps or self._alone
+        tasks = () if only_cells else choose_tasks(scenes, self.choice.engines, known.pages, self.full)
         if not (items := (*self.cells, *tasks)):
-            compared = (each for scene in scenes for each in grid_engines(scene, known.engines, known.pages))
-            methods = ", ".join(dict.fromkeys(method_name(each) for each in compared))
+            compared = (method for scene in scenes for method in grid_engines(scene, known.engines, known.pages))
+            methods = ", ".join(dict.fromkeys(map(method_name, compared)))
             longer = "" if self.full else "; --full has what takes longer"
             raise BadInput(f"nothing to run: pages compare these methods in what is named: {methods}{longer}")
         return items
@@ -152,23 +140,17 @@ class Selection:
     @property
     def left_out(self) -> list[tuple[Cell, str]]:
         """Cells of the grid of an engine that was named which are not run, with the reason."""
-        from reports.cli.selection import left_out
-
-        known, scenes, engines = self._chosen
         if self.engine is None or self.every or self.steps:
             return []
-        return left_out(scenes, engines, known.pages, self.full, self.cells)
+        pages = self.choice.known.pages
+        return left_out(self.choice.scenes, self.choice.engines, pages, self.full, self.cells)
 
 
 def run_grid(
     chosen: Selection, results: Path = FOLDER, workers: int | None = None, fresh: bool = False
 ) -> list[Measurement]:
     """The rows of these cells, of which those that are not stored in the folder `results` are run. Raises BadInput."""
-    from reports.run.cluster import pool
-    from reports.run.running import run_into
-    from reports.run.store import Store
-
-    by = pool(workers)
+    by = cluster.pool(workers)
     with Store(results / STORE) as store:
         store.remember(chosen.references)
         run_into(store, chosen.items, fresh, chosen.limit, by.threads, supervised=by.supervise)
@@ -179,8 +161,6 @@ def run_grid(
 
 def refuse_without_motion(rows: Sequence[Measurement]) -> None:
     """Raises BadInput if the numbers of the scenes were refused in every cell."""
-    from reports.model.outcomes import Outcome
-
     if rows and all(row.outcome == Outcome.REFUSED for row in rows):
         raise BadInput(rows[0].sentence)
 
@@ -191,18 +171,13 @@ def run_interruptible(
     items: Sequence[Cell | Task],
     fresh: bool,
     limit: float,
-    crew: Workforce | None = None,
+    crew: cluster.Workforce | None = None,
 ) -> int:
     """Run cells and tasks with a bar of progress, by `crew` or all processors; how many were run.
 
     Raises KeyboardInterrupt, having said what is stored.
     """
-    from engines.lagrange.loading import is_cold
-    from reports.cli.terminal import interruptible
-    from reports.run.cluster import pool
-    from reports.run.running import run_into
-
-    by = crew or pool(None)
+    by = crew or cluster.pool(None)
     if is_cold():
         print("compiling the judge's machine code, once for this installation: up to two minutes", file=sys.stderr)
     with interruptible(console, store, items, limit, "cells", fresh) as (waiting, done, watch):
@@ -211,18 +186,12 @@ def run_interruptible(
 
 def refuse_nothing_but_failures(rows: Sequence[Measurement]) -> None:
     """Raises Broken where no cell gave anything: each failed, was aborted or ran out of time."""
-    from reports.model.outcomes import Outcome
-
     if rows and all(Outcome(row.outcome).grade == 3 for row in rows):
         raise Broken(f"none of {len(rows)} cells gave a motion; the first {rows[0].outcome}: {rows[0].sentence}")
 
 
 def print_summary(console: Terminal, rows: list[Measurement]) -> None:
     """A table a scene, a line a method; then the outcomes of the experiments outside the sweeps."""
-    from reports.cli.terminal import print_table
-    from reports.model.convergence import judged
-    from reports.write.tables import SUMMARY_HEADER, summary_rows
-
     judged_rows = judged(rows)
     console.keep(judged_rows)
     for scene in dict.fromkeys(row.scene for row in judged_rows if row.purpose == "sweep"):

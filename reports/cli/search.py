@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
+from engines.registry import ENGINES, INSTALLED, VARIANTS
+from reports.cli.known import engines_named
 from reports.cli.options import (
     FOLDER,
     SEARCH,
@@ -21,16 +24,18 @@ from reports.cli.options import (
     listed,
     with_folder,
 )
+from reports.cli.terminal import Terminal, interruptible, opened, print_table, telling
 from reports.model.ending import BadInput
+from reports.run import cluster
+from reports.run.files import write_whole
+from reports.run.installed import installed
+from reports.search import plan
+from reports.search.chunk import FOUND, HEADER, CaseResult, chunks, findings, summary
 from reports.search.parts import CLAIMS, ORACLES, SINGULAR
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from reports.cli.terminal import Terminal
-    from reports.search.chunk import CaseResult
-    from reports.search.run import Search
-    from reports.search.subjects import Subject
+from reports.search.release import DISTRIBUTIONS
+from reports.search.run import CASES, Search
+from reports.search.shrinking import files_of, line_of
+from reports.search.subjects import Adapted, Alone, Subject
 
 TEN = 10  # cases of a fresh seed for each engine
 ALL_ORACLES = ",".join(ORACLES)
@@ -70,38 +75,39 @@ def search(
     """Search random mechanisms for faults; each finding is made small and written as a script of the engine's own."""
     chosen = any((engine, variant, cases, seed is not None, kinds, decades, release, oracles != ALL_ORACLES))
     _refuse(seconds, seed, fresh, published, chosen)
-    from reports.cli.terminal import interruptible, opened, telling
-    from reports.run.cluster import elsewhere, pool
-    from reports.search import plan
-    from reports.search.chunk import chunks
-    from reports.search.run import CASES, Search
-
     subjects = chosen_subjects(engine, variant, release, everything=fresh or published)
     all_kinds = tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
     wanted = listed("--kinds", [kinds], (*all_kinds, *SINGULAR)) if kinds is not None else all_kinds
     subjects = [subject for subject in subjects if {*wanted} & {*subject.kinds, *SINGULAR}]
-    asked = listed("--oracles", [oracles], (*ORACLES, CLAIMS))
+    names = listed("--oracles", [oracles], (*ORACLES, CLAIMS))
     if fresh:
         batches = plan.fresh(subjects, cases or TEN)
     elif published:
         batches = iter([plan.published()])
     else:
         first = plan.seeds()[0] if seed is None else seed
-        batches = iter([chunks(subjects, first, cases or CASES, wanted, decades, asked)])
+        batches = iter([chunks(subjects, first, cases or CASES, wanted, decades, names)])
     folder = results / SEARCH
-    with telling(150, as_json, as_markdown) as terminal, elsewhere(scheduler) as crew, opened(folder / STORE) as store:
-        run = Search(store, crew or pool(workers), seconds, partial(interruptible, terminal))
+    with (
+        telling(150, as_json, as_markdown) as terminal,
+        cluster.elsewhere(scheduler) as crew,
+        opened(folder / STORE) as store,
+    ):
+        run = Search(store, crew or cluster.pool(workers), seconds, partial(interruptible, terminal))
         found = run.run(batches)
         if published:
             run.run_controls()
-        print_summary(terminal, found)
+        title = "Errors, each relative to the largest of what it is an error of"
+        print_table(terminal, title, HEADER, summary(found), 2)
+        if faults := findings(found):
+            print_table(terminal, "Findings, by what draws them again", FOUND, faults, 2)
         terminal.tell(run.summary)
-        shrink_and_write(terminal, run, found, folder)
+        _shrink_and_write(terminal, run, found, folder)
         terminal.say(f"{len(found)} cases are stored in {folder}. Next: {with_folder('crosscheck report', results)}")
 
 
 def _refuse(seconds: float | None, seed: int | None, fresh: bool, published: bool, chosen: bool) -> None:
-    """Raise BadInput for options that contradict each other; `chosen`: whether any option says what is asked."""
+    """Raise BadInput for options that contradict each other; `chosen`: whether any option selects cases."""
     if seconds is not None and not 0 < seconds < float("inf"):
         raise BadInput(f"--seconds is {seconds}; it must be a finite number greater than zero")
     if fresh and (seconds is None or published or seed is not None):
@@ -116,14 +122,6 @@ def chosen_subjects(
     engine: str | None, variant: str | None, release: str | None = None, everything: bool = False
 ) -> list[Subject]:
     """The engines of these names, and MuJoCo alone; all variants if none is named. Raises BadInput."""
-    from engines.loading import is_reference
-    from engines.registry import ENGINES, INSTALLED, VARIANTS, load
-    from reports.cli.selection import choose_engines
-    from reports.run.installed import installed
-    from reports.search import plan
-    from reports.search.release import DISTRIBUTIONS
-    from reports.search.subjects import Adapted, Alone
-
     if release is not None:
         if engine not in (None, "mujoco") or variant not in (None, "alone"):
             raise BadInput(f"--release is {release!r}, which is MuJoCo's alone; leave out --engine and --variant")
@@ -133,32 +131,13 @@ def chosen_subjects(
         return plan.everything()
     if variant == "alone" and engine in (None, "mujoco"):
         return [Alone()]
-    if engine is not None and is_reference(engine):
-        try:
-            return [Adapted(one) for one in choose_engines(None, variant, load(engine))]
-        except ValueError as error:
-            raise BadInput(str(error)) from None
     known = (*(VARIANTS if variant is None else ENGINES), *(INSTALLED if engine is not None else ()))
     alone: list[Subject] = [Alone()] if variant is None and engine in (None, "mujoco") else []
-    return [*(Adapted(one) for one in choose_engines(engine, variant, known)), *alone]
+    return [*(Adapted(method) for method in engines_named(engine, variant, known)), *alone]
 
 
-def print_summary(terminal: Terminal, found: list[CaseResult]) -> None:
-    """A line for each check of each subject, with how many cases, the errors' distribution and how many are faults; and
-    a line for each fault, by which it is drawn again."""
-    from reports.cli.terminal import print_table
-    from reports.search.chunk import FOUND, HEADER, findings, summary
-
-    print_table(terminal, "Errors, each relative to the largest of what it is an error of", HEADER, summary(found), 2)
-    if faults := findings(found):
-        print_table(terminal, "Findings, by what draws them again", FOUND, faults, 2)
-
-
-def shrink_and_write(terminal: Terminal, run: Search, found: list[CaseResult], folder: Path) -> None:
+def _shrink_and_write(terminal: Terminal, run: Search, found: list[CaseResult], folder: Path) -> None:
     """Make some findings of each check smaller, and write them as recipes and scripts."""
-    from reports.run.files import write_whole
-    from reports.search.shrinking import files_of, line_of
-
     if not any(case.result.faults for case in found):
         terminal.tell("Nothing was found.")
         return

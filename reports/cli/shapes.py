@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
+import numpy as np
 import typer
 
+from reference.chapter.centrodes import Centrodes, Shapes, as_csv, as_dxf, as_svg, from_poses, poses_from_csv, shapes_of
+from reference.checks import InvalidMechanism
 from reports.cli.options import refuse_existing
 from reports.model.ending import BadInput, FileTrouble, visible
+from reports.pages.centrodes.page import returned
 from reports.run.files import write_whole
 
-if TYPE_CHECKING:
-    from reference.chapter.centrodes import Centrodes, Shapes
-
-KINDS = ("csv", "svg", "dxf")
+WRITERS = {"csv": as_csv, "svg": as_svg, "dxf": as_dxf}
 USUAL = ("csv", "svg")  # dxf needs a package that an installation has only with the extra `dxf`
 MOST_POINTS = 1_000_000  # far more than a workshop can cut, far less than memory can hold
 MOST_BYTES = 2**27  # of the table of poses, a hundred for each of a million
-# Of the shapes' size: above this the table is too coarse for what it describes, and the user must know.
-COARSE = 1e-3
+COARSE = 1e-3  # of the shapes' size: above this the table is too coarse for the motion, and the user must know
 
 
 def shapes(
@@ -38,9 +38,8 @@ def shapes(
     They are the curves of the instant centre of the poses in MOTION.csv (its centrodes), in space and in the body.
     """
     kinds = dict.fromkeys(kind or USUAL)
-    for word in kinds:
-        if word not in KINDS:
-            raise BadInput(f"--kind is {word!r}; there are {', '.join(KINDS)}")
+    if unknown := [word for word in kinds if word not in WRITERS]:
+        raise BadInput(f"--kind is {unknown[0]!r}; there are {', '.join(WRITERS)}")
     if "dxf" in kinds and find_spec("ezdxf") is None:
         raise BadInput(
             "--kind dxf needs the package ezdxf, which is not installed: pip install 'planar-crosscheck[dxf]'"
@@ -49,54 +48,40 @@ def shapes(
         raise BadInput(f"--points is {points}; give from 2 to {MOST_POINTS}")
     targets = {name: folder / f"{motion.stem}_shapes.{name}" for name in kinds}
     refuse_existing(targets.values(), "--folder", force)
-    text = _text(motion)
-    # Here, since numpy and scipy take longer to load than all else.
-    from reference.chapter.centrodes import as_csv, as_dxf, as_svg, from_poses, poses_from_csv, shapes_of
-    from reference.checks import InvalidMechanism
-
-    writers = {"csv": as_csv, "svg": as_svg, "dxf": as_dxf}
+    text = _read_text(motion)
     try:
         curves = from_poses(*poses_from_csv(text))
-        found = shapes_of(curves, points)
-        files = {path: writers[name](found) for name, path in targets.items()}
+        pair = shapes_of(curves, points)
+        files = {path: WRITERS[name](pair) for name, path in targets.items()}
     except InvalidMechanism as reason:
-        raise BadInput(f"{motion}: {_one_line(reason)}") from None
-    told = _told(curves, found)
+        raise BadInput(f"{motion}: {' '.join(str(reason).split())}") from None
+    lines = _describe(curves, pair)
     write_whole(files, "give another --folder")
-    for line in (*told, *(f"written: {path}" for path in files)):
+    for line in (*lines, *(f"written: {path}" for path in files)):
         print(visible(line))
 
 
-def _told(curves: Centrodes, found: Shapes) -> list[str]:
-    """What to say of the shapes before they are cut: how long, how exact, and whether they give the motion back."""
-    import numpy as np
-
-    from reference.checks import InvalidMechanism
-    from reports.pages.centrodes.page import returned
-
-    size = float(np.ptp(np.vstack([found.space, found.body]), axis=0).max())
+def _describe(curves: Centrodes, pair: Shapes) -> list[str]:
+    """Sentences about the shapes before they are cut: their length, their error, and whether they return the motion."""
+    size = float(np.ptp(np.vstack([pair.space, pair.body]), axis=0).max())
     lines = [
         f"{len(curves.theta)} poses over {np.ptp(curves.theta):.4g} rad; both shapes are "
         f"{curves.space_arc[-1]:.6g} m long"
     ]
-    if np.isfinite(found.error):
-        lines.append(f"with every second pose alone they would move by {found.error:.2g} m")
+    if np.isfinite(pair.error):
+        lines.append(f"with every second pose alone they would move by {pair.error:.2g} m")
     try:
         distance, angle = returned(curves)
         lines.append(f"rolling the one on the other gives the motion back to {distance:.2g} m over {angle:.4g} rad")
     except InvalidMechanism as reason:
-        lines.append(f"they could not be rolled on each other to check them: {_one_line(reason)}")
-    if not found.error <= COARSE * size:
+        lines.append(f"they could not be rolled on each other to check them: {' '.join(str(reason).split())}")
+    if not pair.error <= COARSE * size:
         lines.append("the poses stand too far apart for these curves: give more of them")
     return lines
 
 
-def _one_line(reason: Exception) -> str:
-    return " ".join(str(reason).split())
-
-
-def _text(path: Path) -> str:
-    """A file's text. Raises FileTrouble, saying why it can't be read."""
+def _read_text(path: Path) -> str:
+    """A file's text. Raises FileTrouble with the reason why it can't be read."""
     try:
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, STORE, Folder, with_folder
-from reports.cli.report import CHECKOUT
+from reports.cli.options import FOLDER, SITE, STORE, Folder, with_folder
+from reports.cli.report import CHECKOUT, published
+from reports.cli.run import run_interruptible
 from reports.cli.streams import said
-from reports.cli.terminal import Terminal
+from reports.cli.terminal import Terminal, opened
 from reports.model.ending import BadInput
+from reports.model.tasks import Answer, Motion
+from reports.run.files import folder_for
+from reports.site.build import build, tasks
+from reports.site.folder import REMEDY, refuse_strangers, serve_folder, server, write_site
+from reports.site.generator import require_packages
+from reports.site.lesson import Source
+from reports.site.packages import npm_trouble
+from reports.write.provenance import versions
 
-if TYPE_CHECKING:
-    from reports.model.tasks import Answer, Motion
-
-PUBLISHED = CHECKOUT / "reports" / "results"
-SITE = Path("crosscheck-site")
 CACHE = "npm"  # the folder in that of the results with the packages that were fetched
 
 
@@ -33,15 +37,9 @@ def site(
     results: Folder = FOLDER,
 ) -> None:
     """Write the results as a static site: lessons with moving pictures, tables, charts, engines in the page."""
-    from reports.run.files import folder_for
-    from reports.site.build import build
-    from reports.site.folder import REMEDY, refuse_strangers, serve_folder, server, write_site
-    from reports.site.generator import require_packages
-    from reports.site.lesson import Source
-
     if not 0 < port < 65536:
         raise BadInput(f"--port is {port}; give a number from 1 to 65535")
-    folder = pages or (PUBLISHED if (PUBLISHED / "index.md").is_file() else results)
+    folder = pages or (published() if (published() / "index.md").is_file() else results)
     if not (folder / "index.md").is_file():
         command = with_folder("crosscheck report", results)
         raise BadInput(f"{folder} has no index.md: write the pages first with {command}, or name --pages")
@@ -50,39 +48,41 @@ def site(
     folder_for(output.absolute().parent, REMEDY)  # before anything is run
     if serve:
         server(Path(), port).server_close()
-    console = Terminal(140)
+    terminal = Terminal(140)
     source = Source(
         **texts_of(folder),
         answers={},
         cache=results / CACHE,
-        foot=_foot(),
+        foot=f"Made by crosscheck site with {versions(())}.".replace("`", ""),
         contributing=_of_checkout("CONTRIBUTING.md"),
         lecture=_of_checkout("lecture.ipynb"),
     )
-    if source.registry.trouble:  # at once, for the rest takes a while
-        said(f"parts of the site will be missing: {source.registry.trouble}")
-    source.answers = _answers(console, results)
+    if trouble := npm_trouble(source.cache):  # at once, for the rest takes a while
+        said(f"parts of the site will be missing: {trouble}")
+    source.answers = _answers(terminal, results)
     files = build(source)
     with kept() as check:
         size = write_site(output, files)
         check()
     for trouble in source.troubles:
         said(trouble)
-    console.say(f"{len(files)} files written to {output}, {size / 1e6:.2f} MB when compressed; index.html is the first")
+    terminal.say(
+        f"{len(files)} files written to {output}, {size / 1e6:.2f} MB when compressed; index.html is the first"
+    )
     if serve:
-        console.say(f"http://localhost:{port} shows it; Ctrl-C ends")
+        terminal.say(f"http://localhost:{port} shows it; Ctrl-C ends")
         serve_folder(output, port)
 
 
 def texts_of(folder: Path) -> dict[str, Any]:
-    """What a site shows of a folder of results, as fields of `Source`."""
-    tables = _texts(folder, "*.csv") | _texts(folder, "programs/*.py") | _texts(folder, "upstream/*.md")
-    return {"pages": _texts(folder, "*.md"), "pictures": _texts(folder, "*.svg"), "tables": tables}
+    """The texts of a folder of results, as fields of `Source`."""
 
+    def texts(*patterns: str) -> dict[str, str]:
+        paths = [path for pattern in patterns for path in sorted(folder.glob(pattern))]
+        return {path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8") for path in paths}
 
-def _texts(folder: Path, pattern: str) -> dict[str, str]:
-    found = sorted(folder.glob(pattern))
-    return {path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8") for path in found}
+    tables = texts("*.csv", "programs/*.py", "upstream/*.md")
+    return {"pages": texts("*.md"), "pictures": texts("*.svg"), "tables": tables}
 
 
 def _of_checkout(name: str) -> str:
@@ -90,20 +90,10 @@ def _of_checkout(name: str) -> str:
     return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
-def _answers(console: Terminal, results: Path) -> dict[Motion, Answer]:
+def _answers(terminal: Terminal, results: Path) -> dict[Motion, Answer]:
     """The motions of the lessons; those that are not stored are run by the pool first."""
-    from reports.cli.run import run_interruptible
-    from reports.cli.terminal import opened
-    from reports.site.build import tasks
-
     wanted = tasks()
     with opened(results / STORE) as store:
-        run_interruptible(console, store, wanted, fresh=False, limit=60.0)
-        found = store.answers(wanted)
-    return {task: found[task] for task in wanted if task in found}
-
-
-def _foot() -> str:
-    from reports.write.provenance import versions
-
-    return f"Made by `crosscheck site` with {versions(())}.".replace("`", "")
+        run_interruptible(terminal, store, wanted, fresh=False, limit=60.0)
+        answers = store.answers(wanted)
+    return {task: answers[task] for task in wanted if task in answers}

@@ -9,6 +9,7 @@ order of sweeps in pymunk, which are other methods with other errors.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -31,10 +32,9 @@ from reports.write.provenance import still_installed
 
 # scene, method, samples, steps a sample: the same cell in every run, whatever its settings are by now.
 Identity = tuple[str, str, int, int]
-IDENTITY = ("scene", "engine", "variant", "samples", "every")  # the columns that tell it
-# The file beside errors.csv in whose comments the versions stand, in the words of `reports.write.provenance.versions`.
+IDENTITY = ("scene", "engine", "variant", "samples", "every")  # the columns that give it
+# The file beside errors.csv whose comments have the versions, as `reports.write.provenance.versions` writes them.
 BESIDE = "timings.csv"
-
 MOST = 5  # files that a sentence names
 
 
@@ -77,15 +77,12 @@ def mixed(baseline: Baseline) -> str:
     where there are none, as in an installed copy."""
     if baseline.folder is None or not (baseline.folder / "index.md").exists():
         return ""
-    found = not_as_written(baseline.folder)
-    if found is None:
-        return (
-            f"Nothing says whether {baseline.folder} was written at once: it has no {DIGESTS}; write the report anew."
-        )
-    if not found:
-        return ""
-    more = f" and {len(found) - MOST} more" if len(found) > MOST else ""
-    return f"Not as the report in {baseline.folder} wrote them: {', '.join(found[:MOST])}{more}; write it anew."
+    others = not_as_written(baseline.folder)
+    if others is None:
+        return f"{baseline.folder} has no {DIGESTS}, so it may be of several reports; write the report anew."
+    more = f" and {len(others) - MOST} more" if len(others) > MOST else ""
+    names = ", ".join(others[:MOST]) + more
+    return f"Not as the report in {baseline.folder} wrote them: {names}; write it anew." if others else ""
 
 
 def identity(row: Measurement) -> Identity:
@@ -93,30 +90,22 @@ def identity(row: Measurement) -> Identity:
     return row.scene, row.method, row.samples, row.every
 
 
-def versions_beside(path: Path) -> str:
-    """What an errors.csv was made with, from the timings.csv that is written with it; "" without one."""
-    try:
-        lines = path.with_name(BESIDE).read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError):
-        return ""
-    return next((line.removeprefix("# ") for line in lines if line.startswith("# Python ")), "")
-
-
 def _identity(row: Mapping[str, str]) -> Identity:
     """Of a row of a file. Raises ValueError or TypeError for a damaged one."""
     return row["scene"], f"{row['engine']} {row['variant']}", int(row["samples"]), int(row["every"])
 
 
-def _seconds_beside(path: Path) -> dict[Identity, float]:
-    """CPU seconds a simulated second, from the timings.csv beside an errors.csv, as far as it can be read."""
-    found: dict[Identity, float] = {}
-    try:
-        for row in read_lines(path.with_name(BESIDE).read_text(encoding="utf-8"))[1]:
+def _read_timings(path: Path) -> tuple[str, dict[Identity, float]]:
+    """From the timings.csv beside an errors.csv, as far as it can be read: the versions that both were made with, ""
+    without them, and CPU seconds a simulated second."""
+    seconds: dict[Identity, float] = {}
+    remarks: list[str] = []
+    with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
+        remarks, rows = read_lines(path.with_name(BESIDE).read_text(encoding="utf-8"))
+        for row in rows:
             if row["purpose"] == "sweep":
-                found[_identity(row)] = float(row["cpu"])
-    except (OSError, ValueError, TypeError, KeyError):
-        return found
-    return found
+                seconds[_identity(row)] = float(row["cpu"])
+    return next((line for line in remarks if line.startswith("Python ")), ""), seconds
 
 
 def read_baseline(path: Path) -> Baseline:
@@ -134,23 +123,19 @@ def read_baseline(path: Path) -> Baseline:
     missing = sorted({*IDENTITY, "purpose", "outcome", "reaction_rows"} - columns)
     if missing:
         raise BadBaseline(f"baseline {path}: it has no column {missing[0]!r}; give the errors.csv of a run")
-    errors = tuple(q.name for q in QUANTITIES if q.name in columns)
-    seconds = _seconds_beside(path)
+    names = [q.name for q in QUANTITIES]
+    versions, seconds = _read_timings(path)
     cells: dict[Identity, Old] = {}
     for number, row in enumerate(rows, start=1):
-        if row["purpose"] != "sweep":
-            continue
         try:
-            key = _identity(row)
-            told = {name: float(row[name]) for name in errors}
-            cpu = seconds.get(key, math.nan)
-            cells[key] = Old(Outcome(row["outcome"]), told, int(row["reaction_rows"]), cpu)
+            if row["purpose"] == "sweep":
+                key, errors = _identity(row), {name: float(row[name]) for name in names if name in columns}
+                cpu = seconds.get(key, math.nan)
+                cells[key] = Old(Outcome(row["outcome"]), errors, int(row["reaction_rows"]), cpu)
         except (ValueError, TypeError):
-            raise BadBaseline(
-                f"baseline {path}: row {number} is damaged ({row['scene']}); give an errors.csv"
-            ) from None
-    unmeasured = tuple(q.name for q in QUANTITIES if q.name not in columns)
-    return Baseline(cells, versions_beside(path), path.parent, unmeasured)
+            reason = f"row {number} is damaged ({row['scene']}); give an errors.csv"
+            raise BadBaseline(f"baseline {path}: {reason}") from None
+    return Baseline(cells, versions, path.parent, tuple(name for name in names if name not in columns))
 
 
 # Roundings that are tried.
@@ -214,14 +199,14 @@ class Nudge:
 
 def _moved(part: Part, random: np.random.Generator, lone: tuple[str, ...] = ()) -> Part:
     """A body, joint or force with its vectors, and these lone numbers, rounded otherwise."""
-    found: dict[str, Any] = {}
+    changed: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
         value = getattr(part, field.name)
-        if isinstance(value, tuple) and value and all(isinstance(each, float) for each in value):
-            found[field.name] = _rounded(value, random)
-        elif field.name in lone:
-            found[field.name] = _rounded((value,), random)[0]
-    return replace(part, **found)  # type: ignore[type-var]
+        if field.name in lone:
+            (changed[field.name],) = _rounded((value,), random)
+        elif isinstance(value, tuple) and value and all(isinstance(number, float) for number in value):
+            changed[field.name] = _rounded(value, random)
+    return replace(part, **changed)  # type: ignore[type-var]
 
 
 def _rounded(values: tuple[Any, ...], random: np.random.Generator) -> Any:
@@ -258,14 +243,13 @@ def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), ampli
     out = []
     for name, before in old.errors.items():
         now = getattr(row, name)
-        if math.isnan(now) and math.isnan(before):
-            continue
-        known = [value for other in others if math.isfinite(value := getattr(other, name))]
-        spread = max((abs(value - now) for value in known), default=0.0)
-        digits, rounding = room(name, before, amplified)
-        terms = (("printed digits", digits), ("rounding", rounding), ("as other roundings", ROOM * spread))
-        told = f", {now:.4g}; it was {before:.4g}"
-        out.append(Check(CHANGE, name, abs(now - before), sum(value for _, value in terms), terms, told))
+        if not (math.isnan(now) and math.isnan(before)):
+            known = [value for other in others if math.isfinite(value := getattr(other, name))]
+            spread = max((abs(value - now) for value in known), default=0.0)
+            digits, rounding = room(name, before, amplified)
+            terms = (("printed digits", digits), ("rounding", rounding), ("as other roundings", ROOM * spread))
+            bound = sum(value for _, value in terms)
+            out.append(Check(CHANGE, name, abs(now - before), bound, terms, f", {now:.4g}; it was {before:.4g}"))
     return (*out, *_reactions(row, old))
 
 

@@ -27,40 +27,22 @@ HEADER = ("scene", "method", "step [s]", "error", "bound", "nearest check", "how
 
 
 def lines(verdicts: Iterable[CaseVerdict]) -> list[list[str]]:
-    """A line a case under HEADER: the angle's error and bound, and whatever came nearest to its own bound."""
+    """A line a case under HEADER: the angle's error and bound, and the check that came nearest to its own bound."""
     out = []
     for verdict in verdicts:
         finest, worst = verdict.rows[-1], verdict.worst
+        first = [finest.scene, finest.method, number(finest.step)]
         if worst is None:
-            out.append([finest.scene, finest.method, number(finest.step), "-", "-", "-", "-", "can't be built"])
+            out.append([*first, "-", "-", "-", "-", "can't be built"])
             continue
-        error = next(
-            (check for check in verdict.theory if check.quantity == "angle" and math.isfinite(check.bound)), None
-        )
-        told = [number(error.measured), number(error.bound)] if error else ["-", "-"]
+        angles = [each for each in verdict.theory if each.quantity == "angle" and math.isfinite(each.bound)]
+        angle = [number(angles[0].measured), number(angles[0].bound)] if angles else ["-", "-"]
         near = f"{worst.name} ({worst.quantity})" if worst.quantity != worst.name else worst.name
-        out.append(
-            [
-                finest.scene,
-                finest.method,
-                number(finest.step),
-                *told,
-                near,
-                number(worst.nearness),
-                verdict_word(verdict),
-            ]
-        )
+        gates = {"theory": verdict.theory_complaints, "change": verdict.change_complaints}
+        failed = ", ".join(name for name, sentences in gates.items() if sentences)
+        word = f"FAILED: {failed}" if failed else "known" if verdict.case.known else "passed"
+        out.append([*first, *angle, near, number(worst.nearness), word])
     return out
-
-
-def verdict_word(verdict: CaseVerdict) -> str:
-    """'passed', 'known' for one that misses what it is known to miss, or 'FAILED' with the gates that failed."""
-    failed = [
-        name for name, found in (("theory", verdict.theory_complaints), ("change", verdict.change_complaints)) if found
-    ]
-    if failed:
-        return f"FAILED: {', '.join(failed)}"
-    return "known" if verdict.case.known else "passed"
 
 
 def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
@@ -74,11 +56,10 @@ def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
             f"{WORSE:g} times as large, and a run that can be compared now and could not before is a remark."
         )
         for verdict in verdicts:
-            found = [check for check in verdict.change if "baseline" in dict(check.terms)]
-            other = [
-                check for check in found if abs(check.measured - dict(check.terms)["baseline"]) > 1e-3 * check.measured
-            ]
-            out += [f"{verdict.case.label}: {check}" for check in other]
+            for check in verdict.change:
+                before = dict(check.terms).get("baseline", math.nan)
+                if abs(check.measured - before) > 1e-3 * check.measured:
+                    out.append(f"{verdict.case.label}: {check}")
         out += [str(check) for check in grown(verdicts, baseline) if not check.passed]
     out += [f"{verdict.case.label}: {told}." for verdict in verdicts for told in remarks(verdict)]
     new = sum(verdict.new for verdict in verdicts)
@@ -148,14 +129,13 @@ def pytest_configure(config: pytest.Config) -> None:
     if sentence := registry.mislabelled():
         raise pytest.UsageError(sentence)
     try:
-        config.stash[KNOWN] = read_baseline(_option(config, "--baseline"))
+        config.stash[KNOWN] = read_baseline(config.getoption("--baseline"))
     except BadBaseline as error:
         raise pytest.UsageError(str(error)) from None
-    limit = _option(config, "--cost")
+    limit, target = config.getoption("--cost"), config.getoption("--crosscheck-report")
     if limit is not None and not 0 < limit < math.inf:
         raise pytest.UsageError(f"--cost {limit}: it must be a number above 0, such as 1.5")
-    config.stash[GIVEN], config.stash[WANTED] = _engines(_option(config, "--engine"))
-    target = _option(config, "--crosscheck-report")
+    config.stash[GIVEN], config.stash[WANTED] = _engines(config.getoption("--engine"))
     if target is not None and not target.resolve().parent.is_dir():
         raise pytest.UsageError(f"--crosscheck-report {target}: there is no folder {target.parent}")
     if target is not None and target.is_dir():
@@ -184,11 +164,6 @@ def _engines(words: Sequence[str]) -> tuple[tuple[Engine, ...], tuple[str, ...]]
     return tuple(given), tuple(wanted)
 
 
-def _option(config: pytest.Config, name: str) -> Any:
-    """The value of an option of this file."""
-    return config.getoption(name)
-
-
 def pytest_report_header() -> list[str]:
     """What distributions register and can't be used."""
     from reports.model.catalogue import TROUBLES
@@ -206,7 +181,7 @@ def case_of(item: pytest.Item) -> Case | None:
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out the cases of other scenes and engines. Raises UsageError when none is left."""
-    scenes, engines = _option(config, "--scene"), config.stash[WANTED]
+    scenes, engines = config.getoption("--scene"), config.stash[WANTED]
     if not (scenes or engines):
         return
     kept = [item for item in items if _wanted(item, scenes, engines)]
@@ -236,7 +211,7 @@ def verdicts(request: pytest.FixtureRequest) -> dict[Case, CaseVerdict]:
     if hasattr(request.config, "workerinput"):
         pytest.skip("the grid has workers of its own: pytest -m crosscheck, without -n")
     chosen = dict.fromkeys(case for case in map(case_of, request.session.items) if case is not None)
-    found = walk(chosen, request.config.stash[KNOWN], dearest=_option(request.config, "--cost"))
+    found = walk(chosen, request.config.stash[KNOWN], dearest=request.config.getoption("--cost"))
     request.config.stash[VERDICTS] = found
     return found
 
@@ -245,18 +220,14 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
     found = config.stash.get(VERDICTS, None)
     if not found:
         return
-    baseline = config.stash[KNOWN]
+    baseline, verdicts = config.stash[KNOWN], found.values()
     terminalreporter.section("crosscheck")
-    for line in (
-        *text_table(HEADER, lines(found.values())),
-        *unable(found.values()),
-        *changes(found.values(), baseline),
-    ):
+    for line in (*text_table(HEADER, lines(verdicts)), *unable(verdicts), *changes(verdicts, baseline)):
         terminalreporter.line(line)
-    target = _option(config, "--crosscheck-report")
+    target = config.getoption("--crosscheck-report")
     if target is not None:
         try:
-            write_whole({target: report(found.values(), baseline)}, "give another --crosscheck-report")
+            write_whole({target: report(verdicts, baseline)}, "give another --crosscheck-report")
         except FileTrouble as reason:
             raise pytest.UsageError(str(reason)) from None
         terminalreporter.line(f"written to {target}")

@@ -88,8 +88,9 @@ class JudgeRun:
     soft: frozenset[SoftKind] | Softness
 
     def __call__(self) -> Prediction | Mapping[str, float]:
-        own = isinstance(self.soft, Softness)
-        return errors_as_soft(self.scene, self.soft) if own else prediction(self.scene, self.soft)
+        if isinstance(self.soft, Softness):
+            return errors_as_soft(self.scene, self.soft)
+        return prediction(self.scene, self.soft)
 
 
 def call(job: JudgeRun) -> Any:
@@ -194,5 +195,5 @@ def remarks(verdict: CaseVerdict) -> tuple[str, ...]:
 
 def _measured(cells: Iterable[Cell], workers: int, timed: bool = False) -> Mapping[Cell, Measurement]:
     by_key = {cell.key: cell for cell in cells}
-    rows = {row.key: row for row in run_cells(by_key.values(), workers=workers, timed=timed)}
+    rows = {row.key: row for row in run_cells(by_key.values(), workers=workers, timed=timed, supervised=supervise)}
     return {cell: rows[key] for key, cell in by_key.items()}

@@ -105,26 +105,26 @@ def with_engines(pages: Iterable[Page], engines: Sequence[Engine]) -> tuple[Page
 
 def _without_doubles(pages: Iterable[Page]) -> tuple[tuple[Page, ...], tuple[str, ...]]:
     """(pages of which no two teach the same scene or are the same document, a line about each that is left out)."""
-    kept: list[Page] = []
+    accepted: list[Page] = []
     troubles: list[str] = []
     for page in pages:
-        double = next((f"{s.name!r}, as {p.name!r} does" for s in page.scenes for p in kept if p.teaches(s)), "")
-        same = next((f"{page.document}, as {p.name!r} has" for p in kept if page.document == p.document), "")
+        double = next((f"{s.name!r}, as {p.name!r} does" for s in page.scenes for p in accepted if p.teaches(s)), "")
+        same = next((f"{page.document}, as {p.name!r} has" for p in accepted if page.document == p.document), "")
         if page.document == INDEX:
             same = f"{INDEX}, as the index of all pages has"
         if double or same:
             why = f"it teaches {double}" if double else f"it would have the file {same}"
             troubles.append(f"crosscheck.pages: the page {page.name!r} is left out, since {why}")
         else:
-            kept.append(page)
-    return tuple(kept), tuple(troubles)
+            accepted.append(page)
+    return tuple(accepted), tuple(troubles)
 
 
-_kept, _doubles = _without_doubles(_pages.values)
+_accepted, _doubles = _without_doubles(_pages.values)
 _by_name = {scene.name: scene for scene in _scenes.values}
 SCENES: tuple[Scene, ...] = (
     *_scenes.values,
-    *(scene for page in _kept for scene in page.scenes if scene.name not in _by_name),
+    *(scene for page in _accepted for scene in page.scenes if scene.name not in _by_name),
 )
-PAGES: tuple[Page, ...] = with_scenes(_kept, SCENES, registry.VARIANTS)
+PAGES: tuple[Page, ...] = with_scenes(_accepted, SCENES, registry.VARIANTS)
 TROUBLES = (*registry.TROUBLES, *_scenes.troubles, *_pages.troubles, *_doubles)

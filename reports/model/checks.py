@@ -44,8 +44,8 @@ class Check:
 
     def __str__(self) -> str:
         parts = " + ".join(f"{name} {value:.2g}" for name, value in self.terms)
-        told = f" = {parts}" if parts else ""
-        return f"{self.name} ({self.quantity}): {self.measured:.3g}, bound {self.bound:.3g}{told}{self.sentence}"
+        total = f" = {parts}" if parts else ""
+        return f"{self.name} ({self.quantity}): {self.measured:.3g}, bound {self.bound:.3g}{total}{self.sentence}"
 
 
 @dataclass(frozen=True)
@@ -94,11 +94,11 @@ def complaints(checks: Iterable[Check], known: Mapping[str, Deviation], outcome:
         if not check.passed and check.name not in known:
             out.append(str(check))
     for name, deviation in known.items():
-        own = [check for check in checks if check.name == name]
-        if not own:
+        named = [check for check in checks if check.name == name]
+        if not named:
             out.append(f"{name}: known to deviate, but there is no such check here ({deviation.reason})")
             continue
-        worst = nearest(own)
+        worst = nearest(named)
         if worst.nearness <= BACK and not deviation.rounding:
             out.append(f"{worst}: deviates no longer ({deviation.reason})")
         elif deviation.factor is None:

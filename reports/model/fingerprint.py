@@ -121,14 +121,14 @@ def with_required(distributions: Iterable[str]) -> set[str]:
     pymunk calls its engine through cffi, which no file of ours imports. What only an extra requires is left out, since
     whether it is installed says nothing about whether it is used.
     """
-    found: set[str] = set()
+    names: set[str] = set()
     waiting = list(distributions)
     while waiting:
         name = normalised(waiting.pop())
-        if name not in found and (requirements := _required(name)) is not None:
-            found.add(name)
+        if name not in names and (requirements := _required(name)) is not None:
+            names.add(name)
             waiting += requirements
-    return found
+    return names
 
 
 @cache

@@ -189,8 +189,8 @@ def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Meas
                 trajectory = run(cell.sample_count, cell.every)
         except (Unsupported, ValueError) as reason:
             return replace(row, **asdict(refusal(reason)))
-        if told := flaw(trajectory, mechanism, cell.step, cell.sample_count, cell.every):
-            return replace(row, outcome=Outcome.FAILED, sentence=told)
+        if reason := flaw(trajectory, mechanism, cell.step, cell.sample_count, cell.every):
+            return replace(row, outcome=Outcome.FAILED, sentence=reason)
         with spending("comparing"):
             row = compare(cell, mechanism, trajectory, row, truths)
         if repeat and cell.purpose in TIMED and Outcome(row.outcome).comparable:
@@ -244,8 +244,8 @@ def compare(
     try:
         errors |= constraint_errors(mechanism, finite) if count else {}
     except ValueError as reason:  # it went where the joint itself is not defined: beyond a corner, say
-        told = "; ".join(filter(None, (f"a joint has no meaning at the end: {reason}", note)))
-        return replace(row, outcome=Outcome.REFUSED, sentence=told)
+        sentence = "; ".join(filter(None, (f"a joint has no meaning at the end: {reason}", note)))
+        return replace(row, outcome=Outcome.REFUSED, sentence=sentence)
     try:
         truth = exact_motion(cell, finite.t, truths)
         errors |= motion_errors(cell.scene, mechanism, truth, finite)

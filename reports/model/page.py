@@ -108,8 +108,8 @@ class Page:
     name: str
     title: str
     lesson: str  # one sentence for the index
-    scenes: tuple[Scene, ...]  # which the page teaches, each on one page only
-    engines: tuple[Engine, ...]
+    scenes: tuple[Scene, ...] = ()  # which the page teaches, each on one page only
+    engines: tuple[Engine, ...] = ()
     companions: tuple[Scene, ...] = ()  # scenes of other pages with which the page's own cells are run too
     borrowed: tuple[Cell, ...] = ()  # cells of other pages whose rows the words use; this page never has them run
     # May extend "base.md"; without one, page.md in the folder of the page's name, else the generic "base.md" itself.

@@ -109,8 +109,8 @@ class Motion(Task):
     def run(self) -> Values:
         cell, mechanism = self.cell, self.cell.scene.mechanism()
         run = cell.engine.build(mechanism, cell.step)(cell.sample_count, cell.every)
-        if told := flaw(run, mechanism, cell.step, cell.sample_count, cell.every):
-            raise ValueError(told)
+        if reason := flaw(run, mechanism, cell.step, cell.sample_count, cell.every):
+            raise ValueError(reason)
         return {"t": run.t, "pose": run.pose, "twist": run.twist, "reaction": run.reaction}
 
 

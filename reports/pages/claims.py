@@ -14,7 +14,6 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
 from reports.pages.atlas.page import lines as atlas_lines
-from reports.pages.engines import experiments as engines
 from reports.pages.guides import page as guides
 from reports.write.rows import Rows
 from reports.write.templates import environment
@@ -84,21 +83,6 @@ def _is_of(row: Measurement, scene: str) -> bool:
     return (row.scene, row.purpose) == (scene, "sweep")
 
 
-def one_setting_moves_each_engine(material: Material) -> bool:
-    """Each engine's error goes from the first family (0.1 rad) to the second (0.02 rad) by one setting."""
-    error = {cell: row.angle for cell, row in material.rows.items()}
-    return (
-        all(
-            error[after] < min(0.02, error[before] / 2) and (error[before] > 0.1 or "the loop's pin" in name)
-            for name, _, before, after in engines.MOVES
-            if not after.engine.missing
-        )
-        and error[engines.SPRUNG["tree", 20.0]] < error[engines.SPRUNG["free", 20.0]] / 2
-        and error[engines.CLOSED_AT[1, 0.0]] > 0.1
-        and error[engines.CLOSED_AT[1, 0.25]] < 0.02
-    )
-
-
 def settings_of_a_loop(material: Material) -> bool:
     """One change wins little, both win much, and implicitfast does what Euler does."""
     rows = Rows(material.sweep((guides.FOUR_BAR,)))
@@ -149,7 +133,6 @@ def maps(material: Material) -> bool:
 # By page.
 OTHERS: Mapping[str, Callable[[Material], bool]] = {
     "atlas": maps,
-    "engines": one_setting_moves_each_engine,
     "settings": settings_of_a_loop,
 }
 

@@ -54,9 +54,10 @@ def cells_to_rounding(
 def described(source: str, *failures: Failure, **values: Any) -> tuple[Failure, ...]:
     """The experiments with their texts from `experiments.md` beside the file `source`.
 
-    A section has the experiment's title, a paragraph with the expectation, a paragraph with the lesson if there is one,
+    A section has the experiment's title, a paragraph with the expectation, paragraphs with the lesson if there is one,
     and a list of the claims in it (`reports.pages.claims`). All are templates of `values` and of the experiment's own
-    words. Raises ValueError unless each experiment has a section and each section an experiment.
+    words. An experiment that is run no more has its last numbers there as a table. Raises ValueError unless each
+    experiment has a section and each section an experiment.
     """
     text = Path(source).with_name("experiments.md").read_text(encoding="utf-8")
     sections = {}
@@ -72,12 +73,16 @@ def _with_text(failure: Failure, paragraphs: Iterable[str], values: Mapping[str,
     def words(material: Material) -> Mapping[str, Any]:
         return {**values, **failure.words(material)}
 
-    texts = [" ".join(each.split()) for each in paragraphs if not each.startswith("- ")]
+    texts = [
+        paragraph if paragraph.startswith("|") else " ".join(paragraph.split())
+        for paragraph in paragraphs
+        if not paragraph.startswith("- ")
+    ]
     claims = [line.removeprefix("- ") for each in paragraphs if each.startswith("- ") for line in each.splitlines()]
     return replace(
         failure,
         expected=texts[0],
-        remark=" ".join(texts[1:]),
+        remark="\n\n".join(texts[1:]),
         claims=tuple(claims),
         words=words if values else failure.words,
     )

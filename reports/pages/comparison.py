@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 from engines import registry
 from reports.model.cells import is_step
-from reports.model.measure import Measurement
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.plots.engines_compared import Compared, engines_compared
@@ -36,55 +36,42 @@ def compared_lines(pages: Mapping[Page, Material]) -> list[Line]:
     """A line for each of SCENES and each engine that has rows of it on any page."""
     found: list[Line] = []
     for name in SCENES:
-        page = next((page for page in pages if name in {scene.name for scene in page.scenes}), None)
-        if page is None:
-            continue
-        scene = next(scene for scene in page.scenes if scene.name == name)
-        rows: dict[tuple[str, int], Measurement] = {}
-        for material in pages.values():
-            for cell, row in material.rows.items():
-                if cell.scene == scene and cell.samples is None and cell.purpose in ("sweep", "beside"):
-                    rows[row.method, row.every] = replace(row, purpose="sweep")
-        whole = replace(page, scenes=(scene,), engines=(*page.engines, *registry.OTHERS))
-        found += lines([(whole, list(rows.values()))])
+        for page, scene in [(each, scene) for each in pages for scene in each.scenes if scene.name == name]:
+            rows = {
+                (row.method, row.every): replace(row, purpose="sweep")
+                for material in pages.values()
+                for cell, row in material.rows.items()
+                if cell.scene == scene and cell.samples is None and cell.purpose in ("sweep", "beside")
+            }
+            whole = replace(page, scenes=(scene,), engines=(*page.engines, *registry.OTHERS))
+            found += lines([(whole, list(rows.values()))])
     return found
 
 
 def picture(found: list[Line]) -> str:
     """The SVG text; empty without rows."""
-    rows = []
+    panels = []
     for name, title in SCENES.items():
-        own = [line for line in found if line.scene.name == name]
-        if not own:
+        of_scene = [line for line in found if line.scene.name == name]
+        if not of_scene:
             continue
-        places = {
-            column: [(line, Column.WHOLE if Column.WHOLE in line.columns else column) for line in own]
-            for column in COLUMNS
-        }
-        rows.append(
-            Compared(
-                title,
-                f"largest {quantity(own[0].name).axis}",
-                {
-                    column: {
-                        line.engine: reached([rows for _, rows in line.columns.get(place, ())], line.name)
-                        for line, place in each
-                    }
-                    for column, each in places.items()
-                },
-                {
-                    column: {
-                        word: [line.engine for line, place in each if empty(line, place) == word]
-                        for word in (NO_JOINT, NOT_BUILT)
-                    }
-                    for column, each in places.items()
-                    if column is not Column.CODE  # not every engine has a variant with our code
-                },
-            )
-        )
-    if not rows:
+        errors: dict[Column, dict[str, Any]] = {}
+        lacking: dict[Column, dict[str, list[str]]] = {}
+        for column in COLUMNS:
+            pairs = [(line, Column.WHOLE if Column.WHOLE in line.columns else column) for line in of_scene]
+            errors[column] = {
+                line.engine: reached([rows for _, rows in line.columns.get(place, ())], line.name)
+                for line, place in pairs
+            }
+            if column is not Column.CODE:  # not every engine has a variant with our code
+                lacking[column] = {
+                    word: [line.engine for line, place in pairs if empty(line, place) == word]
+                    for word in (NO_JOINT, NOT_BUILT)
+                }
+        panels.append(Compared(title, f"largest {quantity(of_scene[0].name).axis}", errors, lacking))
+    if not panels:
         return ""
-    return svg(engines_compared(rows), "All engines on a four-bar and on a skate: error against CPU time")
+    return svg(engines_compared(panels), "All engines on a four-bar and on a skate: error against CPU time")
 
 
 def table(found: list[Line]) -> str:

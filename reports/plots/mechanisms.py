@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
+from reference.plane import rotated
 from reference.scene import Scene
 from reference.trajectory import body_points, ground_points
 from reports.plots.theme import LIGHT, bare, drawing
@@ -25,6 +26,8 @@ Array = NDArray[np.float64]
 
 # A method's pose is drawn over the truth only where a point of it is off by this part of the picture: a line's width.
 VISIBLE = 5e-3
+DOTS: dict[str, Any] = {"marker": "o", "markerfacecolor": LIGHT.paper, "markeredgecolor": LIGHT.ink}
+INK: dict[str, Any] = {"color": LIGHT.ink, "linewidth": 2.2, "markersize": 4.5, "zorder": 2, **DOTS}
 
 
 def draw_pose(panel: Axes, mechanism: Mechanism, pose: Array, **line: Any) -> None:
@@ -52,52 +55,35 @@ def configurations(
     is named in the legend as such, not drawn.
     """
     others = others or {}
-    corners = np.concatenate(
-        [points for pose in truth for points in body_points(mechanism, pose).values()] + [ground_points(mechanism)]
-    )
+    looks = {
+        name: {"color": getattr(LIGHT, colour), "linewidth": 1.4, "linestyle": dashes}
+        for name, (_, colour, dashes) in others.items()
+    }
+    points = [points for pose in truth for points in body_points(mechanism, pose).values()]
+    corners = np.concatenate([*points, ground_points(mechanism)])
     low, high = corners.min(axis=0), corners.max(axis=0)
-    margin = 0.08 * float((high - low).max())
-    count = -(-len(truth) // columns)
-    width = 9.2 / columns
-    height = width * float((high - low + 2 * margin)[1] / (high - low + 2 * margin)[0])
-    with drawing(count * (height + 0.15) + 0.5) as figure:
-        panels = figure.subplots(count, columns, squeeze=False).ravel()
+    size = float((high - low).max())
+    margin = 0.08 * size
+    width, height = high - low + 2 * margin
+    lines = -(-len(truth) // columns)
+    with drawing(lines * (9.2 / columns * float(height / width) + 0.15) + 0.5) as figure:
+        panels = figure.subplots(lines, columns, squeeze=False).ravel()
+        drawn: set[str] = set()
         for panel in panels:
             panel.set_axis_off()
-        drawn: set[str] = set()
         for index, (panel, pose, title) in enumerate(zip(panels, truth, titles, strict=False)):
             bare(panel, title)
             panel.set_xlim(low[0] - margin, high[0] + margin)
             panel.set_ylim(low[1] - margin, high[1] + margin)
             draw_ground(panel, mechanism)
-            draw_pose(
-                panel,
-                mechanism,
-                pose,
-                color=LIGHT.ink,
-                linewidth=2.2,
-                marker="o",
-                markersize=4.5,
-                markerfacecolor=LIGHT.paper,
-                markeredgecolor=LIGHT.ink,
-                zorder=2,
-            )
-            for name, (poses, colour, dashes) in others.items():
-                if visibly_off(mechanism, pose, poses[index], float((high - low).max())):
+            draw_pose(panel, mechanism, pose, **INK)
+            for name, (poses, *_) in others.items():
+                if visibly_off(mechanism, pose, poses[index], size):
                     drawn.add(name)
-                    draw_pose(
-                        panel,
-                        mechanism,
-                        poses[index],
-                        color=getattr(LIGHT, colour),
-                        linewidth=1.4,
-                        linestyle=dashes,
-                        zorder=3,
-                    )
+                    draw_pose(panel, mechanism, poses[index], zorder=3, **looks[name])
+        labels = {name: name if name in drawn else f"{name}: not visibly off" for name in others}
         handles = [Line2D([], [], color=LIGHT.ink, linewidth=2.2, label="truth")]
-        for name, (_, colour, dashes) in others.items():
-            label = name if name in drawn else f"{name}: not visibly off"
-            handles.append(Line2D([], [], color=getattr(LIGHT, colour), linewidth=1.4, linestyle=dashes, label=label))
+        handles += [Line2D([], [], label=labels[name], **look) for name, look in looks.items()]
         figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 
@@ -153,19 +139,16 @@ def outline(mechanism: Mechanism, pose: Array, ends: Mapping[str, Points]) -> di
     out = {}
     for name, points in body_points(mechanism, pose).items():
         x, y, angle = pose[mechanism.body_index(name)]
-        axis = np.array([np.cos(angle), np.sin(angle)])
-        turn = np.array([axis, [-axis[1], axis[0]]])
-        more = np.array(ends.get(name, ()), dtype=float).reshape(-1, 2) @ turn + (x, y)
+        more = rotated(angle, np.array(ends.get(name, ()), dtype=float).reshape(-1, 2)) + np.array([x, y])
         points = np.concatenate([points, more])
-        out[name] = points[np.argsort((points - (x, y)) @ axis, kind="stable")]
+        out[name] = points[np.argsort((points - (x, y)) @ (np.cos(angle), np.sin(angle)), kind="stable")]
     return out
 
 
 def path(scene: Scene, body: str, point: tuple[float, float], t: Array) -> Array:
     """Where a point of a body is (times, 2) [m]."""
     pose = scene.motion(t).pose[:, scene.mechanism().body_index(body)]
-    cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-    return pose[:, :2] + np.stack([cosine * point[0] - sine * point[1], sine * point[0] + cosine * point[1]], axis=-1)
+    return pose[:, :2] + rotated(pose[:, 2], np.array(point))
 
 
 def stroboscope(strips: Sequence[Strip], columns: int = 2) -> Figure:
@@ -190,13 +173,11 @@ def stroboscope(strips: Sequence[Strip], columns: int = 2) -> Figure:
 
 
 def _poses(strip: Strip) -> list[dict[str, Array]]:
-    mechanism = strip.scene.mechanism()
-    poses = strip.scene.motion(strip.times()).pose
-    shown = [outline(mechanism, pose, strip.ends) for pose in poses]
-    return [
-        {name: points + np.array([strip.spread * index, 0.0]) for name, points in bodies.items()}
-        for index, bodies in enumerate(shown)
-    ]
+    mechanism, out = strip.scene.mechanism(), []
+    for index, pose in enumerate(strip.scene.motion(strip.times()).pose):
+        bodies = outline(mechanism, pose, strip.ends)
+        out.append({name: points + np.array([strip.spread * index, 0.0]) for name, points in bodies.items()})
+    return out
 
 
 def _box(strip: Strip, poses: list[dict[str, Array]]) -> tuple[float, float, float, float]:
@@ -218,12 +199,16 @@ def _draw(panel: Axes, strip: Strip, poses: list[dict[str, Array]], size: float)
         body, point = strip.trace
         line = path(strip.scene, body, point, np.linspace(t[0], t[-1], 40 * len(t)))
         panel.plot(line[:, 0], line[:, 1], color=LIGHT.second, linewidth=0.9, zorder=2)
-    crowd = max(len(bodies) for bodies in poses)
-    dots = {"marker": "o", "markersize": 3.0, "markerfacecolor": LIGHT.paper, "markeredgecolor": LIGHT.ink}
+    few, film = max(len(bodies) for bodies in poses) < 20, bool(strip.spread)
+    look: dict[str, Any] = {
+        "color": LIGHT.ink,
+        "solid_capstyle": "round",
+        "linewidth": 2.0 if few else 1.3,
+        "zorder": 3,
+    }
     for index, bodies in enumerate(poses):
-        film = bool(strip.spread)
-        strength = 1.0 if film or len(poses) == 1 else PALEST + (1 - PALEST) * (index / (len(poses) - 1)) ** 1.5
-        last = film or index == len(poses) - 1
+        alone = film or len(poses) == 1
+        strength = 1.0 if alone else PALEST + (1 - PALEST) * (index / (len(poses) - 1)) ** 1.5
         parts: list[Array] = []
         for points in bodies.values():
             if len(np.unique(points.round(12), axis=0)) == 1:
@@ -232,12 +217,5 @@ def _draw(panel: Axes, strip: Strip, poses: list[dict[str, Array]], size: float)
                 panel.plot(*block.T, color=LIGHT.ink, alpha=strength, linewidth=1.4, zorder=3)
             else:
                 parts += [points, GAP]
-        panel.plot(
-            *np.concatenate(parts).T,
-            color=LIGHT.ink,
-            alpha=strength,
-            linewidth=2.0 if crowd < 20 else 1.3,
-            solid_capstyle="round",
-            zorder=3,
-            **(dots if last and crowd < 20 else {}),
-        )
+        dots = {**DOTS, "markersize": 3.0} if few and (film or index == len(poses) - 1) else {}
+        panel.plot(*np.concatenate(parts).T, alpha=strength, **look, **dots)

@@ -134,17 +134,10 @@ def _draw(spot: Axes, panel: Panel, handles: dict[str, Line2D]) -> None:
             spot.plot(stroke[:, 0], stroke[:, 1], solid_capstyle="round", zorder=2.5, **look)
         if blades.label:
             handles.setdefault(blades.label, Line2D([], [], label=blades.label, **look))
+    box = {"facecolor": LIGHT.paper, "edgecolor": "none", "pad": 1.0}
+    words: dict[str, Any] = {"va": "center", "fontsize": 8, "color": LIGHT.ink, "zorder": 5, "bbox": box}
     for note in panel.notes:
-        spot.annotate(
-            note.words,
-            note.place,
-            ha=note.align,
-            va="center",
-            fontsize=8,
-            color=LIGHT.ink,
-            zorder=5,
-            bbox={"facecolor": LIGHT.paper, "edgecolor": "none", "pad": 1.0},
-        )
+        spot.annotate(note.words, note.place, ha=note.align, **words)
     spot.set_xlabel(panel.across or ("x [m]" if panel.plane else ""))
     spot.set_ylabel(panel.up or ("y [m]" if panel.plane else ""))
     if panel.logarithmic:

@@ -8,7 +8,7 @@ import os
 import shutil
 import sqlite3
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, replace
 from functools import lru_cache
@@ -43,6 +43,7 @@ REMEDIES = {
 DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_TOOBIG)
 
 Keyed = TypeVar("Keyed", Cell, Task)
+Result = TypeVar("Result", Measurement, Answer)
 
 
 class Damaged(Exception):
@@ -129,20 +130,18 @@ class Store:
 
     def get(self, cells: Iterable[Cell]) -> dict[Cell, Measurement]:
         """The stored rows of these cells; those that were never run, are stale or can't be read are left out."""
-        rows = ((cell, row_of(text)) for cell, text in self._texts(cells))
-        return {cell: replace(row, purpose=cell.purpose) for cell, row in rows if row is not None}
+        return {cell: replace(row, purpose=cell.purpose) for cell, row in self._read(cells, row_of)}
 
     def answers(self, tasks: Iterable[Task]) -> dict[Task, Answer]:
         """The stored answers to these tasks, left out as rows are."""
-        answers = ((task, answer_of(text)) for task, text in self._texts(tasks))
-        return {task: answer for task, answer in answers if answer is not None}
+        return dict(self._read(tasks, answer_of))
 
-    def _texts(self, items: Iterable[Keyed]) -> Iterator[tuple[Keyed, str]]:
+    def _read(self, items: Iterable[Keyed], parse: Callable[[str], Result | None]) -> Iterator[tuple[Keyed, Result]]:
         with _file_trouble(self.path):
             for item in items:
                 line = self._connection.execute("select row from results where key = ?", (item.key,)).fetchone()
-                if line:
-                    yield item, line[0]
+                if line and (result := parse(line[0])) is not None:
+                    yield item, result
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -14,8 +15,10 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
+from engines.lagrange import Lagrange
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Motion
+from reports.plots.looks import family_of, role
 from reports.site.animated import animation, shown
 from reports.site.generator import Documents, Extra, build_html, colours, lighten, quote_section, reference_sources
 from reports.site.lecture import render_lecture
@@ -24,9 +27,9 @@ from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import data, first_picture
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED
 from reports.site.markdown import cards, render_html, section, title
-from reports.site.munk2d import compiled
-from reports.site.packages import PACKAGES, NotFetched
-from reports.site.rows import explored
+from reports.site.packages import PACKAGES, NotFetched, compile_munk2d, fetch_package
+from reports.write.columns import VARIANTS
+from reports.write.csv_files import read_lines
 from reports.write.templates import CODE, inert_page
 
 HERE = Path(__file__).parent
@@ -35,6 +38,11 @@ MARKER = "site.json"
 FILE_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?![a-z]+:|#)([^)#\s]+)(#[^)]*)?\)")
 DRAGGED = re.compile(r"\{(\w+)\}")  # a number in a lesson's words that moves a control
 ENGINE_FILES = {"munk2d": "packages/munk2d.js", "mujoco": "packages/mujoco.js"}
+
+# The columns of the page of charts.
+COLUMNS = ("scene", "engine", "variant", "outcome", "settings", "step")
+NUMBERS = ("position", "angle", "velocity", "gap", "energy", "reaction")
+ROW_KEY = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every")
 
 Files = dict[str, bytes]
 
@@ -72,8 +80,8 @@ def _extra_files(source: Source, lessons: tuple[Lesson, ...]) -> Files:
     files: Files = {path.name: path.read_bytes() for path in sorted((HERE / "assets").iterdir())}
     files |= {"colours.css": colours().encode(), "front.svg": _front_picture(source).encode()}
     parts: dict[str, Callable[[], Files]] = {
-        **{f"{package.name} ({package.use})": partial(source.registry.fetched, package) for package in PACKAGES},
-        "Munk2D (the engine in pymunk)": lambda: {ENGINE_FILES["munk2d"]: compiled(source.cache)},
+        **{f"{package.name} ({package.use})": partial(fetch_package, package, source.cache) for package in PACKAGES},
+        "Munk2D (the engine in pymunk)": lambda: {ENGINE_FILES["munk2d"]: compile_munk2d(source.cache)},
     }
     for name, make in parts.items():
         try:
@@ -86,6 +94,34 @@ def _extra_files(source: Source, lessons: tuple[Lesson, ...]) -> Files:
     csv = [source.tables.get(f"{name}.csv", "") for name in ("errors", "timings", "descriptions")]
     files["results/rows.json"] = _json(explored(*csv))
     return files
+
+
+def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
+    """All rows of sweeps for the page of charts, from the texts of three CSV files; a number that is missing is None.
+
+    Returns:
+        columns, rows: `cpu` is CPU time per simulated second [s], settings are words.
+        looks: by engine the role of its colour, and whether it solves the equations as they are: such solvers are shown
+            when they are asked for.
+        headings: the names of the variants.
+    """
+    spent, words = _by(timings, *ROW_KEY), _by(descriptions, "digest")
+    rows = []
+    for row in read_lines(errors)[1] if errors else ():
+        if row["purpose"] == "sweep":
+            cost = spent.get(tuple(row[name] for name in ROW_KEY), {}).get("cpu", "nan")
+            settings = words.get((row["settings"],), {}).get("description", "")
+            numbers = [float(text or "nan") for text in (*(row[name] for name in NUMBERS), cost)]
+            finite = [value if math.isfinite(value) else None for value in numbers]
+            rows.append([*(row[name] for name in COLUMNS[:4]), settings, float(row["step"]), *finite])
+    names = sorted({row[1] for row in rows})
+    looks = {name: {"role": role(family_of(name), names), "exact": name == Lagrange.name} for name in names}
+    headings = {name: column.value for name, column in VARIANTS.items()}
+    return {"columns": [*COLUMNS, *NUMBERS, "cpu"], "rows": rows, "looks": looks, "headings": headings}
+
+
+def _by(text: str, *key: str) -> dict[tuple[str, ...], dict[str, str]]:
+    return {tuple(row[name] for name in key): row for row in read_lines(text)[1]} if text else {}
 
 
 def _json(value: object) -> bytes:

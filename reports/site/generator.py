@@ -106,6 +106,7 @@ def configure(extra: Path) -> dict[str, Any]:
         "html_show_copyright": False,
         "templates_path": [str(HERE / "templates")],
         "default_role": "code",
+        "smartquotes": False,  # headings are found by their words, and options have two hyphens
         "myst_enable_extensions": ["dollarmath"],
         "myst_dmath_allow_space": False,
         "myst_dmath_allow_digits": False,

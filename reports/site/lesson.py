@@ -11,7 +11,6 @@ from typing import Any
 
 from reports.model.tasks import Answer, Motion
 from reports.site.live.sliders import DOCUMENTED, ENGINES, Live, Name
-from reports.site.packages import Registry
 
 FOLDER = Path(__file__).parent / "lessons"
 BOTH: dict[str, Any] = dict.fromkeys(ENGINES, DOCUMENTED)
@@ -113,8 +112,3 @@ class Source:
     api: bool = True  # whether docstrings become a reference, which takes a minute
     lecture: str = ""  # the notebook, as JSON
     troubles: list[str] = field(default_factory=list)  # what could not be built, and why, a sentence each
-
-    @cached_property
-    def registry(self) -> Registry:
-        """Where packages of others come from."""
-        return Registry(self.cache)

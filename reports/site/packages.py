@@ -1,25 +1,38 @@
-"""Packages of npm: fetched by version when the site is built, checked by their digest, and unpacked as far as needed.
+"""Parts of the site that others made: packages of npm, and Munk2D, the engine inside pymunk, compiled by emscripten.
 
-Nothing is fetched when a page is read. Without npm, or without a network, the site is built without what needs them.
+They are fetched when the site is built, checked, and kept in a folder `cache`; nothing is fetched when a page is read.
+Without npm, a compiler or a network the site is built without the parts that need them.
 """
 
 from __future__ import annotations
 
 import base64
+import functools
 import hashlib
 import shutil
 import subprocess
 import tarfile
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from reports.model.ending import BadInput
+from reports.model.fingerprint import digest
 from reports.run.files import temporary_folder
+from reports.run.installed import sources
 
 PATIENCE = 180  # s for one package
 ANSWERING = 8  # s in which a registry answers a short question: without one, a build says so soon
+COMPILING = 600  # s for emscripten, which builds its own library first
+SHIM = Path(__file__).with_name("munk2d.c")
+# At -O2 emscripten 3.1.6 of Debian fails in a later step.
+FLAGS = (
+    *("-O1", "-DNDEBUG", "-sSINGLE_FILE=1", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web,worker"),
+    *("-sEXPORTED_FUNCTIONS=_munk_run,_malloc,_free", "-sALLOW_MEMORY_GROWTH=1", "-sFILESYSTEM=0"),
+)
+THREADED = "cpHastySpace.c"  # steps with threads, which pages have not
 
 
 @dataclass(frozen=True)
@@ -35,48 +48,73 @@ class Package:
     use: str
     files: tuple[tuple[str, str], ...]
 
+    def path_in(self, cache: Path) -> Path:
+        """The archive in the folder `cache`."""
+        return cache / f"{self.name.strip('@').replace('/', '-')}-{self.version}.tgz"
+
 
 class NotFetched(Exception):
     """Why a package is not there, in a sentence."""
 
 
-@dataclass(frozen=True)
-class Registry:
-    """Where packages come from, and the folder `cache` in which they are kept."""
-
-    cache: Path
-
-    @cached_property
-    def trouble(self) -> str:
-        """Why nothing can be fetched, asked once; empty where all packages are there or npm's registry answers."""
-        if all(self._path(package).is_file() for package in PACKAGES):
-            return ""
-        npm = shutil.which("npm")
-        if npm is None:
-            return "npm is not installed"
-        words = [npm, "view", "d3", "version", "--fetch-retries=0", f"--fetch-timeout={1000 * ANSWERING}"]
-        try:
-            printed(words, "npm's registry does not answer", ANSWERING)
-        except NotFetched as reason:
-            return str(reason)
+@functools.cache
+def npm_trouble(cache: Path) -> str:
+    """Why nothing can be fetched; empty where all packages are in the folder or npm's registry answers."""
+    if all(package.path_in(cache).is_file() for package in PACKAGES):
         return ""
+    npm = shutil.which("npm")
+    if npm is None:
+        return "npm is not installed"
+    words = [npm, "view", "d3", "version", "--fetch-retries=0", f"--fetch-timeout={1000 * ANSWERING}"]
+    try:
+        printed(words, "npm's registry does not answer", ANSWERING)
+    except NotFetched as reason:
+        return str(reason)
+    return ""
 
-    def fetched(self, package: Package) -> dict[str, bytes]:
-        """The package's files by their names in the site, fetched once into `cache`. Raises NotFetched."""
-        path = self._path(package)
-        if not path.is_file():
-            if self.trouble:
-                raise NotFetched(self.trouble)
-            _fetch(package, path)
-        digest = base64.b64encode(hashlib.sha512(path.read_bytes()).digest()).decode()
-        if digest != package.sha512:
-            path.unlink()
-            raise NotFetched(f"{package.name} {package.version} has another digest than the one that is known")
-        with tarfile.open(path, encoding="utf-8") as archive:
-            return {name: archive.extractfile(f"package/{path}").read() for path, name in package.files}  # type: ignore[union-attr]
 
-    def _path(self, package: Package) -> Path:
-        return self.cache / f"{package.name.strip('@').replace('/', '-')}-{package.version}.tgz"
+def fetch_package(package: Package, cache: Path) -> dict[str, bytes]:
+    """The package's files by their names in the site, fetched once into `cache`. Raises NotFetched."""
+    path = package.path_in(cache)
+    if not path.is_file():
+        if trouble := npm_trouble(cache):
+            raise NotFetched(trouble)
+        cache.mkdir(parents=True, exist_ok=True)
+        with temporary_folder(cache) as folder:
+            words = ["npm", "pack", f"{package.name}@{package.version}", "--silent", "--ignore-scripts"]
+            printed(words, f"npm could not fetch {package.name} {package.version}", PATIENCE, cwd=folder)
+            (archive,) = folder.glob("*.tgz")
+            archive.replace(path)
+    if base64.b64encode(hashlib.sha512(path.read_bytes()).digest()).decode() != package.sha512:
+        path.unlink()
+        raise NotFetched(f"{package.name} {package.version} has another digest than the one that is known")
+    with tarfile.open(path, encoding="utf-8") as opened:
+        return {name: opened.extractfile(f"package/{part}").read() for part, name in package.files}  # type: ignore[union-attr]
+
+
+def compile_munk2d(cache: Path) -> bytes:
+    """The engine as one JavaScript file, kept in `cache` for this version, shim and compiler. Raises NotFetched."""
+    compiler = shutil.which("emcc")
+    if compiler is None:
+        raise NotFetched("emscripten is not installed")
+    release = version("pymunk")
+    told = printed([compiler, "--version"], "emscripten does not tell its version", COMPILING).splitlines()
+    parts = (release, SHIM.read_text(encoding="utf-8"), " ".join(FLAGS), *told[:1])
+    path = cache / f"munk2d-{digest(repr(parts))}.js"
+    if not path.is_file():
+        cache.mkdir(parents=True, exist_ok=True)
+        with temporary_folder(cache) as folder:
+            try:  # seconds without an answer, of which there may be two
+                words = ("--retries", "0", "--timeout", str(ANSWERING // 2))
+                engine = sources("pymunk", release, folder, *words) / "Munk2D"
+            except BadInput as reason:
+                raise NotFetched(str(reason)) from None
+            files = sorted(str(each) for each in (engine / "src").glob("*.c") if each.name != THREADED)
+            output = folder / "munk2d.mjs"
+            command = [compiler, *FLAGS, f"-I{engine / 'include'}", str(SHIM), *files, "-o", str(output)]
+            printed(command, "emscripten refuses Munk2D", COMPILING)
+            output.replace(path)
+    return path.read_bytes()
 
 
 def printed(words: Sequence[str], trouble: str, patience: float, **given: Any) -> str:
@@ -90,15 +128,6 @@ def printed(words: Sequence[str], trouble: str, patience: float, **given: Any) -
         told = [line for line in lines if line.startswith("npm error")]  # further down npm names its own log
         raise NotFetched(f"{trouble}: {told[0] if told else lines[-1]}")
     return ended.stdout
-
-
-def _fetch(package: Package, path: Path) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with temporary_folder(path.parent) as folder:
-        words = ["npm", "pack", f"{package.name}@{package.version}", "--silent", "--ignore-scripts"]
-        printed(words, f"npm could not fetch {package.name} {package.version}", PATIENCE, cwd=folder)
-        (found,) = folder.glob("*.tgz")
-        found.replace(path)
 
 
 D3 = Package(

@@ -44,7 +44,7 @@ class Build:
 
     label: str
     engine: str
-    place: Path
+    location: Path
     stored: bool
 
 
@@ -104,7 +104,7 @@ def compare_builds(
 
         def run(side: Build, number: str) -> VersionColumn:
             store = (results if side.stored else folder / number) / STORE
-            request = _request(engine or side.engine, side.place, scenes, store, most=LONGEST_CELL, **terms)
+            request = _request(engine or side.engine, side.location, scenes, store, most=LONGEST_CELL, **terms)
             return run_column(side.label, side.label, request, methods, progress)
 
         columns = run(a, "1"), run(b, "2")
@@ -128,14 +128,14 @@ def run_release(
     """
     engines = engines_named(name)
     announce(f"{name} {version}")
-    place = installed(distributions(engines[0]), version)
-    return run_column(f"{name} {version}", version, _request(name, place, scenes, store, **terms), engines, progress)
+    location = installed(distributions(engines[0]), version)
+    return run_column(f"{name} {version}", version, _request(name, location, scenes, store, **terms), engines, progress)
 
 
-def _request(engine: str, place: Path, scenes: Sequence[Scene] | None, store: Path, **terms: Any) -> VersionRequest:
-    """The request for the version or build that lies in `place`; `terms`: further fields."""
+def _request(engine: str, location: Path, scenes: Sequence[Scene] | None, store: Path, **terms: Any) -> VersionRequest:
+    """The request for the version or build that lies in `location`; `terms`: further fields."""
     chosen = scenes_named() if scenes is None else tuple(scenes)
-    return VersionRequest(chosen, engine, modules_in(place), place, store.absolute(), folder=Path.cwd(), **terms)
+    return VersionRequest(chosen, engine, modules_in(location), location, store.absolute(), folder=Path.cwd(), **terms)
 
 
 def run_column(
@@ -155,19 +155,20 @@ def side_of(word: str, engine: str | None, engines: Sequence[Engine], announce: 
             names = ", ".join(dict.fromkeys(method.name for method in engines))
             raise BadInput(f"{word}: no engine needs {name!r}; there are {names}")
         announce(word)
-        places = distributions(method) if method is not None else (name,)
-        return Build(word, engine or (method.name if method else name), installed(places, version), True)
+        names = distributions(method) if method is not None else (name,)
+        return Build(word, engine or (method.name if method else name), installed(names, version), True)
     if Path(word).exists():
         announce(word)
-    place = built(Path(word))
-    versions = distributions_in(place)
-    contents = [*versions, *modules_in(place)]
+    location = built(Path(word))
+    versions = distributions_in(location)
+    contents = [*versions, *modules_in(location)]
     method = engine_of(engines, contents)
     if method is None and engine is None:
         if not contents:
             raise BadInput(f"{word} holds no package; give NAME==VERSION, a wheel or a folder with one")
         raise BadInput(f"{word} holds {', '.join(contents[:5])}, which no engine needs; name the engine with --engine")
-    packages = ", ".join(f"{package} {number}" for package, number in versions.items())
     # A wheel's name repeats what is in it, with forty letters of platforms.
-    name = "wheel" if Path(word).suffix == ".whl" else Path(word).absolute().name
-    return Build(f"{packages} ({name})" if packages else name, engine or (method.name if method else ""), place, False)
+    label = "wheel" if Path(word).suffix == ".whl" else Path(word).absolute().name
+    if versions:
+        label = f"{', '.join(f'{package} {number}' for package, number in versions.items())} ({label})"
+    return Build(label, engine or (method.name if method else ""), location, False)

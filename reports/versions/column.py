@@ -41,14 +41,14 @@ class VersionRequest:
     """Which scenes, in which engine at how many steps a sample; stored rows are not run again.
 
     engine: a registered name, or a reference (`engines.loading`) relative to `folder`; all its variants are run, or
-    those named. modules: top-level packages that have to come from `place`, the version's own folder. most: a cell is
-    left out whose run would take longer by its engine's formula [s].
+    those named. modules: top-level packages that have to come from `location`, the version's own folder. most: a cell
+    is left out whose run would take longer by its engine's formula [s].
     """
 
     scenes: tuple[Scene, ...]
     engine: str
     modules: tuple[str, ...]
-    place: Path
+    location: Path
     store: Path
     variants: tuple[str, ...] = ()
     every: tuple[int, ...] = (10,)
@@ -139,7 +139,7 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
                 stdout=subprocess.PIPE,
                 stderr=errors,
                 cwd=folder,
-                env=environment(request.place, (ROOT,)) | {"TMPDIR": str(folder)},
+                env=environment(request.location, (ROOT,)) | {"TMPDIR": str(folder)},
             )
         assert process.stdin is not None
         assert process.stdout is not None
@@ -203,13 +203,15 @@ def _usable_engines(request: VersionRequest) -> list[Engine]:
 
 
 def _imported_elsewhere(request: VersionRequest) -> str:
-    """A sentence if a module was not imported from this version's place; empty if all were."""
-    place, imported = request.place, [name for name in request.modules if name in sys.modules]
+    """A sentence if a module was not imported from this version's location; empty if all were."""
+    location, imported = request.location, [name for name in request.modules if name in sys.modules]
     for name in imported:
         file = getattr(sys.modules[name], "__file__", None)
-        if file is None or place.resolve() not in Path(file).resolve().parents:
-            return f"{name} was imported from {file}, and not from {place}"
-    return "" if imported else f"the engine imports none of {', '.join(request.modules)}, which is what lies in {place}"
+        if file is None or location.resolve() not in Path(file).resolve().parents:
+            return f"{name} was imported from {file}, and not from {location}"
+    return (
+        "" if imported else f"the engine imports none of {', '.join(request.modules)}, which is what lies in {location}"
+    )
 
 
 def _run(request: VersionRequest, engines: Sequence[Engine], send: Callable[[Any], None]) -> None:

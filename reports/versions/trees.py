@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 
-from engines import Engine, method_name
+from engines import Engine
 from engines.lagrange.dynamics import constrained_acceleration
 from reference.checks import Count, InvalidMechanism
 from reference.mechanism import Mechanism
@@ -52,13 +53,7 @@ class Trees(Task):
     loops: Count = 4
     count: Count = 40
 
-    @property
-    def cost(self) -> float:
-        return 1e-3 * self.count * self.bodies
-
-    @property
-    def label(self) -> str:
-        return f"{self.count} trees of {self.bodies} bodies / {method_name(self.method)}"
+    words: ClassVar[str] = "{0.count} trees of {0.bodies} bodies / {0.method.name} {0.method.variant}"
 
     @property
     def engine(self) -> Engine:

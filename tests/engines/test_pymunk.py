@@ -36,7 +36,7 @@ from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.trajectory import Trajectory
 from tests import ROOT
 from tests.engines.test_matrix import blade_on_a_board
-from tests.mechanisms import four_bar, rolling_disc
+from tests.mechanisms import elbow, four_bar, rolling_disc
 
 FREE, MOVING, DRIVEN = four_bar(), four_bar(10.0), four_bar(10.0, drive=10.0)
 every_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
@@ -58,6 +58,7 @@ def test_no_more_is_built_than_the_mechanism_has():
     for mechanism, rows in ((FREE, 8), (DRIVEN, 6), (DrivenSliderCrank().mechanism(), 5)):
         for method in (DEFAULT, EXTENDED):
             assert method.build(mechanism, 1e-3).size == Size(3, 9, rows, rows)
+    assert DEFAULT.build(elbow(), 1e-3).size == Size(bodies=2, coordinates=6, rows=5, solver_rows=5)
 
 
 @pytest.mark.parametrize("grounded_first", [True, False])

@@ -113,7 +113,7 @@ def test_the_stated_error_is_above_the_true_one_of_a_motion_known_in_closed_form
     assert true < 1e-14
 
 
-@pytest.mark.parametrize("scene", [LinkPendulum(), TenLinks(), HundredLinks()])
+@pytest.mark.parametrize("scene", [LinkPendulum(), TenLinks(), pytest.param(HundredLinks(), marks=pytest.mark.slow)])
 def test_the_stated_horizon_is_within_the_measured_one(scene: LinkPendulum) -> None:
     measured, _ = scene.chain.horizon(
         np.full(scene.links, scene.angle), np.full(scene.links, scene.rate), scene.duration

@@ -1,9 +1,13 @@
-"""Charts and drawings read back from their axes: which numbers and poses are drawn, where, and by which method."""
+"""Charts and drawings read back from their axes: which numbers and poses are drawn, where, and by which method.
+
+The numbers of the charts of invented rows stand in tests/golden/charts.md.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -36,25 +40,39 @@ def points(line: Line2D) -> list[tuple[float, float]]:
     return [(float(x), float(y)) for x, y in np.asarray(line.get_xydata())]
 
 
-def series(panel: Axes) -> dict[tuple[str, str], list[tuple[float, float]]]:
-    """What is drawn with a mark, by colour and line style: the methods."""
-    return {
-        (to_hex(line.get_color()), str(line.get_linestyle())): points(line)
-        for line in panel.get_lines()
-        if line.get_marker() in families.MARKS
-    }
+ROLES = {to_hex(getattr(LIGHT, field.name)): field.name for field in fields(LIGHT)}
+GUIDE = 0.8  # pt, the width of the lines whose place depends on the limits of the axes
 
 
-def legend(figure: Figure) -> dict[str, tuple[str, str]]:
-    """Its entries: label -> colour and line style."""
-    [found] = figure.legends
-    lines = [handle for handle in found.legend_handles if isinstance(handle, Line2D)]
-    assert [text.get_text() for text in found.get_texts()] == [line.get_label() for line in lines]
-    return {str(line.get_label()): (to_hex(line.get_color()), str(line.get_linestyle())) for line in lines}
+def described(figure: Figure) -> Iterator[str]:
+    """Every panel with its titles, scales, lines and words, and the legend; colours by their role in the theme."""
+    for panel in figure.axes:
+        if not panel.get_visible():
+            continue
+        words = (
+            panel.get_title(loc="left"),
+            panel.get_xscale(),
+            panel.get_xlabel(),
+            panel.get_yscale(),
+            panel.get_ylabel(),
+        )
+        yield f"### {' | '.join(words)}"
+        for line in panel.get_lines():
+            if line.get_linewidth() != GUIDE:
+                numbers = " ".join(f"({round(x, 12):.4g}, {round(y, 12):.4g})" for x, y in points(line))
+                yield f"- {look_of(line)} {line.get_drawstyle()}: {numbers}"
+        for text in panel.texts:
+            at = (
+                getattr(text, "xy", ()) if not text.get_text().isdigit() else ()
+            )  # a number of a guide stands beside it
+            yield f"- {text.get_text()!r} {at}"
+    for found in figure.legends:
+        lines = [handle for handle in found.legend_handles if isinstance(handle, Line2D)]
+        yield from (f"- {line.get_label()}: {look_of(line)}" for line in lines)
 
 
-def panels(figure: Figure) -> list[Axes]:
-    return [panel for panel in figure.axes if panel.get_visible()]
+def look_of(line: Line2D) -> str:
+    return f"{ROLES[to_hex(line.get_color())]} {line.get_linestyle()} {line.get_marker()}"
 
 
 METHODS = {
@@ -84,57 +102,57 @@ def featured(row) -> bool:
     return row.variant != "own"
 
 
-@pytest.mark.parametrize(
-    ("draw", "across", "label"),
-    [
-        (charts.work_precision, "cpu", "CPU time per simulated second [ms]"),
-        (charts.error_against_step, "step", "step [ms]"),
-    ],
-)
-def test_each_method_is_drawn_with_its_numbers_in_its_scenes_panel(draw, across, label):
-    figure = draw(rows(), featured)
-    found = panels(figure)
-    assert [panel.get_title(loc="left") for panel in found] == ["other", "one scene"]
-    entries = legend(figure)
-    for panel, scene in zip(found, ("other", "one_scene"), strict=True):
-        expected = {
-            method: [(1e3 * getattr(row, across), FACTORS[scene] * row.angle) for row in falling(method, errors)]
-            for method, errors in METHODS.items()
-        }
-        drawn = series(panel)
-        assert drawn == {entries[method]: [pytest.approx(p) for p in points] for method, points in expected.items()}
-        assert (panel.get_xscale(), panel.get_yscale(), panel.get_xlabel()) == ("log", "log", label)
-    assert [panel.get_ylabel() for panel in found] == ["largest angle error [rad]", ""]  # the second shares the axis
-    assert set(entries) - {"nothing is better and cheaper", "other methods", "rounding"} == set(METHODS)
+def compared() -> Figure:
+    lines = {"as shipped": {"pymunk": [(1e-3, 1e-2), (1e-2, 1e-3)]}, "with our code": {"mujoco": [(5e-3, 1e-9)]}}
+    absent = {"as shipped": {"no such joint": ["pymunk"]}}
+    return engines_compared(
+        [
+            Compared("four-bar", "angle", lines, {}),
+            Compared("skate", "position", {"as shipped": {}, "with our code": {}}, absent),
+        ]
+    )
 
 
-def front(panel: Axes) -> list[tuple[float, float]]:
-    [line] = [line for line in panel.get_lines() if line.get_drawstyle() == "steps-post"]
-    return points(line)
+def posed() -> Figure:
+    """Three poses, one of which a method misses."""
+    mechanism = four_bar()
+    truth = np.stack([mechanism.pose, mechanism.pose + 0.1, mechanism.pose - 0.1])
+    other = truth + np.array([0.2, 0.0, 0.0]) * np.array([0, 1, 0])[:, None, None]
+    methods: dict[str, Any] = {"wrong": (other, "first", "--"), "right": (truth, "second", ":")}
+    return drawings.configurations(mechanism, truth, ["zero", "one", "two"], methods)
 
 
-def dots(panel: Axes) -> list[tuple[float, float]]:
-    return [point for line in panel.get_lines() if line.get_marker() == "." for point in points(line)]
+def planes() -> Figure:
+    """A path, one that ends in NaN and is not framed, a blade of 0.2 m upright, words, and a chart beside them."""
+    wrong = Path([[0.0, 0.0], [math.nan, 0.0], [9.0, 8.0]], "wrong", "first", "--", framed=False, dot=True)
+    blades = Blades([[0.5, 0.5, math.pi / 2]], 0.2, "quiet")
+    right = Path([[0.0, 0.0], [1.0, 2.0]], "truth")
+    first = Panel("first", [right, wrong], [blades], [Note((0.25, 1.5), "here", "center")])
+    curve = Path([[1.0, 1e-3], [2.0, 1e-1]], "truth")
+    second = Panel("second", [curve], plane=False, across="time [s]", up="m", logarithmic=True)
+    return paths([first, second], columns=2)
 
 
-def test_the_front_is_of_all_methods_and_those_not_featured_are_dots():
-    def of(method: str, *numbers: tuple[float, float, float], **changes: Any) -> list[Any]:
-        return [row_of(method, step=step, angle=angle, cpu=cpu, **changes) for step, angle, cpu in numbers]
-
-    shown = of("pymunk default", (1e-2, 1e-2, 1e-3), (1e-3, 1e-4, 5e-3))
-    cheap = of("mujoco own", (1e-2, 1e-3, 2e-3), (1e-3, 5e-3, 9e-3))
-    never = of("mujoco own", (1e-4, 1e-9, 1e-4), purpose="map")
-    never += of("mujoco own", (1e-4, 1e-9, 1e-4), outcome=Outcome.SATURATED)
-    figure = charts.work_precision([*shown, *cheap, *never], featured)
-    [panel] = panels(figure)
-    assert front(panel) == [pytest.approx(point) for point in ((1.0, 1e-2), (2.0, 1e-3), (5.0, 1e-4))]
-    assert dots(panel) == [pytest.approx(point) for point in ((2.0, 1e-3), (9.0, 5e-3))]
-    assert {"nothing is better and cheaper", "other methods"} < set(legend(figure))
-    figure = charts.work_precision(shown, featured)
-    assert (dots(panels(figure)[0]), "other methods" in legend(figure)) == ([], False)
+def test_each_chart_draws_its_numbers_in_its_panel_by_the_look_of_its_method(golden):
+    found = {
+        "Error against CPU time": charts.work_precision(rows(), featured),
+        "All methods as lines": charts.work_precision(rows()),
+        "Error against step": charts.error_against_step(rows(), featured),
+        "Engines at equal CPU time": compared(),
+        "Configurations": posed(),
+        "Paths in a plane": planes(),
+    }
+    golden(
+        "charts.md", "\n".join(line for name, figure in found.items() for line in (f"## {name}", *described(figure)))
+    )
+    # What is not framed does not stretch the picture.
+    left = found["Paths in a plane"].axes[0]
+    assert left.get_xlim()[1] < 2
+    assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
+    assert len({(panel.get_xlim(), panel.get_ylim()) for panel in found["Engines at equal CPU time"].axes}) == 1
     failed = [row_of("pymunk default", outcome=outcome) for outcome in Outcome if not outcome.comparable]
     for draw in (charts.work_precision, charts.error_against_step):
-        assert all(not panel.get_lines() for panel in panels(draw(failed)))
+        assert all(not panel.get_lines() for panel in draw(failed).axes)
 
 
 def test_a_series_never_runs_backwards_in_cpu_time():
@@ -143,24 +161,6 @@ def test_a_series_never_runs_backwards_in_cpu_time():
     assert [row.step for row in charts.forwards(rough[::-1])] == [1e-3, 1e-4]
     plain = falling("pymunk default", METHODS["pymunk default"])
     assert charts.forwards(plain) == plain
-
-
-def test_all_engines_share_one_look_and_one_scale_in_every_panel_and_what_is_absent_is_named():
-    lines = {"as shipped": {"pymunk": [(1e-3, 1e-2), (1e-2, 1e-3)]}, "with our code": {"mujoco": [(5e-3, 1e-9)]}}
-    rows = [
-        Compared("four-bar", "angle", lines, {}),
-        Compared(
-            "skate", "position", {"as shipped": {}, "with our code": {}}, {"as shipped": {"no such joint": ["pymunk"]}}
-        ),
-    ]
-    figure = engines_compared(rows)
-    first, second, third, _ = panels(figure)
-    assert series(first) != series(second)
-    assert points(first.get_lines()[0]) == [pytest.approx(point) for point in ((1.0, 1e-2), (10.0, 1e-3))]
-    assert {panel.get_xlim() for panel in panels(figure)} == {first.get_xlim()}
-    assert {panel.get_ylim() for panel in panels(figure)} == {first.get_ylim()}
-    assert "no such joint: pymunk" in [text.get_text() for text in third.texts]
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["pymunk", "MuJoCo"]
 
 
 def test_any_number_of_families_are_told_apart_and_those_of_the_registry_keep_theirs():
@@ -173,24 +173,10 @@ def test_any_number_of_families_are_told_apart_and_those_of_the_registry_keep_th
     assert len(set(families.MARKS)) == 9
 
 
-def words_at(panel: Axes) -> list[tuple[str, Any]]:
-    """Texts with the places at which they point."""
-    texts: list[Any] = list(panel.texts)
-    return [(text.get_text(), text.xy) for text in texts]
-
-
-def lines(panel: Axes) -> list[np.ndarray]:
-    return [np.asarray(line.get_xydata(), dtype=float) for line in panel.get_lines()]
-
-
-def has(panel: Axes, points) -> bool:
+def has(panel: Axes, wanted: Any) -> bool:
     """Whether one line of a panel goes through these points and no others."""
-    wanted = np.asarray(points, dtype=float)
-    return any(found.shape == wanted.shape and np.allclose(found, wanted, equal_nan=True) for found in lines(panel))
-
-
-def colours(panel: Axes) -> list[str]:
-    return [to_hex(line.get_color()) for line in panel.get_lines()]
+    lines = [np.asarray(line.get_xydata(), dtype=float) for line in panel.get_lines()]
+    return any(line.shape == np.shape(wanted) and np.allclose(line, wanted, equal_nan=True) for line in lines)
 
 
 def test_a_bodys_points_are_its_joints_turned_and_moved():
@@ -205,45 +191,6 @@ def test_a_bodys_points_are_its_joints_turned_and_moved():
     crank = DrivenSliderCrank(offset=0.1).mechanism()
     assert any(isinstance(joint, Slot) and joint.first is None for joint in crank.joints)
     assert outlines.ground_points(crank) == pytest.approx(np.zeros((1, 2)))
-
-
-def test_configurations_have_each_pose_under_its_title_and_methods_over_them_where_they_differ():
-    mechanism = four_bar()
-    truth = np.stack([mechanism.pose, mechanism.pose + 0.1, mechanism.pose - 0.1])
-    other = truth + np.array([0.2, 0.0, 0.0]) * np.array([0, 1, 0])[:, None, None]
-    figure = drawings.configurations(
-        mechanism, truth, ["zero", "one", "two"], {"wrong": (other, "first", "--"), "right": (truth, "second", ":")}
-    )
-    panels = figure.axes[:3]
-    assert [panel.get_title(loc="left") for panel in panels] == ["zero", "one", "two"]
-    for index, panel in enumerate(panels):
-        assert all(has(panel, bar) for bar in outlines.body_points(mechanism, truth[index]).values())
-        assert (to_hex(LIGHT.first) in colours(panel)) == (index == 1)
-        assert to_hex(LIGHT.second) not in colours(panel)
-    assert all(has(panels[1], bar) for bar in outlines.body_points(mechanism, other[1]).values())
-    words = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert words == ["truth", "wrong", "right: not visibly off"]
-
-
-def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_colour():
-    near = [[0.0, 0.0], [1.0, 2.0]]
-    wrong = Path([[0.0, 0.0], [math.nan, 0.0], [9.0, 8.0]], "wrong", "first", "--", framed=False, dot=True)
-    blades = Blades([[0.5, 0.5, math.pi / 2]], 0.2, "quiet")
-    first = Panel("first", [Path(near, "truth"), wrong], [blades], [Note((0.25, 1.5), "here", "center")])
-    curve = [[1.0, 1e-3], [2.0, 1e-1]]
-    second = Panel("second", [Path(curve, "truth")], plane=False, across="time [s]", up="m", logarithmic=True)
-    figure = paths([first, second], columns=2)
-    left, right = figure.axes
-    assert [panel.get_title(loc="left") for panel in (left, right)] == ["first", "second"]
-    # The path, what is finite of the wrong one, the dot at its end, and a blade of 0.2 m upright about its middle.
-    for points in (near, [[0.0, 0.0], [9.0, 8.0]], [[9.0, 8.0]], [[0.5, 0.4], [0.5, 0.6]]):
-        assert has(left, points)
-    assert words_at(left) == [("here", (0.25, 1.5))]
-    assert (right.get_xlabel(), right.get_ylabel(), right.get_yscale()) == ("time [s]", "m", "log")
-    assert has(right, curve)
-    assert legend(figure) == {"truth": (to_hex(LIGHT.ink), "-"), "wrong": (to_hex(LIGHT.first), "--")}
-    assert left.get_xlim()[1] < 2  # what is not framed does not stretch the picture
-    assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
 
 
 def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
@@ -262,25 +209,26 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
         c, s = math.cos(theta[index]), math.sin(theta[index])
         assert has(panel, own @ np.array([[c, s], [-s, c]]) + poses[index, 0, :2])
         assert has(panel, [[0.0, 0.0], space[index]])  # the crank's line, produced to the centre
-    run, total = lines(draw_rate(curves).axes[0])
+    run, total = (np.array(points(line)) for line in draw_rate(curves).axes[0].get_lines())
     # The centre runs its radius in a radian; splines of the curves know that to 1e-6 away from their ends.
     assert run[5:-5] == pytest.approx(np.column_stack([np.degrees(theta), np.full(41, 0.5)])[5:-5], abs=1e-6)
     assert total[:, 1] == pytest.approx(1 / (curves.space_curvature + curves.body_curvature))
-    [missed] = lines(draw_rate(replace(curves, body=2 * own)).axes[1])
-    assert missed[20, 1] > 0.1
+    [missed] = draw_rate(replace(curves, body=2 * own)).axes[1].get_lines()
+    assert points(missed)[20][1] > 0.1
 
 
 def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slopes_they_name():
     errors = falling("pymunk default", (1e-2, 1e-3, 1e-4, 1e-5), "reaction")
-    [panel] = panels(charts.error_against_step(errors, field="reaction"))
+    [panel] = charts.error_against_step(errors, field="reaction").axes
     [band] = panel.patches
     interval = band.get_path().get_extents(band.get_patch_transform()).intervaly
     assert tuple(interval) == pytest.approx((1e-16, quantity("reaction").rounding))
     guides = [points(line) for line in panel.get_lines() if line.get_marker() in (None, "None", "")]
     assert [text.get_text() for text in panel.texts] == ["1", "2", "4"]
-    for (slope, place), ((left, bottom), (right, top)) in zip(words_at(panel), guides, strict=True):
-        assert math.log(top / bottom) / math.log(right / left) == pytest.approx(float(slope))
-        assert place == (pytest.approx(right), pytest.approx(top))
+    texts: list[Any] = list(panel.texts)
+    for text, ((left, bottom), (right, top)) in zip(texts, guides, strict=True):
+        assert math.log(top / bottom) / math.log(right / left) == pytest.approx(float(text.get_text()))
+        assert text.xy == (pytest.approx(right), pytest.approx(top))
     assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
 
 

@@ -280,7 +280,7 @@ def test_closed_streams_are_no_reason_to_fail(tmp_path):
 
 
 def test_a_run_of_nothing_is_refused_with_the_methods_that_there_are(here, capfd):
-    assert call("run", "sleigh", "--engine", "pymunk", "--variant", "groove with max_force") == 2
+    assert call("run", "sleigh", "--engine", "pymunk", "--variant", "roll: pivot, predicted contact") == 2
     told = one_line(capfd.readouterr().err)
     assert "nothing to run" in told
     assert "mujoco friction blade" in told

@@ -248,7 +248,7 @@ def test_a_baseline_that_was_edited_or_lies_beside_other_pages_is_told_in_one_li
         assert next(iter(changed)) in line
         assert line in changes([], read_baseline(tmp_path / "errors.csv"))
     (tmp_path / DIGESTS).unlink()
-    assert "no digests.csv" in mixed(read_baseline(tmp_path / "errors.csv"))
+    assert "has no digests.csv" in mixed(read_baseline(tmp_path / "errors.csv"))
     (tmp_path / "index.md").unlink()
     assert mixed(read_baseline(tmp_path / "errors.csv")) == ""
 

@@ -11,7 +11,7 @@ import pytest
 from engines import Engine, Promise, mujoco, pymunk
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.gate import grid_tests
-from reports.gate.judge import _samples, integrate
+from reports.gate.judge import integrate
 from reports.gate.prediction import prediction
 from reports.gate.theory import Case, checks, kinds
 from reports.gate.walk import JudgeRun, run_judge
@@ -111,7 +111,7 @@ NO_KINDS: frozenset[Any] = frozenset()
 
 
 class Cut(Disc):
-    """A scene whose motion can be compared for a part of its 0.2 s [s]."""
+    """A scene of 70 samples in 0.705 s whose motion can be compared until `until` [s]."""
 
     name = "cut disc"
     until = 0.115
@@ -121,24 +121,13 @@ class Cut(Disc):
         return self.until
 
 
-class Brief(Cut):
-    """Less than a sample."""
-
-    until = 1e-4
-
-
-class Rounded(Cut):
-    """27 samples of the 70 in 0.705 s: divided by their spacing a rounding below 27."""
-
-    until = 27 * (0.705 / 70)
-
-
-def test_the_judge_ends_at_the_last_sample_that_can_be_compared_and_takes_one_at_least():
-    scene = Cut()
-    assert _samples(scene) == 11
-    assert integrate(scene, 2, 1).t[-1] == pytest.approx(0.11, rel=1e-12)
-    assert _samples(Brief()) == 1
-    assert _samples(Rounded(duration=0.705)) == 27
+@pytest.mark.parametrize(
+    ("until", "samples"),
+    [(11.5, 11), (1e-3, 1), (27, 27)],  # less than a sample is one; 27 of them divide to a rounding below 27
+)
+def test_the_judge_ends_at_the_last_sample_that_can_be_compared_and_takes_one_at_least(monkeypatch, until, samples):
+    monkeypatch.setattr(Cut, "until", until * (0.705 / 70))
+    assert integrate(Cut(duration=0.705), 2, 1).t[-1] == pytest.approx(samples * 0.705 / 70, rel=1e-12)
 
 
 class Unknown(Disc):

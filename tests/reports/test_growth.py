@@ -17,15 +17,8 @@ from reports.model import measure as measuring
 from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
 from reports.model.measure import repeated_stepping
 from reports.model.outcomes import Outcome
-from reports.pages.scaling.experiments import (
-    LAST,
-    BandedChain,
-    Point,
-    Series,
-    exponent,
-    series_of,
-)
-from reports.pages.scaling.page import cost_table, crossing
+from reports.pages.scaling.banded import BandedChain
+from reports.pages.scaling.page import LAST, Point, Series, cost_table, crossing, exponent, series_of
 from reports.write.rows import Rows
 from tests.rows import row_of, table
 from tests.toys import Disc, Plain, Toy

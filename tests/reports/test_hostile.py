@@ -12,7 +12,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pytest
-import typer
 
 from engines.loading import load
 from reference.checks import InvalidMechanism
@@ -20,8 +19,7 @@ from reference.mechanism import Mechanism
 from reference.numerics.integration import IntegrationFailed
 from reference.scene import NoMotion, Scene, with_settings
 from reference.trajectory import Trajectory
-from reports.cli import known
-from reports.cli.commands import app
+from reports.cli import commands, known
 from reports.model import catalogue
 from reports.model.catalogue import SCENES
 from reports.model.cells import Cell, estimated_cost
@@ -155,8 +153,8 @@ def test_a_page_of_a_scene_with_tags_in_its_name_has_none():
 
 
 COMMANDS = {
-    name: [option for each in command.params for option in each.opts if option.startswith("--")]
-    for name, command in sorted(vars(typer.main.get_command(app))["commands"].items())
+    name: [option for each in commands.command(name).params for option in each.opts if option.startswith("--")]
+    for name in sorted(commands.COMMANDS)
 }
 FREE = ("", " ", "\x1b[31m", "\udcff", "file\nname", "x" * 5000, "é" * 300)  # and what a shell would split
 SEVERAL = """

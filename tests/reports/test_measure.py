@@ -278,9 +278,7 @@ def test_every_field_of_a_measured_row_is_its_own():
 def test_the_truth_is_at_an_engine_s_own_instants():
     late = INSTANTS * (1 + 1e-9)  # as no rounding of steps makes them
     found = measure(Cell(DISC, Given(DISC.motion(late)), 1), repeat=False)
-    assert found.position < 1e-14 < 1e-3 * np.abs(DISC.motion(late).pose - DISC.motion(INSTANTS).pose).max()
-    rounded = np.nextafter(INSTANTS, 1.0)
-    assert measure(Cell(DISC, Given(replace(disc(), t=rounded)), 1), repeat=False).position == 0.0
+    assert found.angle < 1e-14 < 1e-3 * np.abs(DISC.motion(late).pose - DISC.motion(INSTANTS).pose).max()
 
 
 def test_rows_told_are_those_known_at_all_samples_after_the_first():

@@ -16,8 +16,8 @@ from types import SimpleNamespace
 import pytest
 
 from reports.__main__ import main
-from reports.cli import supervised_checks
-from reports.cli.supervised_checks import Named, asked
+from reports.cli import conform as conform_command
+from reports.cli.conform import Named, asked
 from reports.model.cells import Cell
 from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside
 from reports.model.tasks import Motion
@@ -312,7 +312,7 @@ def test_a_check_of_conform_that_never_ends_fails_in_the_mechanism_in_which_it_w
             Path(question.notes, question.check).write_text("0", encoding="utf-8")
             yield question, Loss(Outcome.TIMED_OUT, "did not end within 60 s of CPU time"), ""
 
-    monkeypatch.setattr(supervised_checks, "supervise", hanging)
+    monkeypatch.setattr(conform_command, "supervise", hanging)
     ((_, results),) = asked(Named.here("pymunk", "leapfrog"))
     failed = [result for _, result in results if result.status == "fails"]
     assert failed

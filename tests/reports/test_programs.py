@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +11,7 @@ from engines import method_name
 from reports.model.convergence import judged
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.write.page_tables import KEPT, Program, advice, advised_programs, file_of, program
+from reports.write.page_tables import FOLDER, KEPT, Program, advice, advised_programs, file_of, program
 from tests.committed_rows import page_rows
 from tests.reports.test_pages import FENCED, MECHANISMS, named, run, texts, undrawn
 
@@ -73,13 +72,9 @@ def test_a_pages_block_gives_the_error_of_the_row_of_each_method_without_a_progr
 
 
 def test_every_program_of_an_engine_alone_is_of_a_method_of_its_scene():
-    known = {
-        Path(file_of(scene.name, method_name(engine))).name
-        for page in MECHANISMS
-        if (scene := page.advised_scene) is not None
-        for engine in page.engines
-    }
-    assert {path.name for path in KEPT.glob("*.*")} <= known
+    scenes = [(page.advised_scene, page.engines) for page in MECHANISMS if page.advised_scene is not None]
+    known = {file_of(scene.name, method_name(engine)) for scene, engines in scenes for engine in engines}
+    assert {f"{FOLDER}/{path.name}" for path in KEPT.glob("*.*")} <= known
 
 
 def test_a_program_that_is_wrong_by_a_thousandth_is_noticed():

@@ -1,38 +1,29 @@
-"""What rounding or noise alone moves is no change and published as it was; what a wrong model changes is one."""
+"""Rounding of another processor is no change of a number, and a number that rounding or noise moves is published as it
+was."""
 
 from __future__ import annotations
 
 import csv
-import json
-import os
-import subprocess
-import sys
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import pytest
 
-from engines import method_name, mujoco
-from engines.lagrange import Lagrange
-from reference.scenes.four_bar.scenes import DrivenFourBar
-from reference.scenes.wheels.cart import Cart
-from reports.gate.change import Old, change
 from reports.gate.theory import cases
 from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
 from reports.model.ending import BadInput
-from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome
 from reports.model.quantities import OF, QUANTITIES, agrees, quantity
 from reports.write.csv_files import ERRORS, IDENTITY, NOISE, Published, as_csv, as_published, kept, read_published
 from reports.write.csv_files import told as cell_text
 from reports.write.provenance import machine
-from tests import ROOT
 from tests.rows import ROW
-from tests.wrong.mistakes import mistaken, mistakes
+from tests.toys import Disc, Toy
 
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
+CELL = Cell(Disc(), Toy(), 1)
 
 
 @cache
@@ -54,49 +45,6 @@ def test_the_numbers_that_two_processors_give_agree_whichever_is_the_baseline():
         one, other = float(line["one"]), float(line["other"])
         assert agrees(name, one, other, carried), line
         assert agrees(name, other, one, carried), line
-
-
-# An engine in C, and one of ours with wheels.
-CELLS = (Cell(DrivenFourBar(), mujoco.EXTENDED, 10), Cell(Cart(), Lagrange("dop853", "projection"), 3))
-# On x86-64 they leave out the newer instructions of OpenBLAS and of the C library; elsewhere they change nothing.
-OLDER = {"OPENBLAS_CORETYPE": "Prescott", "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F"}
-PROGRAM = """
-import json
-from reports.model.measure import measure
-from tests.reports.test_rounding import CELLS
-print(json.dumps([measure(cell, repeat=False).as_dict() for cell in CELLS]))
-"""
-
-
-@pytest.fixture(scope="module")
-def elsewhere() -> list[Measurement]:
-    """The rows of CELLS on an older processor."""
-    made = subprocess.run(
-        [sys.executable, "-c", PROGRAM],
-        cwd=ROOT,
-        env={**os.environ, **OLDER},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return [Measurement(**fields) for fields in json.loads(made.stdout.splitlines()[-1])]
-
-
-def known(row: Measurement) -> Old:
-    errors = {name: float(f"{getattr(row, name):.4g}") for name in NAMES}  # as a file has them
-    return Old(Outcome(row.outcome), errors, row.reaction_rows)
-
-
-@pytest.mark.parametrize("number", range(len(CELLS)), ids=lambda number: CELLS[number].label)
-def test_an_older_processor_gives_the_same_rows_and_a_wrong_model_is_seen_there_too(elsewhere, number):
-    cell, there = CELLS[number], elsewhere[number]
-    here = measure(cell, repeat=False)
-    carried = amplified()[cell.scene.name, method_name(cell.engine)]
-    for one, other in ((here, there), (there, here)):
-        assert [str(check) for check in change(one, known(other), amplified=carried) if not check.passed] == []
-    length = next(mistake for mistake in mistakes(cell.scene.mechanism()) if mistake.kind == "length")
-    wrong = measure(Cell(cell.scene, mistaken(cell.engine, length, 1e-4), cell.every), repeat=False)
-    assert not all(check.passed for check in change(wrong, known(there), amplified=carried))
 
 
 @pytest.fixture
@@ -124,7 +72,7 @@ def test_a_time_is_kept_within_noise_and_on_the_same_machine(name, noise, before
     within, beyond = (replace(ROW, **{name: published * factor}) for factor in (0.99 * noise, 1.01 * noise))
     for where, same in ((machine(), True), ("another machine", False)):
         of_run = Published({tuple(cell_text(ROW, column) for column in IDENTITY): before}, where)
-        assert (getattr(as_published({CELLS[0]: within}, of_run)[CELLS[0]], name) == published) == same
+        assert (getattr(as_published({CELL: within}, of_run)[CELL], name) == published) == same
     assert getattr(kept(beyond, before, True), name) != published
 
 

@@ -102,9 +102,9 @@ def test_ctrl_c_at_an_import_is_status_130_without_a_word(moment):
 
 def test_ctrl_c_in_a_run_says_what_is_stored(tmp_path):
     """To the whole group of processes, as a terminal does: workers must not complain either."""
-    words = ["run", "pendulum_100", "--engine", "lagrange", "--variant", "rk4 projection", "--results", str(tmp_path)]
+    words = ["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--results", str(tmp_path)]
     process = subprocess.Popen(
-        [sys.executable, "-m", "reports", *words, "--every", "1", "--every", "2", "--every", "1000"],
+        [sys.executable, "-m", "reports", *words, "--every", "1", "--every", "2", "--every", "30000"],
         env=environment(),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

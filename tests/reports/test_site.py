@@ -26,7 +26,7 @@ from reports.cli.site import texts_of
 from reports.model.ending import BadInput, FileTrouble
 from reports.model.tasks import answered
 from reports.site.animated import PAUSE, Shown, animation, film, shown
-from reports.site.build import MARKER, build
+from reports.site.build import MARKER, build, explored
 from reports.site.folder import compressed_size, refuse_strangers, write_site
 from reports.site.generator import NEEDED, Documents, build_html, reference_sources
 from reports.site.lecture import render_lecture
@@ -34,8 +34,7 @@ from reports.site.lesson import Part, Source, part_of
 from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import forces
 from reports.site.markdown import render_html, section
-from reports.site.packages import NotFetched, Package, Registry, printed
-from reports.site.rows import explored
+from reports.site.packages import NotFetched, Package, fetch_package, printed
 from tests import ROOT
 
 RESULTS = ROOT / "reports" / "results"
@@ -173,7 +172,7 @@ def test_a_package_of_another_digest_is_refused(tmp_path):
     path = tmp_path / "some-1.0.tgz"
     path.write_bytes(b"something else")
     with pytest.raises(NotFetched, match="another digest"):
-        Registry(tmp_path).fetched(package)
+        fetch_package(package, tmp_path)
     assert not path.exists()
 
 

@@ -26,7 +26,6 @@ from reports.pages.rendering import render_page
 from reports.run.running import missing, run_into
 from reports.run.store import Store
 from tests.committed_rows import answer_to
-from tests.reports.rough_toys import RoughToy
 from tests.toys import Disc, FailingToy, Toy, in_process
 
 
@@ -82,7 +81,6 @@ def test_a_task_is_kept_to_the_last_bit_and_run_once_beside_cells(tmp_path):
 
 ENDS = {
     motion("abort"): (Outcome.ABORTED, "SIGABRT"),
-    motion("raise"): (Outcome.FAILED, "RuntimeError: something else"),
     motion("refuse"): (Outcome.REFUSED, "mass is -1; it must be greater than zero"),
     motion("unsupported"): (Outcome.UNSUPPORTED, "it has no pins"),
     Sum(()): (Outcome.REFUSED, "there is nothing to add up"),
@@ -90,15 +88,11 @@ ENDS = {
 }
 
 
-def test_what_became_of_a_task_is_its_answer_and_is_kept_too_and_a_second_try_is_told(tmp_path):
-    again = Motion(Cell(Disc(), RoughToy("segfault once", folder=str(tmp_path)), 1))
+def test_the_end_of_a_task_is_its_answer_and_is_stored_too(tmp_path):
     with Store(tmp_path / "cells.sqlite") as store:
-        run_into(store, [*ENDS, again])
-        answers = store.answers([*ENDS, again])
-        assert missing([*ENDS, again], store) == ()
-    second = answers.pop(again)
-    assert second.finished
-    assert "the second went through" in second.sentence
+        run_into(store, [*ENDS])
+        answers = store.answers(ENDS)
+        assert missing(ENDS, store) == ()
     for task, answer in answers.items():
         outcome, sentence = ENDS[task]
         assert (answer.outcome, answer.finished, answer.values) == (outcome, False, {})

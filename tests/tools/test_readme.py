@@ -16,9 +16,8 @@ from typing import Any
 
 import matplotlib
 import pytest
-from typer.main import get_command
 
-from reports.cli.commands import app
+from reports.cli.commands import COMMANDS, command
 from reports.model.catalogue import PAGES
 from reports.pages.comparison import PICTURE
 from reports.pages.four_bar.page import MOVING_PICTURE
@@ -58,8 +57,7 @@ def test_the_readme_is_short_and_leads_to_the_lines_to_paste_to_the_lecture_and_
 def test_the_example_of_an_action_gives_compare_words_that_it_knows(file):
     text = (ROOT / "examples" / "compare_build" / file).read_text(encoding="utf-8")
     (line,) = re.findall(r"^ *crosscheck compare (.*) > comparison\.md$", text, re.MULTILINE)
-    known = get_command(app).commands["compare"]  # pyright: ignore[reportAttributeAccessIssue]
-    given = known.make_context("compare", shlex.split(line.replace("$COST", "1.5"))).params
+    given = command("compare").make_context("compare", shlex.split(line.replace("$COST", "1.5"))).params
     assert (given["cost"], given["as_markdown"], list(given["scenes"])) == (1.5, True, [])
 
 
@@ -81,7 +79,7 @@ def test_their_commands_are_the_programs():
     pairs = re.findall(r"^crosscheck ([a-z]+)\b|`crosscheck ([a-z]+)\b", README + CONTRIBUTING, re.MULTILINE)
     words = {word for pair in pairs for word in pair if word}
     assert {"run", "report", "conform", "list", "show"} <= words
-    assert words <= get_command(app).commands.keys()  # pyright: ignore[reportAttributeAccessIssue]
+    assert words <= COMMANDS.keys()
 
 
 CELLS = json.loads((ROOT / "lecture.ipynb").read_text(encoding="utf-8"))["cells"]

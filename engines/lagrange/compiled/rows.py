@@ -27,15 +27,11 @@ def rows(whole, real, cells, pose, twist, t):
             continue  # see `coupled_rows`
         e, gap, bias = all_ends + 6 * row, gaps + row, biases + row
         omega, spin = real[twist + first + 2], real[twist + second + 2]
-        if kind == ix.DRIVE:
-            real[e + 2], real[e + 5] = -1.0, 1.0
-            real[gap] = real[pose + second + 2] - real[pose + first + 2] - (real[number + 6] + real[number + 5] * t)
-            real[bias] = 0.0
-            continue
-        if kind == ix.GEAR:
-            ratio = real[number + 5]
+        if kind in (ix.DRIVE, ix.GEAR):
+            ratio = real[number + 5] if kind == ix.GEAR else 1.0
+            aim = real[number + 6] + real[number + 5] * t if kind == ix.DRIVE else real[number + 6]
             real[e + 2], real[e + 5] = -ratio, 1.0
-            real[gap] = real[pose + second + 2] - ratio * real[pose + first + 2] - real[number + 6]
+            real[gap] = real[pose + second + 2] - ratio * real[pose + first + 2] - aim
             real[bias] = 0.0
             continue
         if kind == ix.ROLL:
@@ -71,24 +67,35 @@ def rows(whole, real, cells, pose, twist, t):
             inward = spin * spin * (x * bx + y * by) - omega * omega * (x * ax + y * ay)
             real[bias] = inward - across * across / length
             continue
-        # A slot's line turns with the first body, a blade with the second: its direction (x, y), its normal (-y, x).
-        angle = real[number + 4] + (real[pose + first + 2] if kind == ix.SLOT else real[pose + second + 2])
-        x, y = math.cos(angle), math.sin(angle)
-        fast_x = real[twist + second] - spin * by - real[twist + first]
-        fast_y = real[twist + second + 1] + spin * bx - real[twist + first + 1]
-        real[e], real[e + 1], real[e + 2] = y, -x, -x * arm_x - y * arm_y
-        real[e + 3], real[e + 4], real[e + 5] = -y, x, y * by + x * bx
-        along = x * fast_x + y * fast_y
-        over_material = x * (fast_x + omega * arm_y) + y * (fast_y - omega * arm_x)
-        inward = spin * spin * (x * by - y * bx)
-        if kind == ix.SLOT:
-            real[gap] = x * (arm_y - ay) - y * (arm_x - ax)
-            real[bias] = inward + omega * (along + over_material)
-        else:
-            real[gap] = 0.0
-            real[bias] = inward + omega * along + spin * over_material
+        line_row(whole, real, record, number, pose, twist, ax, ay, bx, by)
     if whole[ix.SUMMANDS] > 0:
         coupled_rows(whole, real, pose, twist)
+
+
+@inner
+def line_row(whole, real, record, number, pose, twist, ax, ay, bx, by):
+    """The row of a slot or a blade, from the arms a and b to its points on both bodies."""
+    kind, first, second, row = whole[record], whole[record + 1], whole[record + 2], whole[record + 3]
+    e, gap, bias = whole[ix.ENDS] + 6 * row, whole[ix.GAP] + row, whole[ix.BIAS] + row
+    omega, spin = real[twist + first + 2], real[twist + second + 2]
+    arm_x = real[pose + second] + bx - real[pose + first]
+    arm_y = real[pose + second + 1] + by - real[pose + first + 1]
+    # A slot's line turns with the first body, a blade with the second: its direction (x, y), its normal (-y, x).
+    angle = real[number + 4] + (real[pose + first + 2] if kind == ix.SLOT else real[pose + second + 2])
+    x, y = math.cos(angle), math.sin(angle)
+    fast_x = real[twist + second] - spin * by - real[twist + first]
+    fast_y = real[twist + second + 1] + spin * bx - real[twist + first + 1]
+    real[e], real[e + 1], real[e + 2] = y, -x, -x * arm_x - y * arm_y
+    real[e + 3], real[e + 4], real[e + 5] = -y, x, y * by + x * bx
+    along = x * fast_x + y * fast_y
+    over_material = x * (fast_x + omega * arm_y) + y * (fast_y - omega * arm_x)
+    inward = spin * spin * (x * by - y * bx)
+    if kind == ix.SLOT:
+        real[gap] = x * (arm_y - ay) - y * (arm_x - ax)
+        real[bias] = inward + omega * (along + over_material)
+    else:
+        real[gap] = 0.0
+        real[bias] = inward + omega * along + spin * over_material
 
 
 @inner

@@ -151,43 +151,31 @@ def roll_warnings(mechanism: Mechanism, step: float, t: Array, pose: Array, twis
     Nearly conformal curves: the contact runs along them by omega / (curvature_A + curvature_B), so that it turns by
     omega dt / conformality in a step, which must stay small whatever the body itself turns by.
     """
-    found: list[str] = []
-    if not len(t):
-        return found
-    first_row = 0
-    for joint in mechanism.joints:
-        if isinstance(joint, Roll):
-            rows = reaction[:, first_row : first_row + joint.size]
-            found += _lost(joint, t, rows)
-            found += _fast(joint, mechanism, step, t, pose, twist)
-        first_row += joint.size
-    return found
+    warnings, begin = list[str](), 0
 
+    def relative(states: Array, joint: Roll) -> Array:
+        names, out = (joint.first, joint.second), np.zeros((2, len(t)))
+        for turning, name in zip(out, names, strict=True):
+            turning[:] = 0.0 if name is None else states[:, mechanism.body_index(name), 2]
+        return out[1] - out[0]
 
-def _lost(joint: Roll, t: Array, rows: Array) -> list[str]:
-    size = np.abs(rows).max(axis=1)
-    absent = size <= NOTHING * size.max()
-    if size.max() > 0 and not absent.any():
-        return []
-    share = np.count_nonzero(absent) / len(t)
-    when = t[int(np.argmax(absent))]
-    return [
-        f"ours: the contact {joint.name!r} was lost: it carries nothing in {share:.2g} of the samples, "
-        f"first at {when:.4g} s"
-    ]
-
-
-def _fast(joint: Roll, mechanism: Mechanism, step: float, t: Array, pose: Array, twist: Array) -> list[str]:
-    def of(states: Array, name: str | None) -> Array:
-        return np.zeros(len(t)) if name is None else states[:, mechanism.body_index(name), 2]
-
-    angle = of(pose, joint.second) - of(pose, joint.first)
-    rate = np.abs(of(twist, joint.second) - of(twist, joint.first))
-    turned = rate * step / joint.rolling.contact(angle).conformality
-    worst = int(np.argmax(turned))
-    if not turned[worst] > FAST:
-        return []
-    return [
-        f"ours: at {t[worst]:.4g} s the contact {joint.name!r} turns by {turned[worst]:.2g} rad along its curves in "
-        f"one step; a step of {step * FAST / turned[worst]:.2g} s would follow it"
-    ]
+    for joint in mechanism.joints if len(t) else ():
+        force = np.abs(reaction[:, begin : begin + joint.size])
+        begin += joint.size
+        if not isinstance(joint, Roll):
+            continue
+        size = force.max(axis=1)
+        absent = size <= NOTHING * size.max()
+        if absent.any() or not size.max() > 0:
+            share, when = np.count_nonzero(absent) / len(t), t[int(np.argmax(absent))]
+            words = f"it carries nothing in {share:.2g} of the samples, first at {when:.4g} s"
+            warnings.append(f"ours: the contact {joint.name!r} was lost: {words}")
+        turned = np.abs(relative(twist, joint)) * step / joint.rolling.contact(relative(pose, joint)).conformality
+        worst = int(np.argmax(turned))
+        if turned[worst] > FAST:
+            words = f"a step of {step * FAST / turned[worst]:.2g} s would follow it"
+            warnings.append(
+                f"ours: at {t[worst]:.4g} s the contact {joint.name!r} turns by {turned[worst]:.2g} rad along its "
+                f"curves in one step; {words}"
+            )
+    return warnings

@@ -1,27 +1,7 @@
 """The closed form of a four-bar for many crank angles: angles, rates and accelerations.
 
-The diagonal B D, of length s, cuts the loop into the triangles A B D and B C D. In the frame whose x axis points from A
-to D, with d = |AD| and theta' = theta - arg(D), and as exact differences that keep their relative accuracy,
-
-    s^2               = (l1 - d)^2              + 4 l1 d sin^2(theta'/2)
-    U = (l2+l3)^2-s^2 = (l2+l3)^2 - (l1+d)^2    + 4 l1 d cos^2(theta'/2)
-                      = (l2+l3)^2 - (l1-d)^2    - 4 l1 d sin^2(theta'/2)
-    W = s^2-(l2-l3)^2 = (l1-d)^2 - (l2-l3)^2    + 4 l1 d sin^2(theta'/2)
-                      = (l1+d)^2 - (l2-l3)^2    - 4 l1 d cos^2(theta'/2)
-
-    A B D:  m = s^2 + l1^2 - d^2     n = s^2 + d^2 - l1^2     h = 2 l1 d sin(theta')     (4 areas, and the rate of s^2)
-    B C D:  p = s^2 + l3^2 - l2^2    r = s^2 + l2^2 - l3^2    q = sqrt(U W)              (4 areas, by Heron)
-
-q has the sign of the branch: + for C left of B -> D. Each pair is an angle: arg(m + i h) at B and arg(n + i h)
-at D in A B D, arg(r + i q) at B and arg(p + i q) at D in B C D; sums of these are beta and phi. With y = h / q, the
-chapter's (18.71), (18.70) and their derivatives are rational:
-
-    beta'  = (m - y p) / (2 s^2)                           phi'  = beta'  + y
-    beta'' = (h (1 - beta' - phi') - y' p) / (2 s^2)       phi'' = beta'' + y'
-    y'     = (h' - y^2 (l2^2 + l3^2 - s^2)) / q            h'    = 2 l1^2 - m
-
-A prime of beta, phi, y, h is a derivative by theta. One tangent of half the crank angle and two arctangents are all the
-transcendental functions needed.
+By the triangles A B D and B C D on either side of the diagonal B D, as exact differences that keep their relative
+accuracy; the letters of the code are those of "The four-bar in closed form" in `reference/scenes/derivations.md`.
 """
 
 from __future__ import annotations

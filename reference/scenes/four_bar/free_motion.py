@@ -1,16 +1,8 @@
 """A four-bar left to itself: one coordinate along the curve of its configurations, which no crank limit interrupts.
 
-The chapter's rates (18.70), (18.71), times their denominator, are a direction t in the space of (theta, beta, phi)
-
-    t = (l2 l3 sin(phi - beta), l1 l3 sin(theta - phi), -l1 l2 sin(beta - theta))
-
-that keeps the loop closed and vanishes only at a change point (bars in line). With (theta, beta, phi)' = u t,
-kinetic energy I(q) u^2 / 2 and potential energy V(q), Lagrange's equation is I u' + u^2 (grad I . t) / 2 = -grad V . t.
-At a crank limit the first component of t passes zero: the crank turns back, the branch changes its sign, smoothly.
-
-Integrated are the angles and w = sqrt(I) u, the root of twice the kinetic energy, with w' = -grad V . t / sqrt(I): they
-are smooth where u is large, beside a change point. Second derivatives of the angles are not integrated: what leads off
-the curve by d there, where it turns with a radius r, would change rates by d / r at each passage.
+The direction t in the space of (theta, beta, phi) keeps the loop closed, (theta, beta, phi)' = u t, and the root w of
+twice the kinetic energy is integrated beside the angles: see "A four-bar left to itself" in
+`reference/scenes/derivations.md`.
 """
 
 from __future__ import annotations

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -42,85 +41,6 @@ UNEVEN = 10.0
 REFINEMENTS = 3  # each removes about as many digits as the first solution has: enough up to a ratio of 1e9
 # A correction this small, in parts of the forces, is the last: the next would be its square, below extended rounding.
 CORRECTED = 3e-10
-
-
-@dataclass(frozen=True, eq=False)
-class JointForces:
-    """Of uniform bars of `length` [m], `mass` [kg] and `inertia` [kg m^2] (links,); gravity [m/s^2] downwards."""
-
-    length: Array
-    mass: Array
-    inertia: Array
-    gravity: float
-
-    def forces(self, angle: Array, rate: Array) -> Any:
-        """Of every joint on the link below it (..., links, 2) [N], for angles and rates (..., links), not yet rounded.
-
-        A light link's acceleration is a small difference of these, so where masses are far apart they have more digits
-        than a double.
-
-        All states of a batch are one banded system, their blocks side by side: O(states x links). A mass ratio r loses
-        about r roundings in it; with masses more than UNEVEN apart the solution is refined with the error of the
-        joints' accelerations in extended precision, which leaves r / 2000 roundings (r where numpy.longdouble is the
-        ordinary double).
-        """
-        leading = angle.shape[:-1]
-        links, uneven = len(self.mass), self.mass.max() > UNEVEN * self.mass.min()
-        doubles, rate = angle.astype(float, copy=False), rate if uneven else rate.astype(float, copy=False)
-        half = 0.5 * self.length[:, None] * direction_of(doubles)
-        normal = perpendicular(half)
-        outer = normal[..., :, None] * normal[..., None, :] / self.inertia[:, None, None]
-        light = np.eye(2) / self.mass[:, None, None]
-        near, far = light + outer, outer - light  # acceleration of one end from a force on the same, on the other end
-        diagonal = near.copy()
-        diagonal[..., 1:, :, :] += near[..., :-1, :, :]
-        banded = np.zeros((4, *leading, links, 2))  # upper form: row 3 is the diagonal
-        banded[3, ..., 0], banded[3, ..., 1] = diagonal[..., 0, 0], diagonal[..., 1, 1]
-        banded[2, ..., 1] = diagonal[..., 0, 1]
-        banded[2, ..., 1:, 0] = far[..., :-1, 1, 0]
-        banded[1, ..., 1:, 0], banded[1, ..., 1:, 1] = far[..., :-1, 0, 0], far[..., :-1, 1, 1]
-        banded[0, ..., 1:, 1] = far[..., :-1, 0, 1]
-        if not uneven:
-            centripetal = rate[..., None] ** 2 * half
-            right = -centripetal
-            right[..., 1:, :] -= centripetal[..., :-1, :]
-            right[..., 0, 1] += self.gravity  # gravity is the same on both sides of every other joint
-            solution = solveh_banded(
-                banded.reshape(4, -1), right.reshape(-1), overwrite_ab=True, overwrite_b=True, check_finite=False
-            )
-            return solution.reshape(*leading, links, 2)
-        factor = cholesky_banded(banded.reshape(4, -1), overwrite_ab=True, check_finite=False)
-        forces = np.zeros((*leading, links, 2), dtype=np.longdouble)
-        parting = self._parting(angle, rate)
-        for _ in range(1 + REFINEMENTS):
-            missing = parting(forces).astype(float)
-            correction = cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False)
-            forces -= correction.reshape(forces.shape)
-            each = (-1, 2 * links)
-            small = CORRECTED * np.abs(forces.reshape(each)).max(axis=1)
-            if np.all(np.abs(correction.reshape(each)).max(axis=1) <= small):
-                break
-        return forces
-
-    def _parting(self, angle: Array, rate: Array) -> Callable[[Any], Any]:
-        """How fast the joints would part under forces (..., links, 2) [m/s^2], in extended precision: a function."""
-        half = self.length[:, None] / np.longdouble(2) * direction_of(np.asarray(angle, dtype=np.longdouble))
-        normal = perpendicular(half)
-        centripetal = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), np.zeros_like(half[..., 0]), half)
-        turned, light = normal / self.inertia[:, None], 1 / self.mass.astype(np.longdouble)[:, None]
-
-        def parting(forces: Any) -> Any:
-            below = np.zeros_like(forces)
-            below[..., :-1, :] = forces[..., 1:, :]
-            centre = (forces - below) * light
-            alpha = -(turned * (forces + below)).sum(axis=-1)
-            lever = centripetal + alpha[..., None] * normal
-            out = centre - lever  # the upper end's acceleration, but for gravity, which all links share
-            out[..., 1:, :] -= (centre + lever)[..., :-1, :]
-            out[..., 0, 1] -= self.gravity
-            return out
-
-        return parting
 
 
 Motion = Callable[[ArrayLike], Array]
@@ -169,11 +89,76 @@ class Chain(Valid):
     def forces(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         """The force of every joint on the link below it (..., links, 2) [N], for angles and rates (..., links)."""
         angle, rate = self._alike(angle, rate)
-        return self._joints.forces(angle, rate).astype(float)
+        return self._forces(angle, rate).astype(float)
 
-    @cached_property
-    def _joints(self) -> JointForces:
-        return JointForces(self._length, self._mass, self.inertia, self.gravity)
+    def _forces(self, angle: Array, rate: Array) -> Any:
+        """`forces`, not yet rounded, of states (..., links) that are not checked.
+
+        A light link's acceleration is a small difference of these, so where masses are far apart they have more digits
+        than a double.
+
+        All states of a batch are one banded system, their blocks side by side: O(states x links). A mass ratio r loses
+        about r roundings in it; with masses more than UNEVEN apart the solution is refined with the error of the
+        joints' accelerations in extended precision, which leaves r / 2000 roundings (r where numpy.longdouble is the
+        ordinary double).
+        """
+        leading = angle.shape[:-1]
+        links, uneven = len(self._mass), self._mass.max() > UNEVEN * self._mass.min()
+        doubles, rate = angle.astype(float, copy=False), rate if uneven else rate.astype(float, copy=False)
+        half = 0.5 * self._length[:, None] * direction_of(doubles)
+        normal = perpendicular(half)
+        outer = normal[..., :, None] * normal[..., None, :] / self.inertia[:, None, None]
+        light = np.eye(2) / self._mass[:, None, None]
+        near, far = light + outer, outer - light  # acceleration of one end from a force on the same, on the other end
+        diagonal = near.copy()
+        diagonal[..., 1:, :, :] += near[..., :-1, :, :]
+        banded = np.zeros((4, *leading, links, 2))  # upper form: row 3 is the diagonal
+        banded[3, ..., 0], banded[3, ..., 1] = diagonal[..., 0, 0], diagonal[..., 1, 1]
+        banded[2, ..., 1] = diagonal[..., 0, 1]
+        banded[2, ..., 1:, 0] = far[..., :-1, 1, 0]
+        banded[1, ..., 1:, 0], banded[1, ..., 1:, 1] = far[..., :-1, 0, 0], far[..., :-1, 1, 1]
+        banded[0, ..., 1:, 1] = far[..., :-1, 0, 1]
+        if not uneven:
+            centripetal = rate[..., None] ** 2 * half
+            right = -centripetal
+            right[..., 1:, :] -= centripetal[..., :-1, :]
+            right[..., 0, 1] += self.gravity  # gravity is the same on both sides of every other joint
+            solution = solveh_banded(
+                banded.reshape(4, -1), right.reshape(-1), overwrite_ab=True, overwrite_b=True, check_finite=False
+            )
+            return solution.reshape(*leading, links, 2)
+        factor = cholesky_banded(banded.reshape(4, -1), overwrite_ab=True, check_finite=False)
+        forces = np.zeros((*leading, links, 2), dtype=np.longdouble)
+        parting = self._parting(angle, rate)
+        for _ in range(1 + REFINEMENTS):
+            missing = parting(forces).astype(float)
+            correction = cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False)
+            forces -= correction.reshape(forces.shape)
+            each = (-1, 2 * links)
+            small = CORRECTED * np.abs(forces.reshape(each)).max(axis=1)
+            if np.all(np.abs(correction.reshape(each)).max(axis=1) <= small):
+                break
+        return forces
+
+    def _parting(self, angle: Array, rate: Array) -> Callable[[Any], Any]:
+        """How fast the joints would part under forces (..., links, 2) [m/s^2], in extended precision: a function."""
+        half = self._length[:, None] / np.longdouble(2) * direction_of(np.asarray(angle, dtype=np.longdouble))
+        normal = perpendicular(half)
+        centripetal = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), np.zeros_like(half[..., 0]), half)
+        turned, light = normal / self.inertia[:, None], 1 / self._mass.astype(np.longdouble)[:, None]
+
+        def parting(forces: Any) -> Any:
+            below = np.zeros_like(forces)
+            below[..., :-1, :] = forces[..., 1:, :]
+            centre = (forces - below) * light
+            alpha = -(turned * (forces + below)).sum(axis=-1)
+            lever = centripetal + alpha[..., None] * normal
+            out = centre - lever  # the upper end's acceleration, but for gravity, which all links share
+            out[..., 1:, :] -= (centre + lever)[..., :-1, :]
+            out[..., 0, 1] -= self.gravity
+            return out
+
+        return parting
 
     def _alike(self, *given: ArrayLike) -> list[Array]:
         """Angles, rates and accelerations as arrays; raises InvalidMechanism unless they have a number a link."""
@@ -194,7 +179,7 @@ class Chain(Valid):
 
     def _accelerations(self, angle: Any, rate: Any) -> Any:
         """As precise as the forces are, of states as precise as they are given."""
-        forces = self._joints.forces(angle, rate)
+        forces = self._forces(angle, rate)
         forces[..., :-1, :] += forces[..., 1:, :]
         normal = perpendicular(0.5 * self._length[:, None] * direction_of(np.asarray(angle, dtype=forces.dtype)))
         return -np.sum(normal * forces, axis=-1) / self.inertia

@@ -1,20 +1,6 @@
 """Towed wheels: one drawbar in closed form, and a car or tricycle with its trailers as kinematics.
 
-A tow: the hitch goes on a straight line (the wheel's path is a tractrix) or on a circle. With psi the drawbar's
-direction (wheel to hitch) less the hitch's direction of travel, s the hitch's way, c = 1/R its path's curvature:
-psi' = -sin(psi)/L - c. In p = sin(psi/2), q = cos(psi/2) up to a common factor this is linear,
-
-    p' = -p/(2L) - c q/2,   q' = c p/2 + q/(2L),   exp(M s) = cosh(m s) + M sinh(m s)/m,   m = sqrt(1 - (L c)^2)/(2L),
-
-so one formula has the straight tow (c = 0), R > L (it settles at sin psi = -L/R), R = L (it settles as 1/s) and R < L
-(m is imaginary: the wheel goes round for ever).
-
-Trailers: ideal wheels, a given speed and steering, any hitch. A vehicle's axle has the speed v along its heading and
-the turning rate w. Its hitch stands `h` behind the axle (0: on it, negative: ahead), the trailer's axle `L` behind the
-hitch; with b = theta_vehicle - theta_trailer the hitch's velocity (v along, -h w across) gives, along and across the
-trailer,
-
-    v_trailer = v cos b + h w sin b,     w_trailer = (v sin b - h w cos b)/L.
+Formulas and letters: "Tows and trailers" in `reference/scenes/derivations.md`.
 """
 
 from __future__ import annotations

@@ -57,23 +57,17 @@ def of(subject: Subject) -> list[Line]:
     return [replace(line, variant=told.get(line.method, line.variant)) for line in own]
 
 
-def outcome_table(own: Sequence[Line]) -> str:
-    """A line a method: of how many cells what became, and from where on all finished."""
-    methods = list(dict.fromkeys(line.method for line in own))
-    met = [o for o in Outcome if any(o in line.told for line in own)]
+def outcome_table(lines: Sequence[Line]) -> str:
+    """A line a method: the share of cells with each outcome, and from where on all finished."""
+    met = [outcome for outcome in Outcome if any(outcome in line.told for line in lines)]
     body = []
-    for name in methods:
-        told = [outcome for line in own if line.method == name for outcome in line.told]
-        shares = [f"{100 * told.count(outcome) / len(told):.0f} %" for outcome in met]
-        lines_of = [line for line in own if line.method == name]
-        body.append([name, *shares, *(largest_step(lines_of, bound) for bound in BOUNDS)])
-    header = [
-        "method",
-        *map(str, met),
-        "step at which all finish",
-        *(f"all below {number(b, 1)} rad" for b in BOUNDS[1:]),
-    ]
-    return markdown(header, body)
+    for method in dict.fromkeys(line.method for line in lines):
+        of_method = [line for line in lines if line.method == method]
+        ends = [outcome for line in of_method for outcome in line.told]
+        shares = [f"{100 * ends.count(outcome) / len(ends):.0f} %" for outcome in met]
+        body.append([method, *shares, *(largest_step(of_method, bound) for bound in BOUNDS)])
+    bounds = (f"all below {number(bound, 1)} rad" for bound in BOUNDS[1:])
+    return markdown(["method", *map(str, met), "step at which all finish", *bounds], body)
 
 
 def largest_step(own: Sequence[Line], bound: float) -> str:
@@ -119,41 +113,29 @@ def agreement(own: Sequence[Line]) -> tuple[int, int]:
 
 def words(material: Material) -> Mapping[str, Any]:
     """A dictionary a map that was run; nothing else on the page has numbers."""
-    told = []
-    for subject in SUBJECTS:
-        own = of(subject)
-        if own:
-            near, count = agreement(own)
-            told.append(
-                {
-                    "name": subject.name,
-                    "title": subject.title,
-                    "table": outcome_table(own),
-                    "remark": subject.remark,
-                    "near": near,
-                    "tearing": count,
-                    "columns": len({line.value for line in own}),
-                    "steps": len(own[0].counts),
-                    "run": sum(line.run for line in own),
-                    "points": sum(len(line.counts) for line in own),
-                }
-            )
+    maps = []
+    for subject, lines in ((subject, of(subject)) for subject in SUBJECTS):
+        if lines:
+            near, tearing = agreement(lines)
+            counts = {
+                "columns": len({line.value for line in lines}),
+                "steps": len(lines[0].counts),
+                "run": sum(line.run for line in lines),
+                "points": sum(len(line.counts) for line in lines),
+            }
+            texts = {name: getattr(subject, name) for name in ("name", "title", "remark")}
+            maps.append({**texts, **counts, "table": outcome_table(lines), "near": near, "tearing": tearing})
     missing = [subject.title for subject in SUBJECTS if not of(subject)]
-    near, tearing = (sum(each[name] for each in told) for name in ("near", "tearing"))
-    return {
-        "near": near,
-        "tearing": tearing,
-        "subjects": told,
-        "missing": missing,
-    }
+    totals = {name: sum(each[name] for each in maps) for name in ("near", "tearing")}
+    return {"subjects": maps, "missing": missing, **totals}
 
 
 def figures(material: Material) -> Mapping[str, str]:
     """A picture a map that was run."""
     return {
-        subject.name: svg(atlas_map(subject, of(subject)), f"{subject.title}: step against {subject.parameter}")
+        subject.name: svg(atlas_map(subject, lines), f"{subject.title}: step against {subject.parameter}")
         for subject in SUBJECTS
-        if of(subject)
+        if (lines := of(subject))
     }
 
 
@@ -187,28 +169,25 @@ def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> 
             drawn |= _explained(panel, own, subject, theme)
             panel.set_xlabel(subject.parameter if index + columns >= len(methods) else "")
             panel.set_ylabel("step [ms]" if index % columns == 0 else "")
-        failures = [outcome for outcome in Outcome if outcome in met]
-        shades = [role for role in SHADE_NAMES if role in met]
-        # A hatch apart from its ground: in one patch its colours would not follow the reader's scheme.
-        handles: list[Any] = [
-            (
-                Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme), edgecolor=theme.quiet),
-                Rectangle((0, 0), 1, 1, fill=False, edgecolor=theme.quiet, hatch=outcome.hatch or None),
-            )
-            for outcome in failures
-        ]
-        faces = (getattr(theme, role) for role in shades)
-        handles = [*(Rectangle((0, 0), 1, 1, facecolor=face, edgecolor=theme.quiet) for face in faces), *handles]
-        names = [*(SHADE_NAMES[role] for role in shades), *map(str, failures)]
+        handles: list[Any] = []
+        names = []
+        for role in (role for role in SHADE_NAMES if role in met):
+            handles.append(Rectangle((0, 0), 1, 1, facecolor=getattr(theme, role), edgecolor=theme.quiet))
+            names.append(SHADE_NAMES[role])
+        for outcome in (outcome for outcome in Outcome if outcome in met):
+            face = Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme), edgecolor=theme.quiet)
+            # A hatch apart from its ground: in one patch its colours would not follow the reader's scheme.
+            hatch = Rectangle((0, 0), 1, 1, fill=False, edgecolor=theme.quiet, hatch=outcome.hatch or None)
+            handles.append((face, hatch))
+            names.append(str(outcome))
         words = {
             "fastest": f"2 / frequency of {subject.fastest}",
             "gives": "from here on the method's own softness tears a joint",
             "left": "sweeps leave half of the slowest mode",
         }
-        for name, told in words.items():
-            if name in drawn:
-                handles.append(Line2D([], [], color=getattr(theme, ROLES[name]), linestyle=DASHES[name], linewidth=1.8))
-                names.append(told)
+        for name in (name for name in words if name in drawn):
+            handles.append(Line2D([], [], color=getattr(theme, ROLES[name]), linestyle=DASHES[name], linewidth=1.8))
+            names.append(words[name])
         figure.legend(handles, names, loc="outside lower center", ncols=3)
     return figure
 
@@ -285,8 +264,6 @@ PAGE = Page(
     name="atlas",
     title="Failure atlas",
     lesson="Where methods fail: step against the parameter that breaks a scene, and where borders could be expected.",
-    scenes=(),
-    engines=(),
     words=words,
     figures=figures,
 )

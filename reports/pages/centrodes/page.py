@@ -164,18 +164,18 @@ def agreement(curves: Centrodes) -> float:
 
 def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
     """(cell, centre error [m], angle error [rad], rate error [rad/s]) of each method, where it ran."""
-    scene = DrivenFourBar()
-    found = material.motions(CELLS)
     low, high = times(2)
-    out = []
-    for cell, run in found.items():
-        truth = scene.motion(run.t)
-        within = (run.t >= low) & (run.t <= high)
-        apart = np.abs(run.pose - truth.pose)[within, COUPLER, 2], np.abs(run.twist - truth.twist)[within, COUPLER, 2]
+    rows = []
+    for cell, run in material.motions(CELLS).items():
+        truth, within = DrivenFourBar().motion(run.t), (run.t >= low) & (run.t <= high)
+        angle, rate = (
+            np.abs(ours - exact)[within, COUPLER, 2]
+            for ours, exact in ((run.pose, truth.pose), (run.twist, truth.twist))
+        )
         centre = centrode_error(truth, run, COUPLER)[within]
         # Where a body hardly turns its centre is not defined; where a run broke off, nothing is.
-        out.append((cell, largest(centre[np.isfinite(centre)]), largest(apart[0]), largest(apart[1])))
-    return out
+        rows.append((cell, largest(centre[np.isfinite(centre)]), largest(angle), largest(rate)))
+    return rows
 
 
 def largest(values: np.ndarray) -> float:
@@ -203,12 +203,10 @@ def words(material: Material) -> Mapping[str, Any]:
 
 def _lesson(rows: list[tuple[Cell, float, float, float]]) -> str:
     """The method whose angle flatters it most: that with the largest ratio of centre error to angle error."""
-    known = [
-        (centre / angle, cell, centre, angle) for cell, centre, angle, _ in rows if angle > 0 and math.isfinite(centre)
-    ]
+    known = [(centre / angle, row) for row in rows if (angle := row[2]) > 0 and math.isfinite(centre := row[1])]
     if not known:
         return ""
-    _, cell, centre, angle = max(known, key=lambda each: each[0])
+    _, (cell, centre, angle, _) = max(known, key=lambda pair: pair[0])
     return (
         f"An angle can be right while the velocities are not. {method_name(cell.engine)} at a step of "
         f"{number(cell.step)} s has the angle to {number(angle)} rad and the centre to {number(centre)} m."
@@ -219,8 +217,6 @@ PAGE = Page(
     name="centrodes",
     title="Centrodes: any motion as rolling",
     lesson="Every plane motion is one curve rolling on another, and the instant centre shows errors of velocity.",
-    scenes=(),
-    engines=(),
     companions=(DrivenFourBar(),),
     figures=figures,
     words=words,

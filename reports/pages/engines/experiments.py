@@ -1,11 +1,9 @@
-"""What is asked of engines: rows of other pages, compiled models at one step, the gap that stays open; and beside cells
-what they build, and the velocity term of their rows.
+"""Experiments on engines: rows of other pages, compiled models at one step; and beside cells the joints and forces that
+they build, and the velocity term of their rows.
 
-The velocity term of loops, by force: reactions at instants of the exact motion, and the law with it and without. The
-mechanism is started anew at poses and velocities of the exact motion, where every gap and slip is zero. In the tree's
-coordinates q a loop's rows are J q'' = -J' q'. Without the velocity term they are J q'' = 0. In the coordinates of
-bodies, rows are then accelerated as they are where no coordinate of the tree is. Rows that an engine does not say to be
-soft hold exactly. Both laws follow from the mechanism alone, and no step is taken.
+The velocity term of loops: reactions at instants of the exact motion, where every gap and slip is zero, are compared
+with two laws. In the tree's coordinates q a loop's rows are J q'' = -J' q' with the term and J q'' = 0 without it. Rows
+that an engine does not declare as soft hold exactly. Both laws follow from the mechanism alone, and no step is taken.
 """
 
 from __future__ import annotations
@@ -17,15 +15,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Unsupported, method_name, registry
-from engines.box2d import Box2D
-from engines.bullet import Bullet
+from engines import Unsupported, method_name, registry
 from engines.conformance.moving import FORCES
 from engines.conformance.worlds import MOVING, WORLDS
-from engines.mujoco.engine import MuJoCo
-from engines.mujoco.stiffness import TiedToStep
-from engines.pinocchio import Pinocchio
-from engines.pymunk.engine import SHIPPED_ERROR_BIAS, Pymunk
 from engines.tree import spanning_tree
 from reference.joints import Gear, Pin, Rod, Skate, Weld
 from reference.mechanism import Body, Mechanism
@@ -35,28 +27,16 @@ from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model.cells import FULL, SLOW_TO_BUILD, Cell, beside_cells, sweep_cells
 from reports.model.ending import describe
-from reports.model.tasks import Task, Values
+from reports.model.tasks import Values
+from reports.pages.common import OfMethod
 
 
-@dataclass(frozen=True)
-class Asked(Task):
-    """Subclasses say in a few words `what` is asked of the engine `of`."""
-
-    what: ClassVar[str]
-
-    of: Engine
+class Asked(OfMethod):
+    """What takes little but to build the engine's model."""
 
     @property
     def cost(self) -> float:
-        return 0.1 + self.of.building
-
-    @property
-    def label(self) -> str:
-        return f"{method_name(self.of)}: {self.what}"
-
-    @property
-    def engine(self) -> Engine:
-        return self.of
+        return 0.1 + self.method.building
 
 
 STEP = 1e-2  # s
@@ -97,20 +77,20 @@ class Capabilities(Asked):
         told: dict[str, str] = {}
         for what, mechanism in ASKED.items():
             try:
-                self.of.build(mechanism, STEP)
+                self.method.build(mechanism, STEP)
             except Unsupported as reason:
                 told[what] = str(reason)
             except (AttributeError, ImportError, TypeError) as error:
                 told[what] = f"{TOO_OLD}: {describe(error)}"
             else:
                 touching = any(isinstance(joint, Skate | Roll) for joint in mechanism.joints)
-                told[what] = CONTACT if touching and self.of.name not in ROLLING_JOINTS else YES
+                told[what] = CONTACT if touching and self.method.name not in ROLLING_JOINTS else YES
                 with suppress(ValueError):
-                    held = {self.of.holder(joint, mechanism) for joint in mechanism.joints}
+                    held = {self.method.holder(joint, mechanism) for joint in mechanism.joints}
                     if mechanism.forces:
-                        held.add(self.of.forces_by)
+                        held.add(self.method.forces_by)
                     told[what] = told[what] if held == {"engine"} else CODE
-        run = self.of.build(WORLD["swinging bar"], STEP)(4, 1)
+        run = self.method.build(WORLD["swinging bar"], STEP)(4, 1)
         known = [bool(np.isfinite(each).all()) for each in run.reaction]
         told["reactions"] = "yes" if all(known) else "not at the start" if all(known[1:]) else "no"
         velocity = run.twist[1:]
@@ -159,15 +139,15 @@ class VelocityTerm(Asked):
     def run(self) -> Values:
         scene = FreeFourBar()
         described = scene.mechanism()
-        softness = self.of.softness(described, ROWS_STEP)
+        softness = self.method.softness(described, ROWS_STEP)
         if softness is None:
-            raise ValueError(f"{method_name(self.of)} declares no soft rows: its loops are exact")
+            raise ValueError(f"{method_name(self.method)} declares no soft rows: its loops are exact")
         t = np.linspace(0.2, 1.0, INSTANTS) * scene.duration
         truth = scene.motion(t)
         found: dict[str, list[float]] = {"with": [], "without": []}
         for pose, twist in zip(truth.pose, truth.twist, strict=True):
             now = started_anew(described, pose, twist)
-            told = self.of.build(now, ROWS_STEP)(1, 1).reaction[0]
+            told = self.method.build(now, ROWS_STEP)(1, 1).reaction[0]
             for name, complete in (("with", True), ("without", False)):
                 wanted = reactions_with(now, softness.rows, complete)
                 found[name].append(float(np.abs(told - wanted).max() / np.abs(wanted).max()))
@@ -178,18 +158,8 @@ FREE = FreeFourBar()
 MILLISECOND = round(FREE.spacing / 1e-3)  # steps between samples
 
 # A scene of every mechanism, by the quantity that its own page compares.
-CHARTED = {
-    "angle": (
-        "free_four_bar",
-        "driven_slider_crank",
-        "pendulum_2",
-        "pendulum_10",
-        "n_four_bar_2",
-        "person_two_feet",
-        "rolling_disc",
-    ),
-    "position": ("sleigh", "cart"),
-}
+LINKAGES = ("free_four_bar", "driven_slider_crank", "pendulum_2", "pendulum_10", "n_four_bar_2")
+CHARTED = {"angle": (*LINKAGES, "person_two_feet", "rolling_disc"), "position": ("sleigh", "cart")}
 BY_NAME: dict[str, Scene] = {scene.name: scene for scene in SCENES}
 CHARTED_SCENES = tuple(BY_NAME[name] for names in CHARTED.values() for name in names)
 
@@ -202,71 +172,3 @@ COMPILED = tuple(
 )
 BORROWED = sweep_cells(CHARTED_SCENES, registry.VARIANTS, FULL)
 SWEPT = beside_cells(CHARTED_SCENES, registry.OTHERS, sweep=True)
-
-# The share of a gap that is closed in a step of a millisecond; the second is about pymunk's as shipped.
-SHARES = (0.002, 1 - SHIPPED_ERROR_BIAS**1e-3, 0.02, 0.06, 0.2, 0.6, 1.0)
-FEW = (1, 4)  # sub-steps of Box2D in a millisecond
-STIFFER = 0.25  # the frequency of Box2D's pins, times the length of a sub-step
-CORRECTIONS = (0.0, 300.0)  # 1/s, of Pinocchio's loops; explicit steps of a millisecond bear no more than about 500
-
-
-def _cell(engine: Engine) -> Cell:
-    return Cell(FREE, engine, MILLISECOND, "failure")
-
-
-# By engine: the share that a setting closes in a step, and the cell.
-CLOSING: dict[str, dict[float, Cell]] = {
-    "pymunk, all four pins": {
-        share: _cell(Pymunk(f"closes {share:.2g} of a gap", 30, (1 - share) ** 1000)) for share in SHARES
-    },
-    "bullet, the pin of the loop": {
-        share: _cell(Bullet(f"closes {share:.2g} of a gap", 200, 0.0, share)) for share in SHARES
-    },
-}
-CLOSED_AT = {(count, 0.0): _cell(Box2D(f"{count} sub-steps", count)) for count in FEW} | {
-    (count, STIFFER): _cell(Box2D(f"{count} sub-steps, pins of {STIFFER:g} a sub-step", count, STIFFER))
-    for count in FEW
-}
-CORRECTED = {rate: _cell(Pinocchio(f"euler, correction {rate:g}", "euler", rate)) for rate in CORRECTIONS}
-# All pins as springs of some steps, and only that of the loop.
-SPRUNG = {
-    (coordinates, steps): _cell(
-        MuJoCo(
-            f"{coordinates} coordinates, springs of {steps:g} steps",
-            stiffness=TiedToStep(steps),
-            coordinates=coordinates,
-        )
-    )
-    for coordinates in ("free", "tree")
-    for steps in (20.0, 2.0)
-}
-# What moves each engine from one family to the other: in words, as it was, and with one setting turned.
-MOVES: tuple[tuple[str, str, Cell, Cell], ...] = (
-    (
-        "pymunk",
-        "share of a gap that a step closes",
-        CLOSING["pymunk, all four pins"][SHARES[1]],
-        CLOSING["pymunk, all four pins"][1.0],
-    ),
-    ("box2d", "frequency of the pins", CLOSED_AT[4, 0.0], CLOSED_AT[4, STIFFER]),
-    (
-        "mujoco, pins that are all springs",
-        "their time constant, 20 steps and 2",
-        SPRUNG["free", 20.0],
-        SPRUNG["free", 2.0],
-    ),
-    ("mujoco, the loop's pin alone", "its time constant, 20 steps and 2", SPRUNG["tree", 20.0], SPRUNG["tree", 2.0]),
-    (
-        "bullet, the loop's pin alone",
-        "share of a gap that a step closes",
-        CLOSING["bullet, the pin of the loop"][SHARES[0]],
-        CLOSING["bullet, the pin of the loop"][1.0],
-    ),
-    (
-        "pinocchio, Euler steps, the loop's pin alone",
-        "correction of the loop, none and 300 / s",
-        CORRECTED[0.0],
-        CORRECTED[300.0],
-    ),
-)
-CLOSED_BY = tuple(cell for cells in CLOSING.values() for cell in cells.values())

@@ -25,6 +25,7 @@ from reference.chapter import errata
 from reference.chapter.errata import Array, Values, acceleration_of_g, closed_form, integrated, rolling_acceleration
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
+from reference.plane import perpendicular, rotation_velocity
 from reference.scene import Scene
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.scenes.pendulum.chain import Chain
@@ -61,6 +62,7 @@ class Window:
         return np.tensordot(FIRST, values, axes=1) / SPACING
 
 
+HILL, SLEIGH = RollingOnCircle(), ChaplyginSleigh()
 CONFIRMED = 0  # the key of (18.70) and (18.71), which are right as printed
 
 
@@ -95,36 +97,31 @@ def _pendulum(window: Window) -> dict[int, Values]:
 
 def _rolling(window: Window) -> dict[int, Values]:
     """The disc's centre lies on the contact's normal, so the contact is where the ray to it meets the hill."""
-    scene = RollingOnCircle()
     pose, twist = window.pose[:, 0], window.twist[:, 0]
-    arm = scene.eccentricity * np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
+    arm = HILL.eccentricity * np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
     centre = pose[:, :2] + arm
     direction = centre / np.linalg.norm(centre, axis=-1, keepdims=True)
-    contact = scene.hill * direction
+    contact = HILL.hill * direction
     normal, rate = direction[MIDDLE], twist[MIDDLE, 2]
-    tangent = np.array([-normal[1], normal[0]])
-    advance = scene.hill * (math.atan2(normal[1], normal[0]) - math.pi / 2)  # s; arc 0 is at the top
-    speed = rate / (1 / scene.hill + 1 / scene.radius)
-
-    def material(point: Array) -> Array:
-        """The velocity of the body's point at a place in space."""
-        x, y = point - pose[MIDDLE, :2]
-        return twist[MIDDLE, :2] + rate * np.array([-y, x])
-
+    tangent = perpendicular(normal)
+    advance = HILL.hill * (math.atan2(normal[1], normal[0]) - math.pi / 2)  # s; arc 0 is at the top
+    speed = rate / (1 / HILL.hill + 1 / HILL.radius)
+    # A pole is a point of the body without velocity: the origin of the ground is not, the contact is.
+    at_origin, at_contact = (
+        twist[MIDDLE, :2] + rotation_velocity(rate, point - pose[MIDDLE, :2]) for point in (0.0, contact[MIDDLE])
+    )
     return {
         1: Values(advance * tangent, speed * tangent, window.change(contact)),
-        # A pole is a point without velocity: the origin of the ground is not, the contact is.
-        2: Values(material(np.zeros(2)), material(contact[MIDDLE]), np.zeros(2)),
+        2: Values(at_origin, at_contact, np.zeros(2)),
     }
 
 
 def _skate(window: Window) -> dict[int, Values]:
-    scene = ChaplyginSleigh()
     pose, twist = window.pose[:, 0], window.twist[:, 0]
     along = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
     speed = np.sum(twist[:, :2] * along, axis=-1)  # of C too: G is straight ahead of it
     push, turning = (float(window.change(values)) for values in (speed, twist[:, 2]))
-    state = (float(pose[MIDDLE, 2]), float(speed[MIDDLE]), push, float(twist[MIDDLE, 2]), turning, (scene.offset, 0.0))
+    state = (float(pose[MIDDLE, 2]), float(speed[MIDDLE]), push, float(twist[MIDDLE, 2]), turning, (SLEIGH.offset, 0.0))
     return {11: Values(*acceleration_of_g(*state), window.change(twist[:, :2]))}
 
 
@@ -139,19 +136,19 @@ def _four_bar(window: Window) -> dict[int, Values]:
 
 
 class Question(NamedTuple):
-    """The scene with which a question is run, what its motion decides of which slips, and its mechanism."""
+    """The mechanism whose motion decides, and what the motion says of which slips."""
 
-    companion: Scene
-    read: Callable[[Window], dict[int, Values]]
     mechanism: Callable[[], Mechanism]
+    read: Callable[[Window], dict[int, Values]]
 
 
+COMPANIONS: tuple[Scene, ...] = (HILL, SLEIGH, DrivenFourBar(), LinkPendulum())
 # By the motion.
 QUESTIONS: dict[str, Question] = {
-    "a disc rolls off a round hill": Question(hill := RollingOnCircle(), _rolling, hill.mechanism),
-    "a sleigh on one skate coasts": Question(sleigh := ChaplyginSleigh(), _skate, sleigh.mechanism),
-    "the crank of sample 18.15 turns at 10 rad/s": Question(crank := DrivenFourBar(), _four_bar, crank.mechanism),
-    "the double pendulum falls": Question(LinkPendulum(), _pendulum, double_pendulum),
+    "a disc rolls off a round hill": Question(HILL.mechanism, _rolling),
+    "a sleigh on one skate coasts": Question(SLEIGH.mechanism, _skate),
+    "the crank of sample 18.15 turns at 10 rad/s": Question(DrivenFourBar().mechanism, _four_bar),
+    "the double pendulum falls": Question(double_pendulum, _pendulum),
 }
 
 
@@ -161,10 +158,7 @@ class Refereed(OfMethod):
 
     question: str
     what: ClassVar[str] = "{0.question}"
-
-    @property
-    def cost(self) -> float:
-        return SAMPLES * self.method.step_cost(QUESTIONS[self.question].mechanism())
+    seconds: ClassVar[float] = 0.2
 
     def run(self) -> Kept:
         motion = self.method.build(QUESTIONS[self.question].mechanism(), SPACING)(SAMPLES, 1)
@@ -207,18 +201,12 @@ def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...],
     return tuple(sorted(found, key=lambda ruling: ruling.number)), lost
 
 
-FIELD = re.compile(r"^- ([\w ]+): (.*)$", re.MULTILINE)
-FORMULA = re.compile(r"```math\n(.*?)\n```", re.DOTALL)
-SCRIPT = re.compile(r"```python\n(.*?)```", re.DOTALL)
-
-
 @dataclass(frozen=True)
 class Erratum:
-    """One slip of the chapter, read from its document.
+    """One slip of the chapter. printed, right: both formulas in a line; quoted, corrected: the same in LaTeX.
 
-    printed, right: both formulas in a line; quoted, corrected: the same as the chapter sets them (LaTeX). deciding: the
-    derivative that decides, in words. dimensions: whether they alone show the slip; the size of the miss then depends
-    on the units. script: computes the values; a slip in words has none.
+    deciding: the derivative that decides, in words. dimensions: whether they alone show the slip; the size of the miss
+    then depends on the units. script: computes the values; a slip in words has none.
     """
 
     number: int
@@ -245,22 +233,20 @@ class Erratum:
 
     @property
     def by_tolerance(self) -> Mapping[float, float]:
-        """The miss of a right method, whose tolerance the chapter does not state, at tolerances of ours; else empty."""
+        """The miss of a method whose tolerance the chapter does not state, at tolerances of ours; else empty."""
         return self.names.get("by_tolerance", {})
 
 
 def read_slip(path: Path) -> Erratum:
     """The slip of a document."""
     text = path.read_text("utf-8")
-    fields, formulas, script = dict(FIELD.findall(text)), FORMULA.findall(text), SCRIPT.search(text)
+    fields = dict(re.findall(r"^- ([\w ]+): (.*)$", text, re.MULTILINE))
+    quoted, corrected = re.findall(r"```math\n(.*?)\n```", text, re.DOTALL) or ("", "")
+    (script,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL) or ("",)
+    where, dimensions = text.splitlines()[0].partition(": ")[2], fields.get("shown by") == "dimensions"
+    words = {name: fields.get(name, "") for name in ("printed", "right", "reason", "unit", "deciding")}
     return Erratum(
-        number=int(path.stem),
-        where=text.splitlines()[0].partition(": ")[2],
-        **{name: fields.get(name, "") for name in ("printed", "right", "reason", "unit", "deciding")},
-        dimensions=fields.get("shown by") == "dimensions",
-        quoted=formulas[0] if formulas else "",
-        corrected=formulas[1] if formulas else "",
-        script=script[1] if script else "",
+        int(path.stem), where, **words, dimensions=dimensions, quoted=quoted, corrected=corrected, script=script
     )
 
 
@@ -288,9 +274,9 @@ def verdict(erratum: Erratum, values: Values, ruled: Sequence[Ruling]) -> str:
     if erratum.by_tolerance:
         integration = missed(erratum, "{} at a relative tolerance of {}", " and ")
         misses = (
-            f"The closed form misses it by {right}. The integration misses it by {integration}: the tolerance is ours,"
+            f"The closed form misses it by {right}. The integration misses it by {integration}: "
+            "the tolerance is ours, since the chapter states none."
         )
-        misses += " since the chapter states none."
         pattern = "the closed form misses their motion by {1} at most."
     text = f"Decides ({erratum.deciding}): {digits(values.decides)} {erratum.unit}. {misses}"
     if not ruled:
@@ -320,8 +306,7 @@ def slip_rows() -> list[tuple[str, ...]]:
 
 def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
     """(a row a slip and engine: both formulas' misses of its motion; sentences on engines that failed)."""
-    units = {slip.number: slip.unit for slip in ERRATA}
-    answers = dict(run_items(TASKS))
+    units, answers = {slip.number: slip.unit for slip in ERRATA}, dict(run_items(TASKS))
     found, lost = rulings((task, answers[task]) for task in TASKS)
     return [
         (str(r.number), r.method, r.about, units[r.number], number(r.values.miss), number(r.values.agreement))
@@ -359,9 +344,7 @@ PAGE = Page(
     title="Errata of the chapter",
     lesson="Printed slips of section 18.5 of a textbook, *advanced kinematics of planar motion*: each decided by a "
     "derivative, by engines, and by a few lines to run.",
-    scenes=(),
-    engines=(),
-    companions=tuple(question.companion for question in QUESTIONS.values()),
+    companions=COMPANIONS,
     words=words,
     tasks=TASKS,
 )

@@ -14,16 +14,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, method_name
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory, energy, joint_gap
 from reports.model.tasks import Task, Values
+from reports.pages.common import OfMethod
 
 Array = NDArray[np.float64]
 ACROBOT_GRAVITY, HORIZON = 9.8, 100.0  # m/s^2, s
@@ -96,29 +97,32 @@ def by_hand(angle: float, step: float, rounded: bool = False) -> float:
 
 
 @dataclass(frozen=True)
-class Acrobot(Task):
-    """The drift of one method, or of RK4 by hand without one."""
+class ByHand(Task):
+    """The drift of RK4 in the two angles."""
 
-    method: Engine | None = None
+    seconds: ClassVar[float] = 1.0
+    words: ClassVar[str] = "Acrobot's energy: RK4"
+
+    def run(self) -> Values:
+        """`drift` (ACROBOT_STEPS,), and `rounded`, the same of states in 32 bits."""
+        names = {"drift": False, "rounded": True}
+        return {
+            name: np.array([by_hand(START, step, rounded) for step in ACROBOT_STEPS]) for name, rounded in names.items()
+        }
+
+
+@dataclass(frozen=True)
+class Acrobot(OfMethod):
+    """The drift of one method."""
+
+    what: ClassVar[str] = "Acrobot's energy"
 
     @property
     def cost(self) -> float:
-        steps = sum(HORIZON / step for step in ACROBOT_STEPS)
-        return 2 * steps * (1e-4 if self.method is None else self.method.step_cost(acrobot()))
-
-    @property
-    def label(self) -> str:
-        return f"Acrobot's energy: {'RK4' if self.method is None else method_name(self.method)}"
-
-    @property
-    def engine(self) -> Engine | None:
-        return self.method
+        return sum(HORIZON / step for step in ACROBOT_STEPS) * 2 * self.method.step_cost(acrobot())
 
     def run(self) -> Values:
-        """`drift` (ACROBOT_STEPS,), the largest change of the energy beside the first; of RK4 also `rounded`."""
-        if self.method is None:
-            told = [[by_hand(START, step, rounded) for step in ACROBOT_STEPS] for rounded in (False, True)]
-            return {"drift": np.array(told[0]), "rounded": np.array(told[1])}
+        """`drift` (ACROBOT_STEPS,), the largest change of the energy beside the first."""
         mechanism, drift = acrobot(), []
         for step in ACROBOT_STEPS:
             total = energy(mechanism, self.method.build(mechanism, step)(round(HORIZON / 0.2), round(0.2 / step)))
@@ -136,17 +140,8 @@ EVERY = 1e-2  # s between samples: a multiple of all steps
 # A degree of the rocker, metres of gap, parts of the amplitude and of the first energy.
 BOUNDS = {"angle": 0.1, "gap": 1e-3, "period": 1e-2, "energy": 5e-3}
 # A crank-rocker of bars with equal sections, one turn a second, no gravity.
-FOUR_BAR = DrivenFourBar(
-    crank=0.2,
-    coupler=0.5,
-    rocker=0.4,
-    ground=(0.5, 0.0),
-    start=0.0,
-    rate=2 * math.pi,
-    density=1.6,
-    gravity=(0.0, 0.0),
-    revolutions=2.0,
-)
+BARS = {"crank": 0.2, "coupler": 0.5, "rocker": 0.4, "ground": (0.5, 0.0), "density": 1.6}
+FOUR_BAR = DrivenFourBar(**BARS, start=0.0, rate=2 * math.pi, gravity=(0.0, 0.0), revolutions=2.0)
 
 
 def pendulum(angle: float) -> Mechanism:
@@ -161,41 +156,36 @@ def freudenstein(crank: Array) -> Array:
     a, b, c, d = FOUR_BAR.crank, FOUR_BAR.coupler, FOUR_BAR.rocker, FOUR_BAR.ground[0]
     size = d / a - np.cos(crank), -np.sin(crank)
     right = d / c * np.cos(crank) - (a * a - b * b + c * c + d * d) / (2 * a * c)
-    open_side = np.arctan2(size[1], size[0]) + np.arccos(np.clip(right / np.hypot(*size), -1, 1))
-    return open_side
+    return np.arctan2(size[1], size[0]) + np.arccos(np.clip(right / np.hypot(*size), -1, 1))
 
 
 @dataclass(frozen=True)
-class Newton(Task):
+class Newton(OfMethod):
     """One method in the three problems at NEWTON_STEPS."""
 
-    method: Engine
+    what: ClassVar[str] = "Newton's bounds"
 
     @property
     def cost(self) -> float:
         total = FOUR_BAR.duration + PERIODS * 2 + FALLING
         return sum(total / step * self.method.step_cost(FOUR_BAR.mechanism()) for step in NEWTON_STEPS)
 
-    @property
-    def label(self) -> str:
-        return f"Newton's bounds: {method_name(self.method)}"
-
-    @property
-    def engine(self) -> Engine:
-        return self.method
-
     def run(self) -> Values:
         """By the names of BOUNDS the measure (NEWTON_STEPS,) at every step; infinite for a run that gave up."""
-        told = {name: np.full(len(NEWTON_STEPS), np.inf) for name in BOUNDS}
-        for index, step in enumerate(NEWTON_STEPS):
-            linkage = self._motion(FOUR_BAR.mechanism(), FOUR_BAR.duration, step)
-            crank, rocker = linkage.pose[:, 0, 2], linkage.pose[:, 2, 2]
-            off = (rocker - freudenstein(crank) + math.pi) % (2 * math.pi) - math.pi
-            told["angle"][index] = _largest(np.degrees(off))
-            told["gap"][index] = _largest(joint_gap(FOUR_BAR.mechanism(), linkage)[:, :8])
-            told["period"][index] = self._period(step)
-            told["energy"][index] = self._energy(step)
-        return told
+        measured = [self._measures(step) for step in NEWTON_STEPS]
+        return {name: np.array([values[name] for values in measured]) for name in BOUNDS}
+
+    def _measures(self, step: float) -> dict[str, float]:
+        linkage = self._motion(FOUR_BAR.mechanism(), FOUR_BAR.duration, step)
+        crank, rocker = linkage.pose[:, 0, 2], linkage.pose[:, 2, 2]
+        off = (rocker - freudenstein(crank) + math.pi) % (2 * math.pi) - math.pi
+        gap = _largest(joint_gap(FOUR_BAR.mechanism(), linkage)[:, :8])
+        return {
+            "angle": _largest(np.degrees(off)),
+            "gap": gap,
+            "period": self._period(step),
+            "energy": self._energy(step),
+        }
 
     def _period(self, step: float) -> float:
         frequency = math.sqrt(NEWTON_GRAVITY * LENGTH / (LENGTH**2 + 0.4 * RADIUS**2))

@@ -6,9 +6,8 @@ value problem solvers, release 2.4, II-17.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from math import isfinite, nan
+from collections.abc import Mapping
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -21,16 +20,24 @@ from reference.scenes.andrews import Andrews
 from reference.scenes.n_four_bar import NFourBar
 from reference.scenes.pendulum.link import PointPendulum
 from reports.model.cells import FULL, sweep_cells
-from reports.model.checks import Deviation
-from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.tasks import Answer
+from reports.pages.common import deviations
 from reports.pages.pendulum.page import PHASE
-from reports.pages.published.experiments import ACROBOT_STEPS, BOUNDS, NEWTON_STEPS, PUBLISHED, START, Acrobot, Newton
+from reports.pages.published.experiments import (
+    ACROBOT_STEPS,
+    BOUNDS,
+    NEWTON_STEPS,
+    PUBLISHED,
+    START,
+    Acrobot,
+    ByHand,
+    Newton,
+)
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
-from reports.write.rows import lookups
+from reports.write.rows import Rows, lookups
 from reports.write.tables import milliseconds
 
 # Angles of one body against another, as the test set has them, by the names of the bodies.
@@ -42,27 +49,14 @@ ACCELERATIONS = (14222.4439199541138705911625887, -10666.83293996558540294337194
 MULTIPLIERS = (98.5668703962410896057654982170, -6.12268834425566265503114393122)  # N, at the start
 
 
-@dataclass(frozen=True)
-class Compared:
-    """One published number beside ours."""
-
-    what: str
-    published: float
-    found: float
-
-    @property
-    def difference(self) -> float:
-        return self.found - self.published
-
-
 def relative(angles: NDArray[np.float64]) -> NDArray[np.float64]:
     """The test set's coordinates (..., 7) of the bodies' angles (..., 7) [rad], or of their derivatives."""
     k1, k2, k3, k4, k5, k6, k7 = np.moveaxis(angles, -1, 0)
     return np.stack([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7], axis=-1)
 
 
-def compared(scene: Andrews) -> list[Compared]:
-    """The end, and the accelerations and multipliers at the start that are not zero.
+def compared(scene: Andrews) -> list[dict[str, Any]]:
+    """The end, and the accelerations and multipliers at the start that are not zero, beside the published numbers.
 
     The test set has M q'' = f - G^T lambda, with rows that are the rod's end less that of body 3. Ours have the rod
     second too, and M a = f + J^T reaction: so a multiplier is minus the force on the rod.
@@ -72,19 +66,17 @@ def compared(scene: Andrews) -> list[Compared]:
     pushed = mechanism.rows(motion.pose[0]).T @ motion.reaction[0]
     first = relative((free + pushed.reshape(free.shape) / mechanism.inertias)[:, 2])
     names = mechanism.row_names
-    rows = [
-        Compared(f"angle of {name} at {INSTANT:g} s [rad]", published, float(found))
-        for name, published, found in zip(ANGLES, END, relative(motion.pose[1, :, 2]), strict=True)
+    multipliers = [-motion.reaction[0, names.index(f"P3 {axis}")] for axis in "xy"]
+    blocks = (
+        (f"angle of {{}} at {INSTANT:g} s [rad]", ANGLES, END, relative(motion.pose[1, :, 2])),
+        ("acceleration of {} at 0 [rad/s²]", ANGLES[:2], ACCELERATIONS, first[:2]),
+        ("multiplier of P, {}, at 0 [N]", "xy", MULTIPLIERS, multipliers),
+    )
+    return [
+        {"what": what.format(name), "published": theirs, "found": float(ours), "difference": float(ours) - theirs}
+        for what, *columns in blocks
+        for name, theirs, ours in zip(*columns, strict=True)
     ]
-    rows += [
-        Compared(f"acceleration of {name} at 0 [rad/s²]", published, float(found))
-        for name, published, found in zip(ANGLES, ACCELERATIONS, first, strict=False)
-    ]
-    rows += [
-        Compared(f"multiplier of P, {axis}, at 0 [N]", published, -float(motion.reaction[0, names.index(f"P3 {axis}")]))
-        for axis, published in zip("xy", MULTIPLIERS, strict=True)
-    ]
-    return rows
 
 
 NAME = "published"
@@ -94,17 +86,17 @@ SCENES = (Andrews(),)
 # the largest angle error over the whole problem.
 TOLERANCES = (1e-1, 1e-3)
 BORROWED = (*PHASE, *sweep_cells((NFourBar(),), VARIANTS, FULL))
-BY_HAND = Acrobot()
+BY_HAND = ByHand()
 ACROBOTS = tuple(Acrobot(engine) for engine in VARIANTS)
 NEWTONS = tuple(Newton(engine) for engine in VARIANTS)
 
 
-def costs(rows: Iterable[Measurement], scene: Scene, engine: Engine) -> list[str]:
+def costs(rows: Rows, scene: Scene, engine: Engine) -> list[str]:
     """CPU time of the whole problem [ms] by an engine's cheapest row in a scene, for each tolerance [rad], in words."""
-    own = [row for row in rows if (row.scene, row.engine, row.variant) == (scene.name, engine.name, engine.variant)]
-    if not own:
+    of_method = rows.of(scene.name, method_name(engine), "")
+    if not of_method:
         return ["not run"] * len(TOLERANCES)
-    timed = [row for row in own if isfinite(row.cpu) and not Outcome(row.outcome).wrong]
+    timed = [row for row in of_method.known("cpu") if not Outcome(row.outcome).wrong]
     least = [min((row.cpu for row in timed if row.angle < tolerance), default=nan) for tolerance in TOLERANCES]
     return [milliseconds(cpu * scene.duration, unknown="\N{EN DASH}") for cpu in least]
 
@@ -148,7 +140,7 @@ def figures(material: Material) -> dict[str, str]:
 
 def words(material: Material) -> Mapping[str, Any]:
     """Published numbers beside ours; `by_method`: the costs of three benchmarks by tolerance; `bounds`."""
-    rows = [*material.sweep(SCENES), *material.of(BORROWED)]
+    rows = Rows([*material.sweep(SCENES), *material.of(BORROWED)])
     problems = (PointPendulum(), NFourBar(), SCENES[0])
     by_method = [
         {"method": method_name(engine), "costs": [words for scene in problems for words in costs(rows, scene, engine)]}
@@ -169,24 +161,6 @@ def words(material: Material) -> Mapping[str, Any]:
     }
 
 
-# Where a method is known to fall short on Andrews' mechanism, each with its reason.
-CLOSING = (
-    "by design: as shipped a joint closes a tenth of its gap in a sixtieth of a second, a third of the whole motion"
-)
-SOFT = "by design: as shipped a loop is a spring with a time constant of 0.02 s, and the whole motion takes 0.05 s"
-TIED = (
-    "by design: at these steps its time constant is five steps, as a fifth of the motion's own would be shorter; the "
-    "order is 2 there, and 4 at smaller ones"
-)
-EULER = "by design: the crank speeds up for the whole motion, and a method of first order is radians behind"
-
-KNOWN: dict[tuple[str, str, str], Deviation] = {
-    ("andrews", "pymunk default", "outcome"): Deviation(CLOSING, outcome=Outcome.SATURATED),
-    ("andrews", "mujoco default", "outcome"): Deviation(SOFT, outcome=Outcome.TORN),
-    ("andrews", "mujoco extended", "outcome"): Deviation(TIED, outcome=Outcome.UNRESOLVED),
-    ("andrews", "lagrange euler projection", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
-}
-
 PAGE = Page(
     name=NAME,
     title="Problems that others published",
@@ -197,5 +171,5 @@ PAGE = Page(
     figures=figures,
     words=words,
     tasks=(BY_HAND, *ACROBOTS, *NEWTONS),
-    known=KNOWN,
+    known=deviations("published"),
 )

@@ -5,7 +5,6 @@ fail: contacts and constraints apart, how discs part from a hill and chatter on 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -14,7 +13,6 @@ import numpy as np
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import methods as mujoco_methods
-from engines.mujoco.methods import CONTACT
 from engines.pymunk import methods as pymunk_methods
 from engines.registry import VARIANTS
 from reference.scene import Scene
@@ -40,7 +38,7 @@ from reports.plots.theme import svg
 from reports.write.experiments import observe_each
 from reports.write.rows import Rows, lookups
 from reports.write.tables import number
-from reports.write.unmeasured import UNMEASURED, Known
+from reports.write.unmeasured import UNMEASURED
 
 CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED)
 
@@ -114,45 +112,6 @@ def absence(material: Material) -> dict[str, Any]:
     return {"absent": min(shares, default=UNMEASURED)}
 
 
-# Time constants of a contact [s], and the steps at which each is run: MuJoCo's smallest is two steps.
-SOFTNESS = (2e-2, 6e-3, 2e-3, 6e-4, 2e-4)
-SOFT_STEPS = {100: 1e-4, 10: 1e-3}
-
-
-def polygon_cells() -> tuple[tuple[int, Cell], ...]:
-    """(corners, cell) of the ellipse as polygons of ever more corners."""
-    return tuple(
-        (corners, cell)
-        for corners, engine in zip(pymunk_methods.CORNERS, pymunk_methods.ROLL_FACETED, strict=True)
-        for cell in cells(RollingEllipse(), (engine,), (1, 10, 100))
-    )
-
-
-def soft_contact(constant: float, step: float) -> Engine:
-    """MuJoCo's contact with a time constant [s] at a step [s], its slip as stiff as it goes."""
-    variant = f"contact of {1e3 * constant:g} ms"
-    steps = round(constant / step)
-    return replace(mujoco.TUNED, variant=variant, rolls=replace(CONTACT, steps=steps))
-
-
-def softness_cells() -> tuple[tuple[float, Cell], ...]:
-    """(time constant [s], cell) of the ellipse on ever stiffer contacts."""
-    return tuple(
-        (constant, Cell(RollingEllipse(), soft_contact(constant, step), every, "failure"))
-        for every, step in SOFT_STEPS.items()
-        for constant in SOFTNESS
-        if constant >= 2 * step * (1 - 1e-9)
-    )
-
-
-def finest_polygon(material: Material) -> dict[str, Any]:
-    """`coarse`, `fine`: angle errors [rad] of the polygon with most corners at the two smallest steps."""
-    most = max(corners for corners, _ in polygon_cells())
-    rows = material.of(cell for corners, cell in polygon_cells() if corners == most and cell.every > 1)
-    coarse, fine = (row.angle for row in rows) if len(rows) == 2 else (UNMEASURED, UNMEASURED)
-    return {"coarse": coarse, "fine": fine}
-
-
 TOO_LARGE = tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(), PUBLIC, (1,), samples))
 
 
@@ -174,8 +133,8 @@ FAILURES = described(
         Failure(f"A contact as shipped, under {body}", cells=cells(scene, (mujoco.DEFAULT,), (1, 10, 100, 1000)))
         for body, scene in (("an ellipse", RollingEllipse()), ("an eccentric disc", RollingDisc()))
     ),
-    Failure("Softer and stiffer contacts", cells=tuple(cell for _, cell in softness_cells())),
-    Failure("Polygons", cells=tuple(cell for _, cell in polygon_cells()), words=finest_polygon),
+    Failure("Softer and stiffer contacts"),
+    Failure("Polygons"),
     *(
         Failure(
             f"Nearly conformal curves: a hole larger by {clearance:g} of its radius",
@@ -247,10 +206,7 @@ def words(material: Material) -> Mapping[str, Any]:
         """The row of a method ("mujoco tuned") at about a step [s]."""
         return rows.of(scene, method).near(step)
 
-    polygons = Known(
-        {(corners, cell.every): material.rows[cell] for corners, cell in polygon_cells() if cell in material.rows}
-    )
-    return {**lookups(material, SCENES), "at": at, "polygons": polygons, "hill": HILL}
+    return {**lookups(material, SCENES), "at": at, "hill": HILL}
 
 
 PAGE = Page(

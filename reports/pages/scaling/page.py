@@ -1,15 +1,15 @@
-"""The page on scaling: what a step costs and how wrong it is as a pendulum grows from one link to a thousand."""
+"""The page on scaling: the cost of a step and the error as a pendulum grows from one link to a thousand."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import ceil, log, pi, sqrt
-from typing import Any
+from typing import Any, ClassVar
 
-from matplotlib.axes import Axes
+import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
@@ -19,13 +19,85 @@ from engines.lagrange import Lagrange
 from engines.pymunk.contraction import LEFT, MOST
 from reference.scenes.pendulum.scenes import LongPendulum
 from reports.model.cells import Cell
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
+from reports.model.tasks import Task, Values
 from reports.pages.pendulum import page as pendulum
-from reports.pages.scaling.experiments import BandedChain, Point, Series, TruthError, cost_exponent, series_of
+from reports.pages.scaling.banded import BandedChain
 from reports.plots.looks import look
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.tables import NOTHING, markdown, number
 from reports.write.unmeasured import UNMEASURED
+
+
+@dataclass(frozen=True)
+class TruthError(Task):
+    """The truth of a long chain at the end of its run."""
+
+    scene: LongPendulum
+
+    seconds: ClassVar[float] = 0.5  # measured, with 200 links
+    words: ClassVar[str] = "error of the truth of {0.scene.links} links"
+
+    def run(self) -> Values:
+        """`error`: the largest of an angle [rad]."""
+        return {"error": self.scene.truth_error([self.scene.duration])[0]}
+
+
+LAST = 3  # points of a fit: a growth law is seen at the large end, where what is paid in any case no longer counts
+
+
+@dataclass(frozen=True)
+class Point:
+    """One method at one size: CPU seconds of a step, and the largest angle error [rad] (NaN where only timed)."""
+
+    size: int
+    step: float
+    error: float
+    outcome: str
+
+
+@dataclass(frozen=True)
+class Series:
+    """One method over all sizes, small to large."""
+
+    engine: str
+    variant: str
+    points: tuple[Point, ...]
+
+    @property
+    def method(self) -> str:
+        return f"{self.engine} {self.variant}"
+
+    def at(self, size: int) -> Any:
+        """The point of this size; UNMEASURED where there is none."""
+        return next((point for point in self.points if point.size == size), UNMEASURED)
+
+
+def series_of(rows: Mapping[Cell, Measurement], timed: float) -> tuple[Series, ...]:
+    """The rows of pendulums by method; cells that ran for less than `timed` seconds count for their cost alone."""
+    found: dict[tuple[str, str], list[Point]] = {}
+    for cell, row in rows.items():
+        comparable, whole = Outcome(row.outcome).comparable, cell.scene.duration >= timed * (1 - 1e-9)
+        cost = row.cpu * cell.step if comparable or not whole else math.nan
+        error = row.angle if whole and comparable else math.nan
+        point = Point(int(getattr(cell.scene, "links", 0)), cost, error, str(row.outcome))
+        found.setdefault((row.engine, row.variant), []).append(point)
+    return tuple(Series(*method, tuple(sorted(points, key=lambda p: p.size))) for method, points in found.items())
+
+
+def exponent(sizes: Iterable[float], values: Iterable[float], last: int = LAST) -> tuple[float, int, int]:
+    """(slope of log value over log size at the `last` finite points, first and last size of the fit).
+
+    NaN and zeros with fewer than two points.
+    """
+    pairs = [(n, v) for n, v in zip(sizes, values, strict=True) if math.isfinite(v) and v > 0][-last:]
+    if len(pairs) < 2:
+        return math.nan, 0, 0
+    n, v = np.log(np.array(pairs, dtype=float)).T
+    return float(np.polyfit(n, v, 1)[0]), int(pairs[0][0]), int(pairs[-1][0])
+
 
 TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 FURTHER = ("X", "v")
@@ -50,10 +122,19 @@ def scaling_chart(found: Sequence[Series]) -> Figure:
             panel.set_xlabel("links")
             panel.set_ylabel(what)
         for series in found:
-            _draw(cost, [(p.size, 1e6 * p.step) for p in series.points], looks[series.method])
-            _draw(error, [(p.size, p.error) for p in series.points], looks[series.method])
+            for panel, points in (
+                (cost, [(p.size, 1e6 * p.step) for p in series.points]),
+                (error, [(p.size, p.error) for p in series.points]),
+            ):
+                if known := [(n, value) for n, value in points if math.isfinite(value) and value > 0]:
+                    panel.plot(*zip(*known, strict=True), zorder=3, **looks[series.method])
         for panel in (cost, error):
-            _ticks(panel)
+            panel.xaxis.set_major_locator(LogLocator(base=10, subs=(1, 2, 5), numticks=30))
+            panel.xaxis.set_major_formatter(FuncFormatter(lambda n, _: f"{n:g}" if round(n) in TICKS else ""))
+            panel.xaxis.set_minor_locator(NullLocator())
+            panel.yaxis.set_major_locator(LogLocator(base=10, numticks=16))
+            panel.yaxis.set_minor_formatter(NullFormatter())
+            panel.minorticks_off()
         handles = [Line2D([], [], label=series.method, **looks[series.method]) for series in found]
         figure.legend(handles=handles, loc="outside lower center", ncols=3, handlelength=3.2)
     return figure
@@ -61,29 +142,17 @@ def scaling_chart(found: Sequence[Series]) -> Figure:
 
 def _look(series: Series, variants: Mapping[str, Sequence[str]]) -> dict[str, Any]:
     """As in all charts; a fourth and fifth method of an engine, whose half-filled marks are too alike, get others."""
-    own = look(series.engine, series.variant, variants)
     index = variants[series.engine].index(series.variant)
-    return own | ({"marker": FURTHER[index - 3], "fillstyle": "full"} if index in (3, 4) else {})
+    further = {"marker": FURTHER[index - 3], "fillstyle": "full"} if index in (3, 4) else {}
+    return look(series.engine, series.variant, variants) | further
 
 
-def _draw(panel: Axes, points: Sequence[tuple[float, float]], how: dict[str, Any]) -> None:
-    known = [(n, value) for n, value in points if math.isfinite(value) and value > 0]
-    if known:
-        panel.plot(*zip(*known, strict=True), zorder=3, **how)
-
-
-def _ticks(panel: Axes) -> None:
-    panel.xaxis.set_major_locator(LogLocator(base=10, subs=(1, 2, 5), numticks=30))
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda n, _: f"{n:g}" if round(n) in TICKS else ""))
-    panel.xaxis.set_minor_locator(NullLocator())
-    panel.yaxis.set_major_locator(LogLocator(base=10, numticks=16))
-    panel.yaxis.set_minor_formatter(NullFormatter())
-    panel.minorticks_off()
-
-
-def fitted(series: Series) -> tuple[float, int, int]:
-    """The exponent of its cost, where it is one method, with the first and last size of the fit."""
-    return cost_exponent(series, *ALIKE.get(series.method, (0, math.inf)))
+def fitted(series: Series) -> str:
+    """'1.0 (50 to 1000)': the exponent of its cost at the sizes at which the method is one and the same."""
+    least, most = ALIKE.get(series.method, (0, math.inf))
+    points = [point for point in series.points if least <= point.size <= most]
+    slope, first, last = exponent([p.size for p in points], [p.step for p in points])
+    return f"{slope:.1f} ({first} to {last})" if last else NOTHING
 
 
 STEP = 5e-3  # s, the same for all: about the longest at which a reduced-coordinate Euler step still follows 200 links
@@ -143,69 +212,60 @@ def cells() -> tuple[Cell, ...]:
 
 
 CELLS = cells()
+WHOLE = LongPendulum().duration
 OWN = TruthError(LongPendulum(max(LARGE)))  # the longest chain that is run to the end
 
 
-def _found(material: Material) -> tuple[Series, ...]:
-    return series_of({cell: material.rows[cell] for cell in CELLS if cell in material.rows}, LongPendulum().duration)
+def found_series(material: Material) -> tuple[Series, ...]:
+    return series_of({cell: material.rows[cell] for cell in CELLS if cell in material.rows}, WHOLE)
 
 
 def figures(material: Material) -> dict[str, str]:
     """The chart, if anything was run."""
-    found = _found(material)
+    found = found_series(material)
     title = "Cost of a step and error against the number of links"
     return {"cost": svg(scaling_chart(found), title)} if found else {}
-
-
-def _law(fit: tuple[float, int, int]) -> str:
-    slope, first, last = fit
-    return f"{slope:.1f} ({first} to {last})" if last else NOTHING
-
-
-def _told(value: float, outcome: str) -> str:
-    """A number, or what became of the run where it has none."""
-    return number(value) if value == value else f"**{outcome}**"
 
 
 def cost_table(found: tuple[Series, ...]) -> str:
     """CPU time of a step [µs] by method and links."""
     sizes = sorted({point.size for series in found for point in series.points})
-    return _table(found, sizes, lambda series, point: _told(1e6 * point.step, point.outcome))
+    return _table(found, sizes, lambda point: 1e6 * point.step)
 
 
 def error_table(found: tuple[Series, ...]) -> str:
-    """The largest angle error [rad] by method and links."""
-    whole = LongPendulum().duration
-    run = {(method_name(c.engine), c.scene.links) for c in CELLS if c.scene.duration == whole}  # type: ignore[attr-defined]
-
-    def cell(series: Series, point: Point) -> str:
-        return _told(point.error, point.outcome) if (series.method, point.size) in run else ""
-
-    return _table(found, sorted({size for _, size in run}), cell)
-
-
-def _table(found: tuple[Series, ...], sizes: Sequence[int], cell: Callable[[Series, Point], str]) -> str:
-    body = [
-        [series.method, *(cell(series, point) if (point := series.at(size)) else "" for size in sizes)]
+    """The largest angle error [rad] by method and links, of the runs that are compared."""
+    run = {(method_name(c.engine), getattr(c.scene, "links", 0)) for c in CELLS if c.scene.duration == WHOLE}
+    compared = [
+        replace(series, points=tuple(point for point in series.points if (series.method, point.size) in run))
         for series in found
     ]
+    return _table(compared, sorted({size for _, size in run}), lambda point: point.error)
+
+
+def _table(found: Iterable[Series], sizes: Sequence[int], value: Callable[[Point], float]) -> str:
+    """A number in each cell, the outcome where a run has none, nothing where there was no run."""
+    body = [[series.method, *(_words(series.at(size), value) for size in sizes)] for series in found]
     return markdown(["method", *map(str, sizes)], body)
+
+
+def _words(point: Any, value: Callable[[Point], float]) -> str:
+    return "" if not point else f"**{point.outcome}**" if math.isnan(value(point)) else number(value(point))
 
 
 def words(material: Material) -> Mapping[str, Any]:
     """The tables, the laws, and single points for sentences, UNMEASURED where nothing was run."""
-    found = _found(material)
+    found = found_series(material)
     by_method = {series.method: series for series in found}
 
     def at(engine: Engine, links: int) -> Any:
-        series = by_method.get(method_name(engine))
-        return (series.at(links) if series else None) or UNMEASURED
+        return by_method[name].at(links) if (name := method_name(engine)) in by_method else UNMEASURED
 
     return {
         "missing": not found,
         "costs": cost_table(found),
         "errors": error_table(found),
-        "laws": {series.method: _law(fitted(series)) for series in found},
+        "laws": {series.method: fitted(series) for series in found},
         "sweeps": {"over_square": SWEEPS_OVER_SQUARE, "capped": CAPPED, "most": MOST},
         "crossing": crossing(by_method.get("mujoco tuned"), by_method.get(f"mujoco {SPARSE.variant}")) or UNMEASURED,
         "tree": {n: at(mujoco.TUNED, n) for n in (100, 1000)},
@@ -215,7 +275,7 @@ def words(material: Material) -> Mapping[str, Any]:
         "impulses": {n: at(pymunk.DEFAULT, n) for n in (100, 1000)},
         "own": own.number("error") if (own := material.finished(OWN)) else UNMEASURED,
         "step": STEP,
-        "duration": LongPendulum().duration,
+        "duration": WHOLE,
     }
 
 
@@ -224,18 +284,13 @@ def crossing(one: Series | None, other: Series | None) -> tuple[int, int] | None
     if one is None or other is None:
         return None
     pairs = [(p.size, p.step, q.step) for p in one.points if (q := other.at(p.size))]
-    for (small, a, b), (large, c, d) in pairwise(pairs):
-        if a <= b and c > d:
-            return small, large
-    return None
+    return next(((n, m) for (n, a, b), (m, c, d) in pairwise(pairs) if a <= b and c > d), None)
 
 
 PAGE = Page(
     name="scaling",
     title="Cost and error as a chain grows",
     lesson="From one link to a thousand: what coordinates, sweeps and exact multipliers cost as the chain grows.",
-    scenes=(),
-    engines=(),
     companions=pendulum.SCENES,
     figures=figures,
     words=words,

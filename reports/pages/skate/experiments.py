@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
 from engines import Engine, method_name
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
-from engines.pymunk.engine import limited_groove
 from engines.registry import VARIANTS
 from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.scenes.skates import ChaplyginSleigh, HeldBySkates, SkateOnSlope, SleighBackwards
-from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
 from reports.pages.common import ENGINES_ALONE, cells_to_rounding, described
-from reports.write.experiments import observe, observe_each
+from reports.write.experiments import observe_each
 from reports.write.tables import number
-from reports.write.unmeasured import UNMEASURED
 
 CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_methods.SKATES, *mujoco_methods.SKATES)
 _KNOWN = {method_name(engine): engine for engine in (*VARIANTS, *CONSTRUCTIONS)}
@@ -78,63 +74,6 @@ def _grown(t: np.ndarray, rate: np.ndarray) -> str:
         return f"does not turn round: at most {number(fastest)} rad/s"
     # It turns fastest when the exact sleigh slides neither way.
     return f"{grows:.4f} per second; fastest, {fastest:.3f} rad/s, at {t[np.argmax(np.abs(rate))]:.2f} s"
-
-
-def first_beyond(scene: ChaplyginSleigh, limit: float) -> float | None:
-    """When the exact lateral force first exceeds a limit [N], to 1e-4 of the duration [s]; None if never."""
-    t = np.linspace(0, scene.duration, 10_001)
-    over = np.flatnonzero(np.abs(scene.lateral_force(t)) > limit)
-    return float(t[over[0]]) if over.size else None
-
-
-def slipping(material: Material) -> list[Observation]:
-    """When the exact lateral force exceeds a friction's limit, and when engines with that limit slip."""
-    found = []
-    for limit, cells in LIMITED.items():
-        exact = first_beyond(BACKWARDS, limit)
-        when = f"exceeds it at {exact:.3f} s" if exact is not None else f"never: at most {PEAK:.4f} N"
-        found.append(Observation("exact lateral force", f"{limit:g} N", when))
-        for cell in cells:
-            found += observe(material, cell, f"{limit:g} N", _slipped)
-    return found
-
-
-def _slipped(run: Trajectory) -> str:
-    when = slips_at(run)
-    if when is None:
-        return "holds"
-    return f"slips by {SLIPS:g} m/s at {when:.2f} s, at most {np.abs(slip_of(run)).max():.2g}"
-
-
-def slip_of(run: Trajectory) -> np.ndarray:
-    """The skate's sideways velocity (times,) [m/s]."""
-    return BACKWARDS.mechanism().slip(run.pose, run.twist)[:, 0]
-
-
-def slips_at(run: Trajectory) -> float | None:
-    """When it slips by more than SLIPS first [s]; None if it holds."""
-    over = np.flatnonzero(np.abs(slip_of(run)) > SLIPS)
-    return float(run.t[over[0]]) if over.size else None
-
-
-def delays(material: Material) -> dict[str, Any]:
-    """`least`, `most` [s]: how long after the exact force passes a limit an engine with that limit slips."""
-    found = []
-    for limit, cells in LIMITED.items():
-        exact = first_beyond(BACKWARDS, limit)
-        slipped = map(slips_at, material.motions(cells).values())
-        found += [when - exact for when in slipped if exact is not None and when is not None]
-    return {"least": min(found, default=UNMEASURED), "most": max(found, default=UNMEASURED)}
-
-
-PEAK = float(np.abs(BACKWARDS.lateral_force(np.linspace(0, BACKWARDS.duration, 10_001))).max())
-
-
-# A friction's limit [N] -> runs with it.
-LIMITED = {limit: (Cell(BACKWARDS, limited_groove(limit), 10),) for limit in (0.1, 0.3, 0.5, 0.7)}
-
-
-SLIPS = 2e-3  # m/s: above what either method lets pass at this step while it holds
 
 
 def _body(*joints: Pin | Skate) -> Mechanism:
@@ -205,12 +144,7 @@ FAILURES = described(
     Failure(
         "Circling for 1000 s", cells=cells_to_rounding(CIRCLING, ENGINES_ALONE, (20,), LONG_SAMPLES), columns=MOTION
     ),
-    Failure(
-        "Friction too low to hold",
-        tasks=tuple(Motion(cell) for cells in LIMITED.values() for cell in cells),
-        observations=slipping,
-        words=delays,
-    ),
+    Failure("Friction too low to hold"),
     Failure(
         "At rest across a slope",
         cells=cells_to_rounding(SkateOnSlope(), ENGINES_ALONE, (1, 10)),
@@ -231,5 +165,4 @@ FAILURES = described(
     rounded=f"{np.log(1e17) / BACKWARDS.growth_rate():.0f}",
     growing=GROWING,
     circled=f"{CIRCLING.turning_rate * LONG:.0f}",
-    peak=f"{PEAK:.3f}",
 )

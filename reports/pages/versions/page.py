@@ -134,8 +134,6 @@ PAGE = Page(
     name="versions",
     title="Versions",
     lesson="What changed when an engine was upgraded: errors and costs of every scene over released versions.",
-    scenes=(),
-    engines=(),
     words=words,
     figures=figures,
 )

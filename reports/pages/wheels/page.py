@@ -15,6 +15,7 @@ from engines.registry import VARIANTS
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart, Casters
 from reference.scenes.wheels.trailers import CarWithTrailers, Tow
+from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation, Page
 from reports.model.tasks import Motion, Task, Values
@@ -122,15 +123,16 @@ FAILURES = described(
         cells=cells_to_rounding(PUSHED, ENGINES_ALONE, (1, 10)),
         columns=MOTION,
     ),
-    Failure(
-        "Both wheels of every axle: the car and its trailer",
-        cells=cells_to_rounding(CarAndTrailer(redundant=True), ENGINES_ALONE, (1, 10)),
-        columns=("position", "slip", "energy", "reaction"),
-    ),
-    Failure(
-        "Both wheels of the fixed axle: the cart",
-        cells=cells_to_rounding(Cart(redundant=True), ENGINES_ALONE, (1, 10)),
-        columns=("position", "slip", "energy", "reaction"),
+    *(
+        Failure(
+            f"Both wheels of {axles}",
+            cells=cells_to_rounding(scene, ENGINES_ALONE, (1, 10)),
+            columns=("position", "slip", "energy", "reaction"),
+        )
+        for axles, scene in (
+            ("every axle: the car and its trailer", CarAndTrailer(redundant=True)),
+            ("the fixed axle: the cart", Cart(redundant=True)),
+        )
     ),
 )
 
@@ -151,55 +153,40 @@ def tows() -> Figure:
 
 def _tow(title: str, radius: float, distance: float) -> Panel:
     tow = Tow(LENGTH, math.pi / 2, radius)
-    way = np.linspace(0, distance, 800)
-    some = np.linspace(0, min(distance, 4 * LENGTH), DRAWBARS)
-    middles = 0.5 * (tow.hitch(some) + tow.wheel(some))
-    drawbars = np.column_stack([middles, tow.heading(some)])
-    return Panel(
-        title,
-        [
-            Path(
-                tow.hitch(way if math.isinf(radius) else np.linspace(0, 2 * math.pi * radius, 200)),
-                "hitch",
-                "quiet",
-                "--",
-                1.2,
-            ),
-            Path(tow.wheel(way), "towed wheel", "second", "-", 1.8, dot=True),
-        ],
-        [Blades(drawbars, LENGTH, "quiet", 0.9, "drawbar")],
-    )
+    way, some = np.linspace(0, distance, 800), np.linspace(0, min(distance, 4 * LENGTH), DRAWBARS)
+    led = way if math.isinf(radius) else np.linspace(0, 2 * math.pi * radius, 200)
+    drawbars = np.column_stack([0.5 * (tow.hitch(some) + tow.wheel(some)), tow.heading(some)])
+    lines = [
+        Path(tow.hitch(led), "hitch", "quiet", "--", 1.2),
+        Path(tow.wheel(way), "towed wheel", "second", "-", 1.8, dot=True),
+    ]
+    return Panel(title, lines, [Blades(drawbars, LENGTH, "quiet", 0.9, "drawbar")])
 
 
 def casters() -> Figure:
     """A cart's two casters: going ahead they trail, pushed back they swing round, however straight they stood."""
-    own = Casters(((0.7, 0.2), (0.7, -0.2)), 0.1)
+    cart = Casters(((0.7, 0.2), (0.7, -0.2)), 0.1)
+    corners = np.array([[0.0, 0.2], *cart.places, [0.0, -0.2], [0.0, 0.2]])  # from the fixed axle to the kingpins
     t = np.linspace(0, 2, 801)
     panels = []
     for title, speed, start in (
         ("going ahead at 0.5 m/s", 0.5, (2.5, -0.8)),
         ("pushed back, from 0.05 and -0.001 rad", -0.5, (0.05, -0.001)),
     ):
-        angles, _ = own.swing(start, speed, 0.0, t)
-        lines, curves = [Path(_cart(own, speed * t[-1]), "cart, at the end", "ink", "-", 1.2)], []
-        for index, (colour, dashes) in enumerate((("second", "-"), ("first", "--"))):
-            x, y = own.places[index]
-            place = np.column_stack([x + speed * t, np.full_like(t, y)])
-            wheel = place - own.trail * np.column_stack([np.cos(angles[:, index]), np.sin(angles[:, index])])
-            name = ("left caster's wheel", "right caster's wheel")[index]
+        angles, _ = cart.swing(start, speed, 0.0, t)
+        lines = [Path(corners + np.array([speed * t[-1], 0.0]), "cart, at the end", "ink", "-", 1.2)]
+        curves = []
+        for index, (side, colour, dashes) in enumerate((("left", "second", "-"), ("right", "first", "--"))):
+            x, y = cart.places[index]
+            place, angle = np.column_stack([x + speed * t, np.full_like(t, y)]), angles[:, index]
+            wheel = place - cart.trail * np.column_stack([np.cos(angle), np.sin(angle)])
+            name = f"{side} caster's wheel"
             lines += [Path(place, "kingpins", "quiet", ":", 1.0), Path(wheel, name, colour, dashes, 1.8, dot=True)]
-            curves.append(Path(np.column_stack([t, angles[:, index]]), name, colour, dashes))
+            curves.append(Path(np.column_stack([t, angle]), name, colour, dashes))
         curves += [Path(np.column_stack([t, 0 * t + level]), "", "quiet", ":", 1.0) for level in (-math.pi, 0, math.pi)]
         panels.append(Panel(title, lines))
         panels.append(Panel("angles against the cart [rad]", curves, plane=False, across="time [s]"))
     return paths(panels, columns=2, height=1.9)
-
-
-def _cart(casters: Casters, travelled: float) -> np.ndarray:
-    """The cart's outline (points, 2) [m]: from its fixed axle, which has come so far [m], to the kingpins."""
-    places = np.array(casters.places)
-    corners = np.array([[0.0, places[0, 1]], places[0], places[1], [0.0, places[1, 1]], [0.0, places[0, 1]]])
-    return corners + np.array([travelled, 0.0])
 
 
 def reversing() -> Figure:
@@ -207,36 +194,22 @@ def reversing() -> Figure:
     car = CarWithTrailers(1.0, (0.8,), (0.2,))
     t = np.linspace(0, 3.2, 321)
     panels = []
-    for title, bends in (("bent by 0.05 rad", (0.05,)), ("bent by 0.5 rad", (0.5,))):
-        convoy = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), bends, t)
-        folded = (
-            "" if convoy.jackknifed_at is None else f": folded beyond a right angle at {convoy.jackknifed_at:.3f} s"
+    for bend in (0.05, 0.5):
+        convoy, title = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (bend,), t), f"bent by {bend:g} rad"
+        if convoy.jackknifed_at is not None:
+            title += f": folded beyond a right angle at {convoy.jackknifed_at:.3f} s"
+        back, trailer = convoy.pose[::40, 0], convoy.pose[::40, 1]
+        bodies, drawbars = (
+            pose + length * np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2]), 0 * pose[:, 2]], axis=-1)
+            for pose, length in ((back, 0.5), (trailer, 0.4))
         )
-        chosen = convoy.pose[::40]
-        back, trailer = chosen[:, 0], chosen[:, 1]
-        bodies = back + np.stack([0.5 * np.cos(back[:, 2]), 0.5 * np.sin(back[:, 2]), 0 * back[:, 2]], axis=-1)
-        half = 0.4 * np.stack([np.cos(trailer[:, 2]), np.sin(trailer[:, 2]), 0 * trailer[:, 2]], axis=-1)
-        panels.append(
-            Panel(
-                title + folded,
-                [
-                    Path(convoy.pose[:, 0, :2], "car's rear axle", "quiet", "--", 1.2),
-                    Path(convoy.pose[:, 1, :2], "trailer's axle", "second", "-", 1.8, dot=True),
-                ],
-                [Blades(bodies, 1.0, "grid", 4.0, "car"), Blades(trailer + half, 0.8, "first", 1.6, "drawbar")],
-            )
-        )
-    return paths(panels, columns=2)
-
-
-def coasting(pose: np.ndarray, found: dict[str, tuple[np.ndarray, str, str]], title: str) -> Panel:
-    """The paths (times, bodies, 3) of a vehicle's bodies: the truth, and other methods' over it."""
-    lines = [Path(pose[:, body, :2], "truth", "ink", "-", 3.0) for body in range(pose.shape[1])]
-    for name, (other, colour, dashes) in found.items():
-        lines += [
-            Path(other[:, body, :2], name, colour, dashes, 1.5, framed=False, dot=True) for body in range(pose.shape[1])
+        lines = [
+            Path(convoy.pose[:, 0, :2], "car's rear axle", "quiet", "--", 1.2),
+            Path(convoy.pose[:, 1, :2], "trailer's axle", "second", "-", 1.8, dot=True),
         ]
-    return Panel(title, lines)
+        blades = [Blades(bodies, 1.0, "grid", 4.0, "car"), Blades(drawbars, 0.8, "first", 1.6, "drawbar")]
+        panels.append(Panel(title, lines, blades))
+    return paths(panels, columns=2)
 
 
 SCENES = (CarAndTrailer(), Cart())
@@ -258,20 +231,33 @@ COASTING = tuple(
 )
 
 
-def figures(material: Material) -> dict[str, str]:
-    """Both vehicles coasting, tows, casters, and the trailer that folds."""
+def coasting(material: Material) -> Figure:
+    """The paths of the bodies of both vehicles: the truth, and other methods' over it."""
     panels = []
     for title, scene, cells in COASTING:
-        made = material.motions(cells.values())
-        truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
-        found = {
-            f"{cell.engine.name} {told_variant(scene, cell.engine)}": (made[cell].pose, *OVERLAID[name])
-            for name, cell in cells.items()
-            if cell in made
-        }
-        panels.append(coasting(truth, found, title))
+        truth, motions = (
+            scene.motion(np.linspace(0, scene.duration, scene.samples + 1)),
+            material.motions(cells.values()),
+        )
+        lines = [Path(pose, "truth", "ink", "-", 3.0) for pose in _of_bodies(truth)]
+        for name, cell in cells.items():
+            if cell in motions:
+                label, (colour, dashes) = f"{cell.engine.name} {told_variant(scene, cell.engine)}", OVERLAID[name]
+                how = (label, colour, dashes, 1.5)
+                lines += [Path(pose, *how, framed=False, dot=True) for pose in _of_bodies(motions[cell])]
+        panels.append(Panel(title, lines))
+    return paths(panels, columns=2)
+
+
+def _of_bodies(motion: Trajectory) -> np.ndarray:
+    """The path of each body (bodies, times, 2) [m]."""
+    return motion.pose[:, :, :2].swapaxes(0, 1)
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Both vehicles coasting, tows, casters, and the trailer that folds."""
     return {
-        "coasting": svg(paths(panels, columns=2), "Paths of the centres of mass, in truth and in several methods"),
+        "coasting": svg(coasting(material), "Paths of the centres of mass, in truth and in several methods"),
         "tows": svg(tows(), "A towed wheel: the tractrix, and tows round circles"),
         "casters": svg(casters(), "Casters that trail, and that swing round"),
         "reversing": svg(reversing(), "A reversing trailer folds"),

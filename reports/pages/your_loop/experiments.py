@@ -11,13 +11,14 @@ from typing import Any, ClassVar, cast
 import numpy as np
 import pymunk
 
-from engines import Engine, Unsupported, method_name
+from engines import Unsupported
 from engines.pymunk.reading import read
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.check.judging import IdealMotion, errors, judged
 from reports.model.tasks import Task, Values
+from reports.pages.common import OfMethod
 from reports.pages.your_loop.linkages import LINKAGES
 
 STEP, EVERY = 1e-3, 10  # s, and steps from sample to sample
@@ -42,17 +43,17 @@ def draw(scene: Scene, number: int) -> Mechanism:
         changed: dict[str, Any] = {}
         # Fields alone: a scene that was used keeps what it has worked out among its attributes.
         for name in (each.name for each in fields(cast(Any, scene))):
-            value = getattr(scene, name)
-            if name == "branch":
-                changed[name] = int(random.choice((-1, 1)))
-            elif name in FIXED:
-                continue
-            elif name in ANGLES and isinstance(value, float):
-                changed[name] = float(random.uniform(-pi, pi))
-            elif isinstance(value, float):
-                changed[name] = value * 2 ** float(random.uniform(-SPREAD, SPREAD))
-            elif isinstance(value, tuple):
-                changed[name] = tuple(part * 2 ** float(random.uniform(-SPREAD, SPREAD)) for part in value)
+            match getattr(scene, name):
+                case _ if name == "branch":
+                    changed[name] = int(random.choice((-1, 1)))
+                case _ if name in FIXED:
+                    continue
+                case float() if name in ANGLES:
+                    changed[name] = float(random.uniform(-pi, pi))
+                case float(value):
+                    changed[name] = value * 2 ** float(random.uniform(-SPREAD, SPREAD))
+                case tuple(values):
+                    changed[name] = tuple(value * 2 ** float(random.uniform(-SPREAD, SPREAD)) for value in values)
         try:
             changed_scene: Any = replace(cast(Any, scene), **changed)
             mechanism = changed_scene.mechanism()
@@ -68,22 +69,14 @@ def _ideal(mechanism: Mechanism, samples: int, duration: float) -> IdealMotion:
 
 
 @dataclass(frozen=True)
-class Fresh(Task):
+class Fresh(OfMethod):
     """One method in COUNT fresh mechanisms of a scene's kind, beside the exact solver."""
 
     scene: Scene
-    method: Engine
     quantity: str = "angle"
     commit: str = COMMIT
+    what: ClassVar[str] = f"{COUNT} fresh mechanisms as {{0.scene.name}}"
     seconds: ClassVar[float] = 20.0
-
-    @property
-    def label(self) -> str:
-        return f"{COUNT} fresh mechanisms as {self.scene.name}: {method_name(self.method)}"
-
-    @property
-    def engine(self) -> Engine:
-        return self.method
 
     def run(self) -> Values:
         """`error` (COUNT,): the largest until neighbouring starts part exponentially; inf where the run ends."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,6 @@ from engines import Engine, mujoco, pymunk
 from reference.scene import Scene
 from reference.scenes.catalogue import scene
 from reports.model.cells import Cell
-from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.pages.your_loop.experiments import COMMIT, COUNT, EVERY, BeforeAndAfter, Fresh
@@ -48,22 +46,23 @@ class Case:
 
     @property
     def fresh(self) -> tuple[Fresh, ...]:
-        return tuple(Fresh(self.scene, engine, self.quantity) for engine in self.engines)
+        return tuple(Fresh(engine, self.scene, self.quantity) for engine in self.engines)
 
 
+KINDS = (
+    ("closed linkage", "four_bar", LOOP),
+    ("slider", "slider_crank", SLIDER),
+    ("chain of ten", "pendulum", CHAIN),
+    ("disc that rolls", "rolling", DISC),
+)
+SKATING = ("skate, by our code in every step", "skate", SKATE)
 MUJOCO = (
-    Case("closed linkage", "four_bar", LOOP, mujoco.DEFAULT, mujoco.TUNED),
-    Case("slider", "slider_crank", SLIDER, mujoco.DEFAULT, mujoco.TUNED),
-    Case("chain of ten", "pendulum", CHAIN, mujoco.DEFAULT, mujoco.TUNED),
-    Case("disc that rolls", "rolling", DISC, mujoco.DEFAULT, mujoco.TUNED),
-    Case("skate, by our code in every step", "skate", SKATE, mujoco.DEFAULT, mujoco.TUNED, "position"),
+    *(Case(*kind, mujoco.DEFAULT, mujoco.TUNED) for kind in KINDS),
+    Case(*SKATING, mujoco.DEFAULT, mujoco.TUNED, "position"),
 )
 PYMUNK = (
-    Case("closed linkage", "four_bar", LOOP, pymunk.DEFAULT, pymunk.LEAPFROG),
-    Case("slider", "slider_crank", SLIDER, pymunk.DEFAULT, pymunk.LEAPFROG),
-    Case("chain of ten", "pendulum", CHAIN, pymunk.DEFAULT, pymunk.LEAPFROG),
-    Case("disc that rolls", "rolling", DISC, pymunk.DEFAULT, pymunk.TUNED),
-    Case("skate, by our code in every step", "skate", SKATE, None, pymunk.TUNED, "position"),
+    *(Case(*kind, pymunk.DEFAULT, pymunk.TUNED if kind[2] == DISC else pymunk.LEAPFROG) for kind in KINDS),
+    Case(*SKATING, None, pymunk.TUNED, "position"),
 )
 
 
@@ -96,22 +95,19 @@ def table(material: Material, cases: tuple[Case, ...]) -> str:
     return markdown(head, body, left=1) if known else ""
 
 
-def spread(material: Material, task: Fresh) -> tuple[float, float, float] | None:
-    """(median, least, largest) error of the fresh mechanisms, if they were run."""
+def spread(material: Material, task: Fresh) -> list[float]:
+    """[median, least, largest] error of the fresh mechanisms, UNMEASURED if they were not run."""
     answer = material.finished(task)
     if answer is None:
-        return None
+        return [UNMEASURED] * 3
     error = answer.array("error")
-    return float(np.median(error)), float(error.min()), float(error.max())
+    return [float(np.median(error)), float(error.min()), float(error.max())]
 
 
 def spread_words(material: Material, task: Fresh) -> str:
     """'1e-3 (1e-5 to 0.2)', or that it was not run."""
-    values = spread(material, task)
-    if values is None:
-        return NOTHING
-    median, least, largest = (number(value) if isfinite(value) else "gave up" for value in values)
-    return f"{median} ({least} to {largest})"
+    median, least, largest = (number(value, infinite="gave up") for value in spread(material, task))
+    return NOTHING if median == NOTHING else f"{median} ({least} to {largest})"
 
 
 def before_and_after(material: Material) -> str:
@@ -121,19 +117,13 @@ def before_and_after(material: Material) -> str:
         answer = material.finished(task)
         if answer is not None:
             count = round(answer.number("iterations"))
-            cells = [
-                " → ".join(number(value) if isfinite(value) else NOTHING for value in answer.array(name).tolist())
+            gap, angle = (
+                " → ".join(number(value, infinite=NOTHING) for value in answer.array(name).tolist())
                 for name in ("gap", "angle")
-            ]
-            angle = cells[1] if np.isfinite(answer.array("angle")).any() else NOTHING
-            body.append([task.linkage, str(count) if count else "as shipped", cells[0], angle])
+            )
+            angle = NOTHING if angle == f"{NOTHING} → {NOTHING}" else angle
+            body.append([task.linkage, str(count) if count else "as shipped", gap, angle])
     return markdown(["linkage", "iterations", "largest gap, px", "angle error, rad"], body, left=1) if body else ""
-
-
-def error_at(material: Material, case: Case, engine: Engine) -> Any:
-    """The error of a case that can be compared, else UNMEASURED."""
-    row = material.rows.get(cell(case, engine))
-    return getattr(row, case.quantity) if row is not None and Outcome(row.outcome).comparable else UNMEASURED
 
 
 def aimed(engine: str) -> str:
@@ -158,13 +148,7 @@ def words(material: Material) -> Mapping[str, Any]:
         "lines": {path.stem: path.read_text(encoding="utf-8").rstrip() for path in sorted(LINES.iterdir())},
         "aimed": {engine: aimed(engine) for engine in ("mujoco", "pymunk")},
         "reactions": {engine: UNMEASURED if row is None else row.reaction for engine, row in rows.items()},
-        "fresh": {
-            name: [[UNMEASURED] * 3 if (values := spread(material, task)) is None else values for task in case.fresh]
-            for name, case in first.items()
-        },
-        "linkage": {
-            name: [error_at(material, case, engine) for engine in case.engines] for name, case in first.items()
-        },
+        "fresh": {name: [spread(material, task) for task in case.fresh] for name, case in first.items()},
         "fresh_count": COUNT,
         "fresh_commit": COMMIT,
         "before_term": old[0] if old and rows["mujoco"] is not None else UNMEASURED,
@@ -175,8 +159,6 @@ PAGE = Page(
     name=NAME,
     title="Your loop in MuJoCo, your loop in pymunk",
     lesson="The lines to paste, the error and the cost before and after, the release, and what they do not cure.",
-    scenes=(),
-    engines=(),
     companions=(LOOP,),
     borrowed=tuple(each for each in ASKED if each not in OWN),
     cells=OWN,

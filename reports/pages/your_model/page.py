@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.check.checked import Checked, Plan, Tried, check, read, readers
@@ -32,14 +32,13 @@ class Walk(Task):
     duration: float  # s
     tolerance: float
     step: float | None = None
+    seconds: ClassVar[float] = 15.0
+    words: ClassVar[str] = "check: {0.file}"
 
     @property
-    def cost(self) -> float:
-        return 15.0
-
-    @property
-    def label(self) -> str:
-        return f"check: {self.file}"
+    def stem(self) -> str:
+        """The model's name in the template and in the names of its pictures."""
+        return self.file.split(".")[0]
 
     def run(self) -> Values:
         """All that `crosscheck check --json` tells but CPU times, others on every machine; and what is drawn."""
@@ -128,21 +127,21 @@ NAME = "your_model"
 
 
 def found_of(material: Material, walk: Walk) -> dict[str, Any] | None:
-    """What was found in a model, if it was run and finished."""
-    answer = material.finished(walk)
-    return None if answer is None else json.loads(str(answer.values["found"]))
+    """The results of a check with their table; None if it was not run or not finished."""
+    if (answer := material.finished(walk)) is None:
+        return None
+    found = json.loads(str(answer.values["found"]))
+    return {**found, "table": table(found)}
 
 
 def figures(material: Material) -> dict[str, str]:
     """Errors over time, and the worst moment, of each model."""
-    out = {}
-    for walk in WALKS:
-        answer = material.finished(walk)
-        if answer is not None:
-            stem = walk.file.split(".")[0]
-            drawn = pictures(from_text(str(answer.values["shown"])))
-            out |= {f"{stem}_{key}": drawing for key, (_, drawing) in drawn.items()}
-    return out
+    return {
+        f"{walk.stem}_{key}": drawing
+        for walk in WALKS
+        if (answer := material.finished(walk)) is not None
+        for key, (_, drawing) in pictures(from_text(str(answer.values["shown"]))).items()
+    }
 
 
 def table(found: Mapping[str, Any]) -> str:
@@ -156,12 +155,11 @@ def table(found: Mapping[str, Any]) -> str:
 
 def words(material: Material) -> Mapping[str, Any]:
     """By a model's name what was found in it, its text and its table; None for one that was not run."""
-    told = {walk.file.split(".")[0]: found_of(material, walk) for walk in WALKS}
     return {
         "read": read_elements(),
         "others": other_models(),
-        "found": {stem: found and {**found, "table": table(found)} for stem, found in told.items()},
-        "walks": {walk.file.split(".")[0]: walk for walk in WALKS},
+        "found": {walk.stem: found_of(material, walk) for walk in WALKS},
+        "walks": {walk.stem: walk for walk in WALKS},
     }
 
 
@@ -169,8 +167,6 @@ PAGE = Page(
     name=NAME,
     title="Your own model",
     lesson="What `crosscheck check` tells of a model of your own: how wrong it is, why, and which settings are enough.",
-    scenes=(),
-    engines=(),
     companions=(FreeFourBar(),),  # a full run of it runs the checks too
     figures=figures,
     words=words,

@@ -32,8 +32,7 @@ class Law:
     """`ours` in doubles and `exact` in fifty digits take the same arguments and give the same values, in order.
 
     `vectors` are slices of values that are the components of one vector; `angles` are values known up to whole turns;
-    `size` gives the size of each value's whole motion, where a value that passes zero is a part of one. So many cases
-    are `quick`, a second or less (0: one takes as long), and so `many` take a minute.
+    `size` gives the size of each value's whole motion, where a value that passes zero is a part of one.
     """
 
     name: str
@@ -43,8 +42,6 @@ class Law:
     vectors: tuple[slice, ...] = ()
     angles: tuple[int, ...] = ()
     size: Callable[..., Sequence[Any]] | None = None
-    quick: int = 12
-    many: int = 600
 
 
 @dataclass(frozen=True)
@@ -66,11 +63,29 @@ class Miss:
         )
 
 
-def _difference(first: Any, second: Any, turns: bool) -> float:
-    gap = first - second
-    if turns:
-        gap -= 2 * mp.pi * mp.nint(gap / (2 * mp.pi))
-    return float(abs(gap))
+def differences(law: Law, values: Sequence[Any], others: Sequence[Any]) -> list[float]:
+    """The sizes of the differences of two rows of values; of angles, up to whole turns."""
+    gaps = [one - other for one, other in zip(values, others, strict=True)]
+    for k in law.angles:
+        gaps[k] -= 2 * mp.pi * mp.nint(gaps[k] / (2 * mp.pi))
+    return [float(abs(gap)) for gap in gaps]
+
+
+def moved_by_roundings(law: Law, numbers: list[Any], exact: list[Any]) -> list[float] | None:
+    """How far the values move when each argument moves by a rounding, added up; None where there is no value near."""
+    out = [0.0] * len(exact)
+    for index, number in enumerate(numbers):
+        moves = []
+        for sign in (1, -1):
+            try:
+                near = law.exact(*numbers[:index], number * (1 + sign * mp.mpf(EPS)), *numbers[index + 1 :])
+            except (Outside, ZeroDivisionError):
+                continue
+            moves.append(differences(law, near, exact))
+        if not moves:
+            return None
+        out = [total + max(move) for total, *move in zip(out, *moves, strict=True)]
+    return out
 
 
 def misses(law: Law, arguments: tuple[float, ...]) -> list[Miss] | None:
@@ -79,46 +94,23 @@ def misses(law: Law, arguments: tuple[float, ...]) -> list[Miss] | None:
         numbers = [mp.mpf(argument) for argument in arguments]
         try:
             exact = list(law.exact(*numbers))
-        except (Outside, ZeroDivisionError):
+            found = np.asarray(law.ours(*arguments), dtype=float).ravel().tolist()
+        except (ValueError, ZeroDivisionError):
             return None
-        try:
-            found = np.asarray(law.ours(*arguments), dtype=float).ravel()
-        except ValueError:
+        moved = moved_by_roundings(law, numbers, exact)
+        if moved is None:
             return None
         size = [abs(float(value)) for value in (law.size(*numbers) if law.size else exact)]
         for vector in law.vectors:
-            whole = math.hypot(*size[vector])
-            size[vector] = [whole] * len(size[vector])
-        excused = [EPS * value for value in size]
-        for index, number in enumerate(numbers):
-            moved = []
-            for sign in (1, -1):
-                try:
-                    near = law.exact(*numbers[:index], number * (1 + sign * mp.mpf(EPS)), *numbers[index + 1 :])
-                except (Outside, ZeroDivisionError):
-                    continue
-                moved.append(
-                    [_difference(*pair, k in law.angles) for k, pair in enumerate(zip(near, exact, strict=True))]
-                )
-            if not moved:
-                return None
-            for k in range(len(exact)):
-                excused[k] += max(move[k] for move in moved)
+            size[vector] = [math.hypot(*size[vector])] * len(size[vector])
+        excused = [EPS * own + move for own, move in zip(size, moved, strict=True)]
         for vector in law.vectors:
             excused[vector] = [max(excused[vector])] * len(excused[vector])
-        tiny = 1e-300
+        finite = [value if math.isfinite(value) else math.inf for value in found]
+        off = differences(law, [mp.mpf(value) if value < math.inf else mp.mpf(1e300) for value in finite], exact)
         return [
-            Miss(
-                _difference(mp.mpf(float(value)), truth, k in law.angles) / (excuse + tiny)
-                if math.isfinite(value)
-                else math.inf,
-                law.name,
-                k,
-                arguments,
-                float(value),
-                float(truth),
-            )
-            for k, (value, truth, excuse) in enumerate(zip(found, exact, excused, strict=True))
+            Miss(miss / (excuse + 1e-300), law.name, k, arguments, found[k], float(exact[k]))
+            for k, (miss, excuse) in enumerate(zip(off, excused, strict=True))
         ]
 
 

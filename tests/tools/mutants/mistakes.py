@@ -18,6 +18,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from tests import ROOT
 
@@ -41,26 +42,25 @@ class Mistake:
     survives: str = ""
 
     def locate(self) -> tuple[str, bytes]:
-        """The file, relative to the root, and its text with the mistake; raises BadList."""
+        """The file, relative to the root, and its code with the mistake; raises BadList."""
         module, _, function = self.function.rpartition(":")
-        old = _normalise(self.old)
-        hits = [
-            (file, text, *_span(text, first, last))
-            for file, text, node in _functions().get(function, ())
-            if module in file.removesuffix(".py").replace("/", ".")
-            for first, last in _matches(node, old, inside=bool(function))
-        ]
-        if len(hits) != 1:
-            raise BadList(f"{self.mistake}: {self.old!r} stands {len(hits)} times in functions named {self.function!r}")
-        file, text, start, end = hits[0]
-        column = start - (text.rfind(b"\n", 0, start) + 1)
-        new = (self.new or "pass") if isinstance(old, list) else f"({self.new or None})"
-        wrong = text[:start] + new.replace("\n", "\n" + " " * column).encode() + text[end:]
+        old = _parse(self.old)
         try:
-            ast.parse(wrong)
+            new = _parse(self.new or ("pass" if isinstance(old[0], ast.stmt) else "None"))
         except SyntaxError as reason:
             raise BadList(f"{self.mistake}: the replacement is not valid Python: {reason}") from None
-        return file, wrong
+        if isinstance(old[0], ast.stmt) and isinstance(new[0], ast.expr):
+            new = [ast.Expr(new[0])]
+        hits = []
+        for file, text in _sources().items():
+            if module in file.removesuffix(".py").replace("/", ".") and function.rpartition(".")[2].encode() in text:
+                tree = ast.parse(text)
+                nodes = [node for name, node in _walk(tree, "") if name == function] if function else [tree]
+                hits += sum(_replace(node, old, new, inside=bool(function)) for node in nodes) * [(file, tree)]
+        if len(hits) != 1:
+            raise BadList(f"{self.mistake}: {self.old!r} stands {len(hits)} times in functions named {self.function!r}")
+        file, tree = hits[0]
+        return file, ast.unparse(tree).encode()
 
 
 def read_mistakes(path: Path = LIST) -> tuple[Mistake, ...]:
@@ -79,15 +79,9 @@ def read_mistakes(path: Path = LIST) -> tuple[Mistake, ...]:
 
 
 @cache
-def _functions() -> dict[str, list[tuple[str, bytes, ast.AST]]]:
-    """(file, text, node) of all functions and classes by qualified name; modules by ""."""
-    out: dict[str, list[tuple[str, bytes, ast.AST]]] = {}
-    for path in sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py")):
-        text = path.read_bytes()
-        tree = ast.parse(text)
-        for name, node in (("", tree), *_walk(tree, "")):
-            out.setdefault(name, []).append((path.relative_to(ROOT).as_posix(), text, node))
-    return out
+def _sources() -> dict[str, bytes]:
+    paths = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+    return {path.relative_to(ROOT).as_posix(): path.read_bytes() for path in paths}
 
 
 def _walk(node: ast.AST, within: str) -> Iterator[tuple[str, ast.AST]]:
@@ -99,35 +93,29 @@ def _walk(node: ast.AST, within: str) -> Iterator[tuple[str, ast.AST]]:
         yield from _walk(child, name)
 
 
-def _span(text: bytes, first: ast.AST, last: ast.AST) -> tuple[int, int]:
-    """The bytes from the start of one node to the end of another."""
-    starts = [0]
-    for line in text.splitlines(keepends=True):
-        starts.append(starts[-1] + len(line))
-    start = starts[first.lineno - 1] + first.col_offset  # type: ignore[attr-defined]
-    return start, starts[last.end_lineno - 1] + last.end_col_offset  # type: ignore[attr-defined]
-
-
-def _normalise(old: str) -> str | list[str]:
-    """The text of an expression as `ast.unparse` writes it, or that of each statement."""
+def _parse(code: str) -> list[Any]:
+    """The expression, or the statements."""
     try:
-        return ast.unparse(ast.parse(old, mode="eval"))
+        return [ast.parse(code, mode="eval").body]
     except SyntaxError:
-        return [ast.unparse(statement) for statement in ast.parse(old).body]
+        return list(ast.parse(code).body)
 
 
-def _matches(node: ast.AST, old: str | list[str], inside: bool) -> Iterator[tuple[ast.AST, ast.AST]]:
-    """The first and last nodes of every place where `old` stands; `inside`: functions below are looked into as well."""
-    for child in ast.iter_child_nodes(node):
-        if inside or not isinstance(child, ast.FunctionDef | ast.ClassDef):
-            if isinstance(child, ast.expr) and isinstance(old, str) and ast.unparse(child) == old:
-                yield child, child
-            else:
-                yield from _matches(child, old, inside)
-    if isinstance(old, list):
-        for name in ("body", "orelse", "finalbody"):
-            block = getattr(node, name, [])
-            for at in range(len(block) - len(old) + 1 if isinstance(block, list) else 0):
-                part = block[at : at + len(old)]
-                if all(isinstance(p, ast.stmt) and ast.unparse(p) == text for p, text in zip(part, old, strict=True)):
-                    yield part[0], part[-1]
+def _replace(node: ast.AST, old: list[Any], new: list[Any], inside: bool) -> int:
+    """Replace `old` wherever it stands below a node, and count the places; `inside`: in functions below it as well."""
+    kind = ast.expr if isinstance(old[0], ast.expr) else ast.stmt
+    wanted, count = [ast.unparse(part) for part in old], 0
+    for name, value in list(ast.iter_fields(node)):
+        items, at = value if isinstance(value, list) else [value], 0
+        while at < len(items):
+            item, part = items[at], items[at : at + len(old)]
+            if all(isinstance(each, kind) for each in part) and [ast.unparse(each) for each in part] == wanted:
+                items[at : at + len(old)] = new
+                count, at = count + 1, at + len(new)
+                continue
+            if isinstance(item, ast.AST) and (inside or not isinstance(item, ast.FunctionDef | ast.ClassDef)):
+                count += _replace(item, old, new, inside)
+            at += 1
+        if not isinstance(value, list):
+            setattr(node, name, items[0])
+    return count

@@ -1,4 +1,4 @@
-"""Linkages, closed as complex numbers, and motions in closed form, in fifty digits."""
+"""Linkages, closed as complex numbers, motions in closed form, ellipses and cams, in fifty digits."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Curve
 from reference.scenes.four_bar.linkage import FourBar
 from reference.scenes.pendulum.link import Pendulum
 from reference.scenes.skates import ChaplyginSleigh
@@ -253,7 +255,62 @@ def drawn_sleigh(rng: np.random.Generator) -> tuple[float, ...]:
     )
 
 
-LINKAGES = (
+def ellipse(a: Any, b: Any, u: Any) -> list[Any]:
+    """Arc, direction, point and curvature as in `reference.rolling.closed_curves`, by Legendre's integral."""
+    if max(a / b, b / a) > 999:
+        raise Outside
+    sine, cosine = mp.sin(u), mp.cos(u)
+    excess = mp.atan2((a - b) * sine * cosine, a * sine**2 + b * cosine**2)  # over a circle's: below a quarter turn
+    curvature = a * b / mp.hypot(a * sine, b * cosine) ** 3
+    return [b * mp.ellipe(u, 1 - (a / b) ** 2), u + mp.pi / 2 + excess, a * cosine, b * sine, curvature]
+
+
+def cam(radius: Any, *numbers: Any) -> list[Any]:
+    """The same of a cam; `numbers`: cosine and sine of the first, of the second, of the third; the normal's angle."""
+    *harmonics, nu = numbers
+
+    def series(nu: Any, order: int) -> Any:
+        out = mp.mpf(0)
+        for k in range(1, 1 + len(harmonics) // 2):
+            phase = k * nu + order * mp.pi / 2
+            out += mp.mpf(k) ** order * (harmonics[2 * k - 2] * mp.cos(phase) + harmonics[2 * k - 1] * mp.sin(phase))
+        return out
+
+    arc = radius * nu + sum((at - start for at, start in ((series(nu, k), series(0, k)) for k in (-1, 1))), mp.mpf(0))
+    point = mp.expj(nu) * mp.mpc(radius + series(nu, 0), series(nu, 1))
+    return [arc, nu + mp.pi / 2, point.real, point.imag, 1 / (radius + series(nu, 0) + series(nu, 2))]
+
+
+def curve_at(curve: Curve, place: float) -> list[Any]:
+    """Arc, direction, point and curvature of a curve of the reference at a parameter."""
+    return [curve.arc_of(place), curve.angle_of(place), *curve.point_of(place), curve.curvature_of(place)]
+
+
+def our_cam(radius: float, *numbers: float) -> list[Any]:
+    return curve_at(Cam(radius, tuple(numbers[:-1:2]), tuple(numbers[1:-1:2])), numbers[-1])
+
+
+def drawn_ellipse(rng: np.random.Generator) -> tuple[float, ...]:
+    a = decades(rng)
+    b = a * (decades(rng, -2.9, 2.9) if rng.random() < 0.5 else 1 + decades(rng, -14, 0))
+    return a, b
+
+
+def turned(rng: np.random.Generator) -> float:
+    """Up to a few turns, often next to an end of an axis."""
+    if rng.random() < 0.5:
+        return float(rng.uniform(-20, 20))
+    return float(rng.integers(-4, 5)) * math.pi / 2 + float(rng.choice([-1, 1])) * decades(rng, -12, 0)
+
+
+def drawn_cam(rng: np.random.Generator) -> tuple[float, ...]:
+    """Convex: radius above the sum of (k^2 - 1) c_k; at times nearly not."""
+    radius, spread = decades(rng), (0.1 if rng.random() < 0.7 else 0.35)
+    c = [radius * float(rng.uniform(-1, 1)) for _ in range(2)]
+    return radius, *c, *(radius * spread * float(rng.uniform(-1, 1)) / share for share in (3, 3, 8, 8))
+
+
+LAWS = (
     *(
         Law(f"four-bar, branch {branch:+d}", drawn_four_bar, ours, exact, angles=(0, 1))
         for branch in (1, -1)
@@ -268,4 +325,12 @@ LINKAGES = (
     Law("pendulum", drawn_pendulum, lambda f, a, r, t: Pendulum(f, a, r).motion(t), swung, angles=(0,), size=swing),
     Law("towed wheel", drawn_tow, our_tow, tow, vectors=(slice(1, 3),), angles=(0,), size=tow_sizes),
     Law("sleigh", drawn_sleigh, our_sleigh, sleigh),
+    Law(
+        "ellipse at a parameter",
+        lambda rng: (*drawn_ellipse(rng), turned(rng)),
+        lambda a, b, u: curve_at(Ellipse(a, b), u),
+        ellipse,
+        vectors=(slice(2, 4),),
+    ),
+    Law("cam at a parameter", lambda rng: (*drawn_cam(rng), turned(rng)), our_cam, cam, vectors=(slice(2, 4),)),
 )

@@ -1,0 +1,94 @@
+"""The reference's own banded solve for a chain's joint forces, under RK4, as an engine among others.
+
+It takes the mechanism of a LongPendulum and no other, and shows how little an evaluation needs to cost.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from engines import EXACT, Engine, Holder, Promise, Size, Unpromised, Unsupported
+from engines.sampling import sampled
+from reference.checks import Count, Positive, validated
+from reference.joints import Joint, Pin
+from reference.mechanism import Mechanism
+from reference.scenes.pendulum.chain import Array, Chain
+from reference.scenes.pendulum.scenes import OpenChain
+from reference.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class BandedChain(Engine):
+    """An engine in the sense of `engines.Engine`, for a pendulum of uniform bars alone."""
+
+    name = "reference"
+    variant = "banded rk4"
+    packages = ("numpy",)
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """Runge-Kutta's, of angles between which no pin can part."""
+        return Promise(4, gap=EXACT, slip=EXACT)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About what a step takes [s]: most of it is numpy's calls, as many for any chain."""
+        return 50e-6 * max(1.0, len(mechanism.bodies) / 3)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        return "engine"
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> BandedRun:
+        return BandedRun(mechanism, chain_of(mechanism), dt)
+
+
+def chain_of(mechanism: Mechanism) -> Chain:
+    """The chain that a mechanism is; raises Unsupported for any but that of a LongPendulum."""
+    if not isinstance(mechanism, OpenChain):
+        raise Unsupported("the reference's chain is that of a LongPendulum alone")
+    lengths = tuple(-2 * joint.second_point[0] for joint in mechanism.joints if isinstance(joint, Pin))
+    return Chain(lengths, tuple(body.mass for body in mechanism.bodies), -mechanism.gravity[1])
+
+
+class BandedRun:
+    """A chain at its start; see `engines.Run`."""
+
+    def __init__(self, mechanism: Mechanism, chain: Chain, dt: float) -> None:
+        self._mechanism, self._chain, self._dt = mechanism, chain, dt
+        self._start = np.concatenate([mechanism.pose[:, 2] + math.pi / 2, mechanism.twist[:, 2]])
+        self.size = Size(chain.links, chain.links, 0, 0)
+
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Trajectory:
+        self._mechanism.require_room(samples)
+        chain, states = self._chain, np.empty((samples + 1, len(self._start)))
+        state = self._start
+
+        def advance(count: int) -> None:
+            nonlocal state
+            for _ in range(count):
+                state = self._step(state)
+
+        def record(sample: int) -> None:
+            states[sample] = state
+
+        stepping = sampled([every] * samples, advance, record)
+        angle, rate = states[:, : chain.links], states[:, chain.links :]
+        pose, twist, _ = chain.placement(angle, rate, np.zeros_like(angle))
+        reaction = chain.forces(angle, rate).reshape(samples + 1, -1)
+        t: Array = np.arange(samples + 1, dtype=float) * (every * self._dt)
+        return Trajectory(t, pose, twist, reaction, stepping)
+
+    def _step(self, state: Array) -> Array:
+        """The classical Runge-Kutta step."""
+        rates, dt = self._chain.rates, self._dt
+        first = rates(state)
+        second = rates(state + dt / 2 * first)
+        third = rates(state + dt / 2 * second)
+        fourth = rates(state + dt * third)
+        return state + dt / 6 * (first + 2 * second + 2 * third + fourth)
