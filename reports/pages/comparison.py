@@ -10,8 +10,8 @@ from engines import registry
 from reports.model.cells import is_step
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.plots.engines_compared import Compared, engines_compared
 from reports.plots.theme import svg
+from reports.plots.work_precision import Compared, engines_compared
 from reports.write.columns import (
     NO_JOINT,
     NOT_BUILT,

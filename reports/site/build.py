@@ -21,12 +21,11 @@ from reports.model.tasks import Motion
 from reports.plots.looks import family_of, role
 from reports.site.animated import animation, shown
 from reports.site.generator import Documents, Extra, build_html, colours, lighten, quote_section, reference_sources
-from reports.site.lecture import render_lecture
 from reports.site.lesson import Lesson, Source
 from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import data, first_picture
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED
-from reports.site.markdown import cards, render_html, section, title
+from reports.site.markdown import cards, render_html, render_lecture, section, title
 from reports.site.packages import PACKAGES, NotFetched, compile_munk2d, fetch_package
 from reports.write.columns import VARIANTS
 from reports.write.csv_files import read_lines

@@ -1,13 +1,27 @@
-"""Markdown of lessons as HTML, formulas as MathML, and the parts of a Markdown page."""
+"""Markdown of lessons as HTML, formulas as MathML, the parts of a Markdown page, and the lecture as one.
+
+The cells of the lecture are run once, in a process of their own, and stand with their output and their pictures.
+"""
 
 from __future__ import annotations
 
+import io
+import json
 import re
+import sys
+import warnings
+from contextlib import redirect_stdout
 from functools import cache
 from html import escape
+from pathlib import Path
 
 from reports.model.ending import BadInput
+from reports.run.installed import environment
+from reports.site.packages import printed
 from reports.write.templates import inert
+
+ROOT = Path(__file__).resolve().parents[2]
+PATIENCE = 300  # s for all cells of the lecture
 
 
 @cache
@@ -61,3 +75,54 @@ def cards(links: list[tuple[str, str]]) -> str:
     """A list of (address, words) as HTML."""
     items = "".join(f'<li><a href="{address}">{escape(words)}</a></li>' for address, words in links)
     return f'<ul class="cards">{items}</ul>'
+
+
+def render_lecture(notebook: str) -> dict[str, str]:
+    """The page "lecture.md" and its pictures by name; the last cell, the solutions, is folded.
+
+    Raises NotFetched with the reason where a cell fails.
+    """
+    cells = json.loads(notebook)["cells"]
+    sources = ["".join(cell["source"]) for cell in cells]
+    codes = [source for cell, source in zip(cells, sources, strict=True) if cell["cell_type"] == "code"]
+    words = [sys.executable, "-m", "reports.site.markdown"]
+    runs = iter(json.loads(printed(words, "a cell fails", PATIENCE, input=json.dumps(codes), env=environment(ROOT))))
+    parts, files = [], {}
+    for cell, source in zip(cells, sources, strict=True):
+        if cell["cell_type"] == "markdown":
+            parts.append(source)
+            continue
+        output, pictures = next(runs)
+        parts.append(f"```python\n{source}\n```" + (f"\n\n```text\n{output.rstrip()}\n```" if output else ""))
+        for picture in pictures:
+            name = f"lecture_{len(files)}.svg"
+            files[name] = picture
+            parts.append(f"![Figure {len(files)}]({name})")
+    parts[-1] = f"<details><summary>Solutions</summary>\n\n{parts[-1]}\n\n</details>"
+    return {"lecture.md": "\n\n".join(parts), **files}
+
+
+def main() -> None:
+    """Run the cells that come as JSON, and write the output and the pictures of each."""
+    import matplotlib
+
+    matplotlib.use("agg")
+    import matplotlib.pyplot as plt
+
+    warnings.simplefilter("ignore")  # that nothing can be shown here
+    names, runs = {"__name__": "lecture"}, []
+    for code in json.load(sys.stdin):
+        out, pictures = io.StringIO(), []
+        with redirect_stdout(out):
+            exec(code, names)
+        for number in plt.get_fignums():
+            drawn = io.StringIO()
+            plt.figure(number).savefig(drawn, format="svg", metadata={"Date": None})
+            pictures.append(drawn.getvalue())
+        plt.close("all")
+        runs.append((out.getvalue(), pictures))
+    json.dump(runs, sys.stdout)
+
+
+if __name__ == "__main__":
+    main()

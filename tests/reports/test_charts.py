@@ -28,7 +28,6 @@ from reports.pages.centrodes.page import draw_centrodes, draw_rate
 from reports.plots import looks as families
 from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
-from reports.plots.engines_compared import Compared, engines_compared
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import LIGHT
 from tests.mechanisms import four_bar, pendulum
@@ -105,10 +104,10 @@ def featured(row) -> bool:
 def compared() -> Figure:
     lines = {"as shipped": {"pymunk": [(1e-3, 1e-2), (1e-2, 1e-3)]}, "with our code": {"mujoco": [(5e-3, 1e-9)]}}
     absent = {"as shipped": {"no such joint": ["pymunk"]}}
-    return engines_compared(
+    return charts.engines_compared(
         [
-            Compared("four-bar", "angle", lines, {}),
-            Compared("skate", "position", {"as shipped": {}, "with our code": {}}, absent),
+            charts.Compared("four-bar", "angle", lines, {}),
+            charts.Compared("skate", "position", {"as shipped": {}, "with our code": {}}, absent),
         ]
     )
 

@@ -29,11 +29,10 @@ from reports.site.animated import PAUSE, Shown, animation, film, shown
 from reports.site.build import MARKER, build, explored
 from reports.site.folder import compressed_size, refuse_strangers, write_site
 from reports.site.generator import NEEDED, Documents, build_html, reference_sources
-from reports.site.lecture import render_lecture
 from reports.site.lesson import Part, Source, part_of
 from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import forces
-from reports.site.markdown import render_html, section
+from reports.site.markdown import render_html, render_lecture, section
 from reports.site.packages import NotFetched, Package, fetch_package, printed
 from tests import ROOT
 
