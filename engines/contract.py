@@ -15,23 +15,22 @@
    samples of a row, or in the first alone.
 5. `Trajectory.stepping` is the CPU time of the stepping loop, recording included; reading it out afterwards is not.
    Rough runs that plan it, by which a method chooses its steps or sweeps, are part of it.
-6. An engine that resets itself says when (`reset_at`), one that warns says so (`warnings`), one that estimates an error
-   above what it claims says from when on (`unresolved_at`); all go on. A method without an estimate, such as a single
-   run of documented settings, claims an order and no accuracy at a step: how wrong it is there, the report measures.
+6. An engine that resets itself reports when (`reset_at`), one that warns its `warnings`, one that estimates an error
+   above its claim from when on (`unresolved_at`); all go on. A method without an estimate, such as a single run of
+   documented settings, claims an order and no accuracy at a step.
 7. `order(mechanism)` is what theory promises of its errors, from its settings and the mechanism alone: a Promise, which
-   the gate holds it to, or Unpromised with the reason why nothing can be promised.
+   the gate checks, or Unpromised with the reason.
 8. `step_cost(mechanism)` is about the CPU time of a step [s]. It decides which small steps are worth running, so it is
-   a formula and no measurement: the same on every machine.
+   a formula: the same on every machine.
 9. `holder(joint, mechanism)` says who holds a joint: the engine by a joint, contact or coordinate of its own; the
    engine by rows that our code writes anew while it steps; or our code alone, between steps of free bodies.
-10. `softness(mechanism, dt)` says how its joints give way by its own settings: a Softness, or None where they don't.
+10. `softness(mechanism, dt)` is the regularisation of its joints by its own settings: a Softness, or None.
 11. `instants`, `alike`, `precision` and `angle_error` declare the law of one instant, the tolerance of the solver and
    the rounding; `crosscheck search` holds the engine to them. Usual is: no law, no tolerance, double precision.
 
-More may be declared. Under the entry point group `crosscheck.bare_loops`, by an engine's name, stands a function that
-is given (engine, mechanism, dt, steps) and tells the CPU seconds of that many steps of its model with nothing read:
-`crosscheck bench` sets the `stepping` of a run beside it. It may raise Unsupported too. What else is asked of an engine
-stands in the class `Engine`, with what is usual where an engine says nothing.
+An entry point of the group `crosscheck.bare_loops`, by an engine's name, is a function of (engine, mechanism, dt,
+steps) that returns the CPU seconds of that many steps with nothing read, for `crosscheck bench`. It may raise
+Unsupported too. The class `Engine` has further members, with their usual answers.
 """
 
 from __future__ import annotations
@@ -50,8 +49,7 @@ from reference.trajectory import Trajectory
 
 # The order of an error that no step makes: a joint between coordinates that can't part, a motion that is prescribed.
 EXACT = math.inf
-# What every method with an estimate of its own claims: poses wrong by less than this part of a radian, or of the
-# mechanism's length. From where its estimate is above, it is unresolved.
+# Claim of every method with an estimate: errors of poses in rad, or in the mechanism's length. Above, it is unresolved.
 CLAIM = 1e-7
 
 Holder = Literal["engine", "engine, our rows", "ours"]
@@ -71,7 +69,7 @@ def refuse_forces(mechanism: Mechanism, engine: str) -> None:
 
 @dataclass(frozen=True)
 class Size:
-    """What was modelled: to be held against the mechanism's own size."""
+    """The size of a model, to be compared with the mechanism's."""
 
     bodies: int  # moving bodies
     coordinates: int  # position coordinates that the engine integrates
@@ -81,7 +79,7 @@ class Size:
 
 @dataclass(frozen=True)
 class Softness:
-    """How joints give way: J a = bias - damping slip - stiffness gap - compliance A reaction.
+    """Regularisation of the joints: J a = bias - damping slip - stiffness gap - compliance A reaction.
 
     stiffness [1/s^2], damping [1/s]; compliance: a share of the row's own inverse inertia A. `rows`: which rows of the
     mechanism (rows,) are so, the others hold exactly. `complete`: whether `bias`, the term of the velocities, is there.
@@ -96,7 +94,7 @@ class Softness:
 
 @dataclass(frozen=True)
 class Promise:
-    """The power of the step with which each error of a method falls; EXACT for one that no step makes.
+    """Expected convergence order of each error; EXACT (inf) where there is no discretisation error.
 
     `order` is that of poses, and of the others unless they are given. `integrator`: the order of what the step alone
     costs, where a softness that is tied to the step sets the others. `differences`: reactions are a change of velocity
@@ -128,14 +126,14 @@ class Promise:
 
 @dataclass(frozen=True)
 class Unpromised:
-    """No order can be promised; `reason` is one sentence that says why. What its own steps change bounds its errors."""
+    """No order can be promised; `reason` is one sentence. Errors are bounded by differences between step sizes."""
 
     reason: str
 
 
 @dataclass(frozen=True, eq=False)
 class Instant:
-    """What an engine computes in one state, and what the law that its settings stand for asks for there.
+    """What an engine computes in one state, and the value by the law of its settings.
 
     `check`: "acceleration", "velocity" (after a step) or "reaction", or a name of the engine's own for another law.
     `found` and `expected` are of the shape (bodies, 3), or (rows,) for reactions. `scales` are further arrays of such
@@ -158,7 +156,7 @@ class Run(Protocol):
 
 
 class OneShot:
-    """The base of a run: what it has once begun can't begin again."""
+    """The base of a run that may be called once."""
 
     _over = False
 
@@ -170,10 +168,7 @@ class OneShot:
 
 
 class Engine(ABC):
-    """The base of every engine: what the module's numbered contract asks for, and what is usual where it says no more.
-
-    `name`, `variant` and `packages` are each engine's own: in its class, as fields, or as properties.
-    """
+    """The base of every engine: the members of the module's numbered contract, and usual answers for the others."""
 
     name: str
     variant: str
@@ -244,7 +239,7 @@ class Engine(ABC):
         return self
 
     def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
-        """The step of every run that an answer takes at least, in parts of dt: one run of steps as told."""
+        """Steps of the inner runs as fractions of dt; (1.0,) for one run."""
         return (1.0,)
 
     @abstractmethod
@@ -256,49 +251,28 @@ def method_name(engine: Engine) -> str:
     return f"{engine.name} {engine.variant}"
 
 
-class Around(Engine):
-    """An engine around another one, to which it forwards every member that it does not define itself.
+def _forwarded(member: str) -> Any:
+    """A property of the inner engine."""
+    return property(lambda engine: getattr(engine.engine, member))
 
-    `engine`: the inner engine; `chosen` may take another one for a mechanism.
-    """
+
+class Around(Engine):
+    """An engine around another one, `engine`, to which it forwards every member that it does not define itself."""
 
     engine: Engine
 
     def chosen(self, mechanism: Mechanism) -> Engine:
-        """The inner engine that runs this mechanism."""
+        """The inner engine that runs this mechanism, which may differ from `engine`."""
         return self.engine
 
-    @property
-    def name(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
-        return self.engine.name
-
-    @property
-    def packages(self) -> tuple[str, ...]:  # pyright: ignore[reportIncompatibleVariableOverride]
-        return self.engine.packages
-
-    @property
-    def modules(self) -> tuple[str, ...]:  # pyright: ignore[reportIncompatibleVariableOverride]
-        return self.engine.modules
-
-    @property
-    def family(self) -> str:
-        return self.engine.family
-
-    @property
-    def missing(self) -> str:
-        return self.engine.missing
-
-    @property
-    def touches(self) -> bool:
-        return self.engine.touches
-
-    @property
-    def precision(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
-        return self.engine.precision
-
-    @property
-    def angle_error(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
-        return self.engine.angle_error
+    name: Any = _forwarded("name")
+    packages: Any = _forwarded("packages")
+    modules: Any = _forwarded("modules")  # pyright: ignore[reportIncompatibleVariableOverride]
+    family: Any = _forwarded("family")
+    missing: Any = _forwarded("missing")
+    touches: Any = _forwarded("touches")
+    precision: Any = _forwarded("precision")  # pyright: ignore[reportIncompatibleVariableOverride]
+    angle_error: Any = _forwarded("angle_error")  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def prepare(self) -> None:
         self.engine.prepare()
@@ -326,21 +300,21 @@ class Around(Engine):
         return self.chosen(mechanism).steps_of_runs(mechanism)
 
 
-# Of a step: far below the half step by which a state can belong to another instant, far above what products round.
+# Tolerance on sample times, relative to dt: above rounding, far below half a step.
 OFF = 1e-6
 
-Flaw = tuple[str, str]  # what was found; what was expected
+Flaw = tuple[str, str]  # the finding; the expectation
 
 
 def flaw_of_shapes(run: Any, mechanism: Mechanism, samples: int) -> Flaw | None:
-    """What of a run's answer is no Trajectory of samples + 1 poses, twists and reactions; None if nothing is."""
+    """Why a run's answer is no Trajectory of samples + 1 poses, twists and reactions; None if it is one."""
     if not isinstance(run, Trajectory):
         return f"a {type(run).__name__}", "a Trajectory"
-    bodies, rows, count = len(mechanism.bodies), mechanism.row_count, samples + 1
-    motion = (count, bodies, 3)
-    for name, shape in (("t", (count,)), ("pose", motion), ("twist", motion), ("reaction", (count, rows))):
-        if (found := np.shape(getattr(run, name))) != shape:
-            return f"{name} of the shape {found}", f"{shape}"
+    count, motion = samples + 1, (samples + 1, len(mechanism.bodies), 3)
+    shapes = {"t": (count,), "pose": motion, "twist": motion, "reaction": (count, mechanism.row_count)}
+    for name, shape in shapes.items():
+        if np.shape(getattr(run, name)) != shape:
+            return f"{name} of the shape {np.shape(getattr(run, name))}", f"{shape}"
     for name, kind in (("warnings", tuple), ("reset_at", float), ("estimate", np.ndarray), ("unresolved_at", float)):
         value = getattr(run, name)
         if not isinstance(value, kind) and (value is not None or kind is tuple):
@@ -350,26 +324,15 @@ def flaw_of_shapes(run: Any, mechanism: Mechanism, samples: int) -> Flaw | None:
 
 def flaw_of_times(run: Trajectory, dt: float, samples: int, every: int) -> Flaw | None:
     """How far a run's instants, of the right number, are from every `every` times dt [s] from 0 on; None if not."""
-    exact = np.arange(samples + 1) * (every * dt)
-    off = float(np.max(np.abs(run.t - exact)))
-    summed = (samples * every) ** 2 * np.finfo(float).eps  # what a sum of n steps rounds n times, of a step
-    if not off <= max(OFF, summed) * dt:
-        return f"an instant that is {off:.3g} s off with {every} steps a sample", f"multiples of {every * dt:g} s"
-    return None
-
-
-def flaw_of_stepping(run: Trajectory) -> Flaw | None:
-    """What a run tells as its CPU time, if it is no time; None if it may be one."""
-    if math.isfinite(run.stepping) and run.stepping >= 0:
+    off = float(np.max(np.abs(run.t - np.arange(samples + 1) * (every * dt))))
+    summed = (samples * every) ** 2 * np.finfo(float).eps  # the rounding of a sum of n steps, of a step
+    if off <= max(OFF, summed) * dt:
         return None
-    return f"stepping = {run.stepping!r} s", "CPU seconds from 0 on"
+    return f"an instant that is {off:.3g} s off with {every} steps a sample", f"multiples of {every * dt:g} s"
 
 
 def flaw_of_reactions(run: Trajectory) -> Flaw | None:
-    """The first row whose reactions are numbers at some samples of a finite motion and not at others; None if none is.
-
-    The first sample may lack them: an engine that reads the impulses of a step has none before the first step.
-    """
+    """The first row whose reactions are numbers at some samples after the first and not at others; None if none is."""
     if not (np.isfinite(run.pose).all() and np.isfinite(run.twist).all()):
         return None  # it diverges, and its last states may be too large for a force
     known = np.isfinite(run.reaction[1:])
@@ -381,11 +344,9 @@ def flaw_of_reactions(run: Trajectory) -> Flaw | None:
 
 
 def flaw(run: Any, mechanism: Mechanism, dt: float, samples: int, every: int) -> str:
-    """What of a run's answer is not as sentences 4 and 5 ask, one sentence; empty if nothing is."""
-    found = (
-        flaw_of_shapes(run, mechanism, samples)
-        or flaw_of_times(run, dt, samples, every)
-        or flaw_of_stepping(run)
-        or flaw_of_reactions(run)
-    )
+    """How a run's answer differs from sentences 4 and 5, one sentence; empty if it does not."""
+    found = flaw_of_shapes(run, mechanism, samples) or flaw_of_times(run, dt, samples, every)
+    if found is None and not (math.isfinite(run.stepping) and run.stepping >= 0):
+        found = f"stepping = {run.stepping!r} s", "CPU seconds from 0 on"
+    found = found or flaw_of_reactions(run)
     return f"its run gave {found[0]}; the contract of engines asks for {found[1]}" if found else ""

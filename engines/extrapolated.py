@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil, isqrt
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -12,7 +11,16 @@ from numpy.typing import NDArray
 
 from engines import CLAIM, Around, Engine, OneShot, Promise, Run, Size, Unpromised
 from engines.constraint_error import closing, reaction_doubts
-from reference.checks import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
+from engines.richardson import (
+    LEAST,
+    combine,
+    decided_error,
+    differences,
+    expected_error,
+    extrapolation_weights,
+    further_level,
+)
+from reference.checks import Count, InvalidMechanism, Name, Positive, Valid, validated
 from reference.forces import Damper, Spring
 from reference.joints import Rod
 from reference.mechanism import Mechanism
@@ -20,18 +28,10 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-# Safety factor on the next difference that the successive differences predict.
-CAUTION = 4
-# Least share of the last difference that counts as the error. Fitted on 1300 random mechanisms in three engines.
-LEAST = 0.5
-# Share of the claim from which a motion whose estimate passes the claim is unresolved. Fitted with LEAST.
+# Share of the claim from which a motion whose estimate passes the claim is unresolved. Fitted with richardson.LEAST.
 EARLY = 1 / 30
-# Multiples of the claim between which the estimate does not decide, and one more run does, with 1.5 times as many steps
-# as the finest.
+# Multiples of the claim between which the estimate does not decide, and one more run does (`further_level`).
 OPEN = (0.1, 30.0)
-# Factor on the difference to the extrapolation with that run. It is better by the ratio of their steps, six, so that
-# the difference is the error within a fifth: this allows for more than twice that.
-DECIDED = 1.5
 # Factor on the displacement that closes the joints. The displacement was 0.4 to 1.1 of the whole error in 57 motions of
 # random mechanisms, near singular positions too.
 RELEASED = 1.5
@@ -42,18 +42,6 @@ UNRESOLVED = "ours: unresolved from 0 s on"
 UNCONVERGED = "ours: not converged"
 # Poses of bodies in each run that are compared at most: all steps of nearly every run.
 WATCHED = 300_000
-
-
-@validated
-def extrapolation_weights(levels: tuple[Count, ...], powers: tuple[Count, ...]) -> Array:
-    """Weights w (levels,) of runs at steps dt / level: sum w = 1, and sum w level^-power = 0 for every power."""
-    if len(set(levels)) != len(levels) or len(set(powers)) != len(powers) or len(levels) != len(powers) + 1:
-        raise InvalidMechanism(
-            f"extrapolation: levels are {levels!r} and powers {powers!r}; all must differ, with one power fewer"
-        )
-    steps = levels[0] / np.array(levels, dtype=float)
-    matrix = np.array([steps**power for power in (0, *powers)])
-    return np.linalg.solve(matrix, np.eye(len(levels))[0])
 
 
 @runtime_checkable
@@ -160,7 +148,8 @@ class ExtrapolatedRun(OneShot):
 
     def __init__(self, method: Extrapolated, mechanism: Mechanism, dt: float) -> None:
         self._method, self._mechanism, self._dt = method, mechanism, dt
-        self._unit = mechanism.pose_unit
+        self._levels, self._powers, self._unit = method.levels, method.powers, mechanism.pose_unit
+        self._further = further_level(method.levels)
         self._runs = tuple(self._build_at(level) for level in method.levels)
         self.size: Size = self._runs[0].size
 
@@ -174,8 +163,8 @@ class ExtrapolatedRun(OneShot):
         self.begin()
         watched = _watched_every(samples, every, len(self._mechanism.bodies))
         stride = every // watched
-        count, levels = samples * stride, self._method.levels
-        parts = [_part(run, count, watched * level, stride) for run, level in zip(self._runs, levels, strict=True)]
+        count, runs = samples * stride, zip(self._runs, self._levels, strict=True)
+        parts = [_part(run, count, watched * level, stride) for run, level in runs]
         whole = self._combined(parts, watched, stride)
         spent = whole.stepping
         if not any(warning.startswith(UNCONVERGED) for warning in whole.warnings) and self._is_open(whole, parts):
@@ -190,13 +179,13 @@ class ExtrapolatedRun(OneShot):
         coarsest run, and where the last difference may be small by chance: at the ratio of the two before it, it would
         be near the claim.
         """
-        levels, (low, high) = self._method.levels, OPEN
-        if len(levels) < 3 or whole.estimate is None:
+        low, high = OPEN
+        if len(self._levels) < 3 or whole.estimate is None:
             return False
         largest = float(self._largest(whole.estimate)[-1])
         if whole.unresolved_at is None and largest < low * CLAIM:
             poses = np.stack([part.pose for part in parts]) / self._unit
-            sizes = [float(difference.max()) for difference in _differences(poses, levels, self._method.powers)]
+            sizes = [float(difference.max()) for difference in differences(poses, self._levels, self._powers)]
             return len(sizes) > 2 and LEAST * sizes[-2] ** 2 > low * CLAIM * sizes[-3]
         return largest < high * CLAIM
 
@@ -206,7 +195,7 @@ class ExtrapolatedRun(OneShot):
         """The extrapolation of these runs, with `every` steps of dt between their times; `further`: the run that
         decides the estimate. Reactions are known at each `stride`-th time.
         """
-        levels, powers = self._method.levels, self._method.powers
+        levels, powers = self._levels, self._powers
         weights = extrapolation_weights(levels, powers)
         poses, twists, reactions = (
             np.stack([getattr(part, name) for part in parts]) for name in ("pose", "twist", "reaction")
@@ -221,7 +210,7 @@ class ExtrapolatedRun(OneShot):
             with np.errstate(all="ignore"):
                 estimate[since:] = np.abs(poses[:-1, since:] - poses[-1, since:]).max(axis=0)
         elif further is not None:
-            decided = self._decided(poses, pose, further.pose) + self._rounding(pose, steps)
+            decided = decided_error(poses, pose, further.pose, levels, powers) + self._rounding(pose, steps)
             above = self._largest(estimate)[-1] > CLAIM
             estimate = decided if above else np.fmax(decided, estimate)
         estimate = np.maximum(estimate, RELEASED * np.abs(closing(self._mechanism, t, pose)))
@@ -252,37 +241,26 @@ class ExtrapolatedRun(OneShot):
 
         `finest` are the finest run's poses; the coarsest run makes so many steps between two times.
         """
-        if self._mechanism.applied.dissipate and self._dt / self._method.levels[0] > self._mechanism.time_scale:
+        if self._mechanism.applied.dissipate and self._dt / self._levels[0] > self._mechanism.time_scale:
             return 0.0
         largest = self._largest(estimate)
         turned = self._turned(finest) / coarsest > TURNED
         flags = ([largest > EARLY * CLAIM] if (largest > CLAIM).any() else []) + ([turned] if turned.any() else [])
         return min((float(t[np.argmax(flag)]) for flag in flags), default=None)
 
-    def _decided(self, poses: Array, pose: Array, further: Array) -> Array:
-        """The error (times, bodies, 3) of extrapolated poses, by the extrapolation with `further` for the coarsest."""
-        weights = extrapolation_weights((*self._method.levels[1:], self._further), self._method.powers)
-        with np.errstate(all="ignore"):
-            return DECIDED * np.abs(combine(np.concatenate([poses[1:], further[None]]), weights) - pose)
-
-    @property
-    def _further(self) -> int:
-        """The level of the run that decides."""
-        return ceil(1.5 * self._method.levels[-1])
-
     def _estimate(self, poses: Array, pose: Array, steps: int) -> Array:
         """(times, bodies, 3) [m, m, rad] for poses (levels, times, bodies, 3) and what they are extrapolated to."""
-        levels, powers = self._method.levels, self._method.powers
         # The coarsest run may have another error in its first step than in all others: a gap is closed a step late, for
         # example. If that run alone is off, the extrapolation is off by the whole last difference.
         least = np.full(poses.shape[1], LEAST)
         least[: 2 if steps < len(least) else 1] = 1.0
-        return _expected_error(poses / self._unit, levels, powers, least) * self._unit + self._rounding(pose, steps)
+        error = expected_error(poses / self._unit, self._levels, self._powers, least) * self._unit
+        return error + self._rounding(pose, steps)
 
     def _rounding(self, pose: Array, steps: int) -> Array:
         """Each step rounds a pose, by half a unit at most, and the combination carries that with its weights."""
-        levels, powers = self._method.levels, self._method.powers
-        carried = np.abs(extrapolation_weights(levels, powers)) @ levels * np.finfo(float).eps / 2 * steps
+        weights = extrapolation_weights(self._levels, self._powers)
+        carried = np.abs(weights) @ self._levels * np.finfo(float).eps / 2 * steps
         elapsed = np.linspace(0.0, 1.0, len(pose))[:, None, None]
         with np.errstate(all="ignore"):
             return carried * elapsed * np.maximum(np.abs(pose), self._unit)
@@ -294,10 +272,9 @@ class ExtrapolatedRun(OneShot):
 
     def _has_no_expansion(self, poses: Array, largest: Array) -> NDArray[np.bool_]:
         """(times,) where the estimate exceeds the finest run's largest error so far. Two runs cannot show it."""
-        levels, powers = self._method.levels, self._method.powers
-        if len(levels) < 3:
+        if len(self._levels) < 3:
             return np.zeros(len(largest), dtype=bool)
-        finer = combine(poses[-2:], extrapolation_weights(levels[-2:], powers[:1]))
+        finer = combine(poses[-2:], extrapolation_weights(self._levels[-2:], self._powers[:1]))
         return largest > self._largest(np.abs(finer - poses[-1]))
 
     def _turned(self, pose: Array) -> Array:
@@ -316,62 +293,10 @@ class ExtrapolatedRun(OneShot):
 
 def _watched_every(samples: int, every: int, bodies: int) -> int:
     """The steps between the instants that are compared: one, unless these are too many to be kept."""
-    divisors = sorted(
-        {divisor for part in range(1, isqrt(every) + 1) if every % part == 0 for divisor in (part, every // part)}
-    )
-    return next((part for part in divisors if samples * (every // part) * bodies <= WATCHED), every)
+    least = max(1, -(-samples * every * bodies // WATCHED))  # every / divisor <= WATCHED / (samples bodies)
+    return next((part for part in range(least, every) if every % part == 0), every)
 
 
 def _part(run: Run, samples: int, every: int, stride: int) -> Trajectory:
     """One level's run, with reactions at every `stride`-th sample: to compute them takes longer than to step."""
     return run.watched(samples, every, stride) if isinstance(run, Watched) else run(samples, every)
-
-
-@validated
-def expected_error(values: Numbers, levels: tuple[Count, ...], powers: tuple[Count, ...]) -> Array:
-    """An estimate (times, ...) of the error of values (levels, times, ...) that are extrapolated, all in one unit.
-
-    The differences between the extrapolations of k + 1 and of the k finest runs fall with k while the runs have an
-    error expansion. The last difference is the error of the extrapolation without the coarsest run. The remaining error
-    is smaller by the last ratio of differences, or by the ratio to which the last two lead, since ratios rise in
-    asymptotic series. The estimate is CAUTION times that: no less than LEAST of the last difference, which may pass
-    zero, and no more than the effect of one run that is off. Ratios are those of the largest differences so far.
-    """
-    return _expected_error(values, levels, powers, LEAST)
-
-
-def _expected_error(values: Array, levels: tuple[int, ...], powers: tuple[int, ...], least: float | Array) -> Array:
-    """`expected_error` with the least share (times,) of the last difference that counts."""
-    differences = _differences(values, levels, powers)
-    with np.errstate(all="ignore"):
-        sizes = [np.fmax.accumulate(np.fmax.reduce(d.reshape(len(d), -1), axis=1, initial=0.0)) for d in differences]
-        ratios = [np.nan_to_num(finer / rough, nan=0.0) for rough, finer in pairwise(sizes[-3:])]
-        rising = [np.nan_to_num(last**2 / before, nan=0.0) for before, last in pairwise(ratios)]
-        weights = extrapolation_weights(levels, powers)
-        fewer = np.array([0.0, *extrapolation_weights(levels[1:], powers[:-1])])
-        most = np.abs(weights / (weights - fewer)).max()
-        expected = CAUTION * np.max([ratios[-1], *rising], axis=0) if ratios else most
-        factor = np.clip(expected, np.minimum(least, most), most)
-        return differences[-1] * np.reshape(factor, (-1, *(1,) * (differences[-1].ndim - 1)))
-
-
-@validated
-def combine(values: Numbers, weights: Array) -> Array:
-    """sum of weights (levels,) times values (levels, ...), NaN wherever a level is not finite.
-
-    Taken as the finest plus weighted differences from it: what all levels agree on, such as the start, comes out exact.
-    """
-    with np.errstate(all="ignore"):
-        finest = values[-1]
-        out = finest + np.tensordot(weights[:-1], values[:-1] - finest, axes=1)
-    return np.where(np.all(np.isfinite(values), axis=0), out, np.nan)
-
-
-def _differences(values: Array, levels: tuple[int, ...], powers: tuple[int, ...]) -> list[Array]:
-    """The distances (times, ...) from the extrapolation of k finest runs (k from 1) to that of one more."""
-    parts = [
-        combine(values[-count:], extrapolation_weights(levels[-count:], powers[: count - 1]))
-        for count in range(1, len(levels) + 1)
-    ]
-    with np.errstate(all="ignore"):
-        return [np.abs(more - fewer) for fewer, more in pairwise(parts)]

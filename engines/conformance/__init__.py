@@ -5,17 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from engines import Engine, method_name
-from engines.conformance import members, moving, refusing, same, sampled
+from engines.conformance import members, moving, same
 from engines.conformance.check import Case, Check, Result, Status, Subject
 from engines.imported_release import other_release
 
-CHECKS: tuple[Check, ...] = (
-    *refusing.CHECKS,
-    *members.CHECKS,
-    *sampled.CHECKS,
-    *moving.CHECKS,
-    *same.CHECKS,
-)
+CHECKS: tuple[Check, ...] = (*members.CHECKS, *moving.CHECKS, *same.CHECKS)
 
 
 def cases(*engines: Engine) -> Iterator[Case]:

@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from engines import Engine, Run, Unsupported, method_name
-from engines.conformance.worlds import World
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
+Array = NDArray[np.float64]
 Status = Literal["holds", "fails", "not supported", "not asked"]
 
 STEP = 0.01  # s, the step of most runs: a sixth of a radian of the fastest motion
@@ -31,6 +32,22 @@ class Fails(AssertionError):
 
 class NotAsked(Exception):
     """The check does not apply to this case; the message says why."""
+
+
+def require(holds: bool | np.bool_, found: str, expected: str, means: str) -> None:
+    """Raises Fails unless the requirement holds."""
+    if not holds:
+        raise Fails(found, expected, means)
+
+
+def require_a_sentence(text: str, what: str) -> None:
+    """Raises Fails unless the text is one line of FEWEST_WORDS words."""
+    require(
+        len(text.split()) >= FEWEST_WORDS and text.isprintable(),
+        f"{text!r} for {what}",
+        f"one line of at least {FEWEST_WORDS} words",
+        "it is raised without the sentence that a reader of the report gets to see",
+    )
 
 
 class Subject:
@@ -80,23 +97,37 @@ def stepped(run: Run, samples: int, every: int) -> Trajectory:
         ) from error
 
 
-def require_a_sentence(text: str, what: str) -> None:
-    """Raises Fails unless the text is one line of FEWEST_WORDS words."""
-    if len(text.split()) < FEWEST_WORDS or not text.isprintable():
-        raise Fails(
-            f"{text!r} for {what}",
-            f"one line of at least {FEWEST_WORDS} words",
-            "it is raised without the sentence that a reader of the report gets to see",
-        )
-
-
 def finite(run: Trajectory) -> Trajectory:
     """The same trajectory; raises Fails if a pose or a twist in it is no number."""
     for name, values in (("pose", run.pose), ("twist", run.twist)):
-        if not np.all(np.isfinite(values)):
-            where = int(np.argwhere(~np.isfinite(values))[0, 0])
-            raise Fails(f"a {name} that is not finite at sample {where}", "numbers", "the motion has blown up")
+        sound = np.isfinite(values).all(axis=(1, 2))
+        where = int(np.argmin(sound))
+        require(sound.all(), f"a {name} that is not finite at sample {where}", "numbers", "the motion has blown up")
     return run
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Poses, twists and accelerations (times, bodies, 3), and reactions (times, rows)."""
+
+    pose: Array
+    twist: Array
+    acceleration: Array
+    reaction: Array
+
+
+@dataclass(frozen=True)
+class World:
+    """A mechanism and its exact motion."""
+
+    name: str
+    mechanism: Mechanism
+    exact: Callable[[Array], Motion]
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of its joints, in the order in which they first stand in it."""
+        return tuple(dict.fromkeys(type(joint).__name__.lower() for joint in self.mechanism.joints))
 
 
 @dataclass(frozen=True)
@@ -139,10 +170,7 @@ class Case:
     def result(self) -> Result:
         """Run the check. Never raises: an exception within a check is its failure."""
         try:
-            if self.world is None:
-                self.check.function(self.subject)
-            else:
-                self.check.function(self.subject, self.world)
+            self.check.function(self.subject, *(() if self.world is None else (self.world,)))
         except Unsupported as reason:
             return Result("not supported", str(reason))
         except NotAsked as reason:

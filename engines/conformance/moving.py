@@ -1,23 +1,158 @@
-"""Checks of a motion against the exact one: which instant it belongs to, its order, what its reactions say, and whether
-forces act: an engine that does not look at them moves as if there were none, and says nothing.
+"""Checks of a run: its start, shapes, instants and cost, that the same run gives the same bits, and the exact motion.
+
+Against the exact motion: which instant a state belongs to, its order, the size of reactions, and whether forces act. An
+engine that does not look at them moves as if there were none, without a warning.
 """
 
 from __future__ import annotations
 
+import copy
+import math
+import time
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from engines import Promise, Unpromised, Unsupported
-from engines.conformance.check import SAMPLES, STEP, Check, Fails, NotAsked, Subject, finite, require_a_sentence
-from engines.conformance.worlds import MOVING, WORLDS, World
+from engines.conformance.check import (
+    SAMPLES,
+    STEP,
+    Array,
+    Check,
+    Fails,
+    NotAsked,
+    Subject,
+    finite,
+    require,
+    require_a_sentence,
+    stepped,
+)
+from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World
+from engines.contract import flaw_of_times
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 
-Array = NDArray[np.float64]
+# Of a coordinate's size: what placing a body, and taking its place back from the engine's own coordinates, may take.
+PLACING = 1e-12
+GRAIN = 1e-4  # s, of another clock of CPU time than ours
+SELDOM = (2, 3)  # samples, and steps between them
+# The same steps are taken, so rounding is all that may differ; extrapolation weighs it with up to a hundred.
+SAMPLED = 1e-9
+# A solver that ends by a tolerance may read the same state from another guess, and a change of velocity over a step is
+# what single precision rounds; divided by three times that step it is wrong by two thirds.
+READ = 1e-3
+
+
+def _largest(values: Array) -> float:
+    return float(np.max(np.abs(values), initial=0.0))
+
+
+def samples_at_the_right_times(subject: Subject, world: World) -> None:
+    """Sample k stands at k times `every` times dt, beginning with t = 0."""
+    for samples, every in ((SAMPLES, 1), SELDOM):
+        run = subject.run(world.mechanism, STEP, samples, every)
+        if flaw := flaw_of_times(run, STEP, samples, every):
+            raise Fails(*flaw, "`every` is left out, or time is counted from the first step on")
+
+
+def tells_the_cpu_time_of_stepping(subject: Subject, world: World) -> None:
+    """`stepping` is CPU time of this process: not below zero, and not more than it used during the run."""
+    run = subject.build(world.mechanism)
+    begin = time.process_time()
+    told = stepped(run, SAMPLES, 1)
+    used = time.process_time() - begin
+    require(
+        math.isfinite(told.stepping) and 0 <= told.stepping <= used + GRAIN,
+        f"stepping = {told.stepping!r} s",
+        f"from 0 to the {used:.3g} s of CPU time that the whole call took",
+        "the wall's clock is read, or milliseconds, or nothing",
+    )
+
+
+def first_pose_is_the_start(subject: Subject, world: World) -> None:
+    """The first sample's poses are the mechanism's start."""
+    _starts(subject, world, "pose")
+
+
+def first_twist_is_the_start(subject: Subject, world: World) -> None:
+    """The first sample's twists are the mechanism's start."""
+    _starts(subject, world, "twist")
+
+
+def _starts(subject: Subject, world: World, what: str) -> None:
+    found, start = getattr(subject.run(world.mechanism), what)[0], getattr(world.mechanism, what)
+    off = _largest(found - start)
+    body, place = np.unravel_index(int(np.argmax(np.abs(found - start))), start.shape)
+    require(
+        off <= PLACING * (1 + _largest(start)),
+        f"a {what} that is {off:.3g} off in {('x', 'y', 'the angle')[place]} of body {body}",
+        f"the start to {PLACING:g} of its size",
+        "the first sample is taken after the first step, or the engine's own frame is not the centre of mass",
+    )
+
+
+def gives_the_same_bits(subject: Subject, world: World) -> None:
+    """Two builds, both made before either is run, give the same bits."""
+    runs = [subject.build(world.mechanism), subject.build(world.mechanism)]
+    first, second = (stepped(run, SAMPLES, 1) for run in runs)
+    for name in ("t", "pose", "twist", "reaction"):
+        one, other = getattr(first, name), getattr(second, name)
+        require(
+            np.array_equal(one, other, equal_nan=True),
+            f"a {name} that differs by {_largest(np.nan_to_num(one - other)):.3g}",
+            "the same bits",
+            "two models share something, or a solver begins with random numbers or with what was left before",
+        )
+
+
+def leaves_the_mechanism_alone(subject: Subject, world: World) -> None:
+    """Building and running change nothing in the mechanism that was given."""
+    given = copy.deepcopy(world.mechanism)
+
+    def numbers() -> dict[str, Any]:
+        arrays = {name: getattr(given, name).copy() for name in ("pose", "twist", "inertias", "rate")}
+        return {"description": repr(given), **arrays}
+
+    before = numbers()
+    stepped(subject.engine.build(given, STEP), SAMPLES, 1)
+    for name, now in numbers().items():
+        same = np.array_equal(before[name], now)
+        require(same, f"another {name}", "the mechanism as it was", "an array of it is written into without a copy")
+
+
+def sampling_changes_nothing(subject: Subject, world: World) -> None:
+    """Every third state of a run is that of a run sampled a third as often, to rounding."""
+    samples, every = SELDOM
+    often, seldom = subject.run(world.mechanism), subject.run(world.mechanism, STEP, samples, every)
+    # From there on a run claims nothing, and at which of its samples it notices depends on where they are.
+    unresolved = min(math.inf if run.unresolved_at is None else run.unresolved_at for run in (often, seldom))
+    claimed = seldom.t < unresolved
+    for name, allowed in (("pose", SAMPLED), ("twist", SAMPLED), ("reaction", READ)):
+        whole, other = getattr(often, name), getattr(seldom, name)[claimed]
+        same = whole[: samples * every + 1 : every][claimed]
+        off = _largest(np.nan_to_num(other) - np.nan_to_num(same))
+        within = off <= allowed * (1 + _largest(np.nan_to_num(whole)))
+        require(
+            within and np.array_equal(np.isnan(other), np.isnan(same)),
+            f"a {name} that differs by {off:.3g}",
+            f"at most {allowed:g} of its size",
+            "`every` changes the step, or a change of velocity is divided by another time than it took, "
+            "or sampling disturbs what the engine goes on from",
+        )
+
+
+def does_not_wrap_angles(subject: Subject, world: World) -> None:
+    """An angle goes on beyond a whole turn, and starts where the mechanism says though that is several turns."""
+    run = finite(subject.run(world.mechanism))
+    off = _largest(run.pose[..., 2] - world.exact(run.t).pose[..., 2])
+    # A turn is 6.3 rad, and a step 0.6 rad of it.
+    require(
+        off <= 1.0, f"an angle that is {off:.3g} rad off", "at most 1 rad", "angles are those of a sine and a cosine"
+    )
+
 
 SHORT = 1e-3  # s: within three of these a motion of some radians a second is a parabola to a percent
 EARLY = 3  # steps
@@ -29,36 +164,33 @@ SIZE = 0.25  # of the largest reaction
 
 def poses_stand_at_their_instants(subject: Subject, world: World) -> None:
     """The first poses after the start lie on the exact motion at their own instants, not half a step or a step off."""
-    _promise(subject, world)
-    run = finite(subject.run(world.mechanism, SHORT, EARLY))
-    exact = world.exact(run.t)
-    _at_their_instants("pose", world, run.pose - exact.pose, exact.twist[0])
+    _at_their_instants(subject, world, "pose", "twist")
 
 
 def twists_stand_at_their_instants(subject: Subject, world: World) -> None:
     """The first twists after the start belong to their own instants, not half a step later or the step before."""
-    _promise(subject, world)
-    run = finite(subject.run(world.mechanism, SHORT, EARLY))
-    exact = world.exact(run.t)
-    _at_their_instants("twist", world, run.twist - exact.twist, exact.acceleration[0])
+    _at_their_instants(subject, world, "twist", "acceleration")
 
 
-def _at_their_instants(what: str, world: World, error: Array, rate: Array) -> None:
-    """The error is rate times (delay + share times t); Fails unless the delay is below OFF.
+def _at_their_instants(subject: Subject, world: World, what: str, derivative: str) -> None:
+    """The error is the derivative times (delay + share times t); Fails unless the delay is below OFF.
 
     Only what the joints leave free is looked at. There a method of any order, even the first, has taken n kicks and n
     drifts after n steps. Across the joints a method of the first order may be off by as much as half a step.
     """
-    free = _free(world.mechanism)
-    moving = free(rate)
+    _promise(subject, world)
+    run = finite(subject.run(world.mechanism, SHORT, EARLY))
+    exact = world.exact(run.t)
+    error, free = getattr(run, what) - getattr(exact, what), _free(world.mechanism)
+    moving = free(getattr(exact, derivative)[0])
     along = [np.vdot(free(each), moving) / np.vdot(moving, moving) / SHORT for each in error[1:]]
     _, delay = np.polyfit(np.arange(1, EARLY + 1), along, 1)
-    if not abs(delay) <= OFF:
-        raise Fails(
-            f"a {what} that is {abs(delay):.2f} steps {'ahead of' if delay > 0 else 'behind'} its instant",
-            f"at most {OFF:g} steps",
-            "a leapfrog's velocities, half a step later, or those of the step before are told with the poses",
-        )
+    require(
+        abs(delay) <= OFF,
+        f"a {what} that is {abs(delay):.2f} steps {'ahead of' if delay > 0 else 'behind'} its instant",
+        f"at most {OFF:g} steps",
+        "a leapfrog's velocities, half a step later, or those of the step before stand with the poses",
+    )
 
 
 def _free(mechanism: Mechanism) -> Callable[[Array], Array]:
@@ -110,24 +242,22 @@ def _has_its_order(subject: Subject, world: World, name: str, quantity: str) -> 
     steps = [f"{SPAN / WHOLE / every:.2g}" for every in REFINED]
     expected = max(error * (every / REFINED[-1]) ** order for error, every in zip(errors, REFINED[:-1], strict=False))
     bound = max(ROOM * expected, LEAST * (1 + float(np.max(np.abs(world.mechanism.twist)))))
-    if not errors[-1] <= bound:
-        raise Fails(
-            f"errors of {', '.join(f'{error:.2g}' for error in errors)} at steps of {', '.join(steps)} s",
-            f"at most {bound:.2g} at the last, by order {order:g}",
-            f"the {name} is of another instant than the method's own, or the engine is not of this order",
-        )
+    require(
+        errors[-1] <= bound,
+        f"errors of {', '.join(f'{error:.2g}' for error in errors)} at steps of {', '.join(steps)} s",
+        f"at most {bound:.2g} at the last, by order {order:g}",
+        f"the {name} is of another instant than the method's own, or the engine is not of this order",
+    )
 
 
 def _gives_way_for_good(subject: Subject, world: World) -> bool:
-    """Whether joints give way visibly under a force, and at the smallest step nearly as much as at the one before."""
-    coarse, fine = (_give(subject, world, SPAN / WHOLE / every) for every in REFINED[-2:])
+    """Whether joints give way visibly under a force, and at the smallest step nearly as much as at the one before.
+
+    Compared is the way that a joint gives, over the acceleration that it should prevent [s^2].
+    """
+    softness = [subject.engine.softness(world.mechanism, SPAN / WHOLE / every) for every in REFINED[-2:]]
+    coarse, fine = (0.0 if soft is None else soft.compliance / soft.stiffness for soft in softness)
     return fine > HARD and fine * (REFINED[-1] / REFINED[-2]) > ROOM * coarse
-
-
-def _give(subject: Subject, world: World, dt: float) -> float:
-    """s^2: the way that a joint gives, over the acceleration that it should prevent."""
-    softness = subject.engine.softness(world.mechanism, dt)
-    return 0.0 if softness is None else softness.compliance / softness.stiffness
 
 
 def reactions_have_sign_and_size(subject: Subject, world: World) -> None:
@@ -143,13 +273,13 @@ def reactions_have_sign_and_size(subject: Subject, world: World) -> None:
         largest = np.max(np.abs(exact[:, turning == turning[row]]))
         # Of all samples the middle one: a contact that has just been made may take some steps to carry the weight.
         off = np.nanmedian((run.reaction[:, row] - exact[:, row]) / largest)
-        if not abs(off) <= SIZE:
-            told, right = np.nanmedian(run.reaction[:, row]), np.median(exact[:, row])
-            raise Fails(
-                f"{told:.4g} {'N m' if turning[row] else 'N'} in row {world.mechanism.row_names[row]!r}",
-                f"about {right:.4g}",
-                "the force on the first body is told, or an impulse is divided by another step",
-            )
+        require(
+            abs(off) <= SIZE,
+            f"{np.nanmedian(run.reaction[:, row]):.4g} {'N m' if turning[row] else 'N'} in row "
+            f"{world.mechanism.row_names[row]!r}",
+            f"about {np.median(exact[:, row]):.4g}",
+            "it is the force on the first body, or an impulse is divided by another step",
+        )
 
 
 # Of a plate on a pin: each element alone, as strong as to change the rate much within the samples of a check.
@@ -179,12 +309,12 @@ def feels_forces_or_refuses_them(subject: Subject) -> None:
             refused.append(str(reason))
             continue
         found, expected = float(run.twist[-1, 0, 2]) - 2.0, _gained(mechanism, STEP * SAMPLES)
-        if not abs(found - expected) < FELT * abs(expected):
-            raise Fails(
-                f"a rate that changes by {found:.3g} rad/s under a {type(force).__name__}",
-                f"{expected:.3g} rad/s, or Unsupported",
-                "the mechanism's forces are not looked at when it is built, or one has another sign or unit",
-            )
+        require(
+            abs(found - expected) < FELT * abs(expected),
+            f"a rate that changes by {found:.3g} rad/s under a {type(force).__name__}",
+            f"{expected:.3g} rad/s, or Unsupported",
+            "the mechanism's forces are not looked at when it is built, or one has another sign or unit",
+        )
     if len(refused) == len(FORCES):
         raise Unsupported(refused[0])
 
@@ -205,6 +335,14 @@ def _gained(mechanism: Mechanism, until: float) -> float:
 FREE = tuple(world for world in MOVING if world.name != "driven crank")
 PULLED = tuple(world for world in FREE if world.name != "sleigh")
 CHECKS = (
+    Check(samples_at_the_right_times, MOVING),
+    Check(tells_the_cpu_time_of_stepping, MOVING),
+    Check(first_pose_is_the_start, (*WORLDS, SPINNING)),
+    Check(first_twist_is_the_start, (*WORLDS, SPINNING)),
+    Check(gives_the_same_bits, MOVING),
+    Check(leaves_the_mechanism_alone, MOVING),
+    Check(sampling_changes_nothing, MOVING),
+    Check(does_not_wrap_angles, (SPINNING,)),
     Check(reactions_have_sign_and_size, WORLDS),
     Check(poses_stand_at_their_instants, FREE),
     Check(twists_stand_at_their_instants, PULLED),

@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Unsupported
-from engines.conformance.check import Check, Fails, Subject, finite
+from engines.conformance.check import Check, Fails, Subject, finite, require
 from engines.conformance.worlds import MOVING, World
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
-from reference.mechanism import Body, Mechanism
+from reference.mechanism import Mechanism
 from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
@@ -60,12 +60,10 @@ class Isometry:
     def __call__(self, mechanism: Mechanism) -> Described:
         sense = -1.0 if self.mirrored else 1.0
         bodies = tuple(
-            Body(
-                body.name,
-                body.mass,
-                body.inertia,
-                (*self._place(*body.pose[:2]), self._angle(body.pose[2])),
-                (*self._place(*body.twist[:2], shifted=False), sense * body.twist[2]),
+            replace(
+                body,
+                pose=(*self._place(*body.pose[:2]), self._angle(body.pose[2])),
+                twist=(*self._place(*body.twist[:2], shifted=False), sense * body.twist[2]),
             )
             for body in mechanism.bodies
         )
@@ -99,14 +97,12 @@ class Isometry:
         sense = -1.0 if self.mirrored else 1.0
         own_angle = self._angle if ground else (lambda angle: sense * angle)
         match joint:
-            case Pin():
+            case Pin() | Rod():
                 return replace(joint, **self._points(joint))
             case Slot():
                 return replace(joint, **self._points(joint), line_angle=own_angle(joint.line_angle))
             case Skate():
                 return replace(joint, second_point=self._inside(joint.second_point), angle=sense * joint.angle)
-            case Rod():
-                return replace(joint, **self._points(joint))
             case Gear():
                 first, second = (float(name is not None) for name in (joint.first, joint.second))
                 return replace(joint, phase=sense * joint.phase + self.turn * (second - joint.ratio * first))
@@ -144,12 +140,9 @@ class Isometry:
 
     def _points(self, joint: Pin | Slot | Rod | Weld | Spring | Damper) -> dict[str, Any]:
         """Both points where they are now."""
+        points = {"first_point": (joint.first, joint.first_point), "second_point": (joint.second, joint.second_point)}
         return {
-            point: self._place(*where) if body is None else self._inside(where)
-            for point, body, where in (
-                ("first_point", joint.first, joint.first_point),
-                ("second_point", joint.second, joint.second_point),
-            )
+            name: self._place(*point) if body is None else self._inside(point) for name, (body, point) in points.items()
         }
 
     def _rolling(self, rolling: Rolling, ground: bool) -> Rolling:
@@ -257,9 +250,8 @@ def same_if_shifted(subject: Subject, world: World) -> None:
 
 def same_if_mirrored(subject: Subject, world: World) -> None:
     """The whole world seen in a mirror moves in the mirrored way."""
-    _same(
-        subject, world, Isometry(mirrored=True), OWN, "a sign of an angle or of a direction across is taken for granted"
-    )
+    means = "a sign of an angle or of a direction across is taken for granted"
+    _same(subject, world, Isometry(mirrored=True), OWN, means)
 
 
 def same_if_relabelled(subject: Subject, world: World) -> None:
@@ -298,12 +290,12 @@ def _same(subject: Subject, world: World, change: Change, factor: float, means: 
         size = max(1.0, float(np.nanmax(np.abs(was))))
         bound = own + ROUNDING[name] * size
         differ = float(np.max(np.abs(np.nan_to_num(now) - np.nan_to_num(was))))
-        if not differ <= bound or not np.array_equal(np.isnan(was), np.isnan(now)):
-            raise Fails(
-                f"a {name} that differs by {differ:.3g}",
-                f"at most {bound:.2g}: {factor:g} times its error at this step, and rounding",
-                means,
-            )
+        require(
+            differ <= bound and np.array_equal(np.isnan(was), np.isnan(now)),
+            f"a {name} that differs by {differ:.3g}",
+            f"at most {bound:.2g}: {factor:g} times its error at this step, and rounding",
+            means,
+        )
 
 
 CHECKS = (

@@ -1,33 +1,88 @@
-"""Small mechanisms whose motions are known in closed form: what an engine's run is held against.
+"""Small mechanisms whose motions are known in closed form: the exact motions that runs are compared with.
 
 Each has one or a few bodies, and the joints that its name says. Nothing here comes from a scene or from an engine, and
-the formulas stand beside the numbers. Units: kg, m, s, rad, N, N m.
+the formulas stand beside the numbers. Units: kg, m, s, rad, N, N m. Vectors of the plane are complex numbers x + i y.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.special import ellipj, ellipkinc
 
-from engines.conformance.world import (
-    INERTIA,
-    MASS,
-    WEIGHT,
-    Array,
-    G,
-    World,
-    body,
-    resting,
-    round_about,
-    swing,
-    world,
-)
-from reference.joints import Drive, Pin, Skate, Slot
+from engines.conformance.check import Array, Motion, World
+from reference.joints import Drive, Joint, Pin, Skate, Slot
+from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Line, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
+
+G = 10.0  # m/s^2, downwards
+MASS, INERTIA = 2.0, 0.3  # kg and kg m^2 of most bodies
+WEIGHT = MASS * G
+ORIGIN = (0.0, 0.0)
+
+
+def body(name: str = "body", mass: float = MASS, inertia: float = INERTIA) -> Body:
+    return Body(name, mass, inertia, (0.0, 0.0, 0.0))
+
+
+def world(
+    name: str,
+    joints: tuple[Joint, ...],
+    states: Callable[[Array], Sequence[Any]],
+    reaction: Callable[[Array], Sequence[Any]] | None = None,
+    bodies: tuple[Body, ...] = (body(),),
+    gravity: float = -G,
+) -> World:
+    """A world whose bodies start where `states` says.
+
+    `states(t)`: for each body its place and the first two derivatives (complex), and its angle and the first two
+    derivatives, numbers or arrays (times,). `reaction(t)` (rows, times) is a formula of its own; without one, reactions
+    are what the accelerations need.
+    """
+
+    def motion(t: Array) -> Motion:
+        numbers: list[list[Any]] = [[np.broadcast_to(value, t.shape) for value in state] for state in states(t)]
+        pose, twist, change = (
+            np.moveaxis(np.array([(s[k].real, s[k].imag, s[3 + k].real) for s in numbers]), -1, 0) for k in range(3)
+        )
+        if reaction is None:
+            return Motion(pose, twist, change, mechanism.reaction(pose, change))
+        return Motion(pose, twist, change, np.array([np.broadcast_to(row, t.shape) for row in reaction(t)]).T)
+
+    starts = [[complex(np.ravel(value)[0]) for value in state] for state in states(np.zeros(1))]
+    placed = (
+        replace(each, pose=(z.real, z.imag, angle.real), twist=(v.real, v.imag, rate.real))
+        for each, (z, v, _, angle, rate, _) in zip(bodies, starts, strict=True)
+    )
+    mechanism = Mechanism(tuple(placed), joints, (0.0, gravity))
+    return World(name, mechanism, motion)
+
+
+def resting(name: str, joints: tuple[Joint, ...], reaction: list[float], place: complex, angle: float) -> World:
+    """One body that stays where it is."""
+    return world(name, joints, lambda t: [(place, 0.0, 0.0, angle, 0.0, 0.0)], lambda t: reaction)
+
+
+def swing(t: Array, angle: float, rate: float, frequency: float) -> tuple[Array, Array, Array]:
+    """angle'' = -frequency^2 sin(angle) by Jacobi's functions: angle, rate, acceleration; to and fro, never over."""
+    modulus = math.hypot(rate / (2 * frequency), math.sin(angle / 2))
+    phase = math.asin(math.sin(angle / 2) / modulus)
+    start = ellipkinc(phase if rate >= 0 else math.pi - phase, modulus**2)
+    sn, cn, _, _ = ellipj(frequency * t + start, modulus**2)
+    swung = 2 * np.arcsin(modulus * sn)
+    return swung, 2 * modulus * frequency * cn, -(frequency**2) * np.sin(swung)
+
+
+def round_about(radius: float, angle: Any, rate: Any, change: Any) -> tuple[Any, Any, Any]:
+    """Place, velocity, acceleration of a point on a circle about the origin."""
+    point = radius * np.exp(1j * angle)
+    return point, 1j * rate * point, (1j * change - rate**2) * point
 
 
 def _swinging_bar() -> World:
@@ -37,39 +92,35 @@ def _swinging_bar() -> World:
 
     def states(t: Array) -> Any:
         angle, rate, change = swing(t, 0.6, 1.5, frequency)
-        place, velocity, acceleration = round_about(arm, angle - math.pi / 2, rate, change)
-        return [[*place, angle]], [[*velocity, rate]], [[*acceleration, change]]
+        return [(*round_about(arm, angle - math.pi / 2, rate, change), angle, rate, change)]
 
-    pin = Pin("hinge", None, "body", (0.0, 0.0), (0.0, arm))
-    return world("swinging bar", (body("body"),), (pin,), (0.0, -G), states)
+    return world("swinging bar", (Pin("hinge", None, "body", ORIGIN, (0.0, arm)),), states)
 
 
 def _swinging_parallelogram() -> World:
     """Two equal cranks and a coupler that stays parallel to the ground: one freedom, and the pins close a loop."""
     crank, base, arm = 0.5, 0.8, 0.2  # arm: of a crank's centre of mass from the ground
     heavy, light = 1.5, 1.0  # kg, the coupler and a crank
-    own = 2 * (0.05 + light * arm**2) + heavy * crank**2
-    frequency = math.sqrt((2 * light * arm + heavy * crank) * G / own)
+    inertia = 2 * (0.05 + light * arm**2) + heavy * crank**2
+    frequency = math.sqrt((2 * light * arm + heavy * crank) * G / inertia)
 
     def states(t: Array) -> Any:
-        angles = swing(t, 0.5, 1.5, frequency)
-        angle, rate, change = angles
-        inner, outer = (round_about(radius, angle - math.pi / 2, rate, change) for radius in (arm, crank))
-        still = np.zeros_like(t)
-        return [
-            [[x, y, own], [x + apart, y, own], [along + apart / 2, across, still]]
-            for (x, y), (along, across), own, apart in zip(inner, outer, angles, (base, 0.0, 0.0), strict=True)
-        ]
+        angle, rate, change = swing(t, 0.5, 1.5, frequency)
+        (x, v, a), (along, speed, gain) = (
+            round_about(radius, angle - math.pi / 2, rate, change) for radius in (arm, crank)
+        )
+        turning = angle, rate, change
+        return [(x, v, a, *turning), (x + base, v, a, *turning), (along + base / 2, speed, gain, 0.0, 0.0, 0.0)]
 
     bodies = (body("left", light, 0.05), body("right", light, 0.05), body("coupler", heavy, 0.1))
     top, end = (0.0, arm), (0.0, arm - crank)
     joints = (
-        Pin("A", None, "left", (0.0, 0.0), top),
+        Pin("A", None, "left", ORIGIN, top),
         Pin("B", "left", "coupler", end, (-base / 2, 0.0)),
         Pin("C", "coupler", "right", (base / 2, 0.0), end),
         Pin("D", None, "right", (base, 0.0), top),
     )
-    return world("swinging parallelogram", bodies, joints, (0.0, -G), states)
+    return world("swinging parallelogram", joints, states, bodies=bodies)
 
 
 def _driven_crank() -> World:
@@ -77,46 +128,27 @@ def _driven_crank() -> World:
     arm, rate = 0.5, 3.0
 
     def states(t: Array) -> Any:
-        angle = 0.4 + rate * t
-        place, velocity, acceleration = round_about(arm, angle, np.full_like(t, rate), np.zeros_like(t))
-        return [[*place, angle]], [[*velocity, rate]], [[*acceleration, 0.0]]
+        return [(*round_about(arm, 0.4 + rate * t, rate, 0.0), 0.4 + rate * t, rate, 0.0)]
 
     def reaction(t: Array) -> Any:
-        x, y = arm * np.cos(0.4 + rate * t), arm * np.sin(0.4 + rate * t)
-        return [-MASS * rate**2 * x, MASS * (G - rate**2 * y), MASS * G * x]
+        point = round_about(arm, 0.4 + rate * t, 0.0, 0.0)[0]
+        return [-MASS * rate**2 * point.real, MASS * (G - rate**2 * point.imag), MASS * G * point.real]
 
-    joints = (
-        Pin("hinge", None, "body", (0.0, 0.0), (-arm, 0.0)),
-        Drive("motor", None, "body", rate, 0.4),
-    )
-    return world("driven crank", (body("body"),), joints, (0.0, -G), states, reaction)
-
-
-def _spinning_bar() -> World:
-    """A bar on a pin through its centre of mass turns at a constant rate, from an angle of more than one turn."""
-    rate, begin = -60.0, 20.0
-    pin = Pin("hinge", None, "body", (0.0, 0.0), (0.0, 0.0))
-    return world(
-        "spinning bar",
-        (body("body"),),
-        (pin,),
-        (0.0, 0.0),
-        lambda t: ([[0.0, 0.0, begin + rate * t]], [[0.0, 0.0, rate]], [[0.0, 0.0, 0.0]]),
-    )
+    joints = (Pin("hinge", None, "body", ORIGIN, (-arm, 0.0)), Drive("motor", None, "body", rate, 0.4))
+    return world("driven crank", joints, states, reaction)
 
 
 def _sliding_block() -> World:
     """A block whose centre of mass slides down an incline, turning at a rate that nothing changes."""
     slope, speed, spin = -0.5, 0.8, 0.7
-    pull = G * math.sin(-slope)
-    x, y = math.cos(slope), math.sin(slope)
+    pull, line = G * math.sin(-slope), np.exp(1j * slope)
 
     def states(t: Array) -> Any:
-        way, now = speed * t + pull * t**2 / 2, speed + pull * t
-        return [[way * x, way * y, 0.3 + spin * t]], [[now * x, now * y, spin]], [[pull * x, pull * y, 0.0]]
+        way = speed * t + pull * t**2 / 2
+        return [(way * line, (speed + pull * t) * line, pull * line, 0.3 + spin * t, spin, 0.0)]
 
-    slot = Slot("guide", None, "body", (0.0, 0.0), slope, (0.0, 0.0))
-    return world("sliding block", (body("body"),), (slot,), (0.0, -G), states, lambda t: [MASS * G * math.cos(slope)])
+    slot = Slot("guide", None, "body", ORIGIN, slope, ORIGIN)
+    return world("sliding block", (slot,), states, lambda t: [MASS * G * math.cos(slope)])
 
 
 def _bead() -> World:
@@ -126,38 +158,37 @@ def _bead() -> World:
     2 m r' rate + m g cos(turned).
     """
     rate, begin, near, far = 3.0, 0.5, 0.2, 0.1
-    own = G / (2 * rate**2)
+    sag = G / (2 * rate**2)
 
     def along(t: Array) -> tuple[Array, Array, Array]:
         grown = near * np.cosh(rate * t) + far * np.sinh(rate * t)
         growing = near * np.sinh(rate * t) + far * np.cosh(rate * t)
         sine, cosine = np.sin(begin + rate * t), np.cos(begin + rate * t)
-        return grown + own * sine, rate * (growing + own * cosine), rate**2 * (grown - own * sine)
+        return grown + sag * sine, rate * (growing + sag * cosine), rate**2 * (grown - sag * sine)
 
     def states(t: Array) -> Any:
         way, speed, change = along(t)
         turned = begin + rate * t
-        cosine, sine = np.cos(turned), np.sin(turned)
-        ahead, across = change - rate**2 * way, 2 * speed * rate
-        return (
-            [[0.0, 0.0, turned], [way * cosine, way * sine, 0.0]],
-            [[0.0, 0.0, rate], [speed * cosine - way * rate * sine, speed * sine + way * rate * cosine, 0.0]],
-            [[0.0, 0.0, 0.0], [ahead * cosine - across * sine, ahead * sine + across * cosine, 0.0]],
-        )
+        line = np.exp(1j * turned)
+        acceleration = (change - rate**2 * way + 2j * speed * rate) * line
+        return [
+            (0.0, 0.0, 0.0, turned, rate, 0.0),
+            (way * line, (speed + 1j * way * rate) * line, acceleration, 0.0, 0.0, 0.0),
+        ]
 
     def reaction(t: Array) -> Any:
         way, speed, _ = along(t)
         cosine, sine = np.cos(begin + rate * t), np.sin(begin + rate * t)
         pressed = MASS * (2 * speed * rate + G * cosine)
-        # The hinge and the motor hold the rod against its weight and against what it presses on the bead.
+        # The hinge and the motor hold the rod against its weight and against the force of the bead.
         return [-pressed * sine, pressed * cosine + MASS * G, pressed * way, pressed]
 
     joints = (
-        Pin("hinge", None, "rod", (0.0, 0.0), (0.0, 0.0)),
+        Pin("hinge", None, "rod", ORIGIN, ORIGIN),
         Drive("motor", None, "rod", rate, begin),
-        Slot("groove", "rod", "bead", (0.0, 0.0), 0.0, (0.0, 0.0)),
+        Slot("groove", "rod", "bead", ORIGIN, 0.0, ORIGIN),
     )
-    return world("bead on a turning rod", (body("rod"), body("bead")), joints, (0.0, -G), states, reaction)
+    return world("bead on a turning rod", joints, states, reaction, (body("rod"), body("bead")))
 
 
 def _trammel() -> World:
@@ -167,16 +198,14 @@ def _trammel() -> World:
 
     def states(t: Array) -> Any:
         angle, rate, change = swing(t, 0.7, 1.5, frequency)
-        parts = round_about(half, angle - math.pi / 2, rate, change)
         # The end (half, 0) of the bar is on the x axis, the other on the y axis: the bar's angle is minus the middle's.
-        own = (math.pi / 2 - angle, -rate, -change)
-        return [[[*part, turned]] for part, turned in zip(parts, own, strict=True)]
+        return [(*round_about(half, angle - math.pi / 2, rate, change), math.pi / 2 - angle, -rate, -change)]
 
     joints = (
-        Slot("level", None, "body", (0.0, 0.0), 0.0, (half, 0.0)),
-        Slot("upright", None, "body", (0.0, 0.0), math.pi / 2, (-half, 0.0)),
+        Slot("level", None, "body", ORIGIN, 0.0, (half, 0.0)),
+        Slot("upright", None, "body", ORIGIN, math.pi / 2, (-half, 0.0)),
     )
-    return world("trammel", (body("body"),), joints, (0.0, -G), states)
+    return world("trammel", joints, states)
 
 
 def _skate() -> World:
@@ -190,23 +219,17 @@ def _skate() -> World:
 
     def states(t: Array) -> Any:
         heading = begin + spin * t
-        cosine, sine = np.cos(heading), np.sin(heading)
-        now, change = steady + pull * cosine, -G * sine
+        sine, now = np.sin(heading), steady + pull * np.cos(heading)
         x = steady * (sine - math.sin(begin)) + pull * (spin * t + (np.sin(2 * heading) - math.sin(2 * begin)) / 2) / 2
-        y = -steady * (cosine - math.cos(begin)) + pull * (sine**2 - math.sin(begin) ** 2) / 2
-        aside = now * spin
-        return (
-            [[x / spin, y / spin, heading - blade]],
-            [[now * cosine, now * sine, spin]],
-            [[change * cosine - aside * sine, change * sine + aside * cosine, 0.0]],
-        )
+        y = -steady * (np.cos(heading) - math.cos(begin)) + pull * (sine**2 - math.sin(begin) ** 2) / 2
+        ahead = np.exp(1j * heading)
+        return [((x + 1j * y) / spin, now * ahead, (-G * sine + 1j * now * spin) * ahead, heading - blade, spin, 0.0)]
 
     def reaction(t: Array) -> Any:
         cosine = np.cos(begin + spin * t)
         return [MASS * ((steady + pull * cosine) * spin + G * cosine)]
 
-    joint = Skate("blade", None, "body", (0.0, 0.0), blade)
-    return world("skate on a slope", (body("body"),), (joint,), (0.0, -G), states, reaction)
+    return world("skate on a slope", (Skate("blade", None, "body", ORIGIN, blade),), states, reaction)
 
 
 def _sleigh() -> World:
@@ -222,11 +245,11 @@ def _sleigh() -> World:
     pace = MASS * arm * fastest / whole
     nodes, weights = np.polynomial.legendre.leggauss(24)
 
-    def heading(t: Array) -> Array:
-        def turned_by(s: Any) -> Any:
-            return 2 * np.arctan(np.tanh(s / 2))
+    def gudermannian(s: Any) -> Any:
+        return 2 * np.arctan(np.tanh(s / 2))
 
-        return turned + largest / pace * (turned_by(begin + pace * t) - turned_by(begin))
+    def heading(t: Array) -> Array:
+        return turned + largest / pace * (gudermannian(begin + pace * t) - gudermannian(begin))
 
     def speed(t: Array) -> Array:
         return fastest * np.tanh(begin + pace * t)
@@ -237,21 +260,13 @@ def _sleigh() -> World:
         way = t / 2 * ((speed(within) * np.exp(1j * heading(within))) @ weights)
         faster, slower = arm * rate**2, -MASS * arm * now * rate / whole
         ahead = np.exp(1j * angle)
-        place = way + arm * ahead
-        velocity = (now + 1j * arm * rate) * ahead
-        change = (faster - arm * rate**2 + 1j * (arm * slower + now * rate)) * ahead
-        return (
-            [[place.real, place.imag, angle]],
-            [[velocity.real, velocity.imag, rate]],
-            [[change.real, change.imag, slower]],
-        )
+        acceleration = (faster - arm * rate**2 + 1j * (arm * slower + now * rate)) * ahead
+        return [(way + arm * ahead, (now + 1j * arm * rate) * ahead, acceleration, angle, rate, slower)]
 
     def reaction(t: Array) -> Any:
-        rate = largest / np.cosh(begin + pace * t)
-        return [INERTIA * MASS * speed(t) * rate / whole]
+        return [INERTIA * MASS * speed(t) * largest / np.cosh(begin + pace * t) / whole]
 
-    joint = Skate("blade", None, "body", (-arm, 0.0))
-    return world("sleigh", (body("body"),), (joint,), (0.0, 0.0), states, reaction)
+    return world("sleigh", (Skate("blade", None, "body", (-arm, 0.0)),), states, reaction, gravity=0.0)
 
 
 def rolling(ground: Any, radius: float, angle: float, ground_arc: float) -> Rolling:
@@ -264,21 +279,17 @@ def _disc() -> World:
     """A disc rolls down a slope: r angle'' = -g sin(slope) / (1 + I / (m r^2)), and friction is -I angle'' / r."""
     radius, slope, spin, begin = 0.3, 0.4, -2.0, 0.2
     pull = G * math.sin(slope) / (1 + INERTIA / (MASS * radius**2))
-    x, y = math.cos(slope), -math.sin(slope)  # downhill
+    downhill = np.exp(-1j * slope)
 
     def states(t: Array) -> Any:
         way, speed = -radius * spin * t + pull * t**2 / 2, -radius * spin + pull * t
-        return (
-            [[way * x - radius * y, way * y + radius * x, begin - way / radius]],
-            [[speed * x, speed * y, -speed / radius]],
-            [[pull * x, pull * y, -pull / radius]],
-        )
+        turning = begin - way / radius, -speed / radius, -pull / radius
+        return [((way + 1j * radius) * downhill, speed * downhill, pull * downhill, *turning)]
 
     # The ground's material is on its left, so it is traversed uphill: there friction, which slows the disc, points.
-    ground = Line(math.pi - slope)
-    joint = Roll("rim", None, "body", rolling(ground, radius, begin, 0.0))
+    joint = Roll("rim", None, "body", rolling(Line(math.pi - slope), radius, begin, 0.0))
     forces = [INERTIA * pull / radius**2, MASS * G * math.cos(slope)]
-    return world("disc on a slope", (body("body"),), (joint,), (0.0, -G), states, lambda t: forces)
+    return world("disc on a slope", (joint,), states, lambda t: forces)
 
 
 def _disc_in_a_hole() -> World:
@@ -289,42 +300,39 @@ def _disc_in_a_hole() -> World:
 
     def states(t: Array) -> Any:
         angle, rate, change = swing(t, begin, 1.0, frequency)
-        parts = round_about(between, angle - math.pi / 2, rate, change)
-        # Without slip r own' = -q angle'.
-        owns = (-between / radius * (angle - begin), -between / radius * rate, -between / radius * change)
-        return [[[*part, own]] for part, own in zip(parts, owns, strict=True)]
+        ratio = -between / radius  # without slip
+        turning = ratio * (angle - begin), ratio * rate, ratio * change
+        return [(*round_about(between, angle - math.pi / 2, rate, change), *turning)]
 
-    ring = Ring(hole)  # arc 0 at +x, clockwise
-    joint = Roll("rim", None, "body", rolling(ring, radius, 0.0, hole * (math.pi / 2 - begin)))
-    return world("disc in a hole", (body("body"),), (joint,), (0.0, -G), states)
+    # The ring's arc 0 is at +x, and it is traversed clockwise.
+    joint = Roll("rim", None, "body", rolling(Ring(hole), radius, 0.0, hole * (math.pi / 2 - begin)))
+    return world("disc in a hole", (joint,), states)
 
 
-SPINNING = _spinning_bar()
-# One body each, which nothing moves: what reactions say of its weight.
+# A bar on a pin through its centre of mass turns at a constant rate, from an angle of more than one turn.
+SPINNING = world(
+    "spinning bar",
+    (Pin("hinge", None, "body", ORIGIN, ORIGIN),),
+    lambda t: [(0.0, 0.0, 0.0, 20.0 - 60.0 * t, -60.0, 0.0)],
+    gravity=0.0,
+)
+# One body each, which nothing moves: reactions show its weight.
 RESTING: tuple[World, ...] = (
-    resting("hanging bar", (Pin("hinge", None, "body", (0.3, 1.0), (0.0, 0.5)),), [0.0, WEIGHT], (0.3, 0.5, 0.0)),
+    resting("hanging bar", (Pin("hinge", None, "body", (0.3, 1.0), (0.0, 0.5)),), [0.0, WEIGHT], 0.3 + 0.5j, 0.0),
     resting(
         "held arm",
-        (Pin("hinge", None, "body", (0.0, 0.0), (-0.5, 0.0)), Drive("motor", None, "body", 0.0, 0.0)),
+        (Pin("hinge", None, "body", ORIGIN, (-0.5, 0.0)), Drive("motor", None, "body", 0.0, 0.0)),
         [0.0, WEIGHT, WEIGHT * 0.5],
-        (0.5, 0.0, 0.0),
+        0.5,
+        0.0,
     ),
-    resting("resting block", (Slot("guide", None, "body", (0.0, 0.2), 0.0, (0.0, 0.0)),), [WEIGHT], (0.4, 0.2, 0.1)),
-    resting("resting skate", (Skate("blade", None, "body", (0.0, 0.0)),), [WEIGHT], (0.4, 0.2, 0.0)),
-    resting(
-        "resting disc", (Roll("rim", None, "body", rolling(Line(), 0.3, 0.2, 0.0)),), [0.0, WEIGHT], (0.0, 0.3, 0.2)
-    ),
+    resting("resting block", (Slot("guide", None, "body", (0.0, 0.2), 0.0, ORIGIN),), [WEIGHT], 0.4 + 0.2j, 0.1),
+    resting("resting skate", (Skate("blade", None, "body", ORIGIN),), [WEIGHT], 0.4 + 0.2j, 0.0),
+    resting("resting disc", (Roll("rim", None, "body", rolling(Line(), 0.3, 0.2, 0.0)),), [0.0, WEIGHT], 0.3j, 0.2),
 )
-MOVING: tuple[World, ...] = (
-    _swinging_bar(),
-    _swinging_parallelogram(),
-    _driven_crank(),
-    _sliding_block(),
-    _bead(),
-    _trammel(),
-    _skate(),
-    _sleigh(),
-    _disc(),
-    _disc_in_a_hole(),
+_MAKERS = (
+    *(_swinging_bar, _swinging_parallelogram, _driven_crank, _sliding_block, _bead, _trammel, _skate, _sleigh),
+    *(_disc, _disc_in_a_hole),
 )
+MOVING: tuple[World, ...] = tuple(make() for make in _MAKERS)
 WORLDS = (*RESTING, *MOVING)

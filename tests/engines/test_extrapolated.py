@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from engines import CLAIM, Run, Size, Unsupported
-from engines.extrapolated import Extrapolated, combine, expected_error, extrapolation_weights
+from engines.extrapolated import Extrapolated
+from engines.richardson import combine, expected_error, extrapolation_weights
 from reference.forces import TorsionDamper
 from reference.joints import Skate
 from reference.mechanism import Mechanism
