@@ -24,7 +24,13 @@ from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.person import TwoFeet
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.skates import ChaplyginSleigh, PinnedBody, SkateOnSlope, SleighBackwards
-from reference.scenes.slider_crank import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.slider_crank import (
+    DrivenSliderCrank,
+    FreeSliderCrank,
+    RodEndInSlot,
+    SliderAtDeadCentre,
+    SlottedLever,
+)
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart
 from reference.trajectory import Trajectory, energy, joint_gap, slip
@@ -55,6 +61,7 @@ OTHERS: tuple[Scene, ...] = (
     CarAndTrailer(hitch=-0.3, bend=-2.0, steering=-0.9, pose=(1.0, 2.0, 4.0)),
     *(Cart(speed=-1.0, angles=(0.1, 0.2)), Cart(redundant=True)),
     *(EllipticGears(eccentricity=0.2, start_angle=-2.0), EllipticGears(eccentricity=0.75, start_angle=1.0)),
+    *(RodEndInSlot(offset=0.3, branch=-1), SlottedLever(slant=-2.0, crank=0.79), SliderAtDeadCentre(angle=1e-2)),
     TwoFeet(knees=-1, stance=0.3, hip_x=0.1, trunk=0.2, mass=60.0, height=1.6, hip_y=0.72),
 )
 ALL = (*SCENES, *SCENES_OF_LIMITS, *OTHERS)
