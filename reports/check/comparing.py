@@ -15,8 +15,7 @@ from reference.trajectory import Trajectory, ground_points
 from reports.check import rendering
 from reports.check.checked import SAMPLES
 from reports.check.judging import UNITS, Errors, IdealMotion, errors, judged
-from reports.check.picture_data import picture_data, pose_of
-from reports.check.pictures import ideal, pictures, plane
+from reports.check.pictures import ideal, picture_data, pictures, plane, pose_of
 from reports.check.rendering import Section
 from reports.check.telling import number
 from reports.plots.theme import LIGHT, new_figure, settings, svg

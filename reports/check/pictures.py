@@ -1,22 +1,141 @@
-"""Two pictures of a check: errors over time, and the mechanism at the moment when it is most wrong."""
+"""Two pictures of a check, from plain data: errors over time, and the mechanism at the moment when it is most wrong."""
 
 from __future__ import annotations
 
+import json
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
-from reports.check.judging import UNITS
-from reports.check.picture_data import Lines, PictureData, Pose
+from reference.forces import Spring
+from reference.joints import Rod, Slot
+from reference.mechanism import Mechanism
+from reference.plane import rotated
+from reference.trajectory import Trajectory, body_points, ground_points
+from reports.check.checked import Checked, Tried
+from reports.check.judging import UNITS, Errors, IdealMotion
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 
-LEAST = 1e-16
+Array = NDArray[np.float64]
+Lines = list[list[list[float]]]  # lines of points of two coordinates [m]
+Curves = dict[str, list[float]]  # errors over time by quantity, in its unit
+LEAST = 1e-16  # of an error on a logarithmic axis
 BARS: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
 
 
+@dataclass(frozen=True)
+class Pose:
+    """One pose: bars through the joints of each body, rods and springs, rails on which something slides [m]."""
+
+    bars: Lines
+    links: Lines
+    rails: Lines
+
+
+@dataclass(frozen=True)
+class PictureData:
+    """Errors over the times t [s] of three runs, those of quantities that are known, and a moment [s] in two poses.
+
+    `advised` is None where the user's own settings are enough; `horizon` [s] where errors do not grow exponentially;
+    `label`: the name of the first run.
+    """
+
+    t: list[float]
+    own: Curves
+    judge_t: list[float]
+    judge: Curves
+    advised_t: list[float]
+    advised: Curves | None
+    horizon: float | None
+    moment: float
+    ground: list[list[float]]
+    ideal: Pose
+    found: Pose
+    label: str = "your settings"
+
+    def as_text(self) -> str:
+        """JSON, in which NaN may stand."""
+        return json.dumps(asdict(self), sort_keys=True)
+
+
+def from_text(text: str) -> PictureData:
+    """Back from `PictureData.as_text`."""
+    data = json.loads(text)
+    return PictureData(**{**data, "ideal": Pose(**data["ideal"]), "found": Pose(**data["found"])})
+
+
+def shown_of(result: Checked, advised: Tried | None = None) -> PictureData:
+    """The data of a check; `advised`: the settings beside the user's own, if not those that it advises."""
+    advised = advised or result.advised
+    other = None if advised is None or result.met else advised.errors
+    mechanism = result.reading.mechanism
+    return picture_data(mechanism, result.judge, result.judge_errors, result.own, result.own_errors, other)
+
+
+def picture_data(
+    mechanism: Mechanism,
+    ideal: IdealMotion,
+    judge: Errors,
+    run: Trajectory,
+    own: Errors,
+    other: Errors | None = None,
+    label: str = PictureData.label,
+) -> PictureData:
+    """Of a run with its errors, beside the ideal motion, the judge's errors, and another run's."""
+    known = [quantity for quantity in UNITS if np.isfinite(own.of[quantity]).any()]
+    sample = int(np.argmax(np.where(np.isfinite(own.whole), own.whole, -1.0)))
+
+    def curves(errors: Errors) -> Curves:
+        return {quantity: errors.of[quantity].tolist() for quantity in known}
+
+    return PictureData(
+        own.t.tolist(),
+        curves(own),
+        judge.t.tolist(),
+        curves(judge),
+        [] if other is None else other.t.tolist(),
+        None if other is None else curves(other),
+        ideal.horizon if ideal.horizon < ideal.trajectory.t[-1] else None,
+        float(own.t[sample]),
+        ground_points(mechanism).tolist(),
+        pose_of(mechanism, ideal.trajectory.pose[sample]),
+        pose_of(mechanism, run.pose[sample]),
+        label,
+    )
+
+
+def pose_of(mechanism: Mechanism, pose: Array) -> Pose:
+    """The lines of a pose (bodies, 3) [m, m, rad]: a body with a single joint reaches to its centre of mass."""
+
+    def point(name: str | None, local: tuple[float, float]) -> Array:
+        if name is None:
+            return np.array(local)
+        x, y, angle = pose[mechanism.body_index(name)]
+        return np.array([x, y]) + rotated(angle, np.array(local))
+
+    reach = 2 * max(mechanism.length_scale, float(np.ptp(mechanism.pose[:, :2], axis=0).max()))
+    rails, links, bars = [], [], []
+    for joint in mechanism.joints:
+        if isinstance(joint, Slot) and joint.first is None:
+            way = 0.5 * reach * np.array([np.cos(joint.line_angle), np.sin(joint.line_angle)])
+            middle = point(joint.second, joint.second_point)
+            rails.append([(middle - way).tolist(), (middle + way).tolist()])
+    for link in (*mechanism.joints, *mechanism.forces):
+        if isinstance(link, Rod | Spring):
+            first, second = point(link.first, link.first_point), point(link.second, link.second_point)
+            if np.linalg.norm(second - first) < 3 * reach:  # not one that stands for a spring along a slide
+                links.append([first.tolist(), second.tolist()])
+    for name, points in body_points(mechanism, pose).items():
+        centre = pose[mechanism.body_index(name)][:2]
+        bars.append((points if len(points) > 1 else np.vstack([points, centre])).tolist())
+    return Pose(bars, links, rails)
+
+
 def pictures(shown: PictureData) -> dict[str, tuple[str, str]]:
-    """By 'errors' and 'worst': what each shows, and the SVG."""
+    """By 'errors' and 'worst': the title of a picture, and the SVG."""
     named = {
         "errors": (f"Errors of {shown.label} over time, beside the judge's own error", _errors(shown)),
         "worst": (f"The mechanism at {shown.moment:.3g} s, where the error of {shown.label} is largest", _worst(shown)),
@@ -26,6 +145,10 @@ def pictures(shown: PictureData) -> dict[str, tuple[str, str]]:
 
 def _errors(shown: PictureData) -> Figure:
     theme, quantities = LIGHT, list(shown.own)
+    lines = [(shown.t, shown.own, shown.label, theme.first, "-")]
+    if shown.advised is not None:
+        lines.append((shown.advised_t, shown.advised, "advised settings", theme.second, "--"))
+    lines.append((shown.judge_t, shown.judge, "the judge's own error", theme.quiet, ":"))
     with settings():
         figure = new_figure(5.4 if len(quantities) > 2 else 3.1, theme)
         panels = figure.subplots(-(-len(quantities) // 2), 2, squeeze=False).ravel()
@@ -34,10 +157,6 @@ def _errors(shown: PictureData) -> Figure:
         for panel, quantity in zip(panels, quantities, strict=False):
             style_axes(panel, theme)
             panel.set_yscale("log")
-            lines = [(shown.t, shown.own, shown.label, theme.first, "-")]
-            if shown.advised is not None:
-                lines.append((shown.advised_t, shown.advised, "advised settings", theme.second, "--"))
-            lines.append((shown.judge_t, shown.judge, "the judge's own error", theme.quiet, ":"))
             for t, errors, label, colour, dashes in lines:
                 values = np.maximum(errors[quantity], LEAST)
                 panel.plot(t[1:], values[1:], color=colour, linestyle=dashes, linewidth=1.5, label=label)
@@ -45,10 +164,7 @@ def _errors(shown: PictureData) -> Figure:
                 panel.axvline(shown.horizon, color=theme.third, linestyle="-.", label="errors grow exponentially")
             panel.set_title(f"{quantity} error, {UNITS[quantity]}", loc="left")
             panel.set_xlabel("time, s")
-        handles, labels = panels[0].get_legend_handles_labels()
-        legend = figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
-        for text in legend.get_texts():
-            text.set_color(theme.ink)
+        _legend(figure, theme, 4, *panels[0].get_legend_handles_labels())
     return figure
 
 
@@ -63,10 +179,14 @@ def _worst(shown: PictureData) -> Figure:
         _draw(panel, shown.found.rails, linewidth=0.6, color=theme.first, alpha=0.5)
         _draw(panel, shown.found.links, linewidth=0.8, **dashed)
         _draw(panel, shown.found.bars, shown.label, linewidth=1.5, markersize=4, **dashed, **BARS)
-        legend = figure.legend(loc="outside lower center", ncols=3, frameon=False)
-        for text in legend.get_texts():
-            text.set_color(theme.ink)
+        _legend(figure, theme, 3)
     return figure
+
+
+def _legend(figure: Figure, theme: Theme, columns: int, *entries: Any) -> None:
+    legend = figure.legend(*entries, loc="outside lower center", ncols=columns, frameon=False)
+    for text in legend.get_texts():
+        text.set_color(theme.ink)
 
 
 def plane(panel: Any, theme: Theme, ground: Any, label: str | None = None) -> None:

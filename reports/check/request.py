@@ -97,7 +97,7 @@ class CheckReport:
 
 @dataclass(frozen=True)
 class Refused:
-    """One sentence that says why there is no answer."""
+    """One sentence with the reason why there is no answer."""
 
     sentence: str
 
@@ -143,8 +143,7 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
             trouble = refusal(reason)
     if request.pictures:
         note("drawing")
-        from reports.check.picture_data import shown_of
-        from reports.check.pictures import pictures  # a second of imports
+        from reports.check.pictures import pictures, shown_of  # a second of imports
 
         drawn = pictures(shown_of(result))
     shown = answer(result), sections(result, drawn), line(result)

@@ -27,8 +27,7 @@ from reports.check.checked import check, read
 from reports.check.document import data, schema
 from reports.check.facts import facts_of
 from reports.check.judging import accelerations, errors, judged
-from reports.check.picture_data import from_text, shown_of
-from reports.check.pictures import pictures
+from reports.check.pictures import from_text, pictures, shown_of
 from reports.check.telling import answer, sections
 from tests.present import present
 from tests.toys import Disc

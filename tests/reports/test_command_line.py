@@ -132,13 +132,6 @@ def test_nothing_is_published_without_an_engine_whose_rows_are_published(here, m
     assert {name: (here / "checkout" / name).read_text() for name in texts} == texts
 
 
-def test_nothing_is_published_outside_a_checkout(here, monkeypatch, capfd):
-    monkeypatch.setattr(report_command, "CHECKOUT", here / "site-packages")
-    assert call("report", "--publish") == REFUSED
-    assert "checkout" in one_line(capfd.readouterr().err)
-    assert list(here.iterdir()) == []
-
-
 def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkeypatch):
     """With a grid of one cell and one page of one line, since rendering is not the subject."""
     checkout(here / "checkout", monkeypatch)
@@ -231,12 +224,6 @@ def test_each_ending_has_its_status_and_its_line(error, status, line, monkeypatc
     assert capfd.readouterr() == ("", line)
 
 
-def test_a_mistake_of_the_program_itself_is_not_hidden(monkeypatch):
-    monkeypatch.setattr(commands, "invoke", Mock(side_effect=ZeroDivisionError))
-    with pytest.raises(ZeroDivisionError):
-        program.main(["list"])
-
-
 def test_without_a_command_there_is_help_and_nothing_on_stderr(capfd):
     assert call() == FINE
     out, err = capfd.readouterr()
@@ -277,13 +264,6 @@ def test_closed_streams_are_no_reason_to_fail(tmp_path):
     assert process.returncode == FINE
     with closing(Store(tmp_path / "cells.sqlite")._connection) as connection:
         assert connection.execute("select count(*) from results").fetchone() == (1,)
-
-
-def test_a_run_of_nothing_is_refused_with_the_methods_that_there_are(here, capfd):
-    assert call("run", "sleigh", "--engine", "pymunk", "--variant", "roll: pivot, predicted contact") == 2
-    told = one_line(capfd.readouterr().err)
-    assert "nothing to run" in told
-    assert "mujoco friction blade" in told
 
 
 def test_a_run_in_which_every_cell_failed_has_another_status_than_0(here, capfd):

@@ -69,11 +69,9 @@ def test_a_linkage_is_bars_between_points_that_stand_where_they_are_said_to():
     ("points", "bars", "ground", "sentence"),
     [
         (POINTS, {"crank": "AX"}, "A", "no point is called 'X'; there are A, B, C, D"),
-        (POINTS, BARS, "AZ", "no point is called 'Z'"),
         ({**POINTS, "B": 3}, BARS, "AD", "point 'B' is 3; it must be two numbers, x and y [m]"),
         (POINTS, {"crank": "A"}, "A", "bar 'crank': its ends are 'A'; give the names of two different points"),
         ({**POINTS, "E": (0, 0)}, {"crank": "AE"}, "A", "are the same place; it has no length"),
-        (POINTS, {}, "A", "it has no bodies"),
     ],
 )
 def test_what_is_no_linkage_is_refused_in_a_sentence(points, bars, ground, sentence):
@@ -120,15 +118,6 @@ def test_models_are_read_as_files_and_as_objects(tmp_path):
     assert "data:image/svg+xml" in found._repr_html_()
     with pytest.raises(ValueError, match=r"it is dict; give a file, a mujoco\.MjModel or a pymunk\.Space"):
         planar_crosscheck.check({})
-
-
-def test_releases_and_builds_that_are_not_there_are_refused():
-    for call in (
-        lambda: planar_crosscheck.versions("nonsense", "1.0"),
-        lambda: planar_crosscheck.build_comparison("nonsense==1.0", "pymunk==7.3.1"),
-    ):
-        with pytest.raises(ValueError, match="nonsense"):
-            call()
 
 
 def test_a_search_returns_the_cases_and_keeps_them_in_a_store(tmp_path, at_home):
@@ -179,7 +168,6 @@ def test_a_test_of_anybodys_passes_fails_with_the_lines_to_paste_and_says_what_i
         ({}, "reactions_have_sign_and_size: .*: reactions_have_sign_and_size: "),
         ({"reactions_have_sign_and_size": "bug 12"}, ""),
         ({"reactions_have_sign_and_size: hanging bar": "bug 12"}, "reactions_have_sign_and_size: (?!hanging bar)"),
-        ({"reactions_have_sign_and_size": " "}, "it is expected to fail, and no reason is given"),
         (
             {"reactions_have_sign_and_size": "bug 12", "has_a_name": "bug 13"},
             r"has_a_name: .*\(bug 13\), and it does not",

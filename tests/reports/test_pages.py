@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.check.picture_data import PictureData, Pose
+from reports.check.pictures import PictureData, Pose
 from reports.cli.report import drawn, material_of
 from reports.cli.selection import shown_cells
 from reports.gate.prediction import all_tasks

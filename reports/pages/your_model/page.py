@@ -13,8 +13,7 @@ from typing import Any, ClassVar
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.check.checked import Checked, Plan, Tried, check, read, readers
 from reports.check.document import data
-from reports.check.picture_data import from_text, shown_of
-from reports.check.pictures import pictures
+from reports.check.pictures import from_text, pictures, shown_of
 from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values
 from reports.write.tables import markdown, number
