@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
-from scipy.interpolate import CubicHermiteSpline
 
 from engines import Unsupported
 from engines.lagrange import TRUTH, Lagrange
@@ -98,15 +97,12 @@ class IdealMotion:
 
     @property
     def grown(self) -> float:
-        """How many times at the end."""
+        """The growth at the end."""
         return float(self.growth[-1])
 
     @property
     def tenfold(self) -> float:
-        """In how many seconds, on average, a small disturbance of the start grows tenfold; infinite if it does not.
-
-        Counted for as long as it is small: its growth ends where it is as large as the motion.
-        """
+        """Mean time [s] in which a small disturbance of the start grows tenfold; infinite if it does not grow."""
         small = self.growth * NUDGE < SMALL
         last = len(small) - 1 if small.all() else max(int(np.argmin(small)) - 1, 0)
         tens = float(np.log10(max(self.growth[last], 1.0)))
@@ -118,15 +114,18 @@ def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float 
 
     Raises InvalidMechanism where it can't be followed to the end, or not known for a sample.
     """
-    motion = TRUTH.build(mechanism, spacing)(samples, 1)
-    looser, run = None, partial(_by_multipliers, samples, spacing)
+
+    def run(other: Mechanism) -> Trajectory:
+        return TRUTH.build(other, spacing)(samples, 1)
+
+    motion, looser = run(mechanism), None
     known = _known(mechanism, motion, tolerance)
     if not known.all() and has_one_freedom(mechanism):
-        runs = [motion_along_curve(mechanism, motion.t, each) for each in (ALONG, ALONG_LOOSER)]
-        along = replace(runs[0], estimate=np.abs(runs[0].pose - runs[1].pose))
+        along, beside = (motion_along_curve(mechanism, motion.t, size) for size in (ALONG, ALONG_LOOSER))
+        along = replace(along, estimate=np.abs(along.pose - beside.pose))
         known_along = _known(mechanism, along, tolerance)
         if known_along.all():
-            motion, looser, known = along, runs[1], known_along
+            motion, looser, known = along, beside, known_along
             run = partial(motion_along_curve, t=motion.t, tolerance=ALONG)
     sound = np.isfinite(motion.pose).all(axis=(1, 2))
     if not sound.all():
@@ -142,18 +141,13 @@ def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float 
             )
         return replace(judged(mechanism, last, spacing), cut=True)
     looser = looser or LOOSER.build(mechanism, spacing)(samples, 1)
-    growths = [_growth(mechanism, motion, looser, run, *each) for each in DISTURBANCES]
+    growths = [_growth(mechanism, motion, looser, run, *disturbance) for disturbance in DISTURBANCES]
     expected = GROWN * (1 + motion.t / mechanism.time_scale)
-    sizes = [size for _, size in DISTURBANCES]
-    begins = [_parting(growth, expected, size) for growth, size in zip(growths, sizes, strict=True)]
-    # A mechanism of one freedom passes its positions in order: neighbours are apart by a time, which does not grow.
+    begins = [_parting(growth, expected, size) for growth, (_, size) in zip(growths, DISTURBANCES, strict=True)]
+    # Neighbours in a mechanism of one freedom are apart by a time, which does not grow.
     parts = all(begin < len(motion.t) for begin in begins) and not has_one_freedom(mechanism)
     horizon = float(motion.t[min(begins) if parts else -1])
     return IdealMotion(motion, looser, np.max(growths, axis=0), horizon)
-
-
-def _by_multipliers(samples: int, spacing: float, mechanism: Mechanism) -> Trajectory:
-    return TRUTH.build(mechanism, spacing)(samples, 1)
 
 
 def _known(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> NDArray[np.bool_]:
@@ -166,9 +160,9 @@ def _known(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> NDArra
 
 
 def _parting(growth: Array, expected: Array, size: float) -> int:
-    """The first sample at which a disturbance of this size has grown by more than expected, if it stays so to the end.
+    """The first sample from which on a disturbance of this size has grown by more than expected; their count if none.
 
-    Their count if not. What has grown out of a small disturbance stays: then its size says no more.
+    A disturbance that is no longer SMALL counts as grown to the end.
     """
     beyond = growth > expected
     stays = beyond[-1] or np.any(beyond & (growth * size > SMALL))
@@ -180,13 +174,6 @@ def apart(mechanism: Mechanism, pose: Array, other: Array) -> Array:
     difference = np.abs(pose - other)
     places = np.hypot(difference[..., 0], difference[..., 1]) / mechanism.length_scale
     return np.maximum(places, difference[..., 2]).max(axis=1)
-
-
-def often(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:
-    """Times, poses and twists of a motion `parts` times as often as it was sampled, by cubics through both."""
-    spline = CubicHermiteSpline(motion.t, motion.pose, motion.twist)
-    t = np.linspace(motion.t[0], motion.t[-1], parts * (len(motion.t) - 1) + 1)
-    return t, spline(t), spline(t, 1)
 
 
 def _growth(
@@ -206,18 +193,16 @@ def _growth(
     pose, twist = dynamics.project(pose, twist, 0.0)
     if not (np.isfinite(pose).all() and np.isfinite(twist).all()):
         return none
-    bodies = tuple(
-        replace(body, pose=tuple(map(float, own)), twist=tuple(map(float, rate)))
-        for body, own, rate in zip(mechanism.bodies, pose, twist, strict=True)
-    )
+    states = zip(mechanism.bodies, pose.tolist(), twist.tolist(), strict=True)
+    bodies = tuple(replace(body, pose=tuple(at), twist=tuple(rate)) for body, at, rate in states)
     try:
         disturbed = run(replace(mechanism, bodies=bodies))
     except InvalidMechanism:  # a position in which nothing small is allowed
         return none
 
     def size(other: Trajectory) -> Array:
-        moved, faster = other.pose - motion.pose, other.twist - motion.twist
-        return np.hypot(_size(moved, unit), mechanism.time_scale * _size(faster, unit))
+        moved, faster = other.pose - motion.pose, mechanism.time_scale * (other.twist - motion.twist)
+        return np.sqrt(np.sum((moved / unit) ** 2 + (faster / unit) ** 2, axis=(1, 2)))
 
     apart_by = np.nan_to_num(size(disturbed), nan=np.inf)
     if not apart_by[0] > HELD * nudge:
@@ -226,12 +211,7 @@ def _growth(
     return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
-def _size(difference: Array, unit: Array) -> Array:
-    return np.sqrt(np.sum((difference / unit) ** 2, axis=(1, 2)))
-
-
-# Of the largest acceleration: rounding of equations that are solved twice, with room for badly scaled masses.
-AGREE = 1e-6
+AGREE = 1e-6  # of the largest acceleration: rounding of equations solved twice, with room for badly scaled masses
 # Of the mechanism's own speed, and of the largest force: what the judge's answer is known to. Less than that is zero.
 ROUNDED = 1e-9
 UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
@@ -254,8 +234,7 @@ class Errors:
     @property
     def worst(self) -> dict[str, float]:
         """Of each quantity; NaN where it is not known."""
-        known = {name: bool(np.isfinite(values).any()) for name, values in self.of.items()}
-        return {name: float(np.nanmax(self.of[name])) if known[name] else float("nan") for name in self.of}
+        return {name: float(np.fmax.reduce(values)) for name, values in self.of.items()}
 
     @property
     def over_time(self) -> dict[str, list[float]]:
@@ -289,9 +268,8 @@ def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array
     """The largest error of the joints' forces and moments that rigid bodies determine (times,), in the largest true one
     of its kind; NaN where it is not known.
 
-    The rows of a joint that hold a point are one vector, so that the error does not depend on the axes. Where all true
-    ones of a kind are rounding beside the largest force that acts, by symmetry for example, that force is the measure:
-    times the mechanism's length for moments.
+    The rows of a joint that hold a point are one vector: the error does not depend on the axes. Where all true ones of
+    a kind are rounding beside the largest acting force (for moments: times the length), that force is the measure.
     """
     out = np.full(len(run.t), np.nan)
     if not mechanism.row_count:
@@ -359,7 +337,7 @@ def refuse_disagreement(reading: Reading) -> float:
     for element, reason in model.suspects.items():
         raise Unsupported(f"{element}: {reason}; at t = 0 the accelerations are wrong by {off:.1g} of themselves")
     size = np.abs(found - expected) * [1.0, 1.0, mechanism.length_scale]
-    body = mechanism.bodies[int(np.argmax(size.max(axis=1)))].name
+    body = mechanism.bodies[int(size.max(axis=1).argmax())].name
     raise Unsupported(
         f"at t = 0 the accelerations of {model.engine} differ from those of the ideal mechanism by {off:.1g} of "
         f"themselves, most of all at {body!r}, and no single kind of element explains it"

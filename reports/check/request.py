@@ -108,8 +108,7 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
     from engines import Unsupported
     from engines.importers import read_object
     from engines.registry import mislabelled
-    from reports.check.applying import applied
-    from reports.check.checked import check, read
+    from reports.check.checked import applied, check, read
     from reports.check.document import data
     from reports.check.telling import answer, line, sections
 

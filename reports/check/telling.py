@@ -8,9 +8,10 @@ from functools import partial
 
 import numpy as np
 
-from reports.check.checked import MOST_NAMED, SATURATED, Checked, Parts, Tried, best
+from reports.check.checked import MOST_NAMED, Checked, Parts
 from reports.check.judging import UNITS
 from reports.check.rendering import Section
+from reports.check.settings import SATURATED, Tried, best
 from reports.write import tables
 
 MOST_NOTES = 4  # of elements that are left out, on the first screen

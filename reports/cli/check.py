@@ -11,29 +11,31 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+from reports.check import folder as many
+from reports.check.folder import Answers
+from reports.check.request import CheckReport, CheckRequest, Refused, answered
 from reports.cli.options import STDOUT, refuse_existing
+from reports.cli.streams import written
 from reports.model.ending import BadInput, Broken, visible
-
-if TYPE_CHECKING:
-    from reports.check.folder import Answers
-    from reports.check.request import CheckReport, CheckRequest, Refused
+from reports.model.outcomes import Loss
+from reports.run import supervisor, worker
+from reports.run.files import temporary_folder, write_whole
+from reports.run.running import worker_count
 
 WIDTH = 120  # columns at most
 OVERWRITE = "\r\x1b[K"  # on a terminal
 # What a check imports: the process from which workers are forked does so while this one gets ready.
-EARLY = ("reports.check.applying", "reports.check.document", "reports.check.telling", "numba")
+EARLY = ("reports.check.document", "reports.check.telling", "numba")
 # The words of `switch_off` in engines/mujoco/reading and engines/pymunk/reading, which are not imported for a help.
 SWITCHED_OFF = (
     "contact, limit or sleep, in pymunk damping too, in MuJoCo frictionloss, forcelimit, armature, fluid, actuation, "
     "spring, damper, gravity or equality"
 )
-
-
-# How a check that gave no answer is told, by `Outcome`.
+# The refusal where a check gave no answer, by `Outcome`.
 LOSSES = {
     "timed out": "{}; give a larger --limit if that was to be expected",
     "failed": "the check ended with an exception, {}; it comes from a function of the model, or is a defect of ours",
@@ -79,10 +81,8 @@ def check(
 
     Exit status 1 if a tolerance that was asked for is missed.
     """
-    from reports.check.request import CheckRequest
-
     if as_schema:
-        from reports.check.document import schema
+        from reports.check.document import schema  # which imports engines
 
         return _say(json.dumps(schema(), indent=1))
     if not 0 < limit <= 1e6:
@@ -91,41 +91,34 @@ def check(
         raise BadInput("--tolerance and --fix-to both name an error; give one of them")
     files = {"html": html, "markdown": markdown, "junit": junit, "apply": apply}
     drawn = not Path(model).is_dir() and (html is not None or markdown is not None)
-    goal, without = tolerance if fix_to is None else fix_to, without or []
-    request = CheckRequest(model, os.getcwd(), duration, goal, tuple(without), key, step, drawn, quick)
-    request = replace(request, everything=everything or as_json or drawn, search=fix_to is not None)
-    request = replace(request, apply=str(apply or ""))
+    goal, elements = tolerance if fix_to is None else fix_to, tuple(without or ())
+    request = CheckRequest(model, os.getcwd(), duration, goal, elements, key, step, drawn, quick)
+    all_settings = everything or as_json or drawn
+    request = replace(request, everything=all_settings, search=fix_to is not None, apply=str(apply or ""))
     _refuse_bad(request, files, everything, force)
-    _check(request, files, limit, as_json, everything)
-
-
-def _check(
-    request: CheckRequest, files: Mapping[str, Path | None], limit: float, as_json: bool, everything: bool
-) -> None:
-    """Check the model or those of the folder, print the answer and write the files."""
-    from reports.run.worker import start_early
-
-    start_early(*EARLY)
-    begin, model = monotonic(), request.word
+    worker.start_early(*EARLY)
+    begin, is_folder = monotonic(), Path(model).is_dir()
     answers = _answers([replace(request, word=word) for word in _models(model)], limit)
-    if Path(model).is_dir():
-        _print_folder(model, answers, as_json)
+    if is_folder and as_json:
+        _say(json.dumps(many.document(answers), indent=1, allow_nan=False))
+    elif is_folder:
+        from reports.cli.terminal import Terminal, print_table
+
+        print_table(Terminal(WIDTH), f"Models of {model}", many.HEADER, many.rows(answers), len(many.HEADER))
     else:
         _print(answers[0][1], as_json, everything)
     _write(model, answers, files, monotonic() - begin)
-    _refuse_missed(answers, Path(model).is_dir())
+    _refuse_missed(answers, is_folder)
 
 
-def _refuse_missed(answers: Answers, folder: bool) -> None:
+def _refuse_missed(answers: Answers, is_folder: bool) -> None:
     """Raises BadInput where nothing could be written, and Broken where a tolerance is missed."""
-    from reports.check.request import CheckReport
-
     reports = [answer for _, answer in answers if isinstance(answer, CheckReport)]
     for report in reports:
         if report.trouble:
             raise BadInput(report.trouble)
     missed = [report for report in reports if not report.fine]
-    if missed and folder:
+    if missed and is_folder:
         names = ", ".join(report.request.word for report in missed)
         raise Broken(f"{len(missed)} of {len(answers)} models miss {missed[0].request.tolerance:g}: {names}")
     if missed:
@@ -151,54 +144,47 @@ def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everyth
         refuse_existing([paths["--apply"]], "--apply", force)
     if len({path.resolve() for path in paths.values()}) < len(paths):
         raise BadInput(f"{' and '.join(paths)} name one file twice; give each a file of its own")
-    for name in ("--apply", "--html") if Path(model).is_dir() else ():
-        if name in paths:
+    if Path(model).is_dir():
+        for name in [name for name in ("--apply", "--html") if name in paths] + ["--all"] * everything:
             raise BadInput(f"{name} is for one model, and {model} is a folder; give one of its models")
-    if everything and Path(model).is_dir():
-        raise BadInput(f"--all is for one model, and {model} is a folder; give one of its models")
 
 
 def _models(model: str) -> list[str]:
     """The model, or those of a folder. Raises BadInput for a folder without any."""
     if not Path(model).is_dir():
         return [model]
-    from reports.check.folder import models
-
-    found = [str(path) for path in models(Path(model))]
-    if not found:
+    paths = [str(path) for path in many.models(Path(model))]
+    if not paths:
         raise BadInput(f"{model}: it holds no model; give a folder with MJCF, URDF or scripts that import pymunk")
-    return found
+    return paths
 
 
 def _answers(requests: list[CheckRequest], limit: float) -> Answers:
     """Each request with its answer, from supervised processes, with progress on stderr. Raises WorkersLost."""
-    from reports.check.request import Refused, answered
-    from reports.model.outcomes import Loss
-    from reports.run.files import temporary_folder
-    from reports.run.running import worker_count
-    from reports.run.supervisor import supervise
-
-    found: dict[str, CheckReport | Refused] = {}
-    with temporary_folder() as folder:
-        tell = _Progress(folder / "progress")
-        items = [replace(each, notes=str(tell.notes)) for each in requests] if len(requests) == 1 else requests
+    answers: dict[str, CheckReport | Refused] = {}
+    with temporary_folder() as aside:
+        progress = _Progress(aside / "progress")
+        items = (
+            [replace(request, notes=str(progress.notes)) for request in requests] if len(requests) == 1 else requests
+        )
+        terms: Any = {"watch": progress, "wall": limit + 60}
         try:
-            for item, result, _ in supervise(answered, items, limit, worker_count(), watch=tell, wall=limit + 60):
+            for item, result, _ in supervisor.supervise(answered, items, limit, worker_count(), **terms):
                 if isinstance(result, Loss):
                     result = Refused(f"{item.word}: {LOSSES.get(result.outcome, LOST).format(result.sentence)}")
-                found[item.word] = result
+                answers[item.word] = result
                 if len(requests) > 1:
-                    tell.show(f"{len(found)} of {len(requests)}: {item.word}")
+                    progress.show(f"{len(answers)} of {len(requests)}: {item.word}")
         finally:
-            tell.clear()
-    return [(request, found[request.word]) for request in requests]
+            progress.clear()
+    return [(request, answers[request.word]) for request in requests]
 
 
 class _Progress:
     """A line that is overwritten on a terminal; one line for each part of the work into a file or a pipe."""
 
     def __init__(self, notes: Path) -> None:
-        self.notes, self._said, self._begin = notes, "", monotonic()
+        self.notes, self._last, self._begin = notes, "", monotonic()
 
     def __call__(self, running: list[Any]) -> None:
         with suppress(OSError):
@@ -206,28 +192,25 @@ class _Progress:
             self.show(words if sys.stderr.isatty() else words.partition(",")[0])
 
     def show(self, words: str) -> None:
-        if words and words != self._said:
-            self._said, line = words, f"{monotonic() - self._begin:5.1f} s  {words}"
-            line = visible(line)
-            told, end = (f"{OVERWRITE}{line}", "") if sys.stderr.isatty() else (line, "\n")
-            print(told, end=end, file=sys.stderr, flush=True)
+        if words and words != self._last:
+            self._last, line = words, visible(f"{monotonic() - self._begin:5.1f} s  {words}")
+            start, end = (OVERWRITE, "") if sys.stderr.isatty() else ("", "\n")
+            print(f"{start}{line}", end=end, file=sys.stderr, flush=True)
 
     def clear(self) -> None:
-        if sys.stderr.isatty() and self._said:
+        if sys.stderr.isatty() and self._last:
             print(OVERWRITE, end="", file=sys.stderr, flush=True)
 
 
 def _write(model: str, answers: Answers, files: Mapping[str, Path | None], seconds: float) -> None:
-    """The files that are asked for. Raises FileTrouble."""
-    from reports.check import folder, rendering
-    from reports.check.request import CheckReport
-    from reports.run.files import write_whole
+    """The files that options name. Raises FileTrouble."""
+    from reports.check import rendering  # which takes longer to import than to refuse an option, as below
     from reports.write.tables import markdown as table
 
     texts, html, markdown, junit = dict[Path, str](), files["html"], files["markdown"], files["junit"]
     answer = answers[0][1]
     if markdown is not None and Path(model).is_dir():
-        texts[markdown] = f"# {model}\n\n{table(folder.HEADER, folder.rows(answers), left=len(folder.HEADER))}\n"
+        texts[markdown] = f"# {model}\n\n{table(many.HEADER, many.rows(answers), left=len(many.HEADER))}\n"
     elif isinstance(answer, CheckReport):
         name = f"{answer.data['name']} in {answer.data['engine']}"
         if html is not None:
@@ -238,23 +221,13 @@ def _write(model: str, answers: Answers, files: Mapping[str, Path | None], secon
             texts |= {markdown.with_name(paths[title]): drawing for title, drawing in drawn}
             texts[markdown] = rendering.markdown(name, answer.sections, paths)
     if junit is not None:
-        texts[junit] = folder.junit_xml(answers, seconds)
+        texts[junit] = many.junit_xml(answers, seconds)
     write_whole(texts, "give another file")
-
-
-def _print_folder(model: str, answers: Answers, as_json: bool) -> None:
-    from reports.check.folder import HEADER, document, rows
-    from reports.cli.terminal import Terminal, print_table
-
-    if as_json:
-        return _say(json.dumps(document(answers), indent=1, allow_nan=False))
-    return print_table(Terminal(WIDTH), f"Models of {model}", HEADER, rows(answers), len(HEADER))
 
 
 def _print(answer: CheckReport | Refused, as_json: bool, everything: bool) -> None:
     """The answer for one model. Raises BadInput if there is none."""
-    from reports.check.rendering import plain
-    from reports.check.request import Refused
+    from reports.check import rendering
 
     if isinstance(answer, Refused):
         raise BadInput(answer.sentence)
@@ -262,13 +235,11 @@ def _print(answer: CheckReport | Refused, as_json: bool, everything: bool) -> No
         return _say(json.dumps(answer.data, indent=1, allow_nan=False))
     width = min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns)
     if everything:
-        return _say(plain(answer.sections, width))
-    written = "" if answer.data["applied"] else "; to have these settings written: --apply FILE"
-    return _say(f"{plain([answer.answer], width)}All that was read, measured and tried: --all{written}.")
+        return _say(rendering.plain(answer.sections, width))
+    hint = "" if answer.data["applied"] else "; to have these settings written: --apply FILE"
+    return _say(f"{rendering.plain([answer.answer], width)}All that was read, measured and tried: --all{hint}.")
 
 
 def _say(text: str) -> None:
-    from reports.cli.streams import written
-
     with written():
         print(visible(text))
