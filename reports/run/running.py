@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -22,15 +23,9 @@ LEAST = 3e-3  # s that a cell takes besides stepping
 Item = TypeVar("Item", bound=Cell | Task)
 
 
-@dataclass(frozen=True)
-class Working:
+def work(timed: bool, truths: Path | None, item: Cell | Task) -> Measurement | Answer:
     """The function that a worker applies to a cell or a task: see `run_items`."""
-
-    timed: bool
-    truths: Path | None
-
-    def __call__(self, item: Cell | Task) -> Measurement | Answer:
-        return measure(item, self.timed, self.truths) if isinstance(item, Cell) else answered(item)
+    return measure(item, timed, truths) if isinstance(item, Cell) else answered(item)
 
 
 def worker_count() -> int:
@@ -75,8 +70,8 @@ def run_items(
     items = tuple(items)
     for item in items:  # these travel with it: each new worker would read all sources for them, half a second long
         _ = item.key, isinstance(item, Cell) and item.truth
-    work, count = Working(timed, truths), workers or worker_count()
-    for item, result, note in supervised(work, longest_first(items), limit, count, watch, wall):
+    function, count = partial(work, timed, truths), workers or worker_count()
+    for item, result, note in supervised(function, longest_first(items), limit, count, watch, wall):
         yield item, _result(item, result, note, limit)
 
 

@@ -97,8 +97,9 @@ def version_table(table: ReleaseTable, engine: str) -> str:
         change = "; ".join(f"{each.changed} ([source]({each.source}))" for each in known)
         counts = (f"{words.count('better') or '-'}", f"**{words.count('WORSE')}**" if "WORSE" in words else "-")
         ratios = [f"{costs[method][version]:.2f}" if version in costs[method] else "-" for method in costs]
-        body.append([version, *counts, *ratios, change or "-"])
-    return markdown(["version", "better", "worse", *(f"CPU time, {m}" for m in costs), "change known by name"], body)
+        body.append([version, change or "-", *counts, *ratios])
+    header = ["version", "change known by name", "better", "worse", *(f"CPU time, {method}" for method in costs)]
+    return markdown(header, body, left=2)
 
 
 def words(material: Material) -> Mapping[str, Any]:
