@@ -155,16 +155,10 @@ def test_without_numba_python_writes_the_same_rows() -> None:
 
 
 def test_the_callback_is_as_it_was_even_after_a_failure() -> None:
-    assert mujoco.get_mjcb_control() is None
     run = EXTENDED.build(SLEIGH.mechanism(), 1e-2)
-
-    def fail() -> None:
-        with run.model.hooked():
-            assert mujoco.get_mjcb_control() is not None
-            raise RuntimeError("on purpose")
-
-    with pytest.raises(RuntimeError, match="on purpose"):
-        fail()
+    with pytest.raises(RuntimeError, match="on purpose"), run.model.hooked():  # noqa: PT012
+        assert mujoco.get_mjcb_control() is not None
+        raise RuntimeError("on purpose")
     assert mujoco.get_mjcb_control() is None
     run(2, 1)
     assert mujoco.get_mjcb_control() is None

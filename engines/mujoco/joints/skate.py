@@ -56,12 +56,14 @@ def add_skates(building: Building, skates: Sequence[Skate], by: SkateBy) -> None
     if by == "blade":
         _add_blades(building, skates)
         return
-    damping, before = slip_damping(building.mechanism), len(building.written)
-    for skate in skates:
-        building.write("skate", skate, (*skate.second_point, skate.angle, damping))
-    if by != "rows":
-        joints = building.written[before:]
-        del building.written[before:]
+    damping = slip_damping(building.mechanism)
+    joints = [
+        WrittenJoint("skate", skate.first, skate.second, (*skate.second_point, skate.angle, damping))
+        for skate in skates
+    ]
+    if by == "rows":
+        building.written += joints
+    else:
         _add_tendons(building, joints)
 
 
@@ -73,19 +75,17 @@ def _add_tendons(building: Building, joints: Sequence[WrittenJoint]) -> None:
     """
     from engines.mujoco.user_rows import RowWriter
 
-    tree, spec = building.tree, building.spec
+    tree, spec, width = building.tree, building.spec, building.tree.coordinates
     # The coefficients at the start set the scale of the compliance when the model is compiled.
-    width = tree.coordinates
     start, _ = RowWriter(tree, range(width), joints).rows(np.zeros(width), np.zeros(width))
     chains = [building.chain(joint) for joint in joints]
     for number, columns in enumerate(chains):
-        tendon = spec.add_tendon(name=f"skate {number}")
-        for column in columns:
-            tendon.wrap_joint(f"coordinate {column}", float(start[number, column]))
+        name = f"skate {number}"
+        building.add_sum(name, {column: float(start[number, column]) for column in columns})
         spec.add_equality(
             type=mujoco.mjtEq.mjEQ_TENDON,
             objtype=mujoco.mjtObj.mjOBJ_TENDON,
-            name1=f"skate {number}",
+            name1=name,
             solref=[NO_STIFFNESS, -STIFFEST[1] / building.dt],
             solimp=list(STIFFEST),
         )
@@ -93,17 +93,17 @@ def _add_tendons(building: Building, joints: Sequence[WrittenJoint]) -> None:
 
     def bind(compiled: Any, address: Sequence[int]) -> Hooks:
         writer = RowWriter(tree, address, joints, ahead=building.dt)
-        own = np.array([row * compiled.nv + address[column] for row, each in enumerate(chains) for column in each])
+        places = np.array([row * compiled.nv + address[column] for row, chain in enumerate(chains) for column in chain])
         first = int(compiled.tendon_adr[compiled.tendon("skate 0").id])
-        coefficients = compiled.wrap_prm[first : first + len(own)]
+        coefficients = compiled.wrap_prm[first : first + len(places)]
         # Where every coordinate moves every skate, the coefficients are the rows as they are written.
-        alike = np.array_equal(own, np.arange(len(joints) * compiled.nv))
+        alike = np.array_equal(places, np.arange(len(joints) * compiled.nv))
         jacobian, unused = coefficients if alike else np.zeros(len(joints) * compiled.nv), np.zeros(len(joints))
 
         def rewrite(_model: Any, data: Any) -> None:
             writer.write(data.qpos, data.qvel, jacobian, unused)
             if not alike:
-                coefficients[:] = jacobian[own]
+                coefficients[:] = jacobian[places]
 
         return Hooks(before=rewrite)
 

@@ -12,11 +12,12 @@ import mujoco
 import numpy as np
 
 from engines.consistent_start import OpenStart, closed_positions, with_consistent_start
-from engines.mujoco.reading.elements import EQUALITIES, JOINTS, drives, equalities, is_steady, tree_joints
-from engines.mujoco.reading.forces import FORCES, forces, is_off, turns
+from engines.mujoco.reading.elements import EQUALITIES, JOINTS, TENDON, drives, equalities, is_steady, tree_joints
+from engines.mujoco.reading.forces import ACTUATOR, FORCES, forces, is_off, turns
 from engines.mujoco.reading.frame import (
     FREE,
     HINGE,
+    JOINT,
     PLANAR,
     PlanarModel,
     find_bodies,
@@ -101,15 +102,13 @@ def read_object(model: Any, without: Sequence[str] = (), step: float | None = No
 
 def _refuse_not_finite(model: Any, data: Any) -> None:
     """MuJoCo takes NaN and infinity as they come, and every number after them is none."""
-    joint, actuator = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_ACTUATOR
     places = np.searchsorted(model.jnt_qposadr, np.arange(model.nq), side="right") - 1
-    for name, kind, owners in (("qpos", joint, places), ("qvel", joint, model.dof_jntid), ("ctrl", actuator, None)):
+    for name, kind, owners in (("qpos", JOINT, places), ("qvel", JOINT, model.dof_jntid), ("ctrl", ACTUATOR, None)):
         values = getattr(data, name)
         for index in np.flatnonzero(~np.isfinite(values)):
             element = name_of(model, kind, index if owners is None else owners[index])
-            raise refuse(
-                "the model", f"{name} of {element} is {values[index]} at the start; it must be a finite number"
-            )
+            reason = f"{name} of {element} is {values[index]} at the start; it must be a finite number"
+            raise refuse("the model", reason)
 
 
 def _note_gravity_across(scene: PlanarModel) -> None:
@@ -130,13 +129,12 @@ def _note_what_may_act(scene: PlanarModel) -> None:
     low, high = model.jnt_range.T
     for index in np.flatnonzero((low == high) & (low != 0) & (model.jnt_limited == 0)):
         words = f"MuJoCo does not limit it, since both ends of its range are {low[index]:g}; an equality holds it there"
-        scene.note(name_of(model, mujoco.mjtObj.mjOBJ_JOINT, index), words)
+        scene.note(name_of(model, JOINT, index), words)
     if is_off(model, "CONSTRAINT"):
         return
-    if not is_off(model, "LIMIT"):
-        for kind, limited in (("JOINT", model.jnt_limited), ("TENDON", model.tendon_limited)):
-            for index in np.flatnonzero(limited):
-                scene.note(name_of(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), index), limit)
+    for kind, limited in ((JOINT, model.jnt_limited), (TENDON, model.tendon_limited)):
+        for index in np.flatnonzero(limited * (not is_off(model, "LIMIT"))):
+            scene.note(name_of(model, kind, index), limit)
     shaped = np.any(model.geom_contype) and np.any(model.geom_conaffinity)
     if not is_off(model, "CONTACT") and model.ngeom > 1 and (shaped or model.npair):
         scene.note("contacts", "they are left out, since none is made in the judged motion")
@@ -151,7 +149,7 @@ def _with_armature(scene: PlanarModel) -> tuple[tuple[Any, ...], list[Force]]:
         if not added or is_steady(scene, joint):
             continue
         group, parent = scene.group_of(joint), scene.parent(joint)
-        element, body = name_of(model, mujoco.mjtObj.mjOBJ_JOINT, joint), bodies[group]
+        element, body = name_of(model, JOINT, joint), bodies[group]
         if model.jnt_type[joint] == HINGE and not turns(scene, parent):
             bodies[group] = replace(body, inertia=body.inertia + added)
         elif model.jnt_type[joint] != FREE and parent < 0 and len(scene.joints_of(group)) == 1:
