@@ -9,15 +9,7 @@ Stepping is in machine code where the extra `fast` (numba) is installed, and in 
 same numbers up to rounding, and tests hold the one against the other.
 """
 
-from engines.lagrange.engine import HELD, METHODS, TRUTH, VARIANTS, Integrator, Judge, Lagrange, Stabilisation
+from engines.lagrange.engine import METHODS, VARIANTS, Integrator, Lagrange, Stabilisation
+from engines.lagrange.judge import HELD, TRUTH, Judge
 
-__all__ = [
-    "HELD",
-    "METHODS",
-    "TRUTH",
-    "VARIANTS",
-    "Integrator",
-    "Judge",
-    "Lagrange",
-    "Stabilisation",
-]
+__all__ = ["HELD", "METHODS", "TRUTH", "VARIANTS", "Integrator", "Judge", "Lagrange", "Stabilisation"]

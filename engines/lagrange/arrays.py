@@ -50,9 +50,8 @@ MARCH, CONTROL, REACT = range(3)  # what compiled code is asked for
 # Records, in whole numbers. A body is the place of its x among the columns, 3 for each, an end that of its 3 numbers.
 JOINT = 5  # kind, first body, second body, first row, which of the rolls
 FORCED = 3  # of a force element: kind, first body, second body; of a coupled one the first of its summands, how many
-SUMMAND = (
-    6  # of a coupling or a coupled force: its row (-1: of a force), two bodies, the ends of each, whether it slides
-)
+# Of a coupling or a coupled force: its row (-1: of a force), two bodies, the ends of each, whether it slides.
+SUMMAND = 6
 EXTRA = 3  # a further end of a row that has more than two: the row, the body, the end
 ROW = 5  # first body, second body, whether it limits a position, first column of its envelope, where that begins
 ROLL_RECORD = 4  # form; of the window of a table its first cell, how many cells, where they begin
@@ -248,10 +247,8 @@ def _moved(terms: tuple[Term, ...], index: Mapping[str | None, int]) -> list[int
 
 def _two_ends(mechanism: Mechanism, index: Mapping[str | None, int], place: Integers) -> dict[int, tuple[int, int]]:
     """The first two bodies of each coupling's row, the ground for a lacking one."""
-    return {
-        row: ((*_moved(joint.terms, index), index[None])[0], (*_moved(joint.terms, index)[1:], index[None])[0])
-        for joint, row in _coupled_rows(mechanism, place)
-    }
+    ends = {row: (*_moved(joint.terms, index), *[index[None]] * 2) for joint, row in _coupled_rows(mechanism, place)}
+    return {row: (bodies[0], bodies[1]) for row, bodies in ends.items()}
 
 
 def _summands(mechanism: Mechanism, index: Mapping[str | None, int], place: Integers) -> tuple[Integers, Integers]:

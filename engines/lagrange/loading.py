@@ -42,11 +42,11 @@ def is_cold() -> bool:
 
 @cache
 def compiled() -> Callable[..., int]:
-    """`run` of `compiled.entry`. Raises ImportError without numba."""
+    """`run` of `compiled.adaptive`. Raises ImportError without numba."""
     folder, config = _folder(), import_module("numba").config
     before, config.CACHE_DIR = config.CACHE_DIR, str(folder)  # where other functions are kept stays as it is
     try:
-        run = import_module("engines.lagrange.compiled.entry").run
+        run = import_module("engines.lagrange.compiled.adaptive").run
     finally:
         config.CACHE_DIR = before
     (folder / READY).touch()

@@ -1,6 +1,4 @@
-"""Bodies on a pin and on skates, exact: pinned, sliding, on a slope, held; and Chaplygin's sleigh.
-
-The sleigh is a body on one ideal skate, with its centre of mass ahead of or behind it, coasting; exact.
+"""Bodies on a pin and on skates, exact: pinned, on a slope, held; and Chaplygin's sleigh, coasting on one skate.
 
 With u the skate's speed along i', w the turning rate, a the offset of the centre of mass ahead of the skate:
 u' = a w^2, (I + m a^2) w' = -m a u w (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m
@@ -22,7 +20,7 @@ from reference.joints import Pin, Skate, Triple, Vector, bodies_of
 from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
 from reference.numerics.calculus import Antiderivative
-from reference.plane import rotation_acceleration, rotation_velocity
+from reference.plane import rotated, rotation_acceleration, rotation_velocity
 from reference.scene import Scene
 from reference.scenes.pendulum.link import Pendulum
 from reference.trajectory import Trajectory
@@ -34,16 +32,6 @@ def alone(scene: Scene, mass: float, inertia: float, joint: Pin | Skate, gravity
     """The mechanism of one body that a joint holds to the ground, where the scene's motion begins."""
     start, name = scene.motion(0.0), joint.second or ""
     return Mechanism(bodies_of((name,), (mass,), (inertia,), start.pose[0], start.twist[0]), (joint,), gravity)
-
-
-@validated
-def pinned_pose(angle: ArrayLike, constants: Vector, point: Vector) -> Array:
-    """Poses (..., 3) of the pinned body at an angle [rad]: (18.63) solved for x_O' and y_O'."""
-    angle = np.asarray(angle, dtype=float)
-    cosine, sine = np.cos(angle), np.sin(angle)
-    x = constants[0] - cosine * point[0] + sine * point[1]
-    y = constants[1] - sine * point[0] - cosine * point[1]
-    return np.stack([x, y, angle], axis=-1)
 
 
 @dataclass(frozen=True)
@@ -92,8 +80,8 @@ class PinnedBody(Scene):
 
     def _motion(self, times: Array) -> Trajectory:
         angle, rate, acceleration = self._turning(times)
-        pose = pinned_pose(angle, self.pin, self.point)
-        arm = pose[:, :2] - np.array(self.pin)
+        arm = -rotated(angle, np.array(self.point))  # (18.63), solved for the body's place
+        pose = np.column_stack([np.array(self.pin) + arm, angle])
         twist = np.concatenate([rotation_velocity(rate, arm), rate[:, None]], axis=-1)
         pull = rotation_acceleration(rate, acceleration, arm) - np.array(self.gravity)
         return Trajectory(times, pose[:, None, :], twist[:, None, :], self.mass * pull)

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from engines import Size, Unsupported, registry, single_run
-from engines.lagrange.engine import TRUTH
+from engines.lagrange import TRUTH
 from engines.pinocchio import PinocchioModel
 from engines.units import counted_in
 from reference.forces import Torque

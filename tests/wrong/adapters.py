@@ -9,15 +9,39 @@ from typing import Any
 
 import numpy as np
 
-from engines import Around, Engine, Run, Softness, Unpromised, Unsupported
+from engines import Around, Engine, Softness, Unpromised
 from engines.pymunk import LEAPFROG
-from reference.checks import Count, validated
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
-from reference.trajectory import Trajectory
+from tests.wrong.builds import (
+    Build,
+    Calls,
+    Spoiled,
+    after,
+    always_on_the_body,
+    any_count,
+    any_step,
+    before,
+    from_the_ground_up,
+    goes_on,
+    kicked_start,
+    moved,
+    noisy,
+    one_long_step,
+    pins_first,
+    refusing,
+    right,
+    right_handed,
+    time_without_every,
+    times,
+    told_by,
+    unsupported,
+    wall_clock,
+    walled,
+    wrapped,
+    written_into,
+)
 from tests.wrong.mistakes import Mistake
-
-Build = Callable[[Engine, Mechanism, float], Any]
 
 
 @dataclass(frozen=True)
@@ -47,209 +71,6 @@ for MEMBER in ("order", "step_cost", "holder", "softness", "steps_of_runs"):
     setattr(Wrong, MEMBER, answer_of(MEMBER))
 
 
-class Spoiled:
-    """A run whose trajectory is changed before it is given; `size` is that of the right one."""
-
-    def __init__(self, run: Run, spoil: Callable[[Trajectory], Trajectory]) -> None:
-        self._run, self._spoil = run, spoil
-        self.size = run.size
-
-    def __call__(self, samples: int, every: int) -> Trajectory:
-        return self._spoil(self._run(samples, every))
-
-
-class Careless:
-    """A run that calls a function of (samples, every), whatever these are."""
-
-    def __init__(self, size: Any, call: Callable[[int, int], Any]) -> None:
-        self.size, self._call = size, call
-
-    def __call__(self, samples: Any, every: Any) -> Any:
-        return self._call(samples, every)
-
-
-class Calls(Careless):
-    """The same, for valid counts."""
-
-    @validated
-    def __call__(self, samples: Count, every: Count) -> Any:
-        return self._call(samples, every)
-
-
-def right(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    return inner.build(mechanism, dt)
-
-
-def after(spoil: Callable[[Trajectory, Mechanism, float], Trajectory]) -> Build:
-    """The mistake of changing the trajectory of a right run."""
-    return lambda inner, mechanism, dt: Spoiled(inner.build(mechanism, dt), lambda given: spoil(given, mechanism, dt))
-
-
-def before(change: Callable[[Mechanism], Mechanism]) -> Build:
-    """The mistake of building another mechanism."""
-    return lambda inner, mechanism, dt: inner.build(change(mechanism), dt)
-
-
-def moved(given: Trajectory, name: str, by: Any) -> Trajectory:
-    """With something added to one array, from the second sample on."""
-    values = getattr(given, name).copy()
-    values[1:] += np.broadcast_to(by, values.shape)[1:]
-    return replace(given, **{name: values})
-
-
-def times(name: str, factor: float) -> Build:
-    return after(lambda given, mechanism, dt: replace(given, **{name: factor * getattr(given, name)}))
-
-
-def refusing(raise_if: Callable[[Mechanism], Any]) -> Build:
-    """The mistake of failing, by whatever `raise_if` raises, for some mechanisms."""
-
-    def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-        raise_if(mechanism)
-        return inner.build(mechanism, dt)
-
-    return build
-
-
-def unsupported(reason: str, *kinds: type) -> Callable[[Mechanism], None]:
-    """Refuse mechanisms with joints of these kinds."""
-
-    def check(mechanism: Mechanism) -> None:
-        if any(isinstance(joint, kinds) for joint in mechanism.joints):
-            raise Unsupported(reason)
-
-    return check
-
-
-def any_step(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    return inner.build(mechanism, dt if isinstance(dt, float) and 0 < dt < np.inf else 0.01)
-
-
-def any_count(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    run = inner.build(mechanism, dt)
-    return Careless(run.size, lambda samples, every: run(max(1, int(samples)), every))
-
-
-def goes_on(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """A second call continues after the first."""
-    done = 0
-
-    def call(samples: int, every: int) -> Trajectory:
-        nonlocal done
-        whole = inner.build(mechanism, dt)(done + samples, every)
-        part = slice(done, None)
-        done += samples
-        return replace(
-            whole, t=whole.t[: samples + 1], **{k: getattr(whole, k)[part] for k in ("pose", "twist", "reaction")}
-        )
-
-    return Calls(inner.build(mechanism, dt).size, call)
-
-
-def time_without_every(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    run = inner.build(mechanism, dt)
-    return Calls(run.size, lambda samples, every: replace(run(samples, every), t=np.arange(samples + 1) * dt))
-
-
-def wall_clock(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    run = inner.build(mechanism, dt)
-
-    def call(samples: int, every: int) -> Trajectory:
-        begin = time.perf_counter()
-        time.sleep(0.002)
-        given = run(samples, every)
-        return replace(given, stepping=time.perf_counter() - begin)
-
-    return Calls(run.size, call)
-
-
-def told_by(tell: Callable[[Any, Any, Any], Any], first: bool, *names: str) -> Build:
-    """Samples made of the states at them, a step later and a step before; the `first` sample too, or right."""
-
-    def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-        run = inner.build(mechanism, dt)
-
-        def call(samples: int, every: int) -> Trajectory:
-            fine = run(samples * every + 1, 1)
-            parts = {name: getattr(fine, name)[:-1:every].copy() for name in ("pose", "twist", "reaction")}
-            for name in names:
-                whole = getattr(fine, name)
-                earlier = np.concatenate([whole[:1], whole])[: samples * every + 1 : every]
-                told = tell(parts[name], whole[1::every], earlier)
-                parts[name][0 if first else 1 :] = told[0 if first else 1 :]
-            return replace(fine, t=np.arange(samples + 1) * every * dt, **parts)
-
-        return Calls(run.size, call)
-
-    return build
-
-
-def kicked_start(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    twist = given.twist.copy()
-    twist[0, :, 1] += mechanism.gravity[1] * dt / 2
-    return replace(given, twist=twist)
-
-
-NOISE = np.random.default_rng(1)
-
-
-def noisy(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return moved(given, "pose", 1e-12 * NOISE.standard_normal(given.pose.shape))
-
-
-def written_into(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    run = inner.build(mechanism, dt)
-
-    def call(samples: int, every: int) -> Trajectory:
-        given = run(samples, every)
-        mechanism.twist.flags.writeable = True  # against numpy's own refusal
-        mechanism.twist[:] = given.twist[-1]
-        return given
-
-    return Calls(run.size, call)
-
-
-def one_long_step(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    kept = [inner.build(mechanism, dt)]
-    return Calls(kept[0].size, lambda samples, every: kept.pop() and inner.build(mechanism, dt * every)(samples, 1))
-
-
-def wrapped(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    turned = given.pose[..., 2] - given.pose[0, :, 2]
-    pose = given.pose.copy()
-    pose[..., 2] = given.pose[0, :, 2] + np.arctan2(np.sin(turned), np.cos(turned))
-    return replace(given, pose=pose)
-
-
-def walled(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """A box of six metres stands around the origin."""
-    beyond = np.where(np.abs(mechanism.pose[:, 0]) > 3.0, given.t[:, None] ** 2, 0.0)
-    return moved(given, "pose", beyond[..., None])
-
-
-def right_handed(mechanism: Mechanism) -> Mechanism:
-    joints = tuple(replace(j, angle=abs(j.angle)) if isinstance(j, Skate) else j for j in mechanism.joints)
-    return replace(mechanism, joints=joints)
-
-
-def from_the_ground_up(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """Bodies that a joint holds on the ground come first."""
-    grounded = {name for j in mechanism.joints if None in (j.first, j.second) for name in (j.first, j.second)}
-    order = sorted(range(len(mechanism.bodies)), key=lambda i: mechanism.bodies[i].name not in grounded)
-    return replace(given, pose=given.pose[:, order], twist=given.twist[:, order])
-
-
-def pins_first(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    kinds = [not isinstance(joint, Pin) for joint in mechanism.joints for _ in range(joint.size)]
-    return replace(given, reaction=given.reaction[:, sorted(range(len(kinds)), key=kinds.__getitem__)])
-
-
-def always_on_the_body(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """Reactions of joints with the ground are forces on the body, whichever is named second."""
-    signs = [-1.0 if joint.second is None else 1.0 for joint in mechanism.joints for _ in range(joint.size)]
-    return replace(given, reaction=given.reaction * signs)
-
-
 LATE = "velocities are half a step late"
 # By the name of the mistake: the check that finds it before any other, and how the wrong engine builds.
 MISTAKES: dict[str, tuple[str, Build]] = {
@@ -266,19 +87,16 @@ MISTAKES: dict[str, tuple[str, Build]] = {
     "a second call goes on": ("refuses_a_second_call", goes_on),
     "reactions are left out": (
         "has_the_right_shapes",
-        after(lambda given, mechanism, dt: replace(given, reaction=given.reaction[:, :0])),
+        after(lambda run, m, dt: replace(run, reaction=run.reaction[:, :0])),
     ),
-    "the size is not told": (
-        "tells_the_size_of_its_model",
-        lambda inner, mechanism, dt: Calls(None, inner.build(mechanism, dt)),
-    ),
+    "the size is not told": ("tells_the_size_of_its_model", lambda inner, m, dt: Calls(None, inner.build(m, dt))),
     "time forgets the steps between samples": ("samples_at_the_right_times", time_without_every),
     "the cost is in milliseconds": ("tells_the_cpu_time_of_stepping", times("stepping", 1e3)),
     "the cost is negative": ("tells_the_cpu_time_of_stepping", times("stepping", -1.0)),
     "the cost is of the wall's clock": ("tells_the_cpu_time_of_stepping", wall_clock),
     "the state after the first step comes first": (
         "first_pose_is_the_start",
-        told_by(lambda now, following, earlier: following, True, "pose", "twist", "reaction"),
+        told_by(lambda now, later, earlier: later, True, "pose", "twist", "reaction"),
     ),
     "the first velocity has had half a kick": ("first_twist_is_the_start", after(kicked_start)),
     "random noise": ("gives_the_same_bits", after(noisy)),
@@ -289,23 +107,20 @@ MISTAKES: dict[str, tuple[str, Build]] = {
     "reactions are twice as large": ("reactions_have_sign_and_size", times("reaction", 2.0)),
     "poses are half a step late": (
         "poses_stand_at_their_instants",
-        after(lambda given, mechanism, dt: moved(given, "pose", given.twist * dt / 2)),
+        after(lambda run, m, dt: moved(run, "pose", run.twist * dt / 2)),
     ),
-    LATE: (
-        "twists_stand_at_their_instants",
-        told_by(lambda now, following, earlier: (now + following) / 2, False, "twist"),
-    ),
+    LATE: ("twists_stand_at_their_instants", told_by(lambda now, later, earlier: (now + later) / 2, False, "twist")),
     "velocities are of the step before": (
         "twists_stand_at_their_instants",
-        told_by(lambda now, following, earlier: earlier, False, "twist"),
+        told_by(lambda now, later, earlier: earlier, False, "twist"),
     ),
     "poses are of first order": (
         "poses_have_their_order",
-        after(lambda given, mechanism, dt: moved(given, "pose", dt * given.t[:, None, None] ** 2)),
+        after(lambda run, m, dt: moved(run, "pose", dt * run.t[:, None, None] ** 2)),
     ),
     "velocities are of first order": (
         "twists_have_their_order",
-        after(lambda given, mechanism, dt: moved(given, "twist", 5 * dt * given.t[:, None, None] ** 2)),
+        after(lambda run, m, dt: moved(run, "twist", 5 * dt * run.t[:, None, None] ** 2)),
     ),
     "gravity points down": (
         "same_if_turned",
@@ -355,7 +170,7 @@ SMALL: dict[str, tuple[str, Build]] = {
     "velocities are 1.001 times as large": ("", times("twist", 1.001)),
     "poses are of single precision": (
         "",
-        after(lambda given, mechanism, dt: replace(given, pose=given.pose.astype(np.float32).astype(float))),
+        after(lambda run, m, dt: replace(run, pose=run.pose.astype(np.float32).astype(float))),
     ),
     "reactions are 1.01 times as large": ("", times("reaction", 1.01)),
     "reactions are 1.1 times as large": ("", times("reaction", 1.1)),

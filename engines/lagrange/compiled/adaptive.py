@@ -1,4 +1,4 @@
-"""DOP853 with steps of its own choice, every step projected onto the joints, and dense output at samples.
+"""DOP853 with steps of its own choice, each projected onto the joints, dense output at samples; and `run` of all tasks.
 
 The control of the step is that of Hairer, Norsett and Wanner's program (part I, section II.6), as in scipy; so is their
 test for stiffness. Errors are measured in parts of the mechanism's own length and speed.
@@ -8,10 +8,18 @@ from __future__ import annotations
 
 import math
 
+from numba import njit, types
+
 from engines.lagrange import arrays as ix
-from engines.lagrange.compiled.inner import inner
+from engines.lagrange.compiled.inner import inner, straight
 from engines.lagrange.compiled.rows import rotation
-from engines.lagrange.compiled.steps import accelerations, add_stages, evaluate_stage, project_onto_joints
+from engines.lagrange.compiled.steps import (
+    accelerations,
+    add_stages,
+    evaluate_stage,
+    fixed_steps,
+    project_onto_joints,
+)
 
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
 MOST_STEPS = 20_000  # accepted or not, between two samples; a second of stepping for a few bodies
@@ -239,3 +247,59 @@ def _between(whole, real, dense, dt, part):
             # F[3] at power 0: factors alternate, 1 - part where scipy's index counted from the top is odd.
             value = ((high + 2 * change - (end + start)) * part + start - change) * rest + change
             real[(whole[ix.STAGE_TWIST] if second else whole[ix.STAGE_POSE]) + k] = real[old + k] + value * part
+
+
+# The one function that Python calls, compiled when this module is imported, or read from the cache. All tasks are in
+# it, because what several compiled functions share is compiled anew for each of them.
+WHOLE, CELLS = types.int64[::1], types.complex128[:, ::1]
+LIST, TABLE = types.float64[::1], types.float64[:, ::1]
+SIGNATURE = types.int64(
+    *(types.int64, WHOLE, LIST, CELLS, TABLE, LIST, LIST, LIST, LIST, TABLE),
+    *(types.int64, types.float64, types.float64, types.int64, types.int64, TABLE, TABLE, TABLE),
+)
+
+
+def run(
+    task, whole, real, cells, stages, weights, nodes, third, fifth, dense,
+    project, tolerance, dt, every, begin, poses, twists, out,
+):  # fmt: skip
+    """MARCH: `fixed_steps`. ix.CONTROL: `adaptive_steps`, `dt` between samples. REACT: fill `out` (samples, rows) and
+    `out`'s last columns with the reactions and accelerations at samples `dt` apart."""
+    whole, real = straight(whole), straight(real)
+    if task == ix.MARCH:
+        return fixed_steps(whole, real, cells, stages, weights, nodes, project, dt, every, begin, poses, twists)
+    if task == ix.CONTROL:
+        return adaptive_steps(
+            whole,
+            real,
+            cells,
+            stages,
+            weights,
+            nodes,
+            third,
+            fifth,
+            dense,
+            project,
+            tolerance,
+            dt,
+            begin,
+            poses,
+            twists,
+        )
+    columns, rows, pose, twist, acceleration = (
+        whole[ix.COLUMNS], whole[ix.ROWS], whole[ix.POSE], whole[ix.TWIST], whole[ix.ACCELERATION]
+    )  # fmt: skip
+    for sample in range(begin, len(poses)):
+        for k in range(columns):
+            real[pose + k], real[twist + k] = poses[sample, k], twists[sample, k]
+        accelerations(whole, real, cells, pose, twist, sample * dt, acceleration)
+        if real[whole[ix.STATUS] + ix.WANTED_ROLL] >= 0:
+            return sample
+        for row in range(rows):
+            out[sample, row] = real[whole[ix.REACTION] + row]
+        for k in range(columns):
+            out[sample, rows + k] = real[acceleration + k]
+    return len(poses) - 1
+
+
+run = njit(SIGNATURE, cache=True, nogil=True, error_model="numpy")(run)
