@@ -8,7 +8,7 @@ connection of its own, and a job counts as run only once its answer is whole.
 * An item whose worker ended is tried once more, in a worker that has run nothing else before, and the outcome of this
   second try is its answer. So damage that another item left in a process does not count.
 * An item that uses up its CPU time is ended by this process, which reads the worker's clock, or, where the system does
-  not have it, by a limit of the system. One that sleeps is ended after much more wall time, of which only what this
+  not have it, by a thread in the worker. One that sleeps is ended after much more wall time, of which only what this
   process was awake for is counted: neither a loaded machine nor a stopped terminal decides about a result.
 """
 
@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import contextlib
 import pickle
-import signal
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -29,8 +28,8 @@ from reports.model.ending import Broken, describe
 from reports.model.outcomes import Loss, Outcome, describe_exit, failure, from_outside, of_lost_process, out_of_time
 from reports.run.files import temporary_folder
 from reports.run.worker import (
-    PARENT_SEES_CPU,
     READY,
+    SPENT,
     Worker,
     cpu_time,
     last_words,
@@ -202,7 +201,7 @@ class Pool:
             self._on_failed_start(words)
         if job is None:
             return
-        if not PARENT_SEES_CPU and code == -getattr(signal, "SIGXCPU", 0):
+        if code == SPENT:
             yield job.item, out_of_time(limit), ""
         elif not job.earlier:
             self._retries.append(Job(job.item, words, from_outside(code)))

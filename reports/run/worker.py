@@ -7,7 +7,6 @@ engine is imported here, so that a worker that has to start from nothing is ther
 from __future__ import annotations
 
 import ctypes
-import math
 import multiprocessing
 import os
 import pickle
@@ -37,9 +36,11 @@ GUARD, REGISTRY = "planar_crosscheck", "engines.registry"
 IMPORTED_ONCE = ("reports.model.measure", REGISTRY)  # by the fork server, for all workers
 PATIENCE = 30.0  # s for a process that has ended to be gone: its memory may have to be written first
 READY = b"ready"
+SPENT = 152  # exit code of a worker whose job has used up its CPU time, where the parent can't see that: 128 + SIGXCPU
 SAFE_PATH = "PYTHONSAFEPATH"  # any value keeps the current folder off the path of a Python that starts
 OURS = "crosscheck"  # its value where the user has set none: it does not hold for processes that a job starts
 PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
+CHECK_INTERVAL = 0.2  # s between two looks at its own CPU time
 # Starting a process looks at all others, and takes away the exit code of one that has ended: with several threads, each
 # of which supervises workers of its own, that may be another's.
 _reading = threading.Lock()
@@ -185,8 +186,14 @@ def last_words(folder: Path, pid: int | None) -> str:
     return ""
 
 
-# Whether the parent sees when a job has used up its CPU time; else the system ends the worker with SIGXCPU.
-PARENT_SEES_CPU = cpu_time(os.getpid()) is not None
+PARENT_SEES_CPU = cpu_time(os.getpid()) is not None  # whether the parent sees when a job has used up its CPU time
+
+
+class Clock:
+    """The CPU time at which the present job is ended; infinite between jobs."""
+
+    def __init__(self) -> None:
+        self.end = float("inf")
 
 
 def work(connection: Connection, folder: str, limit: float, wall: float) -> None:
@@ -213,7 +220,8 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
     if hidden := import_module(GUARD).clash():
         print(hidden, file=sys.stderr, flush=True)
         os._exit(1)
-    threading.Thread(target=_end_when_the_parent_is_gone, daemon=True).start()
+    clock = Clock()
+    threading.Thread(target=_watch, args=(clock,), daemon=True).start()
     connection.send_bytes(READY)
     stays, number = True, os.getpid()
     while stays:
@@ -222,7 +230,7 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
         except (EOFError, OSError):
             break
         os.ftruncate(2, 0)  # what native code prints last is then about this job
-        stays, answer = _answer(job, limit, wall)
+        stays, answer = _answer(job, clock, limit, wall)
         if os.getpid() != number:  # a child that a job has forked: its parent answers
             os._exit(0)
         connection.send_bytes(pickle.dumps((stays, answer)))
@@ -254,14 +262,19 @@ def _redirect(folder: Path) -> None:
     os.close(log)
 
 
-def _end_when_the_parent_is_gone() -> None:
+def _watch(clock: Clock) -> None:
+    """In a thread: end the process when its parent is gone, or when its CPU time is used up and the parent can't see
+    that."""
     parent = multiprocessing.parent_process()
     assert parent is not None
-    parent.join()
+    while parent.is_alive():
+        parent.join(None if PARENT_SEES_CPU else CHECK_INTERVAL)
+        if not PARENT_SEES_CPU and time.process_time() > clock.end:
+            os._exit(SPENT)
     os._exit(1)
 
 
-def _answer(job: bytes, limit: float, wall: float) -> tuple[bool, bytes]:
+def _answer(job: bytes, clock: Clock, limit: float, wall: float) -> tuple[bool, bytes]:
     """(whether the process is as it was before, the pickled result or Loss)."""
     try:
         # Imports an engine for the first time, which is no part of the job's CPU time, and may change the process.
@@ -270,7 +283,7 @@ def _answer(job: bytes, limit: float, wall: float) -> tuple[bool, bytes]:
         return False, pickle.dumps(Loss(Outcome.LOST, f"a worker can't read it: {describe(error)}"))
     try:
         before, start = _process_state(), time.process_time()
-        with _timers(limit, wall):
+        with _timers(clock, limit, wall):
             result = function(item)
         if time.process_time() - start > limit:
             result = out_of_time(limit)
@@ -284,28 +297,19 @@ def _answer(job: bytes, limit: float, wall: float) -> tuple[bool, bytes]:
 
 
 @contextmanager
-def _timers(limit: float, wall: float) -> Iterator[None]:
+def _timers(clock: Clock, limit: float, wall: float) -> Iterator[None]:
     """A timer of the system ends the process even inside native code that never returns to the interpreter."""
-    if not PARENT_SEES_CPU:
-        _limit_cpu(math.ceil(time.process_time() + limit))
+    clock.end = time.process_time() + limit
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_REAL, 2 * wall)  # the parent is gone, or it would have ended this by now
     try:
         yield
     finally:
-        if not PARENT_SEES_CPU:
-            _limit_cpu(-1)
+        clock.end = float("inf")
         if hasattr(signal, "setitimer"):
             for timer in (signal.ITIMER_PROF, signal.ITIMER_REAL, signal.ITIMER_VIRTUAL):
                 signal.setitimer(timer, 0)
-
-
-def _limit_cpu(seconds: int) -> None:
-    """End this process with SIGXCPU at this CPU time, never at -1, where the system can do that."""
-    with suppress(ImportError, OSError, ValueError):
-        resource: Any = import_module("resource")
-        resource.setrlimit(resource.RLIMIT_CPU, (seconds, resource.getrlimit(resource.RLIMIT_CPU)[1]))
 
 
 def _process_state() -> tuple[Any, ...]:

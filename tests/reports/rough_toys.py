@@ -80,6 +80,7 @@ ACTIONS: dict[str, Callable[[RoughToy], Any]] = {
     "segfault once": lambda toy: kill_self(signal.SIGSEGV) if toy.is_first_call() else None,
     "kill once": lambda toy: kill_self(signal.SIGKILL) if toy.is_first_call() else None,
     "sleep": lambda toy: time.sleep(1000),
+    "spin": lambda toy: [None for _ in iter(int, 1)],
     # Both hold the interpreter: no other thread of the process runs.
     "native spin": lambda toy: re.match(r"(a|a)*$", "a" * 60 + "b"),
     "native sleep": lambda toy: ctypes.PyDLL(None).sleep(1000),
