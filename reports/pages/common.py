@@ -44,11 +44,18 @@ def steps_for(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
     return every[:1] if engine.variant == "extended" else every
 
 
-def cells_to_rounding(
-    scene: Scene, engines: Iterable[Engine], every: tuple[int, ...], samples: int | None = None
-) -> tuple[Cell, ...]:
-    """The same, of each engine at `steps_for` it."""
-    return tuple(cell for engine in engines for cell in cells(scene, (engine,), steps_for(engine, every), samples))
+def to_rounding(
+    title: str,
+    scene: Scene,
+    every: tuple[int, ...],
+    columns: tuple[str, ...],
+    samples: int | None = None,
+    engines: Iterable[Engine] = ENGINES_ALONE,
+    **fields: Any,
+) -> Failure:
+    """An experiment in which each engine runs a scene at `steps_for` it; fields: others of the experiment."""
+    run = tuple(cell for engine in engines for cell in cells(scene, (engine,), steps_for(engine, every), samples))
+    return Failure(title, cells=run, columns=columns, **fields)
 
 
 def described(source: str, *failures: Failure, **values: Any) -> tuple[Failure, ...]:

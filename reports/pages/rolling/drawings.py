@@ -38,53 +38,28 @@ class Roulette:
 
 def roulettes() -> tuple[Roulette, ...]:
     """Six that the chapter or its classics know by name."""
-    ellipse, twin = Ellipse(0.5, 0.3), Placed(Ellipse(0.5, 0.3), turn=math.pi / 2)
-    focus = (0.4, 0.0)
-    turned = (-2 * math.pi, -4.2, -2.1, 0.0)
-    square = Rolling.at_arcs(Side(1.0), Placed(Catenary(0.5), turn=math.pi))
+    turn, focus, ring = 2 * math.pi, (0.4, 0.0), Ring(0.6)
+    disc, ellipse = Circle(0.4), Ellipse(0.5, 0.3)
+    on_line = ((-turn, 0.0), (-turn, -4.2, -2.1, 0.0), (-2.9, 0.4))
+    twins = Rolling.at_arcs(ellipse, Placed(ellipse, turn=math.pi / 2), 0.0, 0.0)
+    inside = Rolling.at_arcs(Circle(0.45), ring)
     # Its material is above it; turned over it rolls on the line along its outside.
     parabola = Rolling.at_arcs(Parabola(0.3), Line())
+    low, high, few = parabola.theta - 1.1, parabola.theta + 1.1, parabola.theta + np.array([-0.8, 0.0, 0.8])
+    square, eighth = Rolling.at_arcs(Side(1.0), Placed(Catenary(0.5), turn=math.pi)), math.pi / 4
+    around = (0.0, 2 * turn), (math.pi, math.pi + 2.2, math.pi + 4.3), (0.0, ellipse.length)
+    hypocycloid = "a point of a rim in a ring of 4/3 its radius: hypocycloid"
+    level = "a square on catenaries: its centre stays level"
     return (
-        *(
-            Roulette(title, Rolling.at_angle(body, Line()), point, (-2 * math.pi, 0.0), turned, (-2.9, 0.4))
-            for title, body, point in (
-                ("a point of a rim on a line: cycloid", Circle(0.4), (0.0, -0.4)),
-                ("focus of an ellipse on a line", ellipse, focus),
-            )
-        ),
+        Roulette("a point of a rim on a line: cycloid", Rolling.at_angle(disc, Line()), (0.0, -0.4), *on_line),
+        Roulette("focus of an ellipse on a line", Rolling.at_angle(ellipse, Line()), focus, *on_line),
+        Roulette("focus of an ellipse on its twin: a circle", twins, focus, *around),
+        Roulette(hypocycloid, inside, (0.45, 0.0), (-turn, 0.0), (-1.4, -0.7, 0.0), (0.0, ring.length)),
         Roulette(
-            "focus of an ellipse on its twin: a circle",
-            Rolling.at_arcs(ellipse, twin, 0.0, 0.0),
-            focus,
-            (0.0, 4 * math.pi),
-            (math.pi, math.pi + 2.2, math.pi + 4.3),
-            (0.0, ellipse.length),
+            *("focus of a parabola on a line: catenary", parabola, (0.0, 0.3)),
+            *((low, high), tuple(few.tolist()), (-1.4, 1.4), (-0.9, 0.9)),
         ),
-        Roulette(
-            "a point of a rim in a ring of 4/3 its radius: hypocycloid",
-            Rolling.at_arcs(Circle(0.45), Ring(0.6)),
-            (0.45, 0.0),
-            (-2 * math.pi, 0.0),
-            (-1.4, -0.7, 0.0),
-            (0.0, Ring(0.6).length),
-        ),
-        Roulette(
-            "focus of a parabola on a line: catenary",
-            parabola,
-            (0.0, 0.3),
-            (parabola.theta - 1.1, parabola.theta + 1.1),
-            (parabola.theta - 0.8, parabola.theta, parabola.theta + 0.8),
-            (-1.4, 1.4),
-            (-0.9, 0.9),
-        ),
-        Roulette(
-            "a square on catenaries: its centre stays level",
-            square,
-            (0.0, 0.0),
-            (-math.pi / 4, math.pi / 4),
-            (-math.pi / 4, 0.0, math.pi / 4),
-            (-0.5, 0.5),
-        ),
+        Roulette(level, square, (0.0, 0.0), (-eighth, eighth), (-eighth, 0.0, eighth), (-0.5, 0.5)),
     )
 
 
@@ -126,20 +101,15 @@ def draw_contact() -> Figure:
     """A body on a hill, on flat ground and in a hole: the contact C, e_t, e_n, and the circles of curvature."""
     body = Ellipse(0.5, 0.3)
     hill, hole = Placed(Circle(0.8), turn=math.pi / 2), Placed(Ring(1.1), turn=-math.pi / 2)
-    grounds: tuple[tuple[str, Curve, float], ...] = (
-        ("on a hill", hill, 0.35),
-        ("on flat ground", Line(), 0.35),
-        ("in a hole", hole, 0.35),
-    )
+    grounds: tuple[tuple[str, Curve], ...] = (("on a hill", hill), ("on flat ground", Line()), ("in a hole", hole))
+    theta = 0.35
     with drawing(3.5) as figure:
-        for panel, (title, ground, theta) in zip(figure.subplots(1, 3), grounds, strict=True):
+        for panel, (where, ground) in zip(figure.subplots(1, 3), grounds, strict=True):
             rolling = Rolling.at_angle(body, ground, theta)
             contact = rolling.contact(theta)
             a, b = float(contact.ground_curvature), float(contact.body_curvature)
-            title = (
-                f"{title}: $\\kappa_A$ = {a:.2f}, $\\kappa_B$ = {b:.2f} 1/m\n$ds/d\\theta$ = {contact.rate:.3f} m/rad"
-            )
-            bare(panel, title)
+            curvatures = f"$\\kappa_A$ = {a:.2f}, $\\kappa_B$ = {b:.2f} 1/m"
+            bare(panel, f"{where}: {curvatures}\n$ds/d\\theta$ = {contact.rate:.3f} m/rad")
             near = np.linspace(-0.75, 0.75, POINTS) + float(contact.ground_arc)
             panel.plot(*ground.point(near).T, color=LIGHT.ink, linewidth=2.0)
             panel.plot(*placed(outline(body), rolling.pose(theta)).T, color=LIGHT.quiet, linewidth=1.6)
@@ -149,20 +119,21 @@ def draw_contact() -> Figure:
             panel.plot(*(point + normal / b + circle / b).T, color=LIGHT.fourth, linewidth=1.2, linestyle=":")
             for vector, name, colour in ((tangent, "$e_t$", LIGHT.first), (normal, "$e_n$", LIGHT.second)):
                 tip = point + 0.45 * vector
-                panel.annotate(
-                    "", tip, point, arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.8}, zorder=5
-                )
+                arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.8}
+                panel.annotate("", tip, point, arrowprops=arrow, zorder=5)
                 # Beside the arrow's tip: above it, but below it in a hole, whose ground rises towards the tip.
                 above = (0.09 if a >= 0 else -0.09) * normal if vector is tangent else 0.0
                 panel.annotate(name, point + 0.53 * vector + above, color=colour, ha="center", va="center", fontsize=11)
             panel.plot(*point, "o", color=LIGHT.ink, markersize=4, zorder=6)
-            panel.annotate("C", point - 0.09 * normal, color=LIGHT.ink, ha="center", va="center")
-            panel.annotate("A", point - 0.3 * normal, color=LIGHT.ink, ha="center", va="center")
-            middle = rolling.pose(theta)[:2]
-            panel.annotate("B", middle + 0.08 * tangent, color=LIGHT.quiet, ha="center", va="center")
-            centre = np.array([point[0], point[1] + 0.3])
-            panel.set_xlim(centre[0] - 0.85, centre[0] + 0.85)
-            panel.set_ylim(centre[1] - 0.62, centre[1] + 0.72)
+            middle = rolling.pose(theta)[:2] + 0.08 * tangent
+            for letter, place, colour in (
+                ("C", point - 0.09 * normal, LIGHT.ink),
+                ("A", point - 0.3 * normal, LIGHT.ink),
+                ("B", middle, LIGHT.quiet),
+            ):
+                panel.annotate(letter, place, color=colour, ha="center", va="center")
+            panel.set_xlim(point[0] - 0.85, point[0] + 0.85)
+            panel.set_ylim(point[1] + 0.3 - 0.62, point[1] + 0.3 + 0.72)
     return figure
 
 

@@ -17,7 +17,7 @@ from reference.scenes.skates import ChaplyginSleigh, HeldBySkates, SkateOnSlope,
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
-from reports.pages.common import ENGINES_ALONE, cells_to_rounding, described
+from reports.pages.common import described, to_rounding
 from reports.write.experiments import observe_each
 from reports.write.tables import number
 
@@ -114,53 +114,28 @@ def counting(material: Material) -> list[Observation]:
     return found
 
 
-Columns = tuple[str, ...]
-MOTION: Columns = ("position", "angle", "slip", "energy")
-
-
-ZEROED = tuple(_KNOWN[f"pymunk skate: {name}"] for name in ("centre's velocity zeroed", "point's velocity zeroed"))
+MOTION = ("position", "angle", "slip", "energy")
+IMPULSES = known(
+    f"pymunk skate: {name}" for name in ("centre's velocity zeroed", "point's velocity zeroed", "impulse at the blade")
+)
 LONG = 1000.0  # s
 CIRCLING = ChaplyginSleigh(offset=0.0, duration=LONG, horizon=LONG)
 COASTING = ChaplyginSleigh(duration=LONG, horizon=LONG)
-LONG_SAMPLES = 1000
 STRAIGHT_BACK = SleighBackwards(turning_rate=0.0, start=(0.0, 0.0, 0.3), duration=60.0, horizon=60.0)
+WRONG, SLOPE, TURNING = ChaplyginSleigh(), SkateOnSlope(), SkateOnSlope(turning_rate=2.0)
 
 FAILURES = described(
     __file__,
-    Failure(
-        "No slip at all, and a wholly wrong motion",
-        cells=cells_to_rounding(
-            ChaplyginSleigh(), (*ZEROED, _KNOWN["pymunk skate: impulse at the blade"]), (1, 10, 100)
-        ),
-        columns=MOTION,
-    ),
+    to_rounding("No slip at all, and a wholly wrong motion", WRONG, (1, 10, 100), MOTION, engines=IMPULSES.values()),
     Failure("The sleigh run backwards", tasks=tuple(map(Motion, TURNING_ROUND)), observations=backwards),
-    Failure(
-        "Straight back, for a minute", cells=cells_to_rounding(STRAIGHT_BACK, ENGINES_ALONE, (1,), 600), columns=MOTION
-    ),
-    Failure(
-        "Coasting for 1000 s", cells=cells_to_rounding(COASTING, ENGINES_ALONE, (20,), LONG_SAMPLES), columns=MOTION
-    ),
-    Failure(
-        "Circling for 1000 s", cells=cells_to_rounding(CIRCLING, ENGINES_ALONE, (20,), LONG_SAMPLES), columns=MOTION
-    ),
+    to_rounding("Straight back, for a minute", STRAIGHT_BACK, (1,), MOTION, 600),
+    to_rounding("Coasting for 1000 s", COASTING, (20,), MOTION, 1000),
+    to_rounding("Circling for 1000 s", CIRCLING, (20,), MOTION, 1000),
     Failure("Friction too low to hold"),
-    Failure(
-        "At rest across a slope",
-        cells=cells_to_rounding(SkateOnSlope(), ENGINES_ALONE, (1, 10)),
-        columns=("position", "slip", "reaction"),
-    ),
-    Failure(
-        "Turning on a slope",
-        cells=cells_to_rounding(SkateOnSlope(turning_rate=2.0), ENGINES_ALONE, (1, 10)),
-        columns=MOTION,
-    ),
+    to_rounding("At rest across a slope", SLOPE, (1, 10), ("position", "slip", "reaction")),
+    to_rounding("Turning on a slope", TURNING, (1, 10), MOTION),
     Failure("Counting freedoms of skates on one body", observations=counting),
-    Failure(
-        "Held by three skates on a slope",
-        cells=cells_to_rounding(HeldBySkates(), ENGINES_ALONE, (1, 10)),
-        columns=("position", "angle", "slip", "reaction"),
-    ),
+    to_rounding("Held by three skates on a slope", HeldBySkates(), (1, 10), ("position", "angle", "slip", "reaction")),
     growth=rf"{{{BACKWARDS.growth_rate():g}\,t}}",
     rounded=f"{np.log(1e17) / BACKWARDS.growth_rate():.0f}",
     growing=GROWING,

@@ -58,50 +58,31 @@ def parking() -> Figure:
     ]
     sizes = np.geomspace(1.0, 1e-3, 60)
     moved = commutator_displacement(sizes, sizes) / sizes[:, None] ** 2
-    panels.append(
-        Panel(
-            "the commutator's way, over the product of its moves",
-            [
-                Path(np.column_stack([sizes, moved[:, 1]]), "sideways, towards 1", "third"),
-                Path(np.column_stack([sizes, moved[:, 0]]), "along, towards 0", "first", "--"),
-            ],
-            plane=False,
-            across="size of both moves [rad, m]",
-            logarithmic_across=True,
-        )
-    )
+    sideways = Path(np.column_stack([sizes, moved[:, 1]]), "sideways, towards 1", "third")
+    along = Path(np.column_stack([sizes, moved[:, 0]]), "along, towards 0", "first", "--")
+    title, across = "the commutator's way, over the product of its moves", "size of both moves [rad, m]"
+    panels.append(Panel(title, [sideways, along], plane=False, across=across, logarithmic_across=True))
     return paths(panels, columns=2, height=2.6)
 
 
 def _manoeuvre(title: str, start: Triple, moves: tuple[Move, ...]) -> Panel:
     way, poses = trace(start, moves), stops(start, moves)
-    return Panel(
-        title,
-        [Path(way[:, :2], "path of C", "second", "-", 1.6)],
-        [Blades(poses[1:-1], BLADE, "quiet", 1.6), Blades(poses[[0, -1]], BLADE, "ink", 3.4)],
-        [
-            Note((poses[0][0], poses[0][1] - 0.16), "from", "center"),
-            Note((poses[-1][0], poses[-1][1] + 0.16), "to", "center"),
-        ],
-    )
+    blades = [Blades(poses[1:-1], BLADE, "quiet", 1.6), Blades(poses[[0, -1]], BLADE, "ink", 3.4)]
+    (x, y), (end_x, end_y) = poses[0][:2], poses[-1][:2]
+    notes = [Note((x, y - 0.16), "from", "center"), Note((end_x, end_y + 0.16), "to", "center")]
+    return Panel(title, [Path(way[:, :2], "path of C", "second", "-", 1.6)], blades, notes)
 
 
 def slope() -> Figure:
     """An ideal skate that turns on an incline: it goes sideways in cycloids, and never down."""
-    t = np.linspace(0, 2 * math.pi, 721)
-    panels = []
+    panels, label = [], "path of C; down the slope is down"
     for title, scene in (
         ("turning at 1 rad/s from rest, blade across the slope", SkateOnSlope(turning_rate=1.0)),
         ("the same with a push of 0.5 m/s", SkateOnSlope(turning_rate=1.0, speed=0.5)),
     ):
-        poses = scene.motion(t).pose[:, 0]
-        panels.append(
-            Panel(
-                title,
-                [Path(poses[:, :2], "path of C; down the slope is down", "second", "-", 1.6, dot=True)],
-                [Blades(poses[::60], BLADE, "ink", 2.2)],
-            )
-        )
+        poses = scene.motion(np.linspace(0, 2 * math.pi, 721)).pose[:, 0]
+        line = Path(poses[:, :2], label, "second", "-", 1.6, dot=True)
+        panels.append(Panel(title, [line], [Blades(poses[::60], BLADE, "ink", 2.2)]))
     return paths(panels, columns=2)
 
 
@@ -118,12 +99,8 @@ OVERLAID: dict[str, tuple[str, Any]] = {
     "mujoco tuned": ("second", ":"),
 }
 # Beside the variants: "pymunk naive" is the centre's velocity zeroed, "tuned" the groove that is predicted.
-LISTED = {
-    "pymunk naive",
-    "pymunk skate: groove, extrapolated",
-    "mujoco friction blade",
-    "pymunk skate: point's velocity zeroed",
-}
+LISTED = ("pymunk naive", "pymunk skate: groove, extrapolated", "pymunk skate: point's velocity zeroed")
+LISTED += ("mujoco friction blade",)
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
@@ -173,39 +150,32 @@ def figures(material: Material) -> dict[str, str]:
     }
 
 
+HEADER = ("construction", "position [m]", "slip [m/s]", "energy [relative]", "reaction [relative]", "CPU [ms/s]")
+
+
 def constructions(rows: Sequence[Measurement], held: Mapping[str, str] | None = None) -> str:
-    """One line a construction: what it gives at about the compared step and costs there, and what its error does.
+    """One line a construction: its errors at about the compared step, its cost, and what its error does; best first.
 
     Constructions that were run at other steps alone have no line; the text is empty if none has one.
     """
     verdicts = by_method(sweeps(rows), "position")
-    told = []
+    lines = []
     for key, members in groups(rows).items():
-        if all(row.outcome == Outcome.UNSUPPORTED for row in members):
-            told.append((np.inf, [members[0].method, "can't be built", *[tables.NOTHING] * 4, ""]))
-            continue
-        row = Rows(row for row in members if row.outcome != Outcome.UNSUPPORTED).near(COMPARED)
-        if not row:
-            continue
-        numbers = [tables.number(value) for value in (row.position, row.slip, row.energy, row.reaction)]
-        if not Outcome(row.outcome).comparable:
-            numbers[0] = f"**{row.outcome}** {numbers[0]}"
-        wrong = all(Outcome(member.outcome).wrong for member in members)
-        words = "wrong at every step" if wrong else tables.sweep_words(verdicts[key])
-        error = row.position if np.isfinite(row.position) else np.inf
-        told.append((error, [row.method, *numbers, tables.milliseconds(row.cpu), words]))
-    if not told:
-        return ""
-    header = [
-        "construction",
-        "position [m]",
-        "slip [m/s]",
-        "energy [relative]",
-        "reaction [relative]",
-        "CPU [ms/s]",
-        "order as the step shrinks, plateau in m",
-    ]
-    return tables.markdown(header, [line for _, line in sorted(told, key=lambda pair: pair[0])], left=1, held=held)
+        built = Rows(row for row in members if row.outcome != Outcome.UNSUPPORTED)
+        row = built.near(COMPARED)
+        if not built:
+            lines.append((np.inf, [members[0].method, "can't be built", *[tables.NOTHING] * 4, ""]))
+        elif row:
+            numbers = [tables.number(value) for value in (row.position, row.slip, row.energy, row.reaction)]
+            if not Outcome(row.outcome).comparable:
+                numbers[0] = f"**{row.outcome}** {numbers[0]}"
+            wrong = all(Outcome(member.outcome).wrong for member in members)
+            words = "wrong at every step" if wrong else tables.sweep_words(verdicts[key])
+            error = row.position if np.isfinite(row.position) else np.inf
+            lines.append((error, [row.method, *numbers, tables.milliseconds(row.cpu), words]))
+    header = [*HEADER, "order as the step shrinks, plateau in m"]
+    body = [line for _, line in sorted(lines, key=lambda pair: pair[0])]
+    return tables.markdown(header, body, left=1, held=held) if lines else ""
 
 
 @cache
@@ -234,36 +204,24 @@ def only() -> str:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """`constructions` (one of each kind) and `counted` as tables.
+    """Tables, and rows of the sleigh, UNMEASURED where there is none.
 
-    Of the sleigh, UNMEASURED where there is none: `at(method, step)`, the
-    row at about that step; `least(engine, variant)`, the row with the least position error; `finest(method)`, the row
-    at the smallest step that has a position error.
+    at: of a method at about a step [s]; least: with the least position error of an engine's variant; finest: of a
+    method at the smallest step that has a position error.
     """
     rows = Rows(material.sweep((SLEIGH,)))
-
-    def at(name: str, step: float = COMPARED) -> Any:
-        return rows.of(method=name).known("position").near(step)
-
-    def least(engine: str, variant: str) -> Any:
-        return rows.of(method=f"{engine} {variant}").best("position")
-
-    def finest(name: str) -> Any:
-        return rows.of(method=name).known("position").finest()
-
-    commutator = commutator_displacement(0.1, 0.1)
     held = holders(cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep")
     return {
         "only": only(),
         "coriolis": coriolis_factors(1.3, 1.7, -0.6),
         "constructions": constructions([row for row in rows if usual_series(row) or row.method in LISTED], held),
         "counted": counted(SCENES),
-        "at": at,
-        "least": least,
-        "finest": finest,
+        "at": lambda method, step=COMPARED: rows.of(method=method).known("position").near(step),
+        "least": lambda engine, variant: rows.of(method=f"{engine} {variant}").best("position"),
+        "finest": lambda method: rows.of(method=method).known("position").finest(),
         "sleigh": SLEIGH,
         "end": SLEIGH.motion([SLEIGH.duration]).pose[0, 0],
-        "commutator": commutator,
+        "commutator": commutator_displacement(0.1, 0.1),
     }
 
 

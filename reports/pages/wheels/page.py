@@ -17,9 +17,9 @@ from reference.scenes.wheels.cart import Cart, Casters
 from reference.scenes.wheels.trailers import CarWithTrailers, Tow
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
-from reports.model.page import Failure, Material, Observation, Page
+from reports.model.page import Material, Observation, Page
 from reports.model.tasks import Motion, Task, Values
-from reports.pages.common import ENGINES_ALONE, cells_to_rounding, described, deviations, steps_for
+from reports.pages.common import ENGINES_ALONE, described, deviations, steps_for, to_rounding
 from reports.pages.skate.experiments import known
 from reports.pages.skate.page import counted
 from reports.plots.plane_panels import Blades, Panel, Path, paths
@@ -108,32 +108,21 @@ def _folded(t: np.ndarray, pose: np.ndarray) -> str:
     return f"{when:.4f} s" if when is not None else f"never folds: bent by at most {np.abs(bend).max():.3f} rad"
 
 
+FORCES = ("position", "slip", "energy", "reaction")
+CAR, CART = CarAndTrailer(redundant=True), Cart(redundant=True)
+
 FAILURES = described(
     __file__,
-    Failure(
+    to_rounding(
         "A reversing trailer jack-knifes",
-        cells=cells_to_rounding(BACKING, ENGINES_ALONE, (1, 10)),
-        columns=MOTION,
+        *(BACKING, (1, 10), MOTION),
         tasks=(REFERENCE, *map(Motion, RUNS)),
         observations=folding,
         words=lateness,
     ),
-    Failure(
-        "Casters swing round when the cart is pushed back",
-        cells=cells_to_rounding(PUSHED, ENGINES_ALONE, (1, 10)),
-        columns=MOTION,
-    ),
-    *(
-        Failure(
-            f"Both wheels of {axles}",
-            cells=cells_to_rounding(scene, ENGINES_ALONE, (1, 10)),
-            columns=("position", "slip", "energy", "reaction"),
-        )
-        for axles, scene in (
-            ("every axle: the car and its trailer", CarAndTrailer(redundant=True)),
-            ("the fixed axle: the cart", Cart(redundant=True)),
-        )
-    ),
+    to_rounding("Casters swing round when the cart is pushed back", PUSHED, (1, 10), MOTION),
+    to_rounding("Both wheels of every axle: the car and its trailer", CAR, (1, 10), FORCES),
+    to_rounding("Both wheels of the fixed axle: the cart", CART, (1, 10), FORCES),
 )
 
 
@@ -266,7 +255,7 @@ def figures(material: Material) -> dict[str, str]:
 
 def words(material: Material) -> Mapping[str, Any]:
     """`counted`: the freedoms' table."""
-    shown = (*SCENES, CarAndTrailer(redundant=True), Cart(redundant=True))
+    shown = (*SCENES, CAR, CART)
     doubled = ("car_and_trailer, both wheels of each axle", "cart, both wheels of the fixed axle")
     return {"counted": counted(shown, (*(scene.name for scene in SCENES), *doubled))}
 
