@@ -16,26 +16,20 @@ from engines import Engine, registry
 MEASURED_WITH = ("numpy", "scipy")
 
 
-def packages(engines: Iterable[Engine] = ()) -> tuple[str, ...]:
-    """The distributions whose versions are printed: ours for the measuring, those of registered engines, of these."""
-    told = (name for engine in (*registry.ENGINES, *engines) for name in engine.packages)
-    return tuple(dict.fromkeys([*MEASURED_WITH, *told]))
-
-
 def versions(engines: Iterable[Engine] = ()) -> str:
     """'Python 3.11.7, numpy 2.4.0, ...' of what the numbers depend on; `engines`: those beside the registered ones."""
-    return ", ".join([f"Python {platform.python_version()}", *map(_version, packages(engines))])
+    return row_versions(*registry.ENGINES, *engines)
 
 
-def row_versions(engine: Engine) -> str:
-    """'Python 3.11.7, numpy 2.4.0, ...' of what a row of this engine depends on."""
-    packages_of = dict.fromkeys([*MEASURED_WITH, *engine.packages])
-    return ", ".join([f"Python {platform.python_version()}", *map(_version, packages_of)])
+def row_versions(*engines: Engine) -> str:
+    """'Python 3.11.7, numpy 2.4.0, ...' of what the rows of these engines depend on."""
+    names = dict.fromkeys([*MEASURED_WITH, *(name for engine in engines for name in engine.packages)])
+    return ", ".join([f"Python {platform.python_version()}", *map(_version, names)])
 
 
 def told_versions(engines: Iterable[Engine]) -> str:
     """'exudyn 1.13.6, pin 4.1.0, ...' of these engines alone."""
-    return ", ".join(dict.fromkeys(_version(package) for engine in engines for package in engine.packages))
+    return ", ".join(dict.fromkeys(_version(name) for engine in engines for name in engine.packages))
 
 
 @cache
@@ -48,11 +42,10 @@ def _version(package: str) -> str:
 
 
 def still_installed(told: str) -> bool:
-    """Whether all that such a line names is here in the same versions; what else is installed by now doesn't count."""
+    """Whether all that such a line names is here in the same versions; other packages don't count."""
     python, *others = told.split(", ")
-    return python == f"Python {platform.python_version()}" and all(
-        each == _version(each.split(" ", 1)[0]) for each in others
-    )
+    here = [f"Python {platform.python_version()}", *(_version(line.split(" ", 1)[0]) for line in others)]
+    return [python, *others] == here
 
 
 def machine() -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -74,30 +74,12 @@ def inert_page(text: str) -> str:
     return "".join(part if index % 2 else inert(part) for index, part in enumerate(parts))
 
 
+@cache
 def environment(folder: Path = TEMPLATES) -> Environment:
     """Templates fail loudly on a name that has no value, and print a mark for a number that is not known.
 
     Those of another folder are found as "own/NAME"; so none of them hides "base.md".
     """
-    return _environment(folder, tuple(unmeasured.FILTERS.items()))
-
-
-def template(text: str) -> Template:
-    """A template that stands in the code, like the remark of an experiment."""
-    return _template(text, tuple(unmeasured.FILTERS.items()))
-
-
-# To compile a template takes ten times as long as to fill it in.
-Filters = tuple[tuple[str, Callable[..., Any]], ...]
-
-
-@cache
-def _template(text: str, filters: Filters) -> Template:
-    return _environment(TEMPLATES, filters).from_string(text)
-
-
-@cache
-def _environment(folder: Path, filters: Filters) -> Environment:
     out = Environment(
         loader=ChoiceLoader([FileSystemLoader(TEMPLATES), PrefixLoader({"own": FileSystemLoader(folder)})]),
         undefined=StrictUndefined,
@@ -107,9 +89,19 @@ def _environment(folder: Path, filters: Filters) -> Environment:
         autoescape=False,
         finalize=unmeasured.marked,
     )
-    out.filters |= dict(filters) | {"anchor": anchor}
+    out.filters |= {name: partial(_filter, name) for name in unmeasured.FILTERS} | {"anchor": anchor}
     out.globals |= {"torn": f"{TORN:g}", "saturated": f"{SATURATED:g}"}
     return out
+
+
+def _filter(name: str, *values: Any, **options: Any) -> Any:
+    return unmeasured.FILTERS[name](*values, **options)
+
+
+@cache
+def template(text: str) -> Template:
+    """A template that stands in the code, like the remark of an experiment; compiled once."""
+    return environment().from_string(text)
 
 
 def template_of(page: Page) -> Template:

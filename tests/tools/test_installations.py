@@ -265,37 +265,3 @@ def test_a_project_of_ones_own_has_the_fixture_and_keeps_an_option_of_the_grids_
     assert "1 failed, 1 passed" in out
     assert "four bar in MuJoCo is off by up to" in out
     assert '<option timestep="' in out
-
-
-# Hides what we register of some engines, then writes every page from no rows at all. Pictures are drawn and not written
-# as text: by then no engine is asked for.
-WITHOUT = """
-import sys
-from engines import loading
-from reports.plots.theme import FigureCanvasSVG
-
-FigureCanvasSVG.print_svg = lambda self, out, **settings: out.write("<svg/>")
-
-ours, hidden = loading._ours, sys.argv[1:]
-loading._ours = lambda group: [point for point in ours(group) if not any(word in point[1] for word in hidden)]
-from engines.registry import ENGINES
-from reports.model.catalogue import PAGES, TROUBLES
-from reports.model.page import Material
-from reports.pages.index import render_index
-from reports.pages.rendering import render_page
-
-assert ENGINES and not {engine.name for engine in ENGINES} & set(sys.argv[1:])
-assert TROUBLES == (), TROUBLES
-materials = {page: Material({}) for page in PAGES}
-for page, material in materials.items():
-    render_page(page, material, "a test")
-render_index(materials, "a test")
-print(*[page.name for page in PAGES])
-"""
-
-
-def test_our_pages_are_written_where_two_engines_are_not_registered():
-    words = [sys.executable, "-c", WITHOUT, "pymunk", "mujoco"]
-    ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
-    assert ended.stderr == ""
-    assert {"four_bar", "skate", "rolling", "errata"} <= set(ended.stdout.split())
