@@ -100,12 +100,13 @@ def with_consistent_start(
     """
     elements = tuple(joints), gravity, tuple(forces)
     _refuse_without_digits(bodies)
+    if not joints:
+        return Mechanism(tuple(bodies), *elements), ()
     own = _AnyStart(tuple(bodies), *elements)
-    slip = own.slip(own.pose, own.twist) if joints else np.zeros(0)
-    size = own.length_scale
-    if joints and (gap := open_joint(own, own.gap(own.pose, 0.0), np.zeros_like(slip), own.pose, own.twist, size)):
+    slip, size = own.slip(own.pose, own.twist), own.length_scale
+    if gap := open_joint(own, own.gap(own.pose, 0.0), np.zeros_like(slip), own.pose, own.twist, size):
         raise OpenStart(f"mechanism: {gap}")
-    if not joints or open_joint(own, np.zeros_like(slip), slip, own.pose, own.twist, size) is None:
+    if open_joint(own, np.zeros_like(slip), slip, own.pose, own.twist, size) is None:
         return Mechanism(tuple(bodies), *elements), ()
     twist = own.twist + _least_change(own, slip, own.pose)
     missed = own.slip(own.pose, twist)
@@ -114,24 +115,21 @@ def with_consistent_start(
     )
     if np.any(np.abs(missed) > START_TOLERANCE * speed):
         raise InvalidMechanism(_contradiction(own, missed))
-    moved = tuple(
-        replace(body, twist=(float(x), float(y), float(turn))) for body, (x, y, turn) in zip(bodies, twist, strict=True)
-    )
-    return Mechanism(moved, *elements), (_note(own, slip, twist),)
+    moved = (replace(body, twist=tuple(after)) for body, after in zip(bodies, twist.tolist(), strict=True))
+    return Mechanism(tuple(moved), *elements), (_note(own, slip, twist),)
 
 
 def _refuse_without_digits(bodies: Sequence[Body]) -> None:
     """Raise InvalidMechanism for an angle too large to be one: its own rounding is more than DIGITS of a radian."""
+    rounded = "floating point numbers of that size tell no angle to a millionth of a radian; give a smaller one"
+    infinite = "its square, an energy, is no floating point number; give a smaller one"
     for body in bodies:
+        x, y, rate = map(abs, body.twist)
         if np.spacing(abs(body.pose[2])) > DIGITS:
-            words = "floating point numbers of that size tell no angle to a millionth of a radian"
-            raise InvalidMechanism(
-                f"{body.name}: its angle at t = 0 is {body.pose[2]:.3g} rad; {words}; give a smaller one"
-            )
-        for value, unit in ((max(abs(body.twist[0]), abs(body.twist[1])), "m/s"), (abs(body.twist[2]), "rad/s")):
+            raise InvalidMechanism(f"{body.name}: its angle at t = 0 is {body.pose[2]:.3g} rad; {rounded}")
+        for value, unit in ((max(x, y), "m/s"), (rate, "rad/s")):
             if value > FASTEST:
-                words = "its square, an energy, is no floating point number; give a smaller one"
-                raise InvalidMechanism(f"{body.name}: its velocity at t = 0 is {value:.3g} {unit}; {words}")
+                raise InvalidMechanism(f"{body.name}: its velocity at t = 0 is {value:.3g} {unit}; {infinite}")
 
 
 def _least_change(own: Mechanism, slip: Array, pose: Array) -> Array:

@@ -129,20 +129,3 @@ def test_the_command_ends_with_1_where_a_check_fails(capsys, monkeypatch):
     assert status == 1
     assert error == "crosscheck: wrong velocities are half a step late: not as the contract of an engine says\n"
     assert any(line.startswith("  fails") and "twists_stand_at_their_instants: " in line for line in lines)
-
-
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (["pymunkk"], "did you mean 'pymunk'"),
-        (["pymunk", "--variant", "tunned"], "did you mean 'tuned'"),
-        (["engines.mujoco:TUNEDD"], "engines.mujoco has no TUNEDD"),
-        (["engines.mujoco:MuJoCo"], "engine"),
-        (["tests.wrong.adapters:NO_ENGINES"], "at least one engine"),
-    ],
-)
-def test_words_that_name_no_engine_are_refused_in_a_line(capsys, words, sentence):
-    status, lines, error = conform(capsys, *words)
-    assert (status, lines) == (2, [])
-    assert sentence in error
-    assert error.count("\n") == 1

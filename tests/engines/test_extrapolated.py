@@ -147,17 +147,6 @@ def test_how_often_it_is_sampled_changes_neither_the_motion_nor_the_estimate_nor
     )
 
 
-@pytest.mark.parametrize(("kept", "asked"), [(60, (60, 1)), (20, (20, 3)), (1, (10, 6))])
-def test_too_many_poses_to_be_kept_are_watched_at_fewer_instants(kept, asked, monkeypatch):
-    counts: list[tuple[int, int]] = []
-    plain = ToyRun.__call__
-    monkeypatch.setattr("engines.extrapolated.WATCHED", kept)
-    monkeypatch.setattr(ToyRun, "__call__", lambda self, *count: counts.append(count) or plain(self, *count))
-    found = Extrapolated(Toy(), "extended", (1, 2), (2,)).build(sledge(), 0.1)(10, 6)
-    assert counts == [asked, (asked[0], 2 * asked[1])]
-    assert found.t == pytest.approx(np.arange(11) * 0.6)
-
-
 @pytest.mark.parametrize("growth", [0.0, 0.3, 1.0])
 def test_the_estimate_is_near_the_error_of_a_series_also_where_it_is_no_longer_asymptotic(growth):
     # 1 / (1 - h / 3) has all powers; the steps are a part of its radius, up to the whole of it.

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engines import Promise, Unpromised, Unsupported
+from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.mjx import DEFAULT, NO_VELOCITY_TERM, TUNED, VARIANTS
 from reference.joints import Gear, Pin
@@ -41,14 +41,6 @@ def test_what_c_code_would_have_to_run_is_refused():
     for name in ("sleigh", "rolling_disc"):
         with pytest.raises(Unsupported, match="our adapter of MJX builds none"):
             DEFAULT.build(BY_NAME[name].mechanism(), 1e-2)
-
-
-def test_an_order_is_promised_of_trees_alone():
-    tree, loop = BY_NAME["pendulum_2"].mechanism(), BY_NAME["free_four_bar"].mechanism()
-    orders = [engine.order(tree) for engine in VARIANTS]
-    assert [order.order for order in orders if isinstance(order, Promise)] == [1, 4]
-    for engine in VARIANTS:
-        assert isinstance(engine.order(loop), Unpromised)
 
 
 NO_DEVICE = """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -11,8 +10,8 @@ import pytest
 
 from engines import loading, method_name, registry
 from engines.loading import load
-from reference.scene import Scene, with_settings
-from reference.scenes.catalogue import SCENES, scene
+from reference.scene import with_settings
+from reference.scenes.catalogue import scene
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.cli.terminal import PULSE, Terminal, progress
 from reports.model import catalogue
@@ -152,17 +151,6 @@ def test_a_number_that_can_not_be_is_a_sentence(name, text, telling):
     with pytest.raises(ValueError, match=r"\w") as told:
         with_settings(scene("free_four_bar"), {name: text})
     assert telling in str(told.value)
-
-
-@pytest.mark.parametrize("original", SCENES[::6], ids=lambda each: each.name)
-def test_a_scene_keeps_its_numbers_and_its_name_on_its_way_to_a_worker(original: Scene):
-    number = "revolutions" if original.name == "driven_four_bar" else "duration"
-    changed = with_settings(original, {number: "0.75"})
-    assert changed.name == f"{original.name} {number}=0.75"
-    for one in (original, changed):
-        one.mechanism()
-        again = pickle.loads(pickle.dumps(one))
-        assert (again, again.name, repr(again)) == (one, one.name, repr(one))
 
 
 RUN = ("--engine", "lagrange", "--variant", "rk4 projection", "--every", "1")
