@@ -17,6 +17,7 @@ from reports.write import tables
 MOST_NOTES = 4  # of elements that are left out, on the first screen
 CHEAPER = 0.9  # of the user's CPU time: a smaller difference may be the clock's noise
 BETTER = 0.9  # of an error: a setting that takes less away is not shown on the first screen
+CUT = "; beyond {:.3g} s the judge itself does not know it to a tenth of the tolerance, so nothing is compared there"
 ROUNDING = 1e-12  # of a radian, and of the mechanism's length
 HEADER = ("setting", "largest error", "reaction error", "CPU, ms", "")
 number = partial(tables.number, infinite="gave up")  # two digits, or a word
@@ -30,7 +31,7 @@ def answer(result: Checked) -> Section:
         ("measure", f"the largest error of all angles [rad] and all centres of mass [{size}], beside ideal joints"),
         ("why", _why(result)),
         ("joint", _opening(result)),
-        ("motion", _sensitivity(result) + _cut(result)),
+        ("motion", _sensitivity(result) + (CUT.format(result.duration) if result.judge.cut else "")),
         ("forces", _forces(result)),
         ("assumed", _assumed(result)),
         ("cost", f"{cost} in {result.reading.model.engine}"),
@@ -136,15 +137,6 @@ def _sensitivity(result: Checked) -> str:
     )
 
 
-def _cut(result: Checked) -> str:
-    if not result.judge.cut:
-        return ""
-    return (
-        f"; beyond {result.duration:.3g} s the judge itself does not know it to a tenth of the tolerance, so nothing "
-        "is compared there"
-    )
-
-
 def _assumed(result: Checked) -> str:
     model = result.reading.model
     step = model.assumed or f"a step of {model.dt * 1e3:.4g} ms, as in the model"
@@ -158,7 +150,7 @@ def _advice(result: Checked) -> tuple[str, ...]:
     goal = "" if result.asked else f" (for an error of {number(result.tolerance)}; name yours)"
     if advised is None:
         closest = min(result.table, key=lambda setting: setting.error)
-        early = [each for each in result.table if result.until_horizon(each.errors) <= result.tolerance]
+        early = [setting for setting in result.table if result.until_horizon(setting.errors) <= result.tolerance]
         enough = min(early, key=lambda setting: setting.cost, default=None) if result.chaotic else None
         until = f" Until {result.judge.horizon:.3g} s, {enough.change.words} does." if enough else ""
         return (
@@ -221,24 +213,25 @@ def _read(result: Checked) -> Section:
             f"{facts.redundant} rows are redundant: rigid bodies alone don't tell the reactions of {names}{others}, so "
             "these are not compared."
         )
-    if facts.singular:
-        t, size = min(facts.singular, key=lambda pair: pair[1])
-        sentences.append(
-            f"Near-singular positions on the way: {len(facts.singular)}, the nearest at {t:.3g} s, where the least "
-            f"singular value of the rows is {size:.1g} of the largest."
-        )
-    else:
-        sentences.append("No position on the way is near-singular.")
+    t, size = min(facts.singular, key=lambda pair: pair[1], default=(0.0, 0.0))
+    sentences.append(
+        f"Near-singular positions on the way: {len(facts.singular)}, the nearest at {t:.3g} s, where the least "
+        f"singular value of the rows is {size:.1g} of the largest."
+        if facts.singular
+        else "No position on the way is near-singular."
+    )
     if facts.dead_centres:
         centres = "; ".join(f"{name} at {t:.3g} s" for t, name in facts.dead_centres[:MOST_NAMED])
         more = len(facts.dead_centres) - MOST_NAMED
         sentences.append(f"Dead centres, where a body turns back: {centres}{f'; {more} more' if more > 0 else ''}.")
     fastest = max(facts.fastest_rotation, facts.stiffest_mode)
-    modes = f"Fastest rotation {facts.fastest_rotation:.3g} rad/s; stiffest small motion at the start "
-    modes += f"{facts.stiffest_mode:.3g} rad/s"
-    if fastest > 0:
-        modes += f"; a radian of the fastest takes {1 / fastest:.2g} s, {1 / fastest / model.dt:.2g} of your steps"
-    sentences += [f"{modes}.", *(f"Note: {note.element}: {note.reason}." for note in reading.notes)]
+    takes = 1 / fastest if fastest > 0 else 0.0
+    radian = f"; a radian of the fastest takes {takes:.2g} s, {takes / model.dt:.2g} of your steps"
+    sentences += [
+        f"Fastest rotation {facts.fastest_rotation:.3g} rad/s; stiffest small motion at the start "
+        f"{facts.stiffest_mode:.3g} rad/s{radian if fastest > 0 else ''}.",
+        *(f"Note: {note.element}: {note.reason}." for note in reading.notes),
+    ]
     return Section("What was read", tuple(sentences), header=("your setting", "value"), rows=(*model.settings.items(),))
 
 

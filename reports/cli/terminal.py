@@ -9,20 +9,22 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
 
+from engines.registry import mislabelled
 from reports.cli.interruption import kept
 from reports.cli.streams import said, written
 from reports.model.ending import FINE, BadInput, Broken, visible
-
-if TYPE_CHECKING:
-    from reports.model.measure import Measurement
-    from reports.run.store import Store
+from reports.model.measure import Measurement
+from reports.run.running import missing
+from reports.run.store import Store
+from reports.write.tables import display_width, markdown, text_table, words_of
+from reports.write.templates import inert
 
 PULSE = 10.0  # s between two lines about a run whose output is a file or a pipe
 
@@ -53,8 +55,6 @@ class Terminal(Console):
         if self.form == "json":
             self.document["sentences"].append(sentence)
         elif self.form == "markdown":
-            from reports.write.templates import inert
-
             with written():
                 print(f"{inert(visible(sentence))}\n")
         else:
@@ -69,8 +69,8 @@ class Terminal(Console):
     def keep(self, rows: Iterable[Measurement]) -> None:
         """Rows with all their digits, for the document alone: `rows`, an object each, by the names of `errors.csv`."""
         if self.form == "json":
-            told = [{name: plain(value) for name, value in vars(row).items()} for row in rows]
-            self.document.setdefault("rows", []).extend(told)
+            cells = ({name: plain(value) for name, value in vars(row).items()} for row in rows)
+            self.document.setdefault("rows", []).extend(cells)
 
     def on_broken_pipe(self) -> None:
         raise BrokenPipeError
@@ -79,8 +79,6 @@ class Terminal(Console):
 @contextmanager
 def opened(path: Path) -> Iterator[Store]:
     """A store to be written; a line on stderr where the old one is put aside."""
-    from reports.run.store import Store
-
     with Store(path) as store:
         if store.notice:
             said(store.notice)
@@ -113,8 +111,6 @@ def print_table(
 
     All of it is plain text: a unit in brackets, as in "step [s]", is no markup. rich folds a table that is too wide.
     """
-    from reports.write.tables import display_width, markdown, text_table, words_of
-
     if console.form == "json":
         cells = [{name: plain(cell) for name, cell in zip(header, row, strict=True)} for row in rows]
         console.document["tables"].append({"title": title, "rows": cells})
@@ -122,8 +118,6 @@ def print_table(
     title, header = visible(title), [visible(name) for name in header]
     words = [tuple(visible(words_of(cell)) for cell in row) for row in rows]
     if console.form == "markdown":
-        from reports.write.templates import inert
-
         with written():
             print(f"**{inert(title)}**\n\n{inert(markdown(header, words, left))}\n")
         return
@@ -163,9 +157,6 @@ def interruptible(
     `words`: what the items are called; `fresh`: those that are stored too; `size`: how many cases are in one, which are
     then counted; done and watch: see `progress`. Raises KeyboardInterrupt, having said what is stored.
     """
-    from engines.registry import mislabelled
-    from reports.run.running import missing
-
     if sentence := mislabelled():
         raise BadInput(sentence)
     with kept() as check:
@@ -177,8 +168,7 @@ def interruptible(
             check()
         except KeyboardInterrupt:
             stored = len(items) - len(missing(items, store, limit))
-            line = f"Stopped: {stored} of {len(items)} {words} are stored; the next run goes on from there."
-            console.say(line)
+            console.say(f"Stopped: {stored} of {len(items)} {words} are stored; the next run goes on from there.")
             raise
 
 

@@ -32,8 +32,7 @@ from reference.joints import Gear, Pin
 from reference.kinds import Floats
 from reference.mechanism import Body
 from reference.scenes.catalogue import SCENES
-from reference.scenes.four_bar.linkage import FourBar, Unreachable
-from reference.scenes.four_bar.scenes import OverdrivenFourBar
+from reference.scenes.four_bar.linkage import FourBar
 from reports.model.cells import Cell
 from tests.mechanisms import SCENES_OF_LIMITS, four_bar
 
@@ -154,15 +153,6 @@ def test_a_scene_refuses_times_and_poses_that_can_not_be_meant(scene):
     for name in ("t", "pose", "twist", "reaction"):
         assert getattr(one, name).shape[0] == 1
         assert getattr(none, name).shape == (0, *getattr(one, name).shape[1:])
-
-
-def test_a_crank_beyond_its_limit_is_refused_also_where_its_angle_could_be_reached_again():
-    scene = OverdrivenFourBar()
-    again = scene.stopping_time + 0.9 * 2 * math.pi / scene.rate
-    scene.four_bar.angles(scene.start + scene.rate * 2 * scene.duration)  # reachable, but not from the start
-    for time in (2 * scene.duration, min(again, scene.latest)):
-        with pytest.raises(Unreachable):
-            scene.motion([time])
 
 
 def test_a_long_value_is_shortened_in_the_message():

@@ -104,24 +104,19 @@ def test_options_are_set_where_they_are_or_where_they_belong(source, wanted):
     assert rewritten(wanted, change) == wanted
 
 
-def test_quick_tries_four_settings_and_tells_the_same_causes(tmp_path):
+def test_quick_tries_four_settings_and_all_are_run_if_asked_for_with_the_same_causes(tmp_path):
     (tmp_path / "model.xml").write_text(FOUR_BAR)
-    quick, whole = (checked(tmp_path, "model.xml", tolerance=1e-4, quick=quick) for quick in (True, False))
-    assert len(quick.data["tried"]) == 1 + 4
+    terms = ({"quick": True}, {}, {"everything": True})
+    quick, whole, every = (checked(tmp_path, "model.xml", tolerance=1e-4, **term).data for term in terms)
+    assert len(quick["tried"]) == 1 + 4
     # The declared motion is known to a thousandth of itself at the rougher tolerance.
-    assert quick.data["parts"]["softness"] == pytest.approx(whole.data["parts"]["softness"], rel=1e-3)
-    assert quick.data["error"] == whole.data["error"]
-
-
-def test_only_settings_that_may_be_advised_are_run_unless_all_are_asked_for(tmp_path):
-    (tmp_path / "model.xml").write_text(FOUR_BAR)
-    some, every = (checked(tmp_path, "model.xml", everything=each).data for each in (False, True))
-    names = [[each["words"] for each in found["tried"]] for found in (some, every)]
-    assert set(names[0]) < set(names[1])
+    assert quick["parts"]["softness"] == pytest.approx(whole["parts"]["softness"], rel=1e-3)
+    assert {setting["words"] for setting in whole["tried"]} < {setting["words"] for setting in every["tried"]}
     # Of the same errors; which of two is cheaper the clock says, but both are enough.
-    assert max(found["advised"]["error"] for found in (some, every)) <= 1e-4
-    assert some["next_decade"] is not None
-    assert (some["error"], some["parts"]) == (every["error"], every["parts"])
+    assert max(data["advised"]["error"] for data in (whole, every)) <= 1e-4
+    assert whole["next_decade"] is not None
+    assert quick["error"] == whole["error"]
+    assert (whole["error"], whole["parts"]) == (every["error"], every["parts"])
 
 
 def test_settings_are_looked_for_until_an_error_is_met_or_nothing_documented_does(tmp_path, monkeypatch):

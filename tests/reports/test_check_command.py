@@ -10,7 +10,6 @@ import subprocess
 import sys
 import types
 import xml.etree.ElementTree as xml
-from functools import cache
 from pathlib import Path
 from typing import ClassVar
 
@@ -19,10 +18,8 @@ import numpy as np
 import pytest
 from pymunk import Space
 
-from engines.lagrange import loading
 from engines.mujoco.reading.settings import switch_off as of_mujoco
 from engines.pymunk.reading.own_model import switch_off as of_pymunk
-from reports.check.checked import Plan, check, read
 from reports.check.request import CheckReport, CheckRequest, Refused, answered
 from reports.cli.check import SWITCHED_OFF
 from tests.reports.test_check import FOUR_BAR, PENDULUM
@@ -245,18 +242,6 @@ def test_a_script_runs_in_its_own_folder_with_its_own_files_and_modules(tmp_path
     assert (Path.cwd(), sys.path) == (home, paths)
     assert "local" not in sys.modules
     assert not hasattr(sys.modules["reference"], "MINE")
-
-
-def test_who_waits_for_the_first_compilation_knows_it(tmp_path, monkeypatch):
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    monkeypatch.setattr(loading, "compiled", cache(lambda: None))
-    assert loading.is_cold() is loading.installed()
-    told: list[str] = []
-    (tmp_path / "swing.py").write_text(PENDULUM)
-    check(read("swing.py:make", tmp_path), "swing", 0.05, 1e-4, told.append, Plan(0.0))
-    assert any("compiling the judge's machine code" in words for words in told) is loading.installed()
-    (loading._folder() / loading.READY).touch()
-    assert not loading.is_cold()
 
 
 @pytest.mark.parametrize(("element", "sentence"), [("rain", "--without is 'rain'"), ("contact", "")])

@@ -155,15 +155,6 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     assert not (here / "crosscheck-results/index.md").exists()
 
 
-def test_results_that_can_not_be_a_folder_are_one_line(here, capfd):
-    (here / "file").write_text("mine")
-    for command in (("run", *ONE_CELL), ("show", "free_four_bar"), ("report",)):
-        for results in ("file/below", "x" * 300):
-            assert call(*command, "--results", results) == REFUSED
-            one_line(capfd.readouterr().err)
-    assert (here / "file").read_text() == "mine"
-
-
 def test_files_are_replaced_whole_or_not_at_all(tmp_path, monkeypatch):
     old = {tmp_path / name: "old" for name in ("a.md", "b.md", "c.md")}
     new = dict.fromkeys(old, "new\n")

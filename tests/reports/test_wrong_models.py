@@ -8,20 +8,17 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, cast
 
-import numpy as np
 import pytest
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
-from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reports.model.outcomes import Loss
 from reports.run.running import worker_count
 from reports.run.supervisor import supervise
-from tests.wrong.mistakes import KINDS, Mistake, Sighting, Trial, mistaken, mistakes, noticed
+from tests.wrong.mistakes import KINDS, Mistake, Sighting, Trial, mistakes, noticed
 
 # What has to be noticed: a ten-thousandth by methods that reach rounding, a hundredth by what documented settings give.
 EXTENDED: dict[Engine, float] = {pymunk.EXTENDED: 1e-4, mujoco.EXTENDED: 1e-4}
@@ -258,41 +255,3 @@ def test_every_reason_names_a_real_mistake_and_method() -> None:
     assert {(scene, mistake) for scene, _, mistake in UNNOTICEABLE_IN} <= possible
     assert {engine for _, engine, _ in UNNOTICEABLE_IN} <= {trial.engine.name for trial in EVERYTHING}
     assert set(LARGER) <= {(trial.scene.name, trial.method) for trial in EVERYTHING}
-
-
-SHORT = [scene for scene in SCENES if len(scene.mechanism().bodies) < 20]
-
-
-@pytest.mark.parametrize("scene", SHORT, ids=lambda scene: scene.name)
-def test_a_mistake_makes_another_mechanism_whose_start_is_closed_again(scene: Scene) -> None:
-    right = scene.mechanism()
-    for mistake in all_mistakes(scene):
-        wrong = mistake.made(right, 1e-3)
-        numbers = (wrong.bodies, wrong.joints, wrong.gravity)
-        assert numbers != (right.bodies, right.joints, right.gravity), mistake
-        # Two gears on pins can't mesh with one number wrong: they are left as nearly closed as they can be.
-        if scene.name != "elliptic_gears":
-            Mechanism(*numbers)  # refuses a start off its joints
-
-
-@pytest.mark.parametrize("engine", [pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4")], ids=lambda e: e.name)
-@pytest.mark.parametrize(
-    "mistake", [Mistake("mass", "coupler"), Mistake("inertia", "rocker"), Mistake("gravity")], ids=str
-)
-def test_where_the_motion_is_prescribed_a_wrong_load_shows_in_the_reactions_alone(engine, mistake) -> None:
-    scene = DrivenFourBar()
-    right, wrong = (each.build(scene.mechanism(), 1e-3)(20, 10) for each in (engine, mistaken(engine, mistake, 1e-2)))
-    scale = np.abs(right.reaction).max()
-    assert np.abs(right.pose - wrong.pose).max() < 1e-8
-    # Reactions carry each load in part: well above what the methods leave at this step, 1e-6, and below the mistake.
-    assert 1e-4 < np.abs(right.reaction - wrong.reaction).max() / scale < 1e-2
-
-
-def test_a_wrong_model_is_read_out_on_the_right_rows() -> None:
-    right = DrivenFourBar().mechanism()
-    wrong = Mistake("length", "coupler").made(right, 1e-2)
-    acceleration = np.ones_like(right.pose)
-    assert np.array_equal(wrong.reaction(right.pose, acceleration), right.reaction(right.pose, acceleration))
-    heavy = 2 * right.inertias
-    told = wrong.reaction(right.pose, acceleration, heavy)
-    assert np.allclose(told, 2 * right.reaction(right.pose, acceleration), rtol=1e-12)
