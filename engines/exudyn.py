@@ -19,11 +19,11 @@ drives). This error leaves poses and twists alone. In the accelerations Generali
 every step, the trapezoidal rule nothing. So as shipped, reactions are NaN where there are such constraints; the other
 variants give the engine consistent accelerations for the start, by its public settings.
 
-As shipped, Newton's norm is one over the residuals of forces, torques and constraints. What a tolerance means then
-depends on units and on masses: a body of 2e-11 kg m^2 beside one of 0.8 was off by 6e-7 of the motion at every step,
-and no estimate saw it (a finding of `crosscheck search`). So all variants but the one as shipped use the engine's other
-norm, `residualMode` 1, of the increment of an iteration, in the mechanism's own length. An increment d of a pose
-changes its rate by 2 d / dt, and that is what `absolute` is a tolerance of: it stays for the rest of the motion.
+As shipped, Newton's norm is one over the residuals of forces, torques and constraints, so that a tolerance depends on
+units and on masses: a body of 2e-11 kg m^2 beside one of 0.8 was off by 6e-7 of the motion at every step, and no
+estimate saw it. So all other variants use the engine's other norm, `residualMode` 1, of the increment of an iteration,
+in the mechanism's own length. An increment d of a pose changes its rate by 2 d / dt for the rest of the motion, and
+`absolute` is a tolerance of that.
 """
 
 from __future__ import annotations
@@ -89,8 +89,7 @@ class Exudyn(Optional):
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        """Second, both; what is held as an equation is exact up to Newton's tolerance. Reactions are unknown where
-        velocities are held and the start's accelerations are not consistent."""
+        """Second. Reactions are unknown where velocities are held and the start's accelerations are not consistent."""
         velocities = holds_velocities(mechanism)
         reaction = math.nan if velocities and not self.consistent else None
         if self.integrator == "TrapezoidalIndex2":
@@ -100,7 +99,7 @@ class Exudyn(Optional):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """About what a step takes [s]: the cube of many bodies where Newton's matrix is dense."""
+        """About the time of a step [s]: the cube of many bodies where Newton's matrix is dense."""
         size = over_three(mechanism)
         return STEP_COST * size * (1.0 if self.sparse else max(1.0, size / 5) ** 2)
 
@@ -117,9 +116,8 @@ class Exudyn(Optional):
 def resolved_ratio(mechanism: Mechanism) -> float:
     """How many times as much as the heaviest body a force, or a torque at the mechanism's length, moves the lightest.
 
-    Newton's tolerance is a part of what the heaviest need, in one norm of all forces and torques, and rounding is one
-    of each. Where the product of both is above 1, it lets the lightest body accelerate by as much as anything does,
-    whatever acts on it.
+    Newton's tolerance is a part of the forces on the heaviest, in one norm of all forces and torques. Where its product
+    with this ratio is above 1, the lightest body may accelerate by as much as anything does, whatever acts on it.
     """
     lightest = max(max(1 / body.mass, mechanism.length_scale**2 / body.inertia) for body in mechanism.bodies)
     return max(body.mass for body in mechanism.bodies) * lightest
@@ -141,13 +139,8 @@ class System:
         if engine.own_units:
             length, seconds = power_of_two(mechanism.length_scale), power_of_two(mechanism.time_scale)
             mass = power_of_two(max(body.mass for body in mechanism.bodies))
-        self.engine, self.original, self.length, self.seconds, self.dt = (
-            engine,
-            mechanism,
-            length,
-            seconds,
-            dt / seconds,
-        )
+        self.engine, self.original = engine, mechanism
+        self.length, self.seconds, self.dt = length, seconds, dt / seconds
         self.mechanism = counted_in(mechanism, mass, seconds)
         self.exudyn, self.items = exudyn, itemInterface
         self.unit = np.array([length, length, 1.0])  # of poses, twists and accelerations
@@ -185,14 +178,13 @@ class System:
     def _add(self, body: Body) -> None:
         start, velocities = list(body.pose / self.unit), list(body.twist / self.unit)
         node = self.system.AddNode(self.items.NodeRigidBody2D(referenceCoordinates=start, initialVelocities=velocities))
-        inertia = body.inertia / self.length**2
-        made = self._object("ObjectRigidBody2D", mass=body.mass, inertia=inertia, nodeNumber=node)
+        masses = {"mass": body.mass, "inertia": body.inertia / self.length**2}
+        made = self._object("ObjectRigidBody2D", nodeNumber=node, **masses)
         marker = self._marker("MarkerBodyMass", bodyNumber=made)
         self._load("LoadMassProportional", marker, loadVector=self._vector(self.mechanism.gravity))
         self.nodes[body.name], self.bodies[body.name] = node, made
 
     def _vector(self, plane: tuple[float, float]) -> list[float]:
-        """A vector of the plane, in the model's length."""
         return [value / self.length for value in (*plane, 0.0)]
 
     def _point(self, name: str | None, point: tuple[float, float], rigid: bool = False) -> int:
@@ -211,9 +203,9 @@ class System:
         """A body's angle at the start [rad], from which the engine's coordinate counts; the ground's is zero."""
         return 0.0 if name is None else self.mechanism.bodies[self.mechanism.body_index(name)].pose[2]
 
-    def _couple(self, ends: list[int], **settings: Any) -> None:
-        """factor1 times the second coordinate minus the first is the offset."""
-        self._object("ObjectConnectorCoordinate", markerNumbers=ends, **settings)
+    def _couple(self, *names: str | None, **law: Any) -> None:
+        """factor1 times the second rotation minus the first is the offset."""
+        self._object("ObjectConnectorCoordinate", markerNumbers=self._rotations(*names), **law)
 
     def _join(self, joint: Joint) -> int:
         """Add what stands for a joint; returns the number of its equations."""
@@ -222,11 +214,11 @@ class System:
                 self._object("ObjectJointRevolute2D", markerNumbers=self._ends(joint))
                 if isinstance(joint, Weld):
                     turned = joint.angle - self._start(joint.second) + self._start(joint.first)
-                    self._couple(self._rotations(joint.first, joint.second), offset=turned)
+                    self._couple(joint.first, joint.second, offset=turned)
                 return joint.size
             case Gear():
                 turned = self._start(joint.second) - joint.ratio * self._start(joint.first) - joint.phase
-                self._couple(self._rotations(joint.second, joint.first), factor1=joint.ratio, offset=turned)
+                self._couple(joint.second, joint.first, factor1=joint.ratio, offset=turned)
                 return 1
             case Rod():
                 distance = joint.length / self.length
@@ -239,8 +231,8 @@ class System:
                 self._object("ObjectJointPrismatic2D", markerNumbers=ends, **settings)
                 return 2
             case Drive():
-                turning = {"offset": joint.turning_rate, "velocityLevel": True}
-                self._couple(self._rotations(joint.first, joint.second), **turning)
+                law = {"offset": joint.turning_rate, "velocityLevel": True}
+                self._couple(joint.first, joint.second, **law)
                 return 1
             case Skate():
                 ends = [self._point(joint.first, (0.0, 0.0), True), self._point(joint.second, joint.second_point, True)]
@@ -312,8 +304,7 @@ class System:
             settings.linearSolver.solverType = self.exudyn.LinearSolverType.EigenSparse
         steps.generalizedAlpha.spectralRadius = engine.damping
         steps.generalizedAlpha.computeInitialAccelerations = not engine.consistent
-        settings.solution.sensors.writePeriod = every * self.dt
-        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod, settings.solution.file.write = every * self.dt, False
         return settings
 
     def record(self, samples: int, every: int) -> Recorded:
@@ -346,10 +337,8 @@ class System:
         if holds_velocities(self.mechanism) and not engine.consistent:
             states[2] = np.nan
             warnings.append("ours: reactions are not told, as the start's accelerations ignore velocity constraints")
-        pose, twist, acceleration = states
-        loads = self.original.inertias, np.array(self.original.gravity)
-        rates = twist / self.seconds, acceleration / self.seconds**2
-        return Recorded(pose, *rates, stepping, *loads, tuple(warnings))
+        rates, loads = (states[1] / self.seconds, states[2] / self.seconds**2), self.original
+        return Recorded(states[0], *rates, stepping, loads.inertias, np.array(loads.gravity), tuple(warnings))
 
 
 DEFAULT = Exudyn("default")
