@@ -99,9 +99,7 @@ class Cell(Valid):
         return digest("\0".join(parts), LONG)
 
 
-@lru_cache(maxsize=4096)  # a scene in an engine has a cell for every step
-def _fingerprint(scene: Scene, engine: Engine) -> str:
-    return fingerprint(scene, engine)
+_fingerprint = lru_cache(maxsize=4096)(fingerprint)  # a scene in an engine has a cell for every step
 
 
 def estimated_cost(cell: Cell) -> float:

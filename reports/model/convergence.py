@@ -50,10 +50,7 @@ class Fit(NamedTuple):
 
 @dataclass(frozen=True)
 class Sweep:
-    """One quantity of one scene in one engine variant, over all steps that ended without failing.
-
-    verdict to uncertainty: see Fit; best: the smallest error met, at `best_step` [s].
-    """
+    """One quantity of one scene in one engine variant, over all steps that ended without failing (see Fit)."""
 
     scene: str
     engine: str
@@ -65,8 +62,8 @@ class Sweep:
     spread: float
     plateau: float
     uncertainty: float
-    best: float
-    best_step: float
+    best: float  # the smallest error
+    best_step: float  # s
 
     @property
     def method(self) -> str:

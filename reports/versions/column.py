@@ -209,9 +209,7 @@ def _imported_elsewhere(request: VersionRequest) -> str:
         file = getattr(sys.modules[name], "__file__", None)
         if file is None or location.resolve() not in Path(file).resolve().parents:
             return f"{name} was imported from {file}, and not from {location}"
-    return (
-        "" if imported else f"the engine imports none of {', '.join(request.modules)}, which is what lies in {location}"
-    )
+    return "" if imported else f"the engine imports none of {', '.join(request.modules)} in {location}"
 
 
 def _run(request: VersionRequest, engines: Sequence[Engine], send: Callable[[Any], None]) -> None:

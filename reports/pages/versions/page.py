@@ -44,9 +44,8 @@ def heat_table(entries: Sequence[Entry], versions: Sequence[str], theme: Theme =
             known = {(e.scene, e.version): e for e in entries if e.variant == method}
             for row, scene in enumerate(scenes[method]):
                 for column, version in enumerate(versions):
-                    entry = known.get((scene, version))
-                    if entry is not None:
-                        _cell(panel, column, row, entry, theme)
+                    if (scene, version) in known:
+                        _draw_cell(panel, column, row, known[scene, version], theme)
             panel.set_xlim(0, len(versions))
             panel.set_ylim(len(scenes[method]), 0)
             names = [scene.replace("_", " ") for scene in scenes[method]]
@@ -67,7 +66,7 @@ def _look(entry: Entry, theme: Theme) -> tuple[str, str]:
     return getattr(theme, shade(entry.error)), "0" if power is None else f"{power}"
 
 
-def _cell(panel: Axes, column: int, row: int, entry: Entry, theme: Theme) -> None:
+def _draw_cell(panel: Axes, column: int, row: int, entry: Entry, theme: Theme) -> None:
     colour, letters = _look(entry, theme)
     # No patch: the limits are given, and need not follow each of some thousand cells.
     panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=theme.paper, linewidth=1))
