@@ -23,8 +23,7 @@ from reference.scenes.rolling.scenes import (
 )
 from reference.scenes.skates import ChaplyginSleigh, FreelyPinnedBody, PinnedBody, SleighBackwards
 from reference.scenes.slider_crank import DrivenSliderCrank, FreeSliderCrank
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
-from reference.scenes.wheels.cart import Cart
+from reference.scenes.wheels.vehicles import CarAndTrailer, Cart
 
 SCENES: tuple[Scene, ...] = (
     DrivenFourBar(),

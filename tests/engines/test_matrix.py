@@ -42,7 +42,7 @@ from reference.scenes.rolling.scenes import (
 )
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank, FreeSliderCrank, SlottedLever
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.vehicles import CarAndTrailer
 from reference.trajectory import Trajectory
 from tests.mechanisms import four_bar, rolling_disc
 

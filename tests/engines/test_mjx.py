@@ -17,7 +17,7 @@ from reference.joints import Gear, Pin
 from reference.mechanism import Body, Mechanism
 from reports.model.catalogue import SCENES
 from reports.pages.engines.experiments import reactions_with, started_anew
-from tests.all_elements import ALONE
+from tests.mechanisms import ALONE
 from tests.present import present
 
 BY_NAME = {scene.name: scene for scene in SCENES}

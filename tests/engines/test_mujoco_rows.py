@@ -23,7 +23,7 @@ from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingEllipse
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import SlottedLever
-from reference.scenes.wheels.cart import Cart
+from reference.scenes.wheels.vehicles import Cart
 from tests import ROOT
 from tests.mechanisms import bar
 

@@ -30,8 +30,8 @@ from reports.search.mechanisms import mechanism
 from reports.search.parts import EVERY
 from reports.search.recipe import build
 from reports.search.subjects import Adapted
-from tests.all_elements import ALONE
 from tests.engines.test_promised import QUICKLY, meshed, shipped
+from tests.mechanisms import ALONE
 
 NAMES = tuple(dict.fromkeys(engine.name for engine in QUICKLY))
 

@@ -22,7 +22,7 @@ from reference.joints import Drive, Gear, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.scenes.catalogue import SCENES, scene
 from reports.model.cells import SLOW_TO_BUILD
-from tests.all_elements import ALL, ALONE, DAMPED, GRAVITY
+from tests.mechanisms import ALL, ALONE, DAMPED, GRAVITY
 from tests.reference.test_units import in_other_units
 
 QUICKLY = tuple(engine for engine in registry.OTHERS if engine.building < SLOW_TO_BUILD)

@@ -20,7 +20,7 @@ from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingEllipse
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.vehicles import CarAndTrailer
 from reports.gate.change import Altered
 from reports.write.columns import held_by
 from tests.mechanisms import four_bar

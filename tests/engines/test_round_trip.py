@@ -33,8 +33,8 @@ from reports.check.checked import Plan, check
 from reports.check.judging import accelerations, refuse_disagreement
 from reports.search.mechanisms import mechanism as random_mechanism
 from tests import independent
-from tests.all_elements import ALONE
 from tests.engines.test_matrix import rod_in_a_slot
+from tests.mechanisms import ALONE
 
 # Numbers are written with all their digits. What is left is the rounding of two ways to the same place, times the
 # condition of the rows: largest, 2e-13, for ten four-bars in line, which stand 0.05 rad from a singular position.

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.reference.laws.formulas import LAWS
-from tests.reference.laws.law import Law, misses, searched
+from tests.reference.formulas import LAWS
+from tests.reference.law import Law, misses, searched
 
 NAMED = {law.name: law for law in LAWS}
 # A formula of twenty operations makes that many roundings of its own, some of them along with the worst argument.

@@ -18,7 +18,7 @@ from reference.scenes.four_bar.scenes import (
 )
 from reference.scenes.slider_crank import SliderCrank
 from tests.present import present
-from tests.reference.laws.formulas import closed
+from tests.reference.formulas import closed
 from tests.reference.test_scenes import TRIPLE_ROCKER
 
 CHAPTER = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))

@@ -27,8 +27,7 @@ from reference.scenes.n_four_bar import NFourBar, TenFourBars
 from reference.scenes.pendulum.chain import Chain
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, LongPendulum, TenLinks
 from reference.trajectory import Trajectory, energy, joint_gap, slip
-from tests.all_elements import ALL, ALONE, DAMPED, DAMPERS, PUSHES, SPRINGS
-from tests.mechanisms import four_bar, pendulum
+from tests.mechanisms import ALL, ALONE, DAMPED, DAMPERS, PUSHES, SPRINGS, four_bar, pendulum
 
 RANDOM = np.random.default_rng(20)
 

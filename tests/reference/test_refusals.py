@@ -31,10 +31,9 @@ from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingCam, RollingEllipse
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.trailers import CarWithTrailers
-from tests.all_elements import ALL, WELD
-from tests.mechanisms import bar, four_bar
+from reference.scenes.wheels.vehicles import CarAndTrailer
+from tests.mechanisms import ALL, WELD, bar, four_bar
 from tests.reference.test_chapter import cardan, coupler
 from tests.reference.test_scenes import TRIPLE_ROCKER
 

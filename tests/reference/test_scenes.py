@@ -31,8 +31,7 @@ from reference.scenes.slider_crank import (
     SliderAtDeadCentre,
     SlottedLever,
 )
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
-from reference.scenes.wheels.cart import Cart
+from reference.scenes.wheels.vehicles import CarAndTrailer, Cart
 from reference.trajectory import Trajectory, energy, joint_gap, slip
 from tests.mechanisms import SCENES_OF_LIMITS
 from tests.present import present

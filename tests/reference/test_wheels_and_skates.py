@@ -32,9 +32,8 @@ from reference.checks import InvalidMechanism
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.scenes.skates import ChaplyginSleigh, PinnedBody, SleighBackwards
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
-from reference.scenes.wheels.cart import Cart, Casters
 from reference.scenes.wheels.trailers import CarWithTrailers, Tow
+from reference.scenes.wheels.vehicles import CarAndTrailer, Cart, Casters
 from tests.mechanisms import four_bar
 from tests.present import present
 

@@ -20,7 +20,7 @@ from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.rolling.scenes import RollingEllipse
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.vehicles import CarAndTrailer
 
 FEWEST = 10  # steps of a run: the largest step is a tenth of the duration
 

@@ -12,9 +12,8 @@ from matplotlib.figure import Figure
 
 from engines import pymunk
 from engines.registry import VARIANTS
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
-from reference.scenes.wheels.cart import Cart, Casters
 from reference.scenes.wheels.trailers import CarWithTrailers, Tow
+from reference.scenes.wheels.vehicles import CarAndTrailer, Cart, Casters
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Material, Observation, Page

@@ -5,7 +5,7 @@ from __future__ import annotations
 from engines import pymunk
 from engines.pymunk.methods import SKATE_CENTRE, SKATE_PROJECTED
 from reference.scenes.skates import ChaplyginSleigh
-from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.vehicles import CarAndTrailer
 from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Lesson
 from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 

@@ -15,7 +15,7 @@ from reference.scenes.pendulum.link import Pendulum
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import SliderCrank
 from reference.scenes.wheels.trailers import Tow
-from tests.reference.laws.law import Law, Outside, angle, decades
+from tests.reference.law import Law, Outside, angle, decades
 
 
 def root(square: Any) -> Any:
