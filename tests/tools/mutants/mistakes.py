@@ -52,9 +52,9 @@ class Mistake:
         if isinstance(old[0], ast.stmt) and isinstance(new[0], ast.expr):
             new = [ast.Expr(new[0])]
         hits = []
-        for file, text in _sources().items():
-            if module in file.removesuffix(".py").replace("/", ".") and function.rpartition(".")[2].encode() in text:
-                tree = ast.parse(text)
+        for file, names in _functions().items():
+            if function in names and module in file.removesuffix(".py").replace("/", "."):
+                tree = ast.parse((ROOT / file).read_bytes())
                 nodes = [node for name, node in _walk(tree, "") if name == function] if function else [tree]
                 hits += sum(_replace(node, old, new, inside=bool(function)) for node in nodes) * [(file, tree)]
         if len(hits) != 1:
@@ -79,9 +79,11 @@ def read_mistakes(path: Path = LIST) -> tuple[Mistake, ...]:
 
 
 @cache
-def _sources() -> dict[str, bytes]:
+def _functions() -> dict[str, set[str]]:
+    """The qualified names of all functions and classes of every file; "" is the module."""
     paths = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
-    return {path.relative_to(ROOT).as_posix(): path.read_bytes() for path in paths}
+    trees = {path.relative_to(ROOT).as_posix(): ast.parse(path.read_bytes()) for path in paths}
+    return {file: {"", *(name for name, _ in _walk(tree, ""))} for file, tree in trees.items()}
 
 
 def _walk(node: ast.AST, within: str) -> Iterator[tuple[str, ast.AST]]:
