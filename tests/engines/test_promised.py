@@ -2,7 +2,7 @@
 
 A joint or a force element that an adapter does not know is refused by name, never left out of the model.
 What is not installed is skipped with the sentence that says which extra installs it. A model of MJX takes tens of
-seconds to compile, so its tests are slow ones, in tests/engines/test_mjx.py.
+seconds to compile, so its tests are slow ones, in tests/engines/test_other_engines.py.
 """
 
 from __future__ import annotations
