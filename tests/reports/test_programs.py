@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import re
 
 import numpy as np
@@ -13,9 +15,20 @@ from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.write.page_tables import FOLDER, KEPT, Program, advice, advised_programs, file_of, program
 from tests.committed_rows import page_rows
-from tests.reports.test_pages import FENCED, MECHANISMS, named, run, texts, undrawn
+from tests.reports.test_pages import MECHANISMS, texts, undrawn
 
 __all__ = ["undrawn"]
+
+FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+named = pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
+
+
+def run(source: str) -> tuple[dict, str]:
+    """The names that a program has at its end, and what it printed."""
+    names, printed = {"__name__": "__main__"}, io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile(source, "a page", "exec"), names)
+    return names, printed.getvalue()
 
 
 def advised(page: Page) -> tuple[list[Program], list]:
