@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
 from engines import Engine
-from reference.scene import Scene
 from reports.model.cells import USUAL_STEPS
 from reports.model.convergence import judged
-from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages import comparison
@@ -54,7 +52,10 @@ def engines_of(pages: Iterable[Page]) -> list[Engine]:
 
 def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
     """The index: findings, symptoms, every scene in a line, every page with its lesson. `files`: what is beside it."""
-    entries = [(page, _overview_rows(page, material, page.scenes)) for page, material in pages.items()]
+    entries = [
+        (page, judged([*material.sweep(page.scenes), *material.usual(page.scenes)], page.quantity))
+        for page, material in pages.items()
+    ]
     known = {page.name for page in pages}
     text = (
         environment()
@@ -77,10 +78,6 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
         )
     )
     return inert_page(unmeasured.without_marks(text))
-
-
-def _overview_rows(page: Page, material: Material, scenes: Sequence[Scene]) -> list[Measurement]:
-    return judged([*material.sweep(scenes), *material.usual(scenes)], page.quantity)
 
 
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:

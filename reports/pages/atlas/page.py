@@ -27,7 +27,7 @@ from reports.model.page import Material, Page
 from reports.pages.atlas.columns import FILE, Line, read
 from reports.pages.atlas.subjects import SUBJECTS, Subject
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
-from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
+from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.columns import told_variant
 from reports.write.tables import markdown, number, step_words
 
@@ -139,22 +139,21 @@ def figures(material: Material) -> Mapping[str, str]:
     }
 
 
-def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> Figure:
+def atlas_map(subject: Subject, lines: Sequence[Line]) -> Figure:
     """Step against the parameter, both logarithmic (whole numbers evenly), one panel a method."""
     methods = list(dict.fromkeys(line.method for line in lines))
     columns = min(2, len(methods)) or 1
     count = -(-len(methods) // columns) or 1
     drawn: set[str] = set()
     met: set[Outcome | str] = set()
-    with settings():
-        figure = new_figure(2.9 * count + 1.1, theme)
+    with drawing(2.9 * count + 1.1) as figure:
         axes = figure.subplots(count, columns, squeeze=False, sharex=True, sharey=True).ravel()
         for spare in axes[len(methods) :]:
             spare.set_visible(False)
         for index, (panel, method) in enumerate(zip(axes, methods, strict=False)):
             own = sorted((line for line in lines if line.method == method), key=lambda line: line.value)
-            style_axes(panel, theme, grid=False)
-            panel.set_title(fill(method, 30), loc="left", fontweight="bold", color=theme.ink)
+            style_axes(panel, grid=False)
+            panel.set_title(fill(method, 30), loc="left", fontweight="bold", color=LIGHT.ink)
             panel.set_yscale("log")
             if subject.whole:
                 panel.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -165,19 +164,19 @@ def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> 
             panel.yaxis.set_major_locator(LogLocator(10, (1.0,) if decades > WIDE else (1.0, 2.0, 5.0)))
             panel.yaxis.set_major_formatter(FuncFormatter(lambda step, _: number(1e3 * step)))
             panel.yaxis.set_minor_formatter(NullFormatter())
-            met |= _regions(panel, own, subject.whole, theme)
-            drawn |= _explained(panel, own, subject, theme)
+            met |= _regions(panel, own, subject.whole)
+            drawn |= _explained(panel, own, subject)
             panel.set_xlabel(subject.parameter if index + columns >= len(methods) else "")
             panel.set_ylabel("step [ms]" if index % columns == 0 else "")
         handles: list[Any] = []
         names = []
         for role in (role for role in SHADE_NAMES if role in met):
-            handles.append(Rectangle((0, 0), 1, 1, facecolor=getattr(theme, role), edgecolor=theme.quiet))
+            handles.append(Rectangle((0, 0), 1, 1, facecolor=getattr(LIGHT, role), edgecolor=LIGHT.quiet))
             names.append(SHADE_NAMES[role])
         for outcome in (outcome for outcome in Outcome if outcome in met):
-            face = Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme), edgecolor=theme.quiet)
+            face = Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, LIGHT), edgecolor=LIGHT.quiet)
             # A hatch apart from its ground: in one patch its colours would not follow the reader's scheme.
-            hatch = Rectangle((0, 0), 1, 1, fill=False, edgecolor=theme.quiet, hatch=outcome.hatch or None)
+            hatch = Rectangle((0, 0), 1, 1, fill=False, edgecolor=LIGHT.quiet, hatch=outcome.hatch or None)
             handles.append((face, hatch))
             names.append(str(outcome))
         words = {
@@ -186,7 +185,7 @@ def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> 
             "left": "sweeps leave half of the slowest mode",
         }
         for name in (name for name in words if name in drawn):
-            handles.append(Line2D([], [], color=getattr(theme, ROLES[name]), linestyle=DASHES[name], linewidth=1.8))
+            handles.append(Line2D([], [], color=getattr(LIGHT, ROLES[name]), linestyle=DASHES[name], linewidth=1.8))
             names.append(words[name])
         figure.legend(handles, names, loc="outside lower center", ncols=3)
     return figure
@@ -210,7 +209,7 @@ def ends(line: Line) -> list[Outcome | str]:
     ]
 
 
-def _regions(panel: Axes, lines: Sequence[Line], whole: bool, theme: Theme) -> set[Outcome | str]:
+def _regions(panel: Axes, lines: Sequence[Line], whole: bool) -> set[Outcome | str]:
     """One shape an end: the cells of a column that follow one another are one rectangle of it."""
     across = edges([line.value for line in lines], whole)
     shapes: dict[Outcome | str, list[tuple[float, float, float, float]]] = {}
@@ -225,25 +224,25 @@ def _regions(panel: Axes, lines: Sequence[Line], whole: bool, theme: Theme) -> s
         corners = [[(a, c), (b, c), (b, d), (a, d), (a, c)] for a, b, c, d in boxes]
         codes = [Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY] * len(boxes)
         path = Outline(np.array(corners).reshape(-1, 2), codes)
-        face = outcome_colour(end, theme) if isinstance(end, Outcome) else getattr(theme, end)
+        face = outcome_colour(end, LIGHT) if isinstance(end, Outcome) else getattr(LIGHT, end)
         # The thin line of the same colour closes the seams between columns.
         panel.add_patch(PathPatch(path, facecolor=face, edgecolor=face, linewidth=0.4))
         if isinstance(end, Outcome) and end.hatch:
-            panel.add_patch(PathPatch(path, facecolor="none", edgecolor=theme.quiet, linewidth=0, hatch=end.hatch))
+            panel.add_patch(PathPatch(path, facecolor="none", edgecolor=LIGHT.quiet, linewidth=0, hatch=end.hatch))
     panel.set_xlim(across[0], across[-1])
     upwards = edges(lines[0].steps[::-1], False)
     panel.set_ylim(upwards[0], upwards[-1])
     return set(shapes)
 
 
-def _explained(panel: Axes, lines: Sequence[Line], subject: Subject, theme: Theme) -> set[str]:
+def _explained(panel: Axes, lines: Sequence[Line], subject: Subject) -> set[str]:
     """The lines that lie within the panel, over what is coloured."""
     values = np.array([line.value for line in lines])
     low, high = panel.get_ylim()
     drawn = set()
 
     def line(name: str, x: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> None:
-        panel.plot(x, y, color=getattr(theme, ROLES[name]), linestyle=DASHES[name], linewidth=1.8, clip_on=True)
+        panel.plot(x, y, color=getattr(LIGHT, ROLES[name]), linestyle=DASHES[name], linewidth=1.8, clip_on=True)
         drawn.add(name)
 
     fastest = np.array([2 / subject.frequency(value) for value in values])

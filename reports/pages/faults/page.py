@@ -27,7 +27,7 @@ from reports.model.fingerprint import digest
 from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values
 from reports.pages.common import run_script
-from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
+from reports.plots.theme import LIGHT, drawing, style_axes, svg
 
 UPSTREAM = Path(__file__).parent / "upstream"  # a file to paste into a tracker, for each fault
 SCRIPT = re.compile(r"(?:## `|<summary>)(\w+)\.py(?:`|</summary>)\n\n```python\n(.*?)```", re.DOTALL)
@@ -149,17 +149,16 @@ def predicted_across(offset: Any) -> Any:
     return -square / (1 + 2 * square) * (1 + square)
 
 
-def draw_offsets(measured: np.ndarray, theme: Theme = LIGHT) -> Figure:
+def draw_offsets(measured: np.ndarray) -> Figure:
     """What the groove makes of a body that slides along it, against the offset of its anchor."""
-    with settings():
-        figure = new_figure(3.4, theme, 6.4)
+    with drawing(3.4, width=6.4) as figure:
         axes = figure.subplots()
         fine = np.geomspace(OFFSETS.offsets[0], OFFSETS.offsets[-1], 200)
-        axes.loglog(fine, -predicted_across(fine), color=theme.first, linewidth=2, label="the wrong formula")
-        axes.loglog(OFFSETS.offsets, -measured, "o", color=theme.ink, markersize=5, label="pymunk, measured")
+        axes.loglog(fine, -predicted_across(fine), color=LIGHT.first, linewidth=2, label="the wrong formula")
+        axes.loglog(OFFSETS.offsets, -measured, "o", color=LIGHT.ink, markersize=5, label="pymunk, measured")
         axes.set_xlabel("anchor's distance from the centre of mass [m]")
         axes.set_ylabel("velocity across the groove\nafter a step, should be 0 [m/s]")
-        style_axes(axes, theme)
+        style_axes(axes)
         axes.legend(loc="lower right")
     return figure
 

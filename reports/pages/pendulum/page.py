@@ -31,11 +31,8 @@ class Neighbours(Task):
 
     scene: LinkPendulum
     times: tuple[float, ...]
+    seconds: ClassVar[float] = 4.0  # measured on two links: three neighbours and the motion itself, for 12 s
     words: ClassVar[str] = "neighbouring starts of {0.scene.name}"
-
-    @property
-    def cost(self) -> float:
-        return 0.3 * max(self.times)  # measured on two links: three neighbours and the motion itself, for 12 s
 
     def run(self) -> Values:
         """`growth` (times,): how many times larger a small difference of the start has become."""
@@ -45,18 +42,15 @@ class Neighbours(Task):
 
 
 BEYOND = LinkPendulum(duration=12.0, horizon=12.0)
-
-
 PARTING = Neighbours(BEYOND, (1.0, LinkPendulum().horizon, 6.0, 9.0, BEYOND.duration))
 
 
 def divergence(material: Material) -> list[Observation]:
     """How much a difference of the start has grown, measured on neighbours of the double pendulum."""
-    if (answer := material.answers.get(PARTING)) is None:
-        return []
     method = "the reference, by neighbouring starts"
-    if not answer.finished:
-        return [Observation(method, "", answer.told)]
+    answer = material.answers.get(PARTING)
+    if answer is None or not answer.finished:
+        return [Observation(method, "", answer.told)] if answer else []
     return [
         Observation(method, f"{t:.3g} s", f"{number(growth)} times the difference at 0 s")
         for t, growth in zip(PARTING.times, answer.array("growth"), strict=True)

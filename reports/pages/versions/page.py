@@ -15,7 +15,7 @@ from matplotlib.patches import Rectangle
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
-from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
+from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.versions.catalogue import COST_ROSE_IN, changes_between
 from reports.versions.table import ACCELERATION, Entry, ReleaseTable, changes, relative_cost, released
 from reports.write.tables import markdown
@@ -28,24 +28,23 @@ def variants(entries: Sequence[Entry]) -> tuple[str, ...]:
     return (*(each for each in usual if each in found), *sorted(each for each in found if each not in usual))
 
 
-def heat_table(entries: Sequence[Entry], versions: Sequence[str], theme: Theme = LIGHT) -> Figure:
+def heat_table(entries: Sequence[Entry], versions: Sequence[str]) -> Figure:
     """Scenes by versions, a panel a method; each cell says its error's power of ten, or the outcome's letter."""
     methods = variants(entries)
     scenes = {method: tuple(dict.fromkeys(e.scene for e in entries if e.variant == method)) for method in methods}
     heights = [len(scenes[method]) for method in methods]
-    with settings():
-        figure = new_figure(0.17 * sum(heights) + 0.5 * len(methods) + 1.4, theme)
+    with drawing(0.17 * sum(heights) + 0.5 * len(methods) + 1.4) as figure:
         panels = figure.subplots(
             len(methods), 1, squeeze=False, sharex=True, gridspec_kw={"height_ratios": heights}
         ).ravel()
         for panel, method in zip(panels, methods, strict=True):
-            style_axes(panel, theme, grid=False)
-            panel.set_title(method, loc="left", fontweight="bold", color=theme.ink)
+            style_axes(panel, grid=False)
+            panel.set_title(method, loc="left", fontweight="bold", color=LIGHT.ink)
             known = {(e.scene, e.version): e for e in entries if e.variant == method}
             for row, scene in enumerate(scenes[method]):
                 for column, version in enumerate(versions):
                     if (scene, version) in known:
-                        _draw_cell(panel, column, row, known[scene, version], theme)
+                        _draw_cell(panel, column, row, known[scene, version])
             panel.set_xlim(0, len(versions))
             panel.set_ylim(len(scenes[method]), 0)
             names = [scene.replace("_", " ") for scene in scenes[method]]
@@ -53,33 +52,33 @@ def heat_table(entries: Sequence[Entry], versions: Sequence[str], theme: Theme =
             panel.tick_params(length=0)
         panels[-1].set_xticks(np.arange(len(versions)) + 0.5, versions, rotation=45, ha="right")
         panels[-1].set_xlabel("version")
-        _legend(figure, entries, theme)
+        _legend(figure, entries)
     return figure
 
 
-def _look(entry: Entry, theme: Theme) -> tuple[str, str]:
+def _look(entry: Entry) -> tuple[str, str]:
     """(colour, letters) of a cell. The letter of a failure needs no hatch, which would make it unreadable."""
     if not entry.comparable:
         outcome = Outcome(entry.outcome)
-        return outcome_colour(outcome, theme), outcome.letter
+        return outcome_colour(outcome, LIGHT), outcome.letter
     power = math.floor(math.log10(entry.error)) if entry.error > 0 and math.isfinite(entry.error) else None
-    return getattr(theme, shade(entry.error)), "0" if power is None else f"{power}"
+    return getattr(LIGHT, shade(entry.error)), "0" if power is None else f"{power}"
 
 
-def _draw_cell(panel: Axes, column: int, row: int, entry: Entry, theme: Theme) -> None:
-    colour, letters = _look(entry, theme)
+def _draw_cell(panel: Axes, column: int, row: int, entry: Entry) -> None:
+    colour, letters = _look(entry)
     # No patch: the limits are given, and need not follow each of some thousand cells.
-    panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=theme.paper, linewidth=1))
-    panel.text(column + 0.5, row + 0.5, letters, ha="center", va="center", color=theme.ink, fontsize=7, in_layout=False)
+    panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=LIGHT.paper, linewidth=1))
+    panel.text(column + 0.5, row + 0.5, letters, ha="center", va="center", color=LIGHT.ink, fontsize=7, in_layout=False)
 
 
-def _legend(figure: Figure, entries: Sequence[Entry], theme: Theme) -> None:
-    colours = {name: getattr(theme, role) for role, name in SHADE_NAMES.items()}
+def _legend(figure: Figure, entries: Sequence[Entry]) -> None:
+    colours = {name: getattr(LIGHT, role) for role, name in SHADE_NAMES.items()}
     for outcome in Outcome:
         if any(not entry.comparable and entry.outcome == outcome for entry in entries):
             told = "our adapter builds none" if outcome is Outcome.UNSUPPORTED else outcome
-            colours[f"{outcome.letter}  {told}"] = outcome_colour(outcome, theme)
-    patches = [Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor=theme.quiet) for colour in colours.values()]
+            colours[f"{outcome.letter}  {told}"] = outcome_colour(outcome, LIGHT)
+    patches = [Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor=LIGHT.quiet) for colour in colours.values()]
     figure.legend(patches, list(colours), loc="outside lower center", ncols=4)
 
 
