@@ -6,9 +6,9 @@ four stages of RK4 (mj_forwardSkip in MuJoCo's engine_forward.c), overwrites its
 needs the dense Jacobian, no islands, and a primal solver (Newton or CG): the dual one has built its matrix from the
 placeholder by then.
 
-`write_rows` goes from the tree's coordinates to the bodies, asks each joint's law for its row, and takes the row back
-to the coordinates. It is plain arithmetic on MuJoCo's own arrays: numba compiles it where it is installed, and keeps
-what it has compiled; else Python does the same on lists. Only where rolling puts a body is looked up before, in Python.
+`write_rows` goes from the tree's coordinates to the bodies, evaluates the law of each joint, and transforms its row
+back to the coordinates. It is plain arithmetic on MuJoCo's own arrays, which numba compiles where it is installed;
+otherwise Python does the same on lists. Only where rolling puts a body is looked up before, in Python.
 """
 
 from __future__ import annotations
@@ -257,7 +257,7 @@ def write_rows(plan: Any, q: Any, v: Any, jacobian: Any, reference: Any) -> None
 
 
 class RowWriter:
-    """What writes the rows of some joints, from `first_row` on, at the pose that the velocity leads to `ahead` [s].
+    """Writes the rows of some joints, from `first_row` on, at the pose that the velocity leads to in `ahead` [s].
 
     `address`: where each coordinate of the tree stands in qpos and in qvel (width,).
     """
@@ -279,11 +279,8 @@ class RowWriter:
         rolls = []
         for joint in joints:
             if joint.rolled is not None:
-                start = angle[joint.second] - angle[joint.first]
-                signs = tree.turning(joint.first, joint.second).items()
-                rolls.append(
-                    (len(plan) + 5, joint.rolled.place, start, [(address[each], sign) for each, sign in signs])
-                )
+                signs = [(address[column], sign) for column, sign in tree.turning(joint.first, joint.second).items()]
+                rolls.append((len(plan) + 5, joint.rolled.place, angle[joint.second] - angle[joint.first], signs))
             plan += [LAWS.index(joint.law), place[joint.first], place[joint.second], *joint.numbers]
             plan += [0.0] * (JOINT - 3 - len(joint.numbers))
         self._plan = np.array([*plan, *[0.0] * (MOVING * (len(tree.links) + 1))])
