@@ -224,10 +224,7 @@ class Engine(ABC):
         return Unpromised("it declares no law of an instant")
 
     def alike(self, mechanism: Mechanism) -> Engine | None:
-        """The same method with a solver that goes much farther; None where it leaves nothing but rounding.
-
-        By how much the two differ, the engine declares that it may be wrong.
-        """
+        """The same method with a far smaller solver tolerance, whose difference is the declared error; or None."""
         return None
 
     def iterations_of(self, mechanism: Mechanism) -> int | None:

@@ -142,8 +142,7 @@ class System:
         self.engine, self.original = engine, mechanism
         self.length, self.seconds, self.dt = length, seconds, dt / seconds
         self.mechanism = counted_in(mechanism, mass, seconds)
-        self.exudyn, self.items = exudyn, itemInterface
-        self.unit = np.array([length, length, 1.0])  # of poses, twists and accelerations
+        self.exudyn, self.items, self.unit = exudyn, itemInterface, np.array([length, length, 1.0])
         self.container = exudyn.SystemContainer()  # owns the system, so it has to stay
         self.system: Any = self.container.AddSystem()
         self.nodes: dict[str, int] = {}

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
@@ -22,6 +23,7 @@ from reference.mechanism import Mechanism
 from reference.plane import components
 
 Array = NDArray[np.float64]
+Holding = Pin | Slot | Weld  # the joints that may hold a link
 
 
 @dataclass(frozen=True)
@@ -218,61 +220,53 @@ def spanning_tree(mechanism: Mechanism, hanging: bool = True) -> Tree:
 
 @by_identity()
 def _tree_of(mechanism: Mechanism, hanging: bool) -> Tree:
-    loops = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot | Weld)]
+    joints = [joint for joint in mechanism.joints if isinstance(joint, Holding)]
     resting = [joint for joint in mechanism.joints if isinstance(joint, Drive) and joint.turning_rate == 0]
-    usable: dict[str | None, list[Pin | Slot | Weld]] = {}
-    for joint in sorted(loops if hanging else (), key=lambda joint: (Weld, Pin, Slot).index(type(joint))):
-        for end in (joint.first, joint.second):
-            usable.setdefault(end, []).append(joint)
     links: list[Link] = []
     kept: list[Drive] = []
     holding: set[str] = set()
-    placed: dict[str | None, int | None] = {None: None}
-    frontier: deque[str | None] = deque([None])
-
-    def place(name: str, parent: str | None, joint: Pin | Slot | Weld | None) -> None:
-        body = mechanism.body_index(name)
-        column = links[-1].columns.stop if links else 0
+    order = (Weld, Pin, Slot)
+    for name, parent, joint in _hung(mechanism, sorted(joints, key=lambda j: order.index(type(j))) if hanging else []):
+        body, column = mechanism.body_index(name), links[-1].columns.stop if links else 0
         if joint is None:
             links.append(Link(body, None, "free", column))
+            continue
+        base = None if parent is None else mechanism.body_index(parent)
+        anchor = world_offset(mechanism, name, joint.second_point if name == joint.second else joint.first_point)
+        at = mechanism.pose[body, :2] + anchor - (0.0 if base is None else mechanism.pose[base, :2])
+        arm = (float(at[0]), float(at[1]))
+        if isinstance(joint, Slot):
+            angle = joint.line_angle + (0.0 if base is None else mechanism.bodies[base].pose[2])
+            drives = [drive for drive in resting if {drive.first, drive.second} == {parent, name}]
+            kept.extend(drives)
+            direction = (math.cos(angle), math.sin(angle))
+            links.append(Link(body, base, "slot", column, arm, anchor, direction, not drives))
         else:
-            point = joint.second_point if name == joint.second else joint.first_point
-            anchor = world_offset(mechanism, name, point)
-            base = np.zeros(2) if parent is None else mechanism.pose[mechanism.body_index(parent), :2]
-            at = mechanism.pose[body, :2] + anchor - base
-            arm = (float(at[0]), float(at[1]))
-            if isinstance(joint, Slot):
-                angle = joint.line_angle + (0.0 if parent is None else mechanism.bodies[placed[parent] or 0].pose[2])
-                holds = [drive for drive in resting if {drive.first, drive.second} == {parent, name}]
-                kept.extend(holds)
-                direction = (math.cos(angle), math.sin(angle))
-                links.append(Link(body, placed[parent], "slot", column, arm, anchor, direction, not holds))
-            else:
-                links.append(Link(body, placed[parent], "hinge", column, arm, anchor, turns=isinstance(joint, Pin)))
-            holding.add(joint.name)
-        placed[name] = body
-        frontier.append(name)
+            links.append(Link(body, base, "hinge", column, arm, anchor, turns=isinstance(joint, Pin)))
+        holding.add(joint.name)
+    return Tree(mechanism, tuple(links), tuple(joint for joint in joints if joint.name not in holding), tuple(kept))
 
-    def child_of(joint: Pin | Slot | Weld, parent: str | None) -> str | None:
-        """The body that the joint hangs on this parent, if it does."""
-        if isinstance(joint, Pin | Weld) and joint.second == parent:
-            return joint.first if joint.first not in placed else None
-        return joint.second if joint.first == parent and joint.second not in placed else None
 
-    def grow() -> None:
+def _hung(mechanism: Mechanism, joints: list[Holding]) -> Iterator[tuple[str, str | None, Holding | None]]:
+    """Every body, breadth first from the ground, with its parent and the joint between them; None for free bodies."""
+    placed: set[str | None] = {None}
+    for start in (None, *(body.name for body in mechanism.bodies)):
+        if start is not None:
+            if start in placed:
+                continue
+            placed.add(start)
+            yield start, None, None
+        frontier = deque([start])
         while frontier:
             parent = frontier.popleft()
-            for joint in usable.get(parent, ()):
-                child = child_of(joint, parent)
-                if child is not None:
-                    place(child, parent, joint)
-
-    grow()
-    for body in mechanism.bodies:
-        if body.name not in placed:
-            place(body.name, None, None)
-            grow()
-    return Tree(mechanism, tuple(links), tuple(joint for joint in loops if joint.name not in holding), tuple(kept))
+            for joint in joints:
+                child = joint.second if joint.first == parent else joint.first
+                hangs = joint.first == parent or (joint.second == parent and isinstance(joint, Pin | Weld))
+                if hangs and child not in placed:
+                    assert child is not None  # the ground is placed first
+                    placed.add(child)
+                    frontier.append(child)
+                    yield child, parent, joint
 
 
 def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, float]) -> tuple[float, float]:

@@ -158,8 +158,7 @@ SHORT = 1e-3  # s: within three of these a motion of some radians a second is a 
 EARLY = 3  # steps
 # Of a step. A state of another instant is half a step off at least; a parabola leaves a hundredth of one.
 OFF = 0.1
-# A flipped sign is wrong by 2, a factor of two by 1/2 at least; the coarsest first-order method here by less than 0.1.
-SIZE = 0.25  # of the largest reaction
+SIZE = 0.25  # of the largest reaction: a flipped sign is wrong by 2, a method of first order by less than 0.1
 
 
 def poses_stand_at_their_instants(subject: Subject, world: World) -> None:
@@ -212,10 +211,9 @@ def twists_have_their_order(subject: Subject, world: World) -> None:
 
 
 def _promise(subject: Subject, world: World) -> Promise:
-    """What the engine promises here; raises NotAsked where it says why it can't."""
+    """The engine's promise; raises NotAsked where there is none."""
     subject.run(world.mechanism)  # where it builds nothing it need not promise anything
-    promise = subject.engine.order(world.mechanism)
-    if isinstance(promise, Unpromised):
+    if isinstance(promise := subject.engine.order(world.mechanism), Unpromised):
         raise NotAsked(f"no order is promised: {promise.reason}")
     return promise
 
