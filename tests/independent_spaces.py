@@ -36,7 +36,12 @@ class Equations:
         self.start = np.array([value for b in self.bodies for value in (*b.position, b.angle)])
         self.speed = np.array([value for b in self.bodies for value in (*b.velocity, b.angular_velocity)])
         self.weight = np.array([value for b in self.bodies for value in (*(b.mass * space.gravity), 0.0)])
-        self.rates = np.concatenate([np.zeros(0), *[self._rates(joint) for joint in space.constraints]])
+        springs = (DampedSpring, DampedRotarySpring)
+        self.springs: list[Any] = [joint for joint in space.constraints if isinstance(joint, springs)]
+        self.joints: list[Any] = [joint for joint in space.constraints if not isinstance(joint, springs)]
+        self.rates = -np.array(
+            [getattr(j, "rate", 0.0) for j in self.joints for _ in self._measured(self.start[:, None], j)]
+        )
 
     def _pose(self, q: Array, body: pymunk.Body) -> Array:
         if body in self.places:
@@ -55,55 +60,42 @@ class Equations:
     def _turned(self, q: Array, joint: Any) -> Array:
         return self._pose(q, joint.b)[2] - self._pose(q, joint.a)[2]
 
-    def _rates(self, joint: Any) -> list[float]:
-        if isinstance(joint, SimpleMotor):
-            return [-joint.rate]
-        return [0.0] * (
-            2 if isinstance(joint, PivotJoint) else not isinstance(joint, DampedSpring | DampedRotarySpring)
-        )
+    def _measured(self, q: Array, joint: Any) -> list[Array]:
+        """What a joint keeps, or the length or angle along which a spring acts."""
+        match joint:
+            case PivotJoint():
+                return [*self._between(q, joint)]
+            case PinJoint() | DampedSpring():
+                return [np.sqrt(np.sum(self._between(q, joint) ** 2, axis=0))]
+            case GrooveJoint():
+                begin, end = (self._point(q, joint.a, at) for at in (joint.groove_a, joint.groove_b))
+                (x, y), (u, v) = end - begin, self._point(q, joint.b, joint.anchor_b) - begin
+                return [(x * v - y * u) / (joint.groove_b - joint.groove_a).length]
+            case GearJoint():
+                return [joint.ratio * self._pose(q, joint.b)[2] - self._pose(q, joint.a)[2]]
+            case SimpleMotor() | RotaryLimitJoint() if isinstance(joint, SimpleMotor) or joint.min == joint.max:
+                return [self._turned(q, joint)]
+            case DampedRotarySpring():
+                return [-self._turned(q, joint)]
+        raise NotImplementedError(joint)
+
+    def _all(self, q: Array, joints: list[Any]) -> Array:
+        rows = [row for joint in joints for row in self._measured(q, joint)]
+        return np.array([np.broadcast_to(row, q.shape[1:]) for row in rows]).reshape(-1, q.shape[1])
 
     def _rows(self, q: Array) -> Array:
-        out: list[Array] = []
-        for joint in self.space.constraints:
-            match joint:
-                case PivotJoint():
-                    out.extend(self._between(q, joint))
-                case PinJoint():
-                    out.append(np.sqrt(np.sum(self._between(q, joint) ** 2, axis=0)))
-                case GrooveJoint():
-                    begin, end = (self._point(q, joint.a, at) for at in (joint.groove_a, joint.groove_b))
-                    (x, y), (u, v) = end - begin, self._point(q, joint.b, joint.anchor_b) - begin
-                    out.append((x * v - y * u) / (joint.groove_b - joint.groove_a).length)
-                case GearJoint():
-                    out.append(joint.ratio * self._pose(q, joint.b)[2] - self._pose(q, joint.a)[2])
-                case SimpleMotor():
-                    out.append(self._turned(q, joint))
-                case RotaryLimitJoint() if joint.min == joint.max:
-                    out.append(self._turned(q, joint))
-                case DampedSpring() | DampedRotarySpring():
-                    pass
-                case _:
-                    raise NotImplementedError(joint)
-        return np.array([np.broadcast_to(row, q.shape[1:]) for row in out])
+        return self._all(q, self.joints)
 
     def _springs(self, q: Array) -> Array:
-        """Lengths and angles that springs and dampers act along, in the order of the constraints."""
-        out = []
-        for joint in self.space.constraints:
-            if isinstance(joint, DampedSpring):
-                out.append(np.sqrt(np.sum(self._between(q, joint) ** 2, axis=0)))
-            elif isinstance(joint, DampedRotarySpring):
-                out.append(-self._turned(q, joint))
-        return np.array([np.broadcast_to(row, q.shape[1:]) for row in out]).reshape(-1, q.shape[1])
+        return self._all(q, self.springs)
 
     def _slopes(self, function: Any, q: Array) -> Array:
         return np.imag(function(q[:, None] + TINY * 1j * np.eye(q.size))) / TINY
 
     def forces(self, q: Array, speed: Array) -> Array:
-        joints = [j for j in self.space.constraints if isinstance(j, DampedSpring | DampedRotarySpring)]
         slopes, lengths = self._slopes(self._springs, q), self._springs(q[:, None])[:, 0]
         out = self.weight.copy()
-        for joint, slope, length in zip(joints, slopes, lengths, strict=True):
+        for joint, slope, length in zip(self.springs, slopes, lengths, strict=True):
             rest = joint.rest_length if isinstance(joint, DampedSpring) else joint.rest_angle
             out -= slope * (joint.stiffness * (length - rest) + joint.damping * (slope @ speed))
         return out
