@@ -190,7 +190,8 @@ def test_exact_multipliers_on_the_rows_alone_give_the_same_motion(each: Scene) -
     assert reaction.max(initial=0.0) <= 1e-8 * np.nanmax(np.abs(exact.reaction[met]), initial=0.0)
 
 
-@pytest.mark.parametrize("each", [each for each in ALL if truth_error(each)], ids=name_of)
+# One scene of each name: an integration states its error by the same rule for all numbers.
+@pytest.mark.parametrize("each", {each.name: each for each in ALL[::-1] if truth_error(each)}.values(), ids=name_of)
 def test_the_truths_own_error_is_told_and_small(each: Scene) -> None:
     # Tolerances of 1e-13 a step, over some hundreds; a standing knee makes a deviation e-fold in 0.03 s.
     last = min(each.horizon, each.duration, 0.9 * getattr(each, "corner", math.inf))
