@@ -129,12 +129,6 @@ TABLE = """<body name="table"><joint name="x" type="slide" axis="1 0 0"/><joint 
  <body name="arm" pos="1 0 0"><joint name="lift" axis="0 1 0"/><joint name="reach" type="slide" axis="1 0 0"/>
  <geom type="box" size=".2 .1 .05" pos=".3 0 0"/></body>"""
 MODELS = {  # worldbody, equalities and the rest, the factors of each sum in MuJoCo's coordinates, start
-    "fingers on a wrist": (
-        FINGERS,
-        '<equality><joint joint1="two" joint2="one" polycoef="0 1.2 0 0 0"/></equality>',
-        [(0.0, -1.2, 1.0)],
-        (1.0, 0.5, 0.6),
-    ),
     "a rack in a frame that swings": (
         RACK,
         '<equality><joint name="teeth" joint1="travel" joint2="turn" polycoef="0 .05 0 0 0"/></equality>',

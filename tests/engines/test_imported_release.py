@@ -55,7 +55,7 @@ def answer(monkeypatch):
     imported_release._modules.cache_clear()
 
 
-@pytest.mark.parametrize("says", ["2.0.1.0", "2.0.1.dev3", "1999", None])
+@pytest.mark.parametrize("says", ["2.0.1.dev3", "1999", None])
 def test_a_module_whose_files_are_as_installed_may_call_itself_anything(tmp_path, answer, says):
     distribution(tmp_path, NAME, "2.0.1", says)
     assert answer(tmp_path) == ""
