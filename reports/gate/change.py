@@ -65,7 +65,7 @@ class Baseline:
 
     @property
     def same_versions(self) -> bool:
-        """Whether `change` checks the rows; `drift` does where any version differs, Python's patch number included.
+        """Whether `change` checks the rows; `drift` does where the version of a package differs.
 
         A file without versions is compared as one with the same versions.
         """

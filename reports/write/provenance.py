@@ -41,11 +41,19 @@ def _version(package: str) -> str:
         return f"{package} not installed"
 
 
-def still_installed(told: str) -> bool:
-    """Whether all that such a line names is here in the same versions; other packages don't count."""
-    python, *others = told.split(", ")
+def still_installed(versions: str) -> bool:
+    """Whether every package of this line is installed in that version; other packages do not count.
+
+    Python counts by its minor version: a patch changes no number of an engine, and would select the weaker rule.
+    """
+    python, *others = versions.split(", ")
     here = [f"Python {platform.python_version()}", *(_version(line.split(" ", 1)[0]) for line in others)]
-    return [python, *others] == here
+    return [_minor(python), *others] == [_minor(here[0]), *here[1:]]
+
+
+def _minor(python: str) -> str:
+    """'Python 3.11' of 'Python 3.11.7'."""
+    return ".".join(python.split(".")[:2])
 
 
 def machine() -> str:

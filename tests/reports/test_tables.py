@@ -258,6 +258,8 @@ def test_the_versions_are_those_of_the_packages_they_stand_beside(other_versions
     assert versions() == f"Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed{compiled}"
     assert still_installed("Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed")
     assert not still_installed("Python 3.99, scipy 2.3")
+    assert still_installed("Python 3.99.2, scipy 2.2")
+    assert not still_installed("Python 3.98, scipy 2.2")
     assert not still_installed("Python 3.99, scipy 2.2, another 1.0")
     assert foot("a command") == f"Made by `a command` with {versions()}; timings on {machine()}."
 
