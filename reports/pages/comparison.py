@@ -55,8 +55,8 @@ def picture(found: list[Line]) -> str:
         of_scene = [line for line in found if line.scene.name == name]
         if not of_scene:
             continue
-        errors: dict[Column, dict[str, Any]] = {}
-        lacking: dict[Column, dict[str, list[str]]] = {}
+        errors: dict[str, dict[str, Any]] = {}
+        lacking: dict[str, dict[str, list[str]]] = {}
         for column in COLUMNS:
             pairs = [(line, Column.WHOLE if Column.WHOLE in line.columns else column) for line in of_scene]
             errors[column] = {
