@@ -84,7 +84,8 @@ def make(name: str) -> pymunk.Space:
         if kind == "gravity":
             space.gravity = tuple(arguments[0])
         elif kind == "ground":
-            shape = pymunk.Segment(space.static_body, *map(tuple, arguments), 5)
+            (x, y), (end_x, end_y) = arguments
+            shape = pymunk.Segment(space.static_body, (x, y), (end_x, end_y), 5)
             shape.friction = 1.0
             space.add(shape)
         elif kind in JOINTS:
