@@ -115,9 +115,10 @@ def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float 
     Raises InvalidMechanism where it can't be followed to the end, or not known for a sample.
     """
 
-    def run(other: Mechanism) -> Trajectory:
+    def by_multipliers(other: Mechanism) -> Trajectory:
         return TRUTH.build(other, spacing)(samples, 1)
 
+    run: Callable[[Mechanism], Trajectory] = by_multipliers
     motion, looser = run(mechanism), None
     known = _known(mechanism, motion, tolerance)
     if not known.all() and has_one_freedom(mechanism):
@@ -144,7 +145,6 @@ def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float 
     growths = [_growth(mechanism, motion, looser, run, *disturbance) for disturbance in DISTURBANCES]
     expected = GROWN * (1 + motion.t / mechanism.time_scale)
     begins = [_parting(growth, expected, size) for growth, (_, size) in zip(growths, DISTURBANCES, strict=True)]
-    # Neighbours in a mechanism of one freedom are apart by a time, which does not grow.
     parts = all(begin < len(motion.t) for begin in begins) and not has_one_freedom(mechanism)
     horizon = float(motion.t[min(begins) if parts else -1])
     return IdealMotion(motion, looser, np.max(growths, axis=0), horizon)
