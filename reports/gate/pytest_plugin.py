@@ -129,13 +129,13 @@ def pytest_configure(config: pytest.Config) -> None:
     if sentence := registry.mislabelled():
         raise pytest.UsageError(sentence)
     try:
-        config.stash[KNOWN] = read_baseline(config.getoption("--baseline"))
+        config.stash[KNOWN] = read_baseline(config.option.baseline)
     except BadBaseline as error:
         raise pytest.UsageError(str(error)) from None
     limit, target = config.getoption("--cost"), config.getoption("--crosscheck-report")
     if limit is not None and not 0 < limit < math.inf:
         raise pytest.UsageError(f"--cost {limit}: it must be a number above 0, such as 1.5")
-    config.stash[GIVEN], config.stash[WANTED] = _engines(config.getoption("--engine"))
+    config.stash[GIVEN], config.stash[WANTED] = _engines(config.option.engine)
     if target is not None and not target.resolve().parent.is_dir():
         raise pytest.UsageError(f"--crosscheck-report {target}: there is no folder {target.parent}")
     if target is not None and target.is_dir():
@@ -181,7 +181,7 @@ def case_of(item: pytest.Item) -> Case | None:
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out the cases of other scenes and engines. Raises UsageError when none is left."""
-    scenes, engines = config.getoption("--scene"), config.stash[WANTED]
+    scenes, engines = config.option.scene, config.stash[WANTED]
     if not (scenes or engines):
         return
     kept = [item for item in items if _wanted(item, scenes, engines)]

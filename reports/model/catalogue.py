@@ -49,8 +49,9 @@ def _no_scene(value: Any) -> str:
 
 def _by_defaults(cls: type) -> Scene | None:
     """A scene with its default numbers; None for another class, and for a scene without a default for every number."""
-    is_scene = issubclass(cls, Scene) and is_dataclass(cls) and not inspect.isabstract(cls)
-    if not is_scene or not isinstance(getattr(cls, "name", None), str):
+    if not (issubclass(cls, Scene) and is_dataclass(cls)) or inspect.isabstract(cls):
+        return None
+    if not isinstance(getattr(cls, "name", None), str):
         return None
     required = (field.default is MISSING and field.default_factory is MISSING for field in fields(cls))
     return None if any(required) else cls()  # type: ignore[call-arg]

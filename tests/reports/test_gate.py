@@ -94,7 +94,7 @@ def test_softness_costs_in_proportion_to_compliance_over_stiffness(gapped, chang
     assert judge.give("angle", None) == 0
 
 
-def coarser(quantity: str = "angle", **errors: float) -> list[Measurement]:
+def coarser(quantity: str = "angle", **errors: Any) -> list[Measurement]:
     """Rows at larger steps: `at1=1e-7` is the error of one step in 1e-2 s."""
     return [row(every=int(name[2:]), **{quantity: error}) for name, error in errors.items()]
 
@@ -267,8 +267,9 @@ def test_an_outcome_that_is_known_is_that_one_and_no_other(outcome):
 
 
 def test_a_deviation_says_whose_it_is_and_by_how_much_or_how_it_ends():
-    wrong = [("soft", 2.0), ("by design: soft", 1.0), ("ours: x", math.nan), ("ours: x", math.inf), ("ours: x", None)]
-    for arguments in (*wrong, ("ours: x", 2.0, Outcome.TORN), ("ours: x", None, Outcome.FINISHED)):
+    factors = [("soft", 2.0), ("by design: soft", 1.0), ("ours: x", math.nan), ("ours: x", math.inf), ("ours: x", None)]
+    wrong: list[tuple[Any, ...]] = [*factors, ("ours: x", 2.0, Outcome.TORN), ("ours: x", None, Outcome.FINISHED)]
+    for arguments in wrong:
         with pytest.raises(ValueError, match="deviation"):
             Deviation(*arguments)
 

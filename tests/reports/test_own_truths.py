@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from math import cos, inf, sin, sqrt
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -62,7 +63,7 @@ MOTOR = '<motor joint="a" gear="2" {0}/>'
 RANGE = MOTOR.format('ctrlrange="-1 1.5" ctrllimited="true"')
 BRAKE = '<velocity name="brake" joint="a" kv="1" forcerange="-1.5 1.5"/>'
 # Actuators, a flag, control, rate [rad/s], and the angle [rad] of the wheel at times t, or a constant torque [N m].
-TURNS = {
+TURNS: dict[str, tuple[str, str, float, float, Any]] = {
     "servo": ('<position joint="a" kp="3" kv=".4" gear="2"/>', "", 0.3, 0.0, lambda t: servo(t, 2.0)),
     "servo the other way": ('<position joint="a" kp="3" kv=".4" gear="-.5"/>', "", 0.3, 0.0, lambda t: servo(t, -0.5)),
     "control beyond its range": (RANGE, "", 4.0, 0.0, 2 * 1.5),
@@ -78,7 +79,7 @@ def test_an_actuator_turns_a_wheel_as_mujoco_documents(case):
     more, flags, control, rate, angle = TURNS[case]
     reading = mjcf(WHEEL, f"<actuator>{more}</actuator>", flags, rate, control)
     t, turn = judged_turn(reading)
-    wanted = angle(t) if callable(angle) else angle / INERTIA * t**2 / 2
+    wanted = np.array(angle(t) if callable(angle) else angle / INERTIA * t**2 / 2, dtype=float)
     np.testing.assert_allclose(np.abs(turn), np.abs(wanted), rtol=0, atol=CLOSE)
     assert any("MuJoCo takes 1.5" in note.reason for note in reading.notes) == (case == "control beyond its range")
 

@@ -18,6 +18,7 @@ from typing import Any
 
 import pymunk
 from pymunk.constraints import (
+    Constraint,
     DampedSpring,
     GearJoint,
     GrooveJoint,
@@ -30,7 +31,7 @@ from pymunk.constraints import (
 PLANS: Mapping[str, list[list[Any]]] = json.loads(Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
 GRAVITY = (0, -900)
 # By the word of an element that stands between two bodies; the rest of the element are the constraint's arguments.
-JOINTS: Mapping[str, Callable[..., pymunk.Constraint]] = {
+JOINTS: Mapping[str, Callable[..., Constraint]] = {
     "pin": PivotJoint,
     "motor": SimpleMotor,
     "gear": GearJoint,
