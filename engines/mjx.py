@@ -32,7 +32,7 @@ import os
 import platform
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Any, ClassVar, get_args
+from typing import Any, ClassVar
 
 import mujoco
 import numpy as np
@@ -54,7 +54,8 @@ from engines.tree import Tree, spanning_tree
 from engines.units import power_of_two
 from engines.user_cache import cache_folder
 from reference.checks import Name, validated
-from reference.joints import Joint, Rod, Skate
+from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
@@ -77,7 +78,8 @@ class Mjx(Optional):
     building: ClassVar[float] = 20.0
     capability: ClassVar[Capability] = Capability(
         "mjx",
-        frozenset(get_args(Joint)) - {Skate, Roll},  # of the others MuJoCo's adapter refuses what it does not build
+        frozenset({Pin, Weld, Gear, Rod, Slot, Drive}),
+        frozenset({Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}),
         lacks={
             kind: f"a {kind.__name__.lower()} needs a contact, and our adapter of MJX builds none"
             for kind in (Skate, Roll)

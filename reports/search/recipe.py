@@ -128,7 +128,9 @@ class Standing:
             case "gear":
                 ratio = float(link.more * RATE)
                 return Gear(name, *ends, ratio, second_angle - ratio * first_angle)
-        return Weld(name, *ends, first, second, second_angle - first_angle)
+            case "weld":
+                return Weld(name, *ends, first, second, second_angle - first_angle)
+        raise InvalidMechanism(f"recipe: joint {number} is a {link.kind}, which has no construction here")
 
     def _fold(self, link: Link, number: int) -> Rod:
         """A rod beside the line through two pins of the ground."""
@@ -166,8 +168,10 @@ class Standing:
                 return TorsionDamper(name, *ends, strength * body.inertia * rate)
             case "torque":
                 return Torque(name, *ends, float(link.more * RATE) * body.inertia * rate**2)
-        pull, direction = float(link.more * RATE * size) * body.mass * rate**2, float(link.turn * ANGLE)
-        return Force(name, body.name, second, (pull * math.cos(direction), pull * math.sin(direction)))
+            case "force":
+                pull, direction = float(link.more * RATE * size) * body.mass * rate**2, float(link.turn * ANGLE)
+                return Force(name, body.name, second, (pull * math.cos(direction), pull * math.sin(direction)))
+        raise InvalidMechanism(f"recipe: force {number} is a {link.kind}, which has no construction here")
 
     def _ends(self, link: Link) -> tuple[str | None, str]:
         return self.bodies[link.first - 1].name if link.first else None, self.bodies[link.second - 1].name
