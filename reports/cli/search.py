@@ -31,14 +31,16 @@ from reports.run.files import write_whole
 from reports.run.installed import installed
 from reports.search import plan
 from reports.search.chunk import FOUND, HEADER, CaseResult, chunks, findings, summary
-from reports.search.parts import CLAIMS, ORACLES, SINGULAR
+from reports.search.oracles import DEFAULT_ORACLES, ORACLES
+from reports.search.parts import SINGULAR
 from reports.search.release import DISTRIBUTIONS
 from reports.search.run import CASES, Search
 from reports.search.shrinking import files_of, line_of
 from reports.search.subjects import Adapted, Alone, Subject
 
 TEN = 10  # cases of a fresh seed for each engine
-ALL_ORACLES = ",".join(ORACLES)
+USUAL = ",".join(DEFAULT_ORACLES)
+FURTHER = ",".join(name for name in ORACLES if name not in DEFAULT_ORACLES)
 Seed = Annotated[
     int | None, typer.Option(min=0, help="Other mechanisms; if none is given, those of the last commit's hash.")
 ]
@@ -47,7 +49,7 @@ Kinds = Annotated[
     str | None, typer.Option(help="Of joints and forces: pin,rod,spring,...; of MuJoCo alone: connect,gear,...")
 ]
 Oracles = Annotated[
-    str, typer.Option(help=f"What is asked: {ALL_ORACLES}; or {CLAIMS}, of methods that estimate their own errors.")
+    str, typer.Option(help=f"What is asked: {USUAL}; or {FURTHER}, of methods that estimate their own errors.")
 ]
 ReleaseName = Annotated[
     str | None, typer.Option(help="MuJoCo alone in this release, as 3.6.0: installed once, in the user's cache.")
@@ -64,7 +66,7 @@ def search(
     published: Annotated[bool, typer.Option(help="All that the published page shows, planted faults too.")] = False,
     kinds: Kinds = None,
     decades: Annotated[int, typer.Option(min=0, max=6, help="By how many more masses and lengths differ.")] = 0,
-    oracles: Oracles = ALL_ORACLES,
+    oracles: Oracles = USUAL,
     release: ReleaseName = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
@@ -73,13 +75,13 @@ def search(
     results: Folder = FOLDER,
 ) -> None:
     """Search random mechanisms for faults; each finding is made small and written as a script of the engine's own."""
-    chosen = any((engine, variant, cases, seed is not None, kinds, decades, release, oracles != ALL_ORACLES))
+    chosen = any((engine, variant, cases, seed is not None, kinds, decades, release, oracles != USUAL))
     _refuse(seconds, seed, fresh, published, chosen)
     subjects = chosen_subjects(engine, variant, release, everything=fresh or published)
     all_kinds = tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
     wanted = listed("--kinds", [kinds], (*all_kinds, *SINGULAR)) if kinds is not None else all_kinds
     subjects = [subject for subject in subjects if {*wanted} & {*subject.kinds, *SINGULAR}]
-    names = listed("--oracles", [oracles], (*ORACLES, CLAIMS))
+    names = listed("--oracles", [oracles], tuple(ORACLES))
     if fresh:
         batches = plan.fresh(subjects, cases or TEN)
     elif published:

@@ -19,22 +19,15 @@ from reports.run.store import Store
 from reports.search import plan
 from reports.search.chunk import CaseResult, case_results, chunk_from_json, refused, skip_reasons, stored
 from reports.search.mechanisms import SHAPES
+from reports.search.oracles import LAWS, ORACLES, Oracle, column_of
 from reports.search.planted import FAULTS, SIZES, Control, controls
 from reports.search.recipe import LEAST_RANK, NEAREST
-from reports.search.relations import NAMES
-from reports.search.release import BESIDE, CURVED, release_of
+from reports.search.release import release_of
 from reports.search.shrinking import Shrink, line_of, worst_of
 from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 from reports.write.tables import number
 from reports.write.templates import environment
 
-LAWS = ("acceleration", CURVED, "velocity", "without velocity terms")
-# The page counts together: checks of one instant, of descriptions, and the others, which are of a motion.
-GROUPS: Mapping[str, tuple[str, ...]] = {
-    "instant": (*LAWS, "reaction", "as its groove pushes", BESIDE),
-    "description": NAMES,
-    "motion": (),
-}
 RARE = 0.01  # of all cases: reasons that came up less often are counted together
 LEAST, MOST = 1e-17, 1e2  # what an error of exactly zero, and one without a number, is drawn at
 LINE = 0.24  # inches
@@ -116,7 +109,7 @@ def files(
         "rule": plan.origin(),
         "seeds": ", ".join(map(str, plan.seeds())),
         "by_rule": {case.chunk.seed for case in cases} <= {*plan.seeds()},
-        "groups": list(GROUPS),
+        "questions": [(oracle.column, oracle.question) for oracle in _asked(cases)],
         "asked": _counts(cases),
         "left_out": _skipped(cases),
         "engines": list(dict.fromkeys(task.name for task in planted)),
@@ -129,21 +122,24 @@ def files(
     return out
 
 
-def _group(check: str) -> str:
-    return next((name for name, checks in GROUPS.items() if check in checks), "motion")
+def _asked(cases: Sequence[CaseResult]) -> list[Oracle]:
+    """The oracles that are asked by default, and those that these cases were drawn for."""
+    drawn = {name for case in cases for name in case.chunk.oracles}
+    return [oracle for name, oracle in ORACLES.items() if oracle.is_default or name in drawn]
 
 
 def _counts(cases: Sequence[CaseResult]) -> list[list[str]]:
     """A line for each subject: cases, those refused, and of each group of checks how many it judged and found wrong."""
     subjects: dict[str, list[CaseResult]] = {}
+    columns = [oracle.column for oracle in _asked(cases)]
     for case in cases:
         subjects.setdefault(case.chunk.subject.name, []).append(case)
     out = []
     for name, some in subjects.items():
-        judged = Counter(group for case in some for group in {_group(check) for check in case.result.errors})
-        wrong = Counter(group for case in some for group in {_group(check) for check in case.result.faults})
+        judged = Counter(group for case in some for group in {column_of(check) for check in case.result.errors})
+        wrong = Counter(group for case in some for group in {column_of(check) for check in case.result.faults})
         marks = {group: f", **{count} wrong**" for group, count in wrong.items()}
-        cells = [f"{judged[group]}{marks.get(group, '')}" if judged[group] else "-" for group in GROUPS]
+        cells = [f"{judged[group]}{marks.get(group, '')}" if judged[group] else "-" for group in columns]
         out.append([name, str(len(some)), str(sum(refused(some).values())), *cells])
     return out
 
@@ -154,8 +150,8 @@ def _skipped(cases: Sequence[CaseResult]) -> list[list[str]]:
     often = [reason for reason in reasons if reason[-1] >= RARE * len(cases)]
     rest = sum(count for *_, count in reasons) - sum(count for *_, count in often)
     further = [["all", f"{len(reasons) - len(often)} rarer reasons", str(rest)]] if rest else []
-    names = {"relations": "description", "motions": "motion"}
-    return [[names.get(oracle, oracle), why, str(count)] for oracle, why, count in often] + further
+    columns = {name: oracle.column for name, oracle in ORACLES.items()}
+    return [[columns.get(name, name), why, str(count)] for name, why, count in often] + further
 
 
 def _found(cases: Sequence[CaseResult], small: Sequence[tuple[Shrink, Answer]]) -> list[list[str]]:

@@ -18,10 +18,6 @@ TOGGLE, FOLD = "toggle", "fold"
 SINGULAR = (TOGGLE, FOLD)
 SHAPES = ("line", "circle", "ring", "ellipse")
 
-# Questions of the search, in the order in which they are asked. CLAIMS is asked by its name alone: runs are as long as
-# a user's, and cost as much.
-ORACLES, CLAIMS = ("instant", "relations", "motions"), "claims"
-
 ANGLE = Decimal("0.3")  # rad: no multiple of it but 0 is an angle that a formula is simple at
 RATE = Decimal("0.5")  # m/s, and rad/s
 

@@ -15,7 +15,8 @@ from reports.model.fingerprint import OURS, ROOT, SHORT, digest
 from reports.search import mechanisms
 from reports.search.chunk import Chunk, chunks
 from reports.search.mujoco_alone import HINGED
-from reports.search.parts import EVERY, ORACLES, TOGGLE
+from reports.search.oracles import DEFAULT_ORACLES
+from reports.search.parts import EVERY, TOGGLE
 from reports.search.recipe import build
 from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 
@@ -80,10 +81,10 @@ def published() -> list[Chunk]:
         for subject in everything():
             kinds, alone, shaped = _kinds(subject), isinstance(subject, Alone), is_shaped(subject)
             many = ALONE if alone else COMPILED if shaped else CASES
-            out += chunks([subject], seed, many, kinds, 0 if alone else decades, ORACLES)
+            out += chunks([subject], seed, many, kinds, 0 if alone else decades, DEFAULT_ORACLES)
             if decades == 0 and {"pin", "rod"} <= {*kinds} and not shaped:
                 near = [kind for kind in ("pin", "spring", "force") if kind in kinds]
-                out += chunks([subject], seed, NEAR, (*near, TOGGLE), 0, ORACLES)
+                out += chunks([subject], seed, NEAR, (*near, TOGGLE), 0, DEFAULT_ORACLES)
         if decades == 0:
             out += chunks([GROOVE], seed, CASES, ("pin", "slot"), 0, ("instant",))
     return out
@@ -94,7 +95,7 @@ def fresh(subjects: Sequence[Subject], cases: int) -> Iterator[list[Chunk]]:
     for number in count():
         seed, decades = secrets.randbits(31), DECADES[number % len(DECADES)]
         mixed = secrets.SystemRandom().sample(subjects, len(subjects))  # so that all have their turn in a short run
-        yield [piece for one in mixed for piece in chunks([one], seed, cases, _kinds(one), decades, ORACLES)]
+        yield [piece for one in mixed for piece in chunks([one], seed, cases, _kinds(one), decades, DEFAULT_ORACLES)]
 
 
 def _kinds(subject: Subject) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from reports.run.running import missing, run_into
 from reports.run.store import Store
 from reports.search import plan
 from reports.search.chunk import CaseResult, Chunk, case_results, chunk_to_json, chunks, lost, stored
-from reports.search.parts import ORACLES
+from reports.search.oracles import DEFAULT_ORACLES
 from reports.search.planted import controls
 from reports.search.shrinking import Shrink, worst_of
 from reports.search.subjects import Subject
@@ -46,7 +46,7 @@ def run_search(
     seed: int | None = None,
     kinds: Sequence[str] = (),
     decades: int = 0,
-    oracles: tuple[str, ...] = ORACLES,
+    oracles: tuple[str, ...] = DEFAULT_ORACLES,
     seconds: float | None = None,
     workers: int | None = None,
 ) -> tuple[list[CaseResult], Mapping[Shrink, Answer]]:

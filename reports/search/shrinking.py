@@ -13,7 +13,8 @@ from engines import Engine
 from reference.checks import InvalidMechanism
 from reports.model.tasks import Answer, Task, Values
 from reports.search.chunk import CaseResult, Chunk
-from reports.search.parts import CLAIMS, ORACLES, Case, as_text, from_text
+from reports.search.oracles import ORACLES
+from reports.search.parts import Case, as_text, from_text
 from reports.search.scripts import script
 from reports.search.subjects import Result, Subject
 
@@ -162,7 +163,7 @@ class Shrink(Task):
 
     def _oracle(self, case: Any) -> tuple[str, ...]:
         """The one oracle that finds this fault, so that the others are not asked again and again."""
-        for oracle in (name for name in (*ORACLES, CLAIMS) if name in self.chunk.oracles):
+        for oracle in (name for name in ORACLES if name in self.chunk.oracles):
             if self.check in self.subject.ask(case, self.chunk.first, (oracle,)).faults:
                 return (oracle,)
         return self.chunk.oracles

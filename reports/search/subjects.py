@@ -11,23 +11,15 @@ from typing import ClassVar
 import numpy as np
 
 from engines import Around, Engine, Unsupported
-from reference.mechanism import Mechanism
-from reports.search import mechanisms, motions, mujoco_alone, relations
-from reports.search.law import LAW, Errors, Fault, Skip, instant_errors
+from reports.search import mechanisms, motions, mujoco_alone
+from reports.search.law import LAW, Errors, Fault, Skip
 from reports.search.mechanisms import of_a_shape
-from reports.search.parts import CLAIMS, EVERY, Recipe
+from reports.search.oracles import ORACLES
+from reports.search.parts import EVERY, Recipe
 from reports.search.recipe import build
 from reports.search.release import answer
 
 OURS = "our own error"  # of an oracle that raises: no fault of the engine
-
-Oracle = Callable[[Engine, Mechanism, Recipe, int], Errors | Skip]
-ASKING: Mapping[str, Oracle] = {
-    "instant": lambda engine, mechanism, recipe, number: instant_errors(engine, mechanism),
-    "relations": lambda engine, mechanism, recipe, number: relations.errors(engine, recipe, number),
-    "motions": lambda engine, mechanism, recipe, number: motions.errors(engine, mechanism),
-    CLAIMS: lambda engine, mechanism, recipe, number: motions.claim_errors(engine, mechanism, number),
-}
 
 
 @dataclass(frozen=True)
@@ -73,7 +65,7 @@ class Adapted:
         """All that these oracles ask of one case. Raises InvalidMechanism for a case that is none."""
         asked = self.engine, _built(case), case, number
         return _asked(
-            {name: partial(oracle, *asked) for name, oracle in ASKING.items() if name in oracles}, self.engine
+            {name: partial(oracle.errors, *asked) for name, oracle in ORACLES.items() if name in oracles}, self.engine
         )
 
 

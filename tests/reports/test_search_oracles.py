@@ -36,8 +36,9 @@ from reports.model.ending import BadInput
 from reports.search import law, motions, mujoco_alone, plan, release
 from reports.search.law import LAW
 from reports.search.mujoco_alone import HINGED, xml
+from reports.search.oracles import DEFAULT_ORACLES
 from reports.search.page import known_subjects
-from reports.search.parts import EVERY, KINDS, ORACLES
+from reports.search.parts import EVERY, KINDS
 from reports.search.planted import FAULTS, LEAST, SIZES, Control, Off
 from reports.search.recipe import build
 from reports.search.relations import NAMES
@@ -97,7 +98,7 @@ def test_cases_that_an_oracle_once_took_for_faults_are_none(part: int) -> None:
             continue
         subject, kinds = Adapted(engine), EVERY if row["kinds"] == "all" else plan.taken(engine)
         case = subject.draw(int(row["seed"]), number, kinds, int(row["decades"]))
-        result = subject.ask(case, number, ORACLES)
+        result = subject.ask(case, number, DEFAULT_ORACLES)
         judged += bool(result.errors)
         assert result.faults == (), (row, result)
     assert judged >= 3
