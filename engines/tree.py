@@ -7,7 +7,7 @@ coordinates are zero at the start: the mechanism begins assembled, exactly, and 
 from __future__ import annotations
 
 import math
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -250,6 +250,10 @@ def _tree_of(mechanism: Mechanism, hanging: bool) -> Tree:
 def _hung(mechanism: Mechanism, joints: list[Holding]) -> Iterator[tuple[str, str | None, Holding | None]]:
     """Every body, breadth first from the ground, with its parent and the joint between them; None for free bodies."""
     placed: set[str | None] = {None}
+    joints_of = defaultdict[str | None, list[Holding]](list)
+    for joint in joints:
+        joints_of[joint.first].append(joint)
+        joints_of[joint.second].append(joint)
     for start in (None, *(body.name for body in mechanism.bodies)):
         if start is not None:
             if start in placed:
@@ -259,7 +263,7 @@ def _hung(mechanism: Mechanism, joints: list[Holding]) -> Iterator[tuple[str, st
         frontier = deque([start])
         while frontier:
             parent = frontier.popleft()
-            for joint in joints:
+            for joint in joints_of[parent]:
                 child = joint.second if joint.first == parent else joint.first
                 hangs = joint.first == parent or (joint.second == parent and isinstance(joint, Pin | Weld))
                 if hangs and child not in placed:
