@@ -137,8 +137,7 @@ def _circle(curve: Curve) -> tuple[Array, float] | None:
     """Centre (2,) [m], and radius [m], negative of a hole, of a round curve, placed or not; None for any other."""
     if isinstance(curve, Circle | Ring):
         return np.asarray(curve.centre, dtype=float), curve.sense * curve.radius
-    inner = _circle(curve.curve) if isinstance(curve, Placed) else None
-    if inner and isinstance(curve, Placed):
+    if isinstance(curve, Placed) and (inner := _circle(curve.curve)):
         return rotated(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
     return None
 

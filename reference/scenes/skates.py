@@ -28,7 +28,7 @@ from reference.trajectory import Trajectory
 Array = NDArray[np.float64]
 
 
-def alone(scene: Scene, mass: float, inertia: float, joint: Pin | Skate, gravity: Vector = (0.0, 0.0)) -> Mechanism:
+def one_body(scene: Scene, mass: float, inertia: float, joint: Pin | Skate, gravity: Vector = (0.0, 0.0)) -> Mechanism:
     """The mechanism of one body that a joint holds to the ground, where the scene's motion begins."""
     start, name = scene.motion(0.0), joint.second or ""
     return Mechanism(bodies_of((name,), (mass,), (inertia,), start.pose[0], start.twist[0]), (joint,), gravity)
@@ -76,7 +76,7 @@ class PinnedBody(Scene):
         return angle - self._lag, rate, acceleration
 
     def mechanism(self) -> Mechanism:
-        return alone(self, self.mass, self.inertia, Pin("pin", None, "body", self.pin, self.point), self.gravity)
+        return one_body(self, self.mass, self.inertia, Pin("pin", None, "body", self.pin, self.point), self.gravity)
 
     def _motion(self, times: Array) -> Trajectory:
         angle, rate, acceleration = self._turning(times)
@@ -214,7 +214,7 @@ class ChaplyginSleigh(Scene):
         return self.inertia * speed * turning_rate / self._arm**2
 
     def mechanism(self) -> Mechanism:
-        return alone(self, self.mass, self.inertia, Skate("skate", None, "sleigh", (-self.offset, 0.0)))
+        return one_body(self, self.mass, self.inertia, Skate("skate", None, "sleigh", (-self.offset, 0.0)))
 
     def _motion(self, times: Array) -> Trajectory:
         t = times
@@ -263,7 +263,7 @@ class SkateOnSlope(Scene):
 
     def mechanism(self) -> Mechanism:
         blade = Skate("blade", None, "skate", (0.0, 0.0))
-        return alone(self, self.mass, self.inertia, blade, (0.0, -self.gravity))
+        return one_body(self, self.mass, self.inertia, blade, (0.0, -self.gravity))
 
     def _motion(self, times: Floats) -> Trajectory:
         t = times
