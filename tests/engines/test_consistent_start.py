@@ -83,6 +83,12 @@ def test_a_start_that_breaks_rows_becomes_the_nearest_that_does_not_and_is_named
     assert f"({energy:.3g} J" in note.reason
 
 
+def test_a_start_that_satisfies_its_joints_is_left_as_it_is():
+    reading = read(linkage(A, B, C, D)[0])
+    assert not reading.mechanism.twist.any()
+    assert not reading.notes
+
+
 @pytest.mark.parametrize(
     ("rates", "named"),
     [((1.0, 2.0), ("SimpleMotor 1, SimpleMotor 2",)), ((3.0,), ("SimpleMotor 1", "PivotJoint"))],

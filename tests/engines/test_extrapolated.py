@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engines import CLAIM, Run, Size, Unsupported
-from engines.extrapolated import Extrapolated
+from engines.extrapolated import Extrapolated, _watched_every
 from engines.richardson import combine, expected_error, extrapolation_weights
 from reference.forces import TorsionDamper
 from reference.joints import Skate
@@ -145,6 +145,12 @@ def test_how_often_it_is_sampled_changes_neither_the_motion_nor_the_estimate_nor
     assert f"ours: unresolved from {each.unresolved_at:.4g} s on, its own estimate is not below its claim" in (
         sampled.warnings
     )
+
+
+@pytest.mark.parametrize(("most", "steps"), [(60, 1), (20, 3), (1, 6)])
+def test_more_poses_than_are_kept_are_compared_at_fewer_instants(most, steps, monkeypatch):
+    monkeypatch.setattr("engines.extrapolated.WATCHED", most)
+    assert _watched_every(samples=10, every=6, bodies=1) == steps
 
 
 @pytest.mark.parametrize("growth", [0.0, 0.3, 1.0])

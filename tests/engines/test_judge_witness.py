@@ -177,7 +177,8 @@ def test_the_judge_moves_random_mechanisms_as_newtons_law_does(number: int) -> N
             acceleration, reaction = witness.solved(pose[sample], twist[sample])
             pushed = witness.rows(pose[sample]).T @ (fine.reaction[sample] - reaction)
             needed = np.abs(witness.mass * acceleration.reshape(-1)).max()
-            most = needed + np.abs(witness.mass * np.max(np.abs(mechanism.gravity))).max() + np.abs(reaction).max()
+            weight = max(body.mass for body in mechanism.bodies) * np.max(np.abs(mechanism.gravity))
+            most = needed + weight + np.abs(reaction).max()
             assert np.abs(pushed).max() < 1e-9 * most
 
 
@@ -251,11 +252,5 @@ def test_the_judge_holds_what_it_claims_of_a_stiff_mechanism_far_beyond_its_own_
 def test_the_mechanisms_have_every_kind() -> None:
     drawn = [random_mechanism(31, number, KINDS) for number in CASES]
     parts = {type(part) for mechanism in drawn for part in (*mechanism.joints, *mechanism.forces)}
-    assert parts == {Pin, Slot, Skate, Drive, Rod, Gear, Weld} | {
-        Spring,
-        Damper,
-        TorsionSpring,
-        TorsionDamper,
-        Torque,
-        Force,
-    }
+    forces = {Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}
+    assert parts == {Pin, Slot, Skate, Drive, Rod, Gear, Weld} | forces

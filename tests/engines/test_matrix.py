@@ -94,6 +94,15 @@ def rod_in_a_slot() -> Mechanism:
     return Mechanism(own.bodies[:2], (*own.joints[:2], guide, own.joints[5]), own.gravity)
 
 
+def plate() -> Mechanism:
+    """It turns about the ground's point (0.3, 0.1), which slides in it, pulled by gravity."""
+    angle, rate, line, own = 0.5, 2.0, 0.7, (0.25, -0.1)
+    offset = turned(angle, *own)
+    velocity = 0.4 * turned(angle + line, 1.0, 0.0) - rate * across(offset)
+    body = placed("plate", 0.8, 0.03, np.array([0.3, 0.1]) - offset, angle, velocity, rate)
+    return Mechanism((body,), (Slot("slot", "plate", None, own, line, (0.3, 0.1)),), (0.0, -9.81))
+
+
 TRAMMEL, BEAD = (
     next(world.mechanism for world in WORLDS if world.name == name) for name in ("trammel", "bead on a turning rod")
 )
@@ -207,7 +216,8 @@ OF_MUJOCO = (
     Row(TUNED_FREE, BEAD, pose=1e-6, order=(2,), room=0.3, span=0.2),  # a gap of the weld and of the slot
     *on(mujoco.TUNED, (TRAMMEL,), pose=1e-6, span=0.2),
     *on(HALVES, (TRAMMEL,), pose=1e-9, span=0.2),
-    *on(mujoco.EXTENDED, (TRAMMEL,), pose=1e-8, reaction=1e-2, span=0.2),
+    Row(HALVES, plate(), pose=1e-8, reaction=1e-2, span=0.2),
+    *on(mujoco.EXTENDED, (TRAMMEL, plate()), pose=1e-8, reaction=1e-2, span=0.2),
     *on(SLOTS[0], (SlottedLever(),), order=(2,), room=0.3),  # the spring is tied to the step, as that of the weld
     # Flat at about 0.7 s: the rows lose rank there, and what stands for the missing ones is rounding.
     Row(mujoco.EXTENDED, NFourBar(), pose=1e-6, span=1.5),

@@ -266,3 +266,9 @@ def test_its_first_multipliers_are_those_of_the_test_set(told):
     names = [f"{pin} {direction}" for pin in ("P3", "P4", "P6") for direction in "xy"]
     found = [-motion.reaction[0, mechanism.row_names.index(name)] for name in names]
     np.testing.assert_allclose(found, MULTIPLIERS, rtol=1e-11, atol=1e-9)
+
+
+def test_a_folded_pair_is_another_branch():
+    pose = SCENE.mechanism().pose.copy()
+    pose[4, 2], pose[3, 2] = pose[3, 2] - np.pi / 2, pose[4, 2] + np.pi / 2
+    assert SCENE.branch_of(pose) == -1

@@ -351,6 +351,13 @@ def test_a_force_alone_sets_the_time_by_what_it_does_to_its_body(force, rate):
     assert time_scale(0.75, (0.0, 0.0), [BODY], [], [force]) == pytest.approx(1 / rate, rel=1e-14)
 
 
+@pytest.mark.parametrize(("twist", "rate"), [((0.0, 0.0, 0.0), 4.0), ((0.0, 0.0, -5.0), 5.0), ((-4.5, 6.0, 0.0), 10.0)])
+def test_two_bodies_of_a_spring_count_together_and_a_faster_start_more(twist, rate):
+    spring = Spring("f", "c", "b", (0.0, 0.0), AT, 8.0, 1.0)  # 1 + 1 per kilogram
+    pair = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0), twist)]
+    assert time_scale(0.75, (0.0, 0.0), pair, [], [spring]) == pytest.approx(1 / rate, rel=1e-14)
+
+
 def test_a_rod_is_as_long_as_the_mechanism_even_between_centres_of_mass():
     pair = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0))]
     rod = Rod("r", "b", "c", (0.0, 0.0), (0.0, 0.0), 3.0)

@@ -13,7 +13,15 @@ from reference.scenes.n_four_bar import NFourBar, TenFourBars
 from reference.scenes.pendulum.chain import Chain
 from reference.scenes.pendulum.link import BarPendulum, Pendulum, PointPendulum, incomplete, jacobi, quarter_period
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
-from reference.scenes.person import UPRIGHT, SwayingOnOneFoot, modes_upright
+from reference.scenes.person import (
+    HEAD_ARMS_TRUNK,
+    SHANK,
+    SHANK_AND_FOOT,
+    THIGH,
+    UPRIGHT,
+    SwayingOnOneFoot,
+    modes_upright,
+)
 
 
 @pytest.mark.parametrize("complement", [1.0, 0.1, 1e-8, 1e-30])
@@ -186,6 +194,14 @@ def test_cranks_that_start_upright_at_rest_stay_there_for_ever():
     motion = scene.motion([0.0, 50.0, 1000.0])
     assert np.abs(motion.pose - motion.pose[0]).max() == 0
     assert np.abs(motion.twist).max() == 0
+
+
+def test_the_table_of_segments_agrees_with_its_other_columns() -> None:
+    """Winter: trunk and two legs are the whole mass, and his third column has the radius of gyration about an end."""
+    assert HEAD_ARMS_TRUNK.mass + 2 * THIGH.mass + 2 * SHANK_AND_FOOT.mass == pytest.approx(1.0, abs=1e-12)
+    for segment, about_the_end in ((HEAD_ARMS_TRUNK, 0.798), (THIGH, 0.540), (SHANK, 0.528), (SHANK_AND_FOOT, 0.735)):
+        # printed to three digits
+        assert math.hypot(segment.centre, segment.gyration) == pytest.approx(about_the_end, abs=1e-3)
 
 
 def test_the_sway_starts_on_a_swinging_mode() -> None:

@@ -52,6 +52,7 @@ OTHERS: tuple[Scene, ...] = (
     *(ChaplyginSleigh(speed=0.0, turning_rate=-3.0, offset=-0.2), ChaplyginSleigh(turning_rate=0.0)),
     *(ChaplyginSleigh(offset=0.0), ChaplyginSleigh(offset=30.0, inertia=1e-3)),
     *(SkateOnSlope(turning_rate=0.5, speed=1.0, heading=0.3), SkateOnSlope(turning_rate=-4.0, speed=-0.5, heading=2.0)),
+    SkateOnSlope(turning_rate=1e-6, speed=1.0, heading=0.3),
     *(ChaplyginSleigh(start=(1.0, -2.0, 5.0)), SleighBackwards(duration=5.0)),
     *(PinnedBody(turning_rate=12.0), PinnedBody(turning_rate=-12.0, angle=7.0), PinnedBody(point=(0.0, 0.0))),
     PinnedBody(point=(0.2, -0.3), pin=(1.0, 2.0), gravity=(3.0, 4.0), angle=-2.0),
