@@ -41,6 +41,7 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
         return declared_error(material.answers, scene, engines[method], page.quantity, step)
 
     held = holders(Cell(scene, engine, 1) for engine in engines.values())
+    exported = held.get("mujoco tuned") == "engine"
     held = held if set(held.values()) != {"engine"} else {}
     featured = [row for row in rows if page.featured(row)]
     step = page_tables.compared_step(rows)
@@ -52,6 +53,7 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
         "step": step,
         "table": page_tables.scene_table(featured, page.quantity, held, declared, runs) if featured else "",
         "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
+        "exported": exported,  # whether a file of settings alone holds the joints
         "programs": advised_programs(scene, advice, engines) if scene is page.advised_scene else [],
     }
 

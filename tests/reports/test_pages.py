@@ -19,6 +19,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from engines.mujoco.writers import MJCF
+from reference.scenes.catalogue import scene as scene_of
 from reports.check.pictures import PictureData, Pose
 from reports.cli.report import drawn, material_of
 from reports.cli.selection import shown_cells
@@ -317,8 +319,10 @@ def anchors(file: str) -> frozenset[str]:
 
 
 @pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
-def test_links_of_a_page_have_headings_and_its_programs_run_as_printed(page, undrawn):
+def test_links_of_a_page_have_headings_and_its_programs_and_commands_run_as_printed(page, undrawn):
     for name, text in texts(page).items():
+        for scene in re.findall(r"`crosscheck export (\w+) --to mjcf --variant tuned`", text):
+            assert MJCF.write(scene_of(scene).mechanism(), 1e-3, "tuned")
         for target, heading in re.findall(r"\]\((\w+\.md)?#([^)]*)\)", text):
             assert heading in anchors(target or name), (name, target, heading)
         for language, source in re.findall(r"^```(\w*)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
