@@ -11,7 +11,7 @@ from reports.model.cells import is_step
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.plots.theme import svg
-from reports.plots.work_precision import Compared, engines_compared
+from reports.plots.work_precision import ComparedRow, engines_compared
 from reports.write.columns import (
     NO_JOINT,
     NOT_BUILT,
@@ -68,7 +68,7 @@ def picture(found: list[Line]) -> str:
                     word: [line.engine for line, place in pairs if empty(line, place) == word]
                     for word in (NO_JOINT, NOT_BUILT)
                 }
-        panels.append(Compared(title, f"largest {quantity(of_scene[0].name).axis}", errors, lacking))
+        panels.append(ComparedRow(title, f"largest {quantity(of_scene[0].name).axis}", errors, lacking))
     if not panels:
         return ""
     return svg(engines_compared(panels), "All engines on a four-bar and on a skate: error against CPU time")

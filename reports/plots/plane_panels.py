@@ -58,7 +58,7 @@ class Blades:
 
 
 @dataclass(frozen=True)
-class Note:
+class PanelNote:
     """A few words at a place; `align` as matplotlib's horizontal alignment."""
 
     place: tuple[float, float]
@@ -73,7 +73,7 @@ class Panel:
     title: str
     paths: Sequence[Path] = ()
     blades: Sequence[Blades] = ()
-    notes: Sequence[Note] = ()
+    notes: Sequence[PanelNote] = ()
     plane: bool = True
     across: str = ""
     up: str = ""

@@ -223,7 +223,7 @@ Points = Sequence[tuple[float, float]]  # (CPU seconds per simulated second, err
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparedRow:
     """A row of panels: `lines` by column and engine, `absent` by column and reason the engines without one."""
 
     title: str
@@ -232,7 +232,7 @@ class Compared:
     absent: Mapping[str, Mapping[str, Sequence[str]]]
 
 
-def engines_compared(rows: Sequence[Compared]) -> Figure:
+def engines_compared(rows: Sequence[ComparedRow]) -> Figure:
     """The least error within a CPU time against that time, both logarithmic; all panels have the same axes."""
     engines = list(dict.fromkeys(each for row in rows for lines in row.lines.values() for each in lines))
     with drawing(COMPARED_HEIGHT) as figure:

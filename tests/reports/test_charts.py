@@ -28,7 +28,7 @@ from reports.pages.centrodes.page import draw_centrodes, draw_rate
 from reports.plots import looks as families
 from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
-from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
+from reports.plots.plane_panels import Blades, Panel, PanelNote, Path, paths
 from reports.plots.theme import LIGHT
 from tests.mechanisms import four_bar, pendulum
 from tests.rows import falling, row_of
@@ -106,8 +106,8 @@ def compared() -> Figure:
     absent = {"as shipped": {"no such joint": ["pymunk"]}}
     return charts.engines_compared(
         [
-            charts.Compared("four-bar", "angle", lines, {}),
-            charts.Compared("skate", "position", {"as shipped": {}, "with our code": {}}, absent),
+            charts.ComparedRow("four-bar", "angle", lines, {}),
+            charts.ComparedRow("skate", "position", {"as shipped": {}, "with our code": {}}, absent),
         ]
     )
 
@@ -126,7 +126,7 @@ def planes() -> Figure:
     wrong = Path([[0.0, 0.0], [math.nan, 0.0], [9.0, 8.0]], "wrong", "first", "--", framed=False, dot=True)
     blades = Blades([[0.5, 0.5, math.pi / 2]], 0.2, "quiet")
     right = Path([[0.0, 0.0], [1.0, 2.0]], "truth")
-    first = Panel("first", [right, wrong], [blades], [Note((0.25, 1.5), "here", "center")])
+    first = Panel("first", [right, wrong], [blades], [PanelNote((0.25, 1.5), "here", "center")])
     curve = Path([[1.0, 1e-3], [2.0, 1e-1]], "truth")
     second = Panel("second", [curve], plane=False, across="time [s]", up="m", logarithmic=True)
     return paths([first, second], columns=2)

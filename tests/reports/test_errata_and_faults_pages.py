@@ -25,7 +25,7 @@ from reports.pages.errata.page import (
     TASKS,
     WORD_SLIPS,
     Ruling,
-    Window,
+    SampleWindow,
     digits,
     rulings,
     verdict,
@@ -149,7 +149,7 @@ def test_a_motion_of_a_wrong_mechanism_is_told_apart():
     mechanism = referees.double_pendulum()
     length = next(mistake for mistake in mistakes(mechanism) if mistake.kind == "length")
     motion = mistaken(REFEREES[-1], length, 1e-2).build(mechanism, referees.SPACING)(referees.SAMPLES, 1)
-    found = referees._pendulum(Window(motion.pose[-referees.POINTS :], motion.twist[-referees.POINTS :]))
+    found = referees._pendulum(SampleWindow(motion.pose[-referees.POINTS :], motion.twist[-referees.POINTS :]))
     assert max(found[number].agreement for number in (23, 25)) > 1e-3
 
 

@@ -40,7 +40,7 @@ RESULTS = ROOT / "reports" / "results"
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 
 
-class Page(HTMLParser):
+class LinksOfPage(HTMLParser):
     """The addresses and the anchors of a page."""
 
     def __init__(self, text: str) -> None:
@@ -115,7 +115,7 @@ def test_lessons_quote_parts_of_their_pages_of_results_whose_links_lead_there(fi
 
 
 def test_no_link_of_the_site_is_dead(files):
-    pages = {name: Page(text.decode()) for name, text in files.items() if name.endswith(".html")}
+    pages = {name: LinksOfPage(text.decode()) for name, text in files.items() if name.endswith(".html")}
     assert {f"lessons/{lesson.name}.html" for lesson in LESSONS} < set(pages)
     dead = []
     for name, page in pages.items():

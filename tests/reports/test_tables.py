@@ -65,7 +65,7 @@ FREE, SLEIGH = KNOWN["free_four_bar"], KNOWN["sleigh"]
 
 
 @dataclass(frozen=True)
-class Held(Toy):
+class HeldBy(Toy):
     by: Holder = "engine"
 
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
@@ -195,7 +195,11 @@ def printed() -> Iterator[str]:
     ]
     yield from equal_step([(page_of(scenes=(Disc(), OtherDisc())), rows)], {"usual": 1e-2}, "folder/").values()
     yield "## No such joint: the engine's own columns are empty where our code alone holds the joint"
-    naive = (Held("default", by="ours"), Held("tuned", by="engine, our rows"), Held("extended", by="engine, our rows"))
+    naive = (
+        HeldBy("default", by="ours"),
+        HeldBy("tuned", by="engine, our rows"),
+        HeldBy("extended", by="engine, our rows"),
+    )
     rows = [row for variant in VARIANTS for row in falling(f"toy {variant}", POWER)]
     other = [replace(row, scene="other_disc") for row in rows]
     beside = [*rows, *falling("other default", POWER)]
@@ -286,15 +290,19 @@ COLUMNS: tuple[tuple[str, Holder, Column], ...] = (
 
 def test_who_holds_the_joints_decides_in_which_column_a_method_stands():
     for variant, by, column in COLUMNS:
-        assert column_of(Disc(), Held(variant, by=by)) is column
-    cells = [Cell(FREE, Held("x", by="ours"), 1), Cell(FREE, Held("x"), 1), Cell(FREE, Held("x", by="ours"), 10)]
+        assert column_of(Disc(), HeldBy(variant, by=by)) is column
+    cells = [
+        Cell(FREE, HeldBy("x", by="ours"), 1),
+        Cell(FREE, HeldBy("x"), 1),
+        Cell(FREE, HeldBy("x", by="ours"), 10),
+    ]
     assert holders(cells) == {"toy x": "ours or engine"}
 
 
 def test_a_users_trick_does_not_bear_the_usual_name_of_an_engine_on_any_page():
     assert [told_variant(scene, pymunk.DEFAULT) for scene in (FREE, SLEIGH)] == ["default", "naive"]
     assert told_variant(SLEIGH, mujoco.DEFAULT) == "default"  # a contact of its own
-    tricks = [told_variant(SLEIGH, Held(variant, by="ours")) for variant in ("default", "tuned")]
+    tricks = [told_variant(SLEIGH, HeldBy(variant, by="ours")) for variant in ("default", "tuned")]
     assert tricks == ["naive", "naive, tuned"]  # rows of one name would be taken for one method
     assert told_variant(SLEIGH, SKATE_POINT) == SKATE_POINT.variant
     cell = Cell(SLEIGH, pymunk.DEFAULT, 1)
@@ -367,7 +375,7 @@ def test_an_experiment_in_which_nothing_was_compared_says_so():
 
 
 @dataclass(frozen=True)
-class Soft(Plain):
+class SoftToy(Plain):
     name: str = "toy"
     variant: str = "soft"
     share: float = COMPLIANCE
@@ -380,7 +388,7 @@ class Soft(Plain):
 
 
 def test_what_is_declared_is_in_proportion_to_the_judges_own_softness():
-    scene, engine = FreeFourBar(duration=0.1), Soft()
+    scene, engine = FreeFourBar(duration=0.1), SoftToy()
     (task,) = soft_tasks(scene, (engine,))
     answers: dict[Task, Answer] = {task: answered(task)}
     own = answers[task].number("angle")

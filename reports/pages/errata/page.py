@@ -51,7 +51,7 @@ POINTS, MIDDLE = len(FIRST), len(FIRST) // 2
 
 
 @dataclass(frozen=True)
-class Window:
+class SampleWindow:
     """POINTS samples in a row of one engine's motion; formulas are evaluated at the middle one."""
 
     pose: Array  # (POINTS, bodies, 3)
@@ -80,7 +80,7 @@ def double_pendulum() -> Mechanism:
     return Mechanism(bodies, joints, (0.0, -chain.gravity))
 
 
-def _pendulum(window: Window) -> dict[int, Values]:
+def _pendulum(window: SampleWindow) -> dict[int, Values]:
     """r_A = 2 r_G1 and r_B/A = 2 (r_G2 - r_A): linear, so the accelerations of the ends follow without a formula."""
     velocity = window.twist[:, :, :2]
     ends = np.stack([2 * velocity[:, 0], 2 * (velocity[:, 1] - 2 * velocity[:, 0])], axis=1)
@@ -95,7 +95,7 @@ def _pendulum(window: Window) -> dict[int, Values]:
     return found
 
 
-def _rolling(window: Window) -> dict[int, Values]:
+def _rolling(window: SampleWindow) -> dict[int, Values]:
     """The disc's centre lies on the contact's normal, so the contact is where the ray to it meets the hill."""
     pose, twist = window.pose[:, 0], window.twist[:, 0]
     arm = HILL.eccentricity * np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
@@ -116,7 +116,7 @@ def _rolling(window: Window) -> dict[int, Values]:
     }
 
 
-def _skate(window: Window) -> dict[int, Values]:
+def _skate(window: SampleWindow) -> dict[int, Values]:
     pose, twist = window.pose[:, 0], window.twist[:, 0]
     along = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
     speed = np.sum(twist[:, :2] * along, axis=-1)  # of C too: G is straight ahead of it
@@ -125,7 +125,7 @@ def _skate(window: Window) -> dict[int, Values]:
     return {11: Values(*acceleration_of_g(*state), window.change(twist[:, :2]))}
 
 
-def _four_bar(window: Window) -> dict[int, Values]:
+def _four_bar(window: SampleWindow) -> dict[int, Values]:
     theta, beta, phi = (float(angle) for angle in window.pose[MIDDLE, :, 2])
     crank, *others = window.twist[MIDDLE, :, 2]
     rates = crank * np.array(errata.rates(theta, beta, phi))
@@ -135,20 +135,20 @@ def _four_bar(window: Window) -> dict[int, Values]:
     }
 
 
-class Question(NamedTuple):
+class DecidingMotion(NamedTuple):
     """The mechanism whose motion decides, and what the motion says of which slips."""
 
     mechanism: Callable[[], Mechanism]
-    read: Callable[[Window], dict[int, Values]]
+    read: Callable[[SampleWindow], dict[int, Values]]
 
 
 COMPANIONS: tuple[Scene, ...] = (HILL, SLEIGH, DrivenFourBar(), LinkPendulum())
 # By the motion.
-QUESTIONS: dict[str, Question] = {
-    "a disc rolls off a round hill": Question(HILL.mechanism, _rolling),
-    "a sleigh on one skate coasts": Question(SLEIGH.mechanism, _skate),
-    "the crank of sample 18.15 turns at 10 rad/s": Question(DrivenFourBar().mechanism, _four_bar),
-    "the double pendulum falls": Question(double_pendulum, _pendulum),
+QUESTIONS: dict[str, DecidingMotion] = {
+    "a disc rolls off a round hill": DecidingMotion(HILL.mechanism, _rolling),
+    "a sleigh on one skate coasts": DecidingMotion(SLEIGH.mechanism, _skate),
+    "the crank of sample 18.15 turns at 10 rad/s": DecidingMotion(DrivenFourBar().mechanism, _four_bar),
+    "the double pendulum falls": DecidingMotion(double_pendulum, _pendulum),
 }
 
 
@@ -192,7 +192,7 @@ def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...],
         if not answer.finished:
             lost.append(f"{method} where {task.question}: {answer.told}")
             continue
-        window = Window(answer.array("pose"), answer.array("twist"))
+        window = SampleWindow(answer.array("pose"), answer.array("twist"))
         if not (np.isfinite(window.pose).all() and np.isfinite(window.twist).all()):
             lost.append(f"{method} where {task.question}: its motion is not finite")
             continue

@@ -37,7 +37,7 @@ from reports.model.page import Material, Page, usual_series
 from reports.model.tasks import Motion
 from reports.pages.common import deviations
 from reports.pages.skate.experiments import CONSTRUCTIONS, FAILURES, known
-from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
+from reports.plots.plane_panels import Blades, Panel, PanelNote, Path, paths
 from reports.plots.theme import svg
 from reports.write import tables
 from reports.write.columns import holders
@@ -69,7 +69,7 @@ def _manoeuvre(title: str, start: Triple, moves: tuple[Move, ...]) -> Panel:
     way, poses = trace(start, moves), stops(start, moves)
     blades = [Blades(poses[1:-1], BLADE, "quiet", 1.6), Blades(poses[[0, -1]], BLADE, "ink", 3.4)]
     (x, y), (end_x, end_y) = poses[0][:2], poses[-1][:2]
-    notes = [Note((x, y - 0.16), "from", "center"), Note((end_x, end_y + 0.16), "to", "center")]
+    notes = [PanelNote((x, y - 0.16), "from", "center"), PanelNote((end_x, end_y + 0.16), "to", "center")]
     return Panel(title, [Path(way[:, :2], "path of C", "second", "-", 1.6)], blades, notes)
 
 
