@@ -11,6 +11,7 @@ import numpy as np
 from reference.rolling.closed_curves import Cam, Ellipse
 from reference.rolling.curves import Curve
 from reference.scenes.four_bar.linkage import FourBar
+from reference.scenes.pendulum.chain import Chain
 from reference.scenes.pendulum.link import Pendulum
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import SliderCrank
@@ -39,7 +40,7 @@ def closed(crank: Any, coupler: Any, rocker: Any, x: Any, y: Any, theta: Any, br
     return bar, out, bar + out - ground
 
 
-def four_bar(branch: int):
+def four_bar(branch: int) -> Law:
     def exact(crank, coupler, rocker, x, y, theta, rate, acceleration):
         a, b, c = closed(crank, coupler, rocker, x, y, theta, branch)
         rows = [[-b.imag, c.imag], [b.real, -c.real]]
@@ -50,7 +51,7 @@ def four_bar(branch: int):
     def ours(crank, coupler, rocker, x, y, theta, rate, acceleration):
         return FourBar(crank, coupler, rocker, (x, y)).kinematics(theta, rate, acceleration, branch)
 
-    return exact, ours
+    return Law(f"four-bar, branch {branch:+d}", drawn_four_bar, ours, exact, angles=(0, 1))
 
 
 def drawn_four_bar(rng: np.random.Generator) -> tuple[float, ...]:
@@ -76,16 +77,12 @@ def drawn_four_bar(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def limits(crank, coupler, rocker, x, y):
-    """The crank's ends by the cosine rule, from the direction of the ground, where U and where W vanish."""
+    """The crank's end by the cosine rule, from the direction of the ground: coupler and rocker are in line."""
     ground = mp.hypot(x, y)
-
-    def end(reach):
-        cosine = (crank**2 + ground**2 - reach**2) / (2 * crank * ground)
-        if abs(cosine) >= 1:
-            raise Outside
-        return mp.acos(cosine)
-
-    return [end(coupler + rocker)]
+    cosine = (crank**2 + ground**2 - (coupler + rocker) ** 2) / (2 * crank * ground)
+    if abs(cosine) >= 1:
+        raise Outside
+    return [mp.acos(cosine)]
 
 
 def our_limits(crank, coupler, rocker, x, y):
@@ -102,12 +99,11 @@ def drawn_limits(rng: np.random.Generator) -> tuple[float, ...]:
     # From |crank - ground|, where the range is a point, to crank + ground, where it is a whole turn.
     low, high = abs(crank - ground), crank + ground
     part = decades(rng, -14, -0.3)
-    reach = low + (high - low) * (part if rng.random() < 0.5 else 1 - part)
-    share = rng.uniform(0.3, 0.7)
+    reach, share = low + (high - low) * (part if rng.random() < 0.5 else 1 - part), rng.uniform(0.3, 0.7)
     return tuple(scale * value for value in (crank, reach * share, reach * (1 - share), ground, 0.0))
 
 
-def slider_crank(branch: int):
+def slider_crank(branch: int) -> Law:
     def positions(crank, rod, offset, theta):
         sine = (offset - crank * mp.sin(theta)) / rod
         cosine = branch * root((1 - sine) * (1 + sine))
@@ -132,7 +128,7 @@ def slider_crank(branch: int):
             *(shape.rod_angle(theta), turn, bend),
         ]
 
-    return exact, ours
+    return Law(f"slider-crank, branch {branch:+d}", drawn_slider_crank, ours, exact, angles=(3,))
 
 
 def drawn_slider_crank(rng: np.random.Generator) -> tuple[float, ...]:
@@ -184,6 +180,27 @@ def drawn_pendulum(rng: np.random.Generator) -> tuple[float, ...]:
     if rng.random() < 0.1:
         rate = 0.0
     return frequency, start, rate, float(rng.uniform(0, 1)) * decades(rng, -9, 2) / frequency
+
+
+def chain(*numbers: Any) -> list[Any]:
+    """Angular accelerations of three bars that hang on one another, by Lagrange's equations."""
+    lengths, masses, angles, rates = (numbers[k : k + 3] for k in (0, 3, 6, 9))
+    rows, right = mp.zeros(3), mp.zeros(3, 1)
+    for i, j in np.ndindex(3, 3):
+        outer, apart = max(i, j), angles[i] - angles[j]
+        weight = lengths[i] * lengths[j] * (masses[outer] / (3 if i == j else 2) + sum(masses[outer + 1 :]))
+        rows[i, j] = weight * mp.cos(apart)
+        right[i] -= weight * mp.sin(apart) * rates[j] ** 2
+        if i == j:
+            right[i] -= numbers[-1] * lengths[i] * (masses[i] / 2 + sum(masses[i + 1 :])) * mp.sin(angles[i])
+    return list(mp.lu_solve(rows, right))
+
+
+def drawn_chain(rng: np.random.Generator) -> tuple[float, ...]:
+    length, weight, clock = decades(rng), decades(rng), decades(rng)
+    sizes = (*(length * decades(rng, -1, 1) for _ in range(3)), *(weight * decades(rng, -2, 2) for _ in range(3)))
+    rates = (float(rng.normal()) / clock for _ in range(3))
+    return (*sizes, *(angle(rng) for _ in range(3)), *rates, length / clock**2)
 
 
 def tow(length: Any, start: Any, radius: Any, way: Any) -> list[Any]:
@@ -286,10 +303,6 @@ def curve_at(curve: Curve, place: float) -> list[Any]:
     return [curve.arc_of(place), curve.angle_of(place), *curve.point_of(place), curve.curvature_of(place)]
 
 
-def our_cam(radius: float, *numbers: float) -> list[Any]:
-    return curve_at(Cam(radius, tuple(numbers[:-1:2]), tuple(numbers[1:-1:2])), numbers[-1])
-
-
 def drawn_ellipse(rng: np.random.Generator) -> tuple[float, ...]:
     a = decades(rng)
     b = a * (decades(rng, -2.9, 2.9) if rng.random() < 0.5 else 1 + decades(rng, -14, 0))
@@ -311,18 +324,16 @@ def drawn_cam(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 LAWS = (
-    *(
-        Law(f"four-bar, branch {branch:+d}", drawn_four_bar, ours, exact, angles=(0, 1))
-        for branch in (1, -1)
-        for exact, ours in [four_bar(branch)]
-    ),
+    *(four_bar(1), four_bar(-1), slider_crank(1), slider_crank(-1)),
     Law("four-bar, limit of the crank", drawn_limits, our_limits, limits),
-    *(
-        Law(f"slider-crank, branch {branch:+d}", drawn_slider_crank, ours, exact, angles=(3,))
-        for branch in (1, -1)
-        for exact, ours in [slider_crank(branch)]
-    ),
     Law("pendulum", drawn_pendulum, lambda f, a, r, t: Pendulum(f, a, r).motion(t), swung, angles=(0,), size=swing),
+    Law(
+        "chain of three",
+        drawn_chain,
+        lambda *n: Chain(n[:3], n[3:6], n[-1]).accelerations(n[6:9], n[9:12]),
+        chain,
+        vectors=(slice(0, 3),),
+    ),
     Law("towed wheel", drawn_tow, our_tow, tow, vectors=(slice(1, 3),), angles=(0,), size=tow_sizes),
     Law("sleigh", drawn_sleigh, our_sleigh, sleigh),
     Law(
@@ -332,5 +343,11 @@ LAWS = (
         ellipse,
         vectors=(slice(2, 4),),
     ),
-    Law("cam at a parameter", lambda rng: (*drawn_cam(rng), turned(rng)), our_cam, cam, vectors=(slice(2, 4),)),
+    Law(
+        "cam at a parameter",
+        lambda rng: (*drawn_cam(rng), turned(rng)),
+        lambda radius, *n: curve_at(Cam(radius, n[:-1:2], n[1:-1:2]), n[-1]),
+        cam,
+        vectors=(slice(2, 4),),
+    ),
 )
