@@ -112,6 +112,9 @@ def test_the_page_tells_what_was_found(checks):
         advised = found(answer)["advised"]
         assert all(words in text for words in (walk.text.strip(), advised["words"], *advised["lines"]))
     assert text.count(".svg)") == 6
+    soft, hard, swing = (found(checks[walk])["parts"] for walk in WALKS)  # as their titles claim
+    assert soft["softness"] > 1e-4
+    assert (hard["softness"], hard["falling"], swing["divided"]) == (0, True, False)
     assert render_page(YOUR_MODEL, Material({}), "the command")["your_model.md"].count("was not checked yet") == 3
 
 
