@@ -9,7 +9,7 @@ from typing import Any
 import typer
 
 from reports.cli.streams import written
-from reports.model.ending import FINE, STATUSES
+from reports.model.ending import FINE, STATUSES, BadInput
 
 # By the word of each command: the function in `reports.cli`, and the first sentence of its help.
 COMMANDS = {
@@ -62,10 +62,19 @@ def invoke(arguments: Sequence[str]) -> int:
                 parser, called, words = command(words[0]), f"crosscheck {words[0]}", words[1:]
             else:
                 parser, called = program(), "crosscheck"
-            context = parser.make_context(called, words)
+            context = parser.make_context(called, list(words))
+        _refuse_repeated(parser.make_parser(context).parse_args(list(words))[2])
         with context:
             parser.invoke(context)
     except typer.Exit as done:
         status = done.exit_code
     with written():
         return status
+
+
+def _refuse_repeated(parameters: Sequence[Any]) -> None:
+    """Raises BadInput for an option that takes one value and has several: the parser would use the last one alone."""
+    for parameter in parameters:
+        if parameter.param_type_name == "option" and not parameter.multiple and parameters.count(parameter) > 1:
+            words = "/".join((*parameter.opts, *parameter.secondary_opts))
+            raise BadInput(f"{words} is given {parameters.count(parameter)} times; give it once")

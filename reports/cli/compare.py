@@ -9,9 +9,9 @@ from typing import Annotated
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, REFERENCES, AsJson, AsMarkdown, Folder
+from reports.cli.options import FOLDER, REFERENCES, AsJson, AsMarkdown, Folder, SomeScenes
 from reports.cli.terminal import Terminal, print_table, telling
-from reports.cli.versions import USUAL, announce_pip, named_scenes, progress_of
+from reports.cli.versions import announce_pip, named_scenes, progress_of
 from reports.gate.change import DEAR
 from reports.model.ending import BadInput, Broken
 from reports.model.measure import Measurement
@@ -31,7 +31,7 @@ def compare(
         str | None, typer.Option("--engine", help=f"The engine under test: its name, or {REFERENCES}.")
     ] = None,
     variant: Annotated[list[str] | None, typer.Option("--variant", help="Only this variant (repeatable).")] = None,
-    scenes: Annotated[list[str] | None, typer.Option("--scenes", help=USUAL)] = None,
+    scenes: SomeScenes = None,
     cost: Annotated[
         float | None, typer.Option("--cost", help="Status 1 too if a method takes this many times as much CPU time.")
     ] = None,

@@ -31,6 +31,10 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help="Another value for a number of the scene (repeatable)."),
 ]
+SomeScenes = Annotated[
+    list[str] | None,
+    typer.Option("--scenes", help="Only these scenes (repeatable, or with commas); six short ones if none is named."),
+]
 Workers = Annotated[int | None, typer.Option(min=1, help="Processes; as many as processors if not given.")]
 Every = Annotated[
     list[int] | None, typer.Option(min=1, max=2**31 - 1, help="Only this many steps between samples (repeatable).")

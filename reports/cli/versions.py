@@ -15,7 +15,7 @@ import typer
 from reference.scene import Scene
 from reports.cli.interruption import kept
 from reports.cli.known import choose
-from reports.cli.options import FOLDER, STORE, AsJson, AsMarkdown, Folder
+from reports.cli.options import FOLDER, STORE, AsJson, AsMarkdown, Folder, SomeScenes
 from reports.cli.report import published, refuse_outside_a_checkout
 from reports.cli.run import refuse_nothing_but_failures
 from reports.cli.selection import QUICK_CELL
@@ -31,13 +31,12 @@ from reports.versions.column import VersionColumn
 from reports.versions.table import DATA, ReleaseTable, as_csv, as_published, changes, entries, merged, read, released
 
 WIDTH = 150  # into a file or a pipe
-USUAL = "Only these scenes (repeatable, or with commas); six short ones if none is named."
 
 
 def versions(
     engine: Annotated[str | None, typer.Argument(help="An engine by name, such as mujoco.")] = None,
     version: Annotated[list[str] | None, typer.Argument(help="Its versions, such as 3.6.0.")] = None,
-    scenes: Annotated[list[str] | None, typer.Option("--scenes", help=USUAL)] = None,
+    scenes: SomeScenes = None,
     everything: Annotated[
         bool, typer.Option("--all", help="All that the page shows: engines, scenes, random trees.")
     ] = False,

@@ -223,6 +223,20 @@ def test_without_a_command_there_is_help_and_nothing_on_stderr(capfd):
     assert "Exit status: 0 fine" in " ".join(out.split())
 
 
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [
+        (("run", "free_four_bar", "--engine", "pymunk", "--engine=mujoco"), "--engine"),
+        (("run", "--full", "--quick"), "--full/--quick"),
+        (("check", "model.xml", "--step", "1", "--step", "2"), "--step"),
+    ],
+)
+def test_an_option_of_one_value_is_not_taken_twice(words, option, capfd):
+    """The last one alone would be run without a word."""
+    assert call(*words) == REFUSED
+    assert f"{option} is given 2 times" in one_line(capfd.readouterr().err)
+
+
 def ended(words, **streams):
     return subprocess.run([sys.executable, "-m", "reports", *words], env=environment(), text=True, **streams)
 
