@@ -38,10 +38,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engines.capability import Capability
-from engines.contract import Holder, Promise, Size, Unpromised, Unsupported
+from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
 from engines.motions import over_three
 from engines.sampling import sampled_with_differences, unwrapped
-from engines.single_run import Optional, Recorded
+from engines.single_run import ExtraEngine, Recorded
 from reference.checks import Count, Name, NonNegative, validated
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -60,7 +60,7 @@ JOINTS = "https://box2d.org/documentation/group__joint.html"  # all that there a
 
 
 @dataclass(frozen=True)
-class Box2D(Optional):
+class Box2D(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
     `substeps` in a step, 4 as in the engine's manual; `closing`: the frequency of pins, welds and rods times the length
@@ -70,7 +70,7 @@ class Box2D(Optional):
     name = "box2d"
     packages = ("pyb2d3",)
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
-    forces_by: ClassVar[Holder] = "ours"
+    forces_by: ClassVar[Enforcement] = "ours"
     precision: ClassVar[float] = 2.0**-23  # of its numbers
     angle_error: ClassVar[float] = 2.8e-5  # b2Atan2 of its math_functions.h is a polynomial, by which it reads a weld
     capability: ClassVar[Capability] = Capability(
@@ -89,9 +89,9 @@ class Box2D(Optional):
     closing: NonNegative = 0.0
 
     @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """None: see the module."""
-        return Unpromised("a joint of box2d closes its gap the more slowly the shorter the sub-step is")
+        return NotDeclared("a joint of box2d closes its gap the more slowly the shorter the sub-step is")
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:

@@ -32,11 +32,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engines.capability import Capability
-from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from engines.contract import EXACT, ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled_with_differences
-from engines.single_run import Optional, Recorded, quiet
+from engines.single_run import ExtraEngine, Recorded, quiet
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.checks import Count, Fraction, Name, validated
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
@@ -56,7 +56,7 @@ NOWHERE = [0.0, 0.0, 0.0]
 
 
 @dataclass(frozen=True)
-class Bullet(Optional):
+class Bullet(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
     `iterations` of the solver over its rows, which end early below `residual`; `erp`: the share of a gap that a step
@@ -66,7 +66,7 @@ class Bullet(Optional):
     name = "bullet"
     packages = ("pybullet",)
     modules: ClassVar[tuple[str, ...]] = ("pybullet",)
-    forces_by: ClassVar[Holder] = "ours"
+    forces_by: ClassVar[Enforcement] = "ours"
     capability: ClassVar[Capability] = Capability(
         "bullet",
         frozenset({Pin, Slot, Drive, Gear, Weld}),
@@ -83,7 +83,7 @@ class Bullet(Optional):
     erp: Fraction = SHIPPED_ERP
 
     @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """First, of semi-implicit Euler; what the tree holds is exact.
 
         Iterations end where the square of the slip, in m/s or rad/s, is below `residual`, at whatever step. Where
@@ -91,12 +91,14 @@ class Bullet(Optional):
         """
         loops = spanning_tree(mechanism).loops
         if loops and is_prescribed(mechanism) and self.residual:
-            return Unpromised(f"iterations of bullet end at a residual of {self.residual:g}, however short the step is")
+            return NotDeclared(
+                f"iterations of bullet end at a residual of {self.residual:g}, however short the step is"
+            )
         if loops or any(isinstance(joint, Gear) for joint in mechanism.joints):
-            return Promise(1, differences=1)
+            return ConvergenceOrder(1, differences=1)
         if turns_steadily(mechanism) or is_prescribed(mechanism):
-            return Promise(EXACT, reaction=1, differences=1)
-        return Promise(1, gap=EXACT, slip=EXACT, differences=1)
+            return ConvergenceOrder(EXACT, reaction=1, differences=1)
+        return ConvergenceOrder(1, gap=EXACT, slip=EXACT, differences=1)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
@@ -105,7 +107,7 @@ class Bullet(Optional):
         forces = FORCES_COST if mechanism.forces else 0.0
         return STEP_COST * over_three(mechanism) + ITERATION_COST * self.iterations * rows + forces
 
-    def alike(self, mechanism: Mechanism) -> Bullet | None:
+    def stricter(self, mechanism: Mechanism) -> Bullet | None:
         """With twenty times as many iterations, where there are loops, whose rows they solve."""
         if not spanning_tree(mechanism).loops and not any(isinstance(joint, Drive) for joint in mechanism.joints):
             return None

@@ -18,15 +18,15 @@
 6. An engine that resets itself reports when (`reset_at`), one that warns its `warnings`, one that estimates an error
    above its claim from when on (`unresolved_at`); all go on. A method without an estimate, such as a single run of
    documented settings, claims an order and no accuracy at a step.
-7. `order(mechanism)` is what theory promises of its errors, from its settings and the mechanism alone: a Promise, which
-   the gate checks, or Unpromised with the reason.
+7. `order(mechanism)` returns the expected order of its errors from its settings and the mechanism alone: a
+   ConvergenceOrder, which the gate checks, or NotDeclared with the reason.
 8. `step_cost(mechanism)` is about the CPU time of a step [s]. It decides which small steps are worth running, so it is
    a formula: the same on every machine.
-9. `holder(joint, mechanism)` says who holds a joint: the engine by a joint, contact or coordinate of its own; the
+9. `enforcement(joint, mechanism)` says who holds a joint: the engine by a joint, contact or coordinate of its own; the
    engine by rows that our code writes anew while it steps; or our code alone, between steps of free bodies.
-10. `softness(mechanism, dt)` is the regularisation of its joints by its own settings: a Softness, or None.
-11. `instants`, `alike`, `precision` and `angle_error` declare the law of one instant, the tolerance of the solver and
-   the rounding; `crosscheck search` holds the engine to them. Usual is: no law, no tolerance, double precision.
+10. `regularisation(mechanism, dt)` is the regularisation of its joints by its own settings: a Regularisation, or None.
+11. `instants`, `stricter`, `precision` and `angle_error` declare the law of one instant, the tolerance of the solver
+   and the rounding; `crosscheck search` holds the engine to them. Usual is: no law, no tolerance, double precision.
 
 An entry point of the group `crosscheck.bare_loops`, by an engine's name, is a function of (engine, mechanism, dt,
 steps) that returns the CPU seconds of that many steps with nothing read, for `crosscheck bench`. It may raise
@@ -52,7 +52,7 @@ EXACT = math.inf
 # Claim of every method with an estimate: errors of poses in rad, or in the mechanism's length. Above, it is unresolved.
 CLAIM = 1e-7
 
-Holder = Literal["engine", "engine, our rows", "ours"]
+Enforcement = Literal["engine", "engine, our rows", "ours"]
 
 
 class Unsupported(Exception):
@@ -78,7 +78,7 @@ class Size:
 
 
 @dataclass(frozen=True)
-class Softness:
+class Regularisation:
     """Regularisation of the joints: J a = bias - damping slip - stiffness gap - compliance A reaction.
 
     stiffness [1/s^2], damping [1/s]; compliance: a share of the row's own inverse inertia A. `rows`: which rows of the
@@ -93,7 +93,7 @@ class Softness:
 
 
 @dataclass(frozen=True)
-class Promise:
+class ConvergenceOrder:
     """Expected convergence order of each error; EXACT (inf) where there is no discretisation error.
 
     `order` is that of poses, and of the others unless they are given. `integrator`: the order of what the step alone
@@ -125,7 +125,7 @@ class Promise:
 
 
 @dataclass(frozen=True)
-class Unpromised:
+class NotDeclared:
     """No order can be promised; `reason` is one sentence. Errors are bounded by differences between step sizes."""
 
     reason: str
@@ -176,13 +176,13 @@ class Engine(ABC):
     # What an extra is imported by when its first mechanism is built, since some take seconds.
     modules: ClassVar[tuple[str, ...]] = ()
     # About how long a model takes to build [s], where that is no matter of milliseconds.
-    building: ClassVar[float] = 0.0
+    build_time: ClassVar[float] = 0.0
     # The relative rounding of its numbers, where these are of less than double precision.
     precision: ClassVar[float] = 0.0
     # How far angles that it measures between bodies may be off [rad], beside rounding.
     angle_error: ClassVar[float] = 0.0
     # Who works out what springs, dampers and the like do.
-    forces_by: ClassVar[Holder] = "engine"
+    forces_by: ClassVar[Enforcement] = "engine"
 
     @property
     def family(self) -> str:
@@ -194,7 +194,7 @@ class Engine(ABC):
         return ""
 
     @property
-    def touches(self) -> bool:
+    def uses_contacts(self) -> bool:
         """Whether rolls are held by contacts of shapes: if two that just touch do, depends on rounding."""
         return False
 
@@ -202,28 +202,28 @@ class Engine(ABC):
         """Load or compile what is needed once in a process, so that no build is timed with it."""
 
     @abstractmethod
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised: ...
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared: ...
 
     @abstractmethod
     def step_cost(self, mechanism: Mechanism) -> float: ...
 
     @abstractmethod
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder: ...
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement: ...
 
-    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+    def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
         """Nothing is declared that the judge could follow."""
         return None
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
-    ) -> tuple[Instant, ...] | Unpromised:
+    ) -> tuple[Instant, ...] | NotDeclared:
         """What it computes at the start, or in its first `steps` steps of dt [s], beside the law that it declares.
 
         `built`: the mechanism that the model is made of, if it is another one: a test puts a mistake there.
         """
-        return Unpromised("it declares no law of an instant")
+        return NotDeclared("it declares no law of an instant")
 
-    def alike(self, mechanism: Mechanism) -> Engine | None:
+    def stricter(self, mechanism: Mechanism) -> Engine | None:
         """The same method with a far smaller solver tolerance, whose difference is the declared error; or None."""
         return None
 
@@ -231,11 +231,11 @@ class Engine(ABC):
         """The Gauss-Seidel iterations over the joints in a step, as it starts; None for another solver."""
         return None
 
-    def within(self, mechanism: Mechanism) -> Engine:
+    def stepped(self, mechanism: Mechanism) -> Engine:
         """The engine that is stepped: inside of those that choose and combine others."""
         return self
 
-    def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
+    def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
         """Steps of the inner runs as fractions of dt; (1.0,) for one run."""
         return (1.0,)
 
@@ -253,7 +253,7 @@ def _forwarded(member: str) -> Any:
     return property(lambda engine: getattr(engine.engine, member))
 
 
-class Around(Engine):
+class EngineWrapper(Engine):
     """An engine around another one, `engine`, to which it forwards every member that it does not define itself."""
 
     engine: Engine
@@ -267,34 +267,34 @@ class Around(Engine):
     modules: Any = _forwarded("modules")  # pyright: ignore[reportIncompatibleVariableOverride]
     family: Any = _forwarded("family")
     missing: Any = _forwarded("missing")
-    touches: Any = _forwarded("touches")
+    uses_contacts: Any = _forwarded("uses_contacts")
     precision: Any = _forwarded("precision")  # pyright: ignore[reportIncompatibleVariableOverride]
     angle_error: Any = _forwarded("angle_error")  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def prepare(self) -> None:
         self.engine.prepare()
 
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         return self.chosen(mechanism).order(mechanism)
 
     def step_cost(self, mechanism: Mechanism) -> float:
         return self.chosen(mechanism).step_cost(mechanism)
 
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
-        return self.chosen(mechanism).holder(joint, mechanism)
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
+        return self.chosen(mechanism).enforcement(joint, mechanism)
 
-    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
-        return self.chosen(mechanism).softness(mechanism, dt)
+    def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
+        return self.chosen(mechanism).regularisation(mechanism, dt)
 
-    def alike(self, mechanism: Mechanism) -> Engine | None:
-        stricter = self.engine.alike(mechanism)
+    def stricter(self, mechanism: Mechanism) -> Engine | None:
+        stricter = self.engine.stricter(mechanism)
         return None if stricter is None else replace(self, engine=stricter)  # type: ignore[type-var]
 
-    def within(self, mechanism: Mechanism) -> Engine:
-        return self.chosen(mechanism).within(mechanism)
+    def stepped(self, mechanism: Mechanism) -> Engine:
+        return self.chosen(mechanism).stepped(mechanism)
 
-    def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
-        return self.chosen(mechanism).steps_of_runs(mechanism)
+    def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
+        return self.chosen(mechanism).inner_steps(mechanism)
 
 
 # Tolerance on sample times, relative to dt: above rounding, far below half a step.

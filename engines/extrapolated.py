@@ -9,7 +9,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import CLAIM, Around, Engine, OneShot, Promise, Run, Size, Unpromised
+from engines import CLAIM, ConvergenceOrder, Engine, EngineWrapper, NotDeclared, OneShot, Run, Size
 from engines.constraint_error import closing, reaction_doubts
 from engines.richardson import (
     LEAST,
@@ -59,7 +59,7 @@ class Settling(Protocol):
 
 
 @dataclass(frozen=True)
-class Extrapolated(Around, Valid):
+class Extrapolated(EngineWrapper, Valid):
     """An engine in the sense of `engines.Engine` that runs another one at steps dt / level, and extrapolates.
 
     A sample is the linear combination of the runs' poses, twists and reactions that is free of errors in the `powers`
@@ -102,23 +102,23 @@ class Extrapolated(Around, Valid):
             )
 
     @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """The power after those removed; rounding grows by the sum of the weights' sizes.
 
         Reactions that are a change of velocity over a step use the steps of the finest run. Their error has additional
         powers, so only twice the inner order is promised of them.
         """
         inner = self.engine.order(mechanism)
-        if isinstance(inner, Unpromised):
+        if isinstance(inner, NotDeclared):
             return inner
         if inner.order != self.powers[0]:
-            return Unpromised(
+            return NotDeclared(
                 f"the engine inside has an error of order {inner.order:g} here, and this removes powers "
                 f"from {self.powers[0]} on"
             )
         # Powers rise evenly: by one, or by two for a method that is symmetric in time.
         rises = [high - low for low, high in pairwise(self.powers)]
-        return Promise(
+        return ConvergenceOrder(
             self.powers[-1] + (rises[-1] if rises else 1),
             reaction=2 * inner.order if inner.differences else None,
             differences=inner.differences * self.levels[-1],
@@ -130,10 +130,10 @@ class Extrapolated(Around, Valid):
         """All steps of all levels [s]."""
         return sum(self.levels) * self.engine.step_cost(mechanism)
 
-    def softness(self, mechanism: Mechanism, dt: float) -> None:
+    def regularisation(self, mechanism: Mechanism, dt: float) -> None:
         """Nothing is declared: a softness that is tied to the step is extrapolated too."""
 
-    def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
+    def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
         """One run a level."""
         return tuple(1 / level for level in self.levels)
 

@@ -36,11 +36,11 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from engines.capability import Capability
-from engines.contract import EXACT, Promise, Size, Unpromised, Unsupported
+from engines.contract import EXACT, ConvergenceOrder, NotDeclared, Size, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.lagrange.dynamics import Dynamics
 from engines.motions import is_prescribed, over_three
-from engines.single_run import Optional, Recorded, quiet
+from engines.single_run import ExtraEngine, Recorded, quiet
 from engines.units import counted_in, power_of_two
 from reference.checks import Name, Positive, validated
 from reference.couplings import Coupling
@@ -57,7 +57,7 @@ STEP_COST = 19e-6  # s, with three bodies
 
 
 @dataclass(frozen=True)
-class Exudyn(Optional):
+class Exudyn(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
     `relative` and `absolute` are the tolerances of Newton's method, 1e-8 and 1e-10 as shipped; `damping`: the spectral
@@ -88,14 +88,14 @@ class Exudyn(Optional):
     own_units: bool = False
 
     @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """Second. Reactions are unknown where velocities are held and the start's accelerations are not consistent."""
         velocities = holds_velocities(mechanism)
         reaction = math.nan if velocities and not self.consistent else None
         if self.integrator == "TrapezoidalIndex2":
-            return Promise(2, slip=EXACT, reaction=reaction)
+            return ConvergenceOrder(2, slip=EXACT, reaction=reaction)
         held = velocities or is_prescribed(mechanism)
-        return Promise(2, reaction=reaction) if held else Promise(2, gap=EXACT)
+        return ConvergenceOrder(2, reaction=reaction) if held else ConvergenceOrder(2, gap=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
@@ -103,7 +103,7 @@ class Exudyn(Optional):
         size = over_three(mechanism)
         return STEP_COST * size * (1.0 if self.sparse else max(1.0, size / 5) ** 2)
 
-    def alike(self, mechanism: Mechanism) -> Exudyn | None:
+    def stricter(self, mechanism: Mechanism) -> Exudyn | None:
         """With a thousandth of Newton's tolerances, where they are not of the mechanism's own units."""
         if self.own_units:
             return None

@@ -39,7 +39,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.capability import Capability
-from engines.contract import EXACT, Holder, Instant, Promise, Size, Softness, Unpromised, Unsupported
+from engines.contract import (
+    EXACT,
+    ConvergenceOrder,
+    Enforcement,
+    Instant,
+    NotDeclared,
+    Regularisation,
+    Size,
+    Unsupported,
+)
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco import declared
 from engines.mujoco.engine import MuJoCo
@@ -49,7 +58,7 @@ from engines.mujoco.model import Model
 from engines.mujoco.releases import full_inertia
 from engines.mujoco.running import UNSOLVED
 from engines.sampling import sampled
-from engines.single_run import Optional, Recorded, quiet
+from engines.single_run import ExtraEngine, Recorded, quiet
 from engines.tree import Tree, spanning_tree
 from engines.units import power_of_two
 from engines.user_cache import cache_folder
@@ -68,14 +77,14 @@ NO_VELOCITY_TERM = "upstream: loops lack the velocity term J-dot v in MJX, so th
 
 
 @dataclass(frozen=True)
-class Mjx(Optional):
+class Mjx(ExtraEngine):
     """An engine in the sense of `engines.Engine`; `settings`: the MuJoCo method whose model and options are taken."""
 
     name = "mjx"
     packages = ("mujoco-mjx", "jax", "mujoco-core")
     modules: ClassVar[tuple[str, ...]] = ("jax", "mujoco.mjx")
     apart: ClassVar[str] = "pip install --no-deps mujoco-mjx"
-    building: ClassVar[float] = 20.0
+    build_time: ClassVar[float] = 20.0
     capability: ClassVar[Capability] = Capability(
         "mjx",
         frozenset({Pin, Weld, Gear, Rod, Slot, Drive}),
@@ -90,16 +99,16 @@ class Mjx(Optional):
     settings: MuJoCo = field(default_factory=lambda: C_DEFAULT)
 
     @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """The integrator's where there is no loop."""
         tree = spanning_tree(mechanism)
         if lacks_velocity_terms(tree):
-            return Unpromised("MJX leaves out the velocity term of loops, which no step makes smaller")
+            return NotDeclared("MJX leaves out the velocity term of loops, which no step makes smaller")
         if tree.closed:  # sums of angles, which need no such term
             return self.settings.order(mechanism)
         if turns_steadily(mechanism) or is_prescribed(mechanism):
-            return Promise(EXACT)
-        return Promise(4 if self.settings.integrator == "RK4" else 1, gap=EXACT, slip=EXACT)
+            return ConvergenceOrder(EXACT)
+        return ConvergenceOrder(4 if self.settings.integrator == "RK4" else 1, gap=EXACT, slip=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
@@ -107,17 +116,17 @@ class Mjx(Optional):
         return EVALUATION_COST * (4 if self.settings.integrator == "RK4" else 1) * over_three(mechanism)
 
     @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         """As in MuJoCo."""
-        return self.settings.holder(joint, mechanism)
+        return self.settings.enforcement(joint, mechanism)
 
-    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+    def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
         """As the settings declare it in MuJoCo; that the velocity term is missing is declared nowhere."""
-        return self.settings.softness(mechanism, dt)
+        return self.settings.regularisation(mechanism, dt)
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
-    ) -> tuple[Instant, ...] | Unpromised:
+    ) -> tuple[Instant, ...] | NotDeclared:
         """Accelerations in the states that MuJoCo steps to; those of loops and rods lack their velocity terms."""
         settings = replace(self.settings, tolerance=min(self.settings.tolerance, declared.SOLVED))
         self.capability.require(built or mechanism)
@@ -130,9 +139,9 @@ class Mjx(Optional):
 
         return declared.instants(settings, mechanism, dt, steps, built or mechanism, accelerations, check)
 
-    def alike(self, mechanism: Mechanism) -> Mjx | None:
+    def stricter(self, mechanism: Mechanism) -> Mjx | None:
         """As MuJoCo with these settings."""
-        settings = self.settings.alike(mechanism)
+        settings = self.settings.stricter(mechanism)
         return None if settings is None else replace(self, settings=settings)
 
     def model(self, mechanism: Mechanism, dt: float) -> DeviceModel:

@@ -33,10 +33,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.capability import Capability
-from engines.contract import EXACT, Holder, Promise, Size, Unpromised
+from engines.contract import EXACT, ConvergenceOrder, Enforcement, NotDeclared, Size
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled
-from engines.single_run import Optional, Recorded
+from engines.single_run import ExtraEngine, Recorded
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.checks import Name, NonNegative, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
@@ -53,7 +53,7 @@ FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
 
 
 @dataclass(frozen=True)
-class Pinocchio(Optional):
+class Pinocchio(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
     `integrator`: "euler" (semi-implicit, order 1) or "rk4" (order 4); `correction` of loops [1/s], see above.
@@ -62,7 +62,7 @@ class Pinocchio(Optional):
     name = "pinocchio"
     packages = ("pin",)
     modules: ClassVar[tuple[str, ...]] = ("pinocchio",)
-    forces_by: ClassVar[Holder] = "ours"
+    forces_by: ClassVar[Enforcement] = "ours"
     capability: ClassVar[Capability] = Capability(
         "pinocchio",
         frozenset({Pin, Slot, Drive, Weld}),
@@ -79,15 +79,15 @@ class Pinocchio(Optional):
     correction: NonNegative = 0.0
 
     @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """The integrator's; what the tree holds is exact."""
         tree = spanning_tree(mechanism)
         order = 4 if self.integrator == "rk4" else 1
         if tree.loops:
-            return Promise(order)
+            return ConvergenceOrder(order)
         if turns_steadily(mechanism) or is_prescribed(mechanism):
-            return Promise(EXACT)
-        return Promise(order, gap=EXACT, slip=EXACT)
+            return ConvergenceOrder(EXACT)
+        return ConvergenceOrder(order, gap=EXACT, slip=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
@@ -98,7 +98,7 @@ class Pinocchio(Optional):
         return stages * (evaluation + (FORCES_COST if mechanism.forces else 0.0))
 
     @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         """Joints are the engine's; the torque of a drive is worked out by our code."""
         return "ours" if isinstance(joint, Drive) and joint not in spanning_tree(mechanism).kept else "engine"
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.capability import Capability
-from engines.contract import Engine, Holder, OneShot, Size, Unsupported
+from engines.contract import Enforcement, Engine, OneShot, Size, Unsupported
 from engines.sampling import reactions
 from reference.checks import Count, Positive, Valid, validated
 from reference.joints import Joint
@@ -110,7 +110,7 @@ class Recorder(Protocol):
     def record(self, samples: int, every: int) -> Recorded: ...
 
 
-class Optional(Engine, Valid):
+class ExtraEngine(Engine, Valid):
     """The base of an engine whose package is an extra of this project: a value even where the package is missing.
 
     The extra has the engine's name. `library`: a shared library of Linux that the wheel of `modules` needs and lacks,
@@ -139,7 +139,7 @@ class Optional(Engine, Valid):
         if self.missing:
             raise Unsupported(self.missing)
 
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         """Every joint is the engine's own."""
         return "engine"
 

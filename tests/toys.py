@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Holder, Promise, Size, Unpromised, Unsupported
+from engines import ConvergenceOrder, Enforcement, Engine, NotDeclared, Size, Unsupported
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
@@ -77,13 +77,13 @@ class Plain(Engine):
 
     packages = ()
 
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        return Unpromised("nobody thought about it")
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
+        return NotDeclared("nobody thought about it")
 
     def step_cost(self, mechanism: Mechanism) -> float:
         return 50e-6
 
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         return "engine"
 
 
@@ -97,8 +97,8 @@ class Toy(Plain):
     plateau: float = 0.0
     name: str = "toy"
 
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        return Promise(self.power)
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
+        return ConvergenceOrder(self.power)
 
     def build(self, mechanism: Mechanism, dt: float) -> ToyRun:
         return ToyRun(mechanism, dt, self.spoil)

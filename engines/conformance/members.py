@@ -16,7 +16,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from engines import Holder, Promise, Size, Softness, Unpromised, Unsupported
+from engines import ConvergenceOrder, Enforcement, NotDeclared, Regularisation, Size, Unsupported
 from engines.conformance.check import (
     SAMPLES,
     STEP,
@@ -125,14 +125,16 @@ def tells_the_size_of_its_model(subject: Subject, world: World) -> None:
 
 
 def promises_an_order(subject: Subject, world: World) -> None:
-    """`order` gives a Promise, or Unpromised with one sentence that says why."""
+    """`order` gives a ConvergenceOrder, or NotDeclared with one sentence that says why."""
     subject.build(world.mechanism)
     order = subject.engine.order(world.mechanism)
-    if isinstance(order, Unpromised):
-        require_a_sentence(str(order.reason), "Unpromised")
+    if isinstance(order, NotDeclared):
+        require_a_sentence(str(order.reason), "NotDeclared")
         return
-    require(isinstance(order, Promise), f"order = {order!r}", "a Promise or Unpromised", "it is a number")
-    means = "a method that does not converge is Unpromised"
+    require(
+        isinstance(order, ConvergenceOrder), f"order = {order!r}", "a ConvergenceOrder or NotDeclared", "it is a number"
+    )
+    means = "a method that does not converge is NotDeclared"
     require(order.order > 0, f"an order of {order.order!r}", "more than 0", means)
 
 
@@ -148,21 +150,21 @@ def tells_what_a_step_costs(subject: Subject, world: World) -> None:
 def tells_who_holds_a_joint(subject: Subject, world: World) -> None:
     """`holder` says of every joint who holds it, in the words of the contract."""
     subject.build(world.mechanism)
-    expected = " or ".join(repr(word) for word in get_args(Holder))
+    expected = " or ".join(repr(word) for word in get_args(Enforcement))
     for joint in world.mechanism.joints:
-        holder = subject.engine.holder(joint, world.mechanism)
+        holder = subject.engine.enforcement(joint, world.mechanism)
         found = f"{holder!r} for a {type(joint).__name__}"
-        require(holder in get_args(Holder), found, expected, "a kind of joint is forgotten")
+        require(holder in get_args(Enforcement), found, expected, "a kind of joint is forgotten")
 
 
 def tells_how_joints_give_way(subject: Subject, world: World) -> None:
-    """`softness` gives None, or a Softness of finite numbers for every row of the mechanism."""
+    """`softness` gives None, or a Regularisation of finite numbers for every row of the mechanism."""
     subject.build(world.mechanism)
-    soft = subject.engine.softness(world.mechanism, STEP)
+    soft = subject.engine.regularisation(world.mechanism, STEP)
     if soft is None:
         return
-    if not isinstance(soft, Softness):
-        raise Fails(f"softness = {soft!r}", "a Softness or None", "it is the engine's own setting")
+    if not isinstance(soft, Regularisation):
+        raise Fails(f"softness = {soft!r}", "a Regularisation or None", "it is the engine's own setting")
     for name, least in (("stiffness", 0.0), ("damping", 0.0), ("compliance", -math.inf)):
         value = getattr(soft, name)
         sound = math.isfinite(value) and value > least and value >= 0
@@ -173,9 +175,9 @@ def tells_how_joints_give_way(subject: Subject, world: World) -> None:
 
 
 def tells_the_steps_of_its_runs(subject: Subject, world: World) -> None:
-    """`steps_of_runs` gives the step of each run, in parts of dt: above zero, and finite."""
+    """`inner_steps` gives the step of each run, in parts of dt: above zero, and finite."""
     subject.build(world.mechanism)
-    steps = subject.engine.steps_of_runs(world.mechanism)
+    steps = subject.engine.inner_steps(world.mechanism)
     sound = isinstance(steps, tuple) and steps and all(math.isfinite(step) and step > 0 for step in steps)
     require(bool(sound), f"steps of runs {steps!r}", "a tuple of parts of dt", "it counts runs")
 

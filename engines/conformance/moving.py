@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from engines import Promise, Unpromised, Unsupported
+from engines import ConvergenceOrder, NotDeclared, Unsupported
 from engines.conformance.check import (
     SAMPLES,
     STEP,
@@ -210,10 +210,10 @@ def twists_have_their_order(subject: Subject, world: World) -> None:
     _has_its_order(subject, world, "twist", "rate")
 
 
-def _promise(subject: Subject, world: World) -> Promise:
+def _promise(subject: Subject, world: World) -> ConvergenceOrder:
     """The engine's promise; raises NotAsked where there is none."""
     subject.run(world.mechanism)  # where it builds nothing it need not promise anything
-    if isinstance(promise := subject.engine.order(world.mechanism), Unpromised):
+    if isinstance(promise := subject.engine.order(world.mechanism), NotDeclared):
         raise NotAsked(f"no order is promised: {promise.reason}")
     return promise
 
@@ -253,7 +253,7 @@ def _gives_way_for_good(subject: Subject, world: World) -> bool:
 
     Compared is the way that a joint gives, over the acceleration that it should prevent [s^2].
     """
-    softness = [subject.engine.softness(world.mechanism, SPAN / WHOLE / every) for every in REFINED[-2:]]
+    softness = [subject.engine.regularisation(world.mechanism, SPAN / WHOLE / every) for every in REFINED[-2:]]
     coarse, fine = (0.0 if soft is None else soft.compliance / soft.stiffness for soft in softness)
     return fine > HARD and fine * (REFINED[-1] / REFINED[-2]) > ROOM * coarse
 

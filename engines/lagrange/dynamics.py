@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853
 from scipy.linalg import get_lapack_funcs
 
-from engines import Softness
+from engines import Regularisation
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE, rank, solve_symmetric
 
@@ -135,7 +135,7 @@ class Dynamics:
     def __init__(
         self,
         mechanism: Mechanism,
-        softness: Softness | None = None,
+        softness: Regularisation | None = None,
         gives: NDArray[np.bool_] | None = None,
         least: float = LEAST_INVERSE_INERTIA,
         least_pivot: float = 0.0,

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import EXACT, Engine, Holder, OneShot, Promise, Size, Softness, Unpromised
+from engines import EXACT, ConvergenceOrder, Enforcement, Engine, NotDeclared, OneShot, Regularisation, Size
 from engines.lagrange.dynamics import (
     FIXED_DOP853,
     NONE,
@@ -94,25 +94,29 @@ class Lagrange(Engine, Valid):
             compiled()
 
     @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """The integrator's; a projection leaves no gap, and all of the motion is its own where nothing is free.
 
         Baumgarte's spring is tied to the step, and turns a gap into an acceleration divided by the step squared: that
         costs two orders, and the reactions all.
         """
         if self.tolerance is not None:
-            return Unpromised("its steps are its own: the error is that of its tolerance, whatever the step asked for")
+            return NotDeclared("its steps are its own: the error is that of its tolerance, whatever the step asked for")
         order, prescribed = ORDERS[self.integrator], is_prescribed(mechanism)
         match self.stabilisation:
             case "projection":
-                return Promise(EXACT) if prescribed else Promise(order, gap=EXACT, slip=EXACT)
+                return ConvergenceOrder(EXACT) if prescribed else ConvergenceOrder(order, gap=EXACT, slip=EXACT)
             case "baumgarte" if order == 1:
-                return Promise(2, rate=1, slip=1, energy=1, reaction=1) if prescribed else Promise(1, gap=2)
+                return (
+                    ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1)
+                    if prescribed
+                    else ConvergenceOrder(1, gap=2)
+                )
             case "baumgarte" if order == 4:
-                return Promise(2, rate=1, slip=1, energy=1, reaction=0)
+                return ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=0)
             case "baumgarte":
-                return Promise(order - 2)
-        return Promise(order)
+                return ConvergenceOrder(order - 2)
+        return ConvergenceOrder(order)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
@@ -122,7 +126,7 @@ class Lagrange(Engine, Valid):
         return STEP_COSTS[self.compiled][self.integrator] * over_three(mechanism)
 
     @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         """This engine is nothing but the ideal constraint."""
         return "engine"
 
@@ -131,12 +135,12 @@ class Lagrange(Engine, Valid):
         adaptive, slow = " adaptive" * (self.tolerance is not None), " in numpy" * (not self.compiled)
         return f"{self.integrator} {self.stabilisation}{adaptive}{slow}"
 
-    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+    def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
         """Baumgarte's spring and damper in every row, critically damped; None for the other methods."""
         if self.stabilisation != "baumgarte":
             return None
         rate = 1 / (BAUMGARTE_STEPS * dt)
-        return Softness(rate**2, 2 * rate, 0.0, (True,) * mechanism.row_count)
+        return Regularisation(rate**2, 2 * rate, 0.0, (True,) * mechanism.row_count)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> _LagrangeRun:
@@ -147,7 +151,7 @@ class Lagrange(Engine, Valid):
 class _LagrangeRun(OneShot):
     def __init__(self, engine: Lagrange, mechanism: Mechanism, dt: float) -> None:
         self._engine, self._mechanism, self._dt = engine, mechanism, dt
-        self._softness = engine.softness(mechanism, dt)
+        self._softness = engine.regularisation(mechanism, dt)
         self._machine = Machine.of(mechanism) if engine.in_machine_code else None
         if self._machine is not None and self._softness is not None:
             self._machine.soften(self._softness, np.ones(mechanism.row_count, dtype=bool))

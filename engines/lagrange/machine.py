@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Softness
+from engines import Regularisation
 from engines.lagrange import arrays as ix
 from engines.lagrange.arrays import Arrays, arrays_of
 from engines.lagrange.dynamics import ADAPTIVE_DOP853, NONE, PROJECTION_ITERATIONS, Tableau
@@ -115,7 +115,7 @@ class Machine:
             return None
         return cls(mechanism, arrays, Windows(rolls, records))
 
-    def soften(self, softness: Softness, gives: NDArray[np.bool_]) -> None:
+    def soften(self, softness: Regularisation, gives: NDArray[np.bool_]) -> None:
         """Let the rows that `gives` (rows,) names give way by springs, dampers and a compliance."""
         whole, real, place = self.arrays.whole, self.arrays.real, self.arrays.rows[gives]
         whole[ix.SOFT] = 2 if softness.compliance > 0 else 1

@@ -21,7 +21,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Instant, Softness, Unpromised
+from engines import Instant, NotDeclared, Regularisation
 from engines.constrained import Constrained, constrained
 from engines.mujoco.joints.skate import STEPWISE, slip_damping
 from engines.mujoco.model import Model
@@ -46,22 +46,22 @@ def instants(
     built: Mechanism,
     accelerations: Callable[[Model, Any], Array] | None = None,
     check: str = "acceleration",
-) -> tuple[Instant, ...] | Unpromised:
+) -> tuple[Instant, ...] | NotDeclared:
     """Accelerations and reactions at the start and, with `steps`, after so many steps; see `engines.Engine.instants`.
 
     `accelerations(model, data)` replaces those of MuJoCo, without reactions; `check` may be WITHOUT.
     """
     if reason := why_no_law(engine, mechanism, dt):
-        return Unpromised(reason)
+        return NotDeclared(reason)
     engine = replace(engine, tolerance=min(engine.tolerance, SOLVED), estimates=False)
     run = engine.build(built, dt)
     model = run.model
     if model.halves:
-        return Unpromised("a body that is cut into halves is another mechanism at one instant")
+        return NotDeclared("a body that is cut into halves is another mechanism at one instant")
     start, told = model.start(), run(1, max(steps, 1))
     if any("the solver missed" in warning for warning in told.warnings):
-        return Unpromised("it says itself that its solver ended too early")
-    softness, model = engine.softness(mechanism, dt), replace(model, mechanism=mechanism)
+        return NotDeclared("it says itself that its solver ended too early")
+    softness, model = engine.regularisation(mechanism, dt), replace(model, mechanism=mechanism)
     later = steps and told.reset_at is None and np.isfinite(told.pose).all()
     out: list[Instant] = []
     with model.hooked():
@@ -83,7 +83,7 @@ def why_no_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> str:
         return f"a drive by {engine.drive!r} obeys no law of an instant"
     if engine.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints):
         return "a blade whose row is that of another pose obeys no law of an instant"
-    softness = engine.softness(mechanism, dt)
+    softness = engine.regularisation(mechanism, dt)
     if softness is not None and not softness.complete:
         return "contacts, and rows that are held over a step, obey no law of an instant"
     return ""
@@ -104,7 +104,7 @@ class State:
     solved: Array  # (rows,): which rows are the solver's, the others being held by the tree
 
     @classmethod
-    def of(cls, mechanism: Mechanism, model: Model, data: Any, softness: Softness | None) -> State:
+    def of(cls, mechanism: Mechanism, model: Model, data: Any, softness: Regularisation | None) -> State:
         """What `data` holds after mj_forward. Raises RuntimeError where rows are lacking."""
         pose, twist, _ = _motion(model, data, data.qacc)
         give, aimed, solved = _declared(mechanism, model, data, softness, pose, twist)
@@ -144,7 +144,7 @@ def jacobian(compiled: Any, data: Any) -> Array:
 
 
 def _declared(
-    mechanism: Mechanism, model: Model, data: Any, softness: Softness | None, pose: Array, twist: Array
+    mechanism: Mechanism, model: Model, data: Any, softness: Regularisation | None, pose: Array, twist: Array
 ) -> tuple[Array, Array, Array]:
     """How the rows give way (rows, rows), what they aim at beside their velocity term, and which the solver has."""
     rows, compiled = mechanism.rows(pose), model.compiled

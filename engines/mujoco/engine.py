@@ -10,7 +10,17 @@ from typing import Any, Literal
 import mujoco
 import numpy as np
 
-from engines import EXACT, Engine, Holder, Instant, Promise, Size, Softness, Unpromised, Unsupported
+from engines import (
+    EXACT,
+    ConvergenceOrder,
+    Enforcement,
+    Engine,
+    Instant,
+    NotDeclared,
+    Regularisation,
+    Size,
+    Unsupported,
+)
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco import declared
 from engines.mujoco.joints.links import DriveBy, RodBy
@@ -33,9 +43,9 @@ Solver = Literal["Newton", "CG", "PGS"]
 Factorisation = Literal["auto", "dense", "sparse"]
 
 # A loop closed by a spring of some steps: its gap falls as the square of the step, whatever integrates it.
-SPRUNG = Promise(1, gap=2)
+SPRUNG = ConvergenceOrder(1, gap=2)
 # The same in a motion that is prescribed, where a pose is wrong by its gap alone.
-SPRUNG_PRESCRIBED = Promise(2, rate=1, slip=1, energy=1, reaction=1)
+SPRUNG_PRESCRIBED = ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1)
 
 
 @dataclass(frozen=True)
@@ -80,11 +90,11 @@ class MuJoCo(Engine, Valid):
             raise InvalidMechanism("MuJoCo: solvers is (); it must be a tuple of at least one of Newton, CG and PGS")
 
     @property
-    def touches(self) -> bool:
+    def uses_contacts(self) -> bool:
         return isinstance(self.rolls, RollContact)
 
     @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """The integrator's order, reduced where a constraint row is of lower order."""
         tree = self._tree(mechanism)
         skating, rolling = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Skate, Roll))
@@ -95,18 +105,18 @@ class MuJoCo(Engine, Valid):
         slip = 2 if self.skates == "predicted tendon" else None
         overwritten = "a state that is overwritten between steps obeys no equation of which an order is known"
         # The first row whose condition holds.
-        table: tuple[tuple[bool, Promise | Unpromised], ...] = (
-            (driven and self.drive == "overwrite", Unpromised(overwritten)),
+        table: tuple[tuple[bool, ConvergenceOrder | NotDeclared], ...] = (
+            (driven and self.drive == "overwrite", NotDeclared(overwritten)),
             # A contact's row has the velocity and not its change.
-            (rolling and isinstance(self.rolls, RollContact), Promise(1)),
-            (skating and self.skates != "rows", Promise(1, gap=gap, slip=slip)),
-            (tied and order > 1, Promise(2, rate=1, slip=1, energy=1, reaction=1, integrator=order)),
+            (rolling and isinstance(self.rolls, RollContact), ConvergenceOrder(1)),
+            (skating and self.skates != "rows", ConvergenceOrder(1, gap=gap, slip=slip)),
+            (tied and order > 1, ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1, integrator=order)),
             (tied and is_prescribed(mechanism), SPRUNG_PRESCRIBED),
             (tied, SPRUNG),
-            (tree.closed or rolling or skating, Promise(order, gap=gap)),
+            (tree.closed or rolling or skating, ConvergenceOrder(order, gap=gap)),
             # Coordinates that turn at a constant rate, which any integrator adds up.
-            (turns_steadily(mechanism), Promise(EXACT)),
-            (True, Promise(order, gap=EXACT, slip=EXACT)),
+            (turns_steadily(mechanism), ConvergenceOrder(EXACT)),
+            (True, ConvergenceOrder(order, gap=EXACT, slip=EXACT)),
         )
         return next(promise for holds, promise in table if holds)
 
@@ -116,7 +126,7 @@ class MuJoCo(Engine, Valid):
         return 12e-6 * over_three(mechanism)
 
     @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         """Coordinates of the tree, connects, fixed tendons and contacts are MuJoCo's; rows that callbacks or
         hooks write are shared; a state that is worked out beside MuJoCo is ours.
         """
@@ -137,11 +147,11 @@ class MuJoCo(Engine, Valid):
     def _tree(self, mechanism: Mechanism) -> Tree:
         return spanning_tree(mechanism, hanging=self.coordinates == "tree")
 
-    def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
+    def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
         """An estimate takes a second run, by double steps."""
         return (2.0, 1.0) if self.estimates else (1.0,)
 
-    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+    def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
         """How loops, skates and rolls give way with steps of dt [s]; None where the tree holds every joint."""
         tree = self._tree(mechanism)
         soft = [joint for joint in mechanism.joints if tree.closes_by(joint) or isinstance(joint, Skate | Roll)]
@@ -164,15 +174,15 @@ class MuJoCo(Engine, Valid):
         # The impedance of a gap of a millimetre and more; as shipped a closed gap is about twice as soft.
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * softening
         rows = tuple(joint in soft for joint in mechanism.joints for _ in range(joint.size))
-        return Softness(gain, damping, compliance, rows, complete=not lacking)
+        return Regularisation(gain, damping, compliance, rows, complete=not lacking)
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
-    ) -> tuple[Instant, ...] | Unpromised:
+    ) -> tuple[Instant, ...] | NotDeclared:
         """Accelerations and reactions; see `engines.mujoco.declared`."""
         return declared.instants(self, mechanism, dt, steps, built or mechanism)
 
-    def alike(self, mechanism: Mechanism) -> MuJoCo | None:
+    def stricter(self, mechanism: Mechanism) -> MuJoCo | None:
         """With a tolerance at which its solver leaves nothing but rounding."""
         return None if self.tolerance <= declared.SOLVED else replace(self, tolerance=declared.SOLVED)
 
@@ -193,7 +203,7 @@ class MuJoCo(Engine, Valid):
             solver_rows=data.nefc,
         )
         order = self.order(mechanism) if self.estimates else None
-        if isinstance(order, Promise) and order.order >= ORDER:
+        if isinstance(order, ConvergenceOrder) and order.order >= ORDER:
             return MuJoCoRun(model, data, size, lambda other: self.build(mechanism, other))
         return MuJoCoRun(model, data, size)
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import EXACT, Holder, Instant, Promise, Unpromised
+from engines import EXACT, ConvergenceOrder, Enforcement, Instant, NotDeclared
 from engines.constrained import constrained
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
 from engines.pymunk.contraction import DENSE, GROWING, closing, contraction, contraction_at, growth
@@ -42,15 +42,15 @@ MOST_SWEEPS = 20_000
 
 def instants(
     engine: Pymunk, mechanism: Mechanism, dt: float, steps: int, built: Mechanism
-) -> tuple[Instant, ...] | Unpromised:
+) -> tuple[Instant, ...] | NotDeclared:
     """Velocities after each of the first `steps` steps, one at least; see `engines.Engine.instants`."""
     rolling, skating = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Roll, Skate))
     if (rolling and engine.roll != "pivot") or (skating and engine.skate != "groove"):
-        return Unpromised("contacts, and blades that are no joint, obey no law of a step")
+        return NotDeclared("contacts, and blades that are no joint, obey no law of a step")
     if any(isinstance(force, Damper | TorsionDamper) for force in mechanism.forces):
-        return Unpromised("a damper takes part in the sweeps, and obeys no law of a step")
+        return NotDeclared("a damper takes part in the sweeps, and obeys no law of a step")
     converged = _converged(engine, mechanism, dt, max(steps, 1), built)
-    if isinstance(converged, Unpromised):
+    if isinstance(converged, NotDeclared):
         return converged
     model, told = converged
     out: list[Instant] = []
@@ -69,19 +69,19 @@ def first_law(engine: Pymunk, mechanism: Mechanism, dt: float) -> Array:
 
 def _converged(
     engine: Pymunk, mechanism: Mechanism, dt: float, steps: int, built: Mechanism
-) -> tuple[Model, Recording] | Unpromised:
+) -> tuple[Model, Recording] | NotDeclared:
     """The first steps, with as many sweeps as the worst of their poses needs: it may be far from that of the start."""
     rho = contraction(mechanism)
     while True:
         sweeps = math.ceil(math.log(CONVERGED) / math.log(rho)) + 5 if rho > 0 else 5
         if sweeps > MOST_SWEEPS:
-            return Unpromised(f"sweeps leave {rho:.6f} of the slowest mode each, so that they don't converge")
+            return NotDeclared(f"sweeps leave {rho:.6f} of the slowest mode each, so that they don't converge")
         if engine.slot == "groove":  # the contraction is of rows that push as they see
             sweeps = MOST_SWEEPS
         model = engine.swept_model(built, dt, replace(engine.sweeping(built, 0.0), iterations=sweeps))
         told = record(model, dt, steps, 1, raw=engine.leapfrog)
         if engine.slot == "groove" and not np.abs(told.pose[..., :2]).max() < REACH * mechanism.length_scale:
-            return Unpromised("the known defect of GrooveJoint drove the motion beyond the groove's ends")
+            return NotDeclared("the known defect of GrooveJoint drove the motion beyond the groove's ends")
         if not (np.isfinite(told.pose).all() and np.isfinite(told.after).all()):
             raise RuntimeError(f"the motion was lost within {steps} steps {told.stopped}".strip())
         rho = max(contraction_at(mechanism, pose) for pose in told.pose)
@@ -145,34 +145,34 @@ def _as_grooves_see(mechanism: Mechanism, pose: Array, gap: Array, light: Array)
 
 
 # Velocities read at the ends of steps: everything is of first order.
-STEPPED = Promise(1, differences=1)
+STEPPED = ConvergenceOrder(1, differences=1)
 # A step closes the whole gap, so that only the gap of one drift remains: second order.
-CLOSING = Promise(1, gap=2, differences=1)
+CLOSING = ConvergenceOrder(1, gap=2, differences=1)
 # One row, at the pose after the drift, solved exactly: no slip remains, and it has no gap.
-HELD = Promise(1, gap=2, slip=EXACT, differences=1)
+HELD = ConvergenceOrder(1, gap=2, slip=EXACT, differences=1)
 # From rest the missing half kick is a delay, which the last step's kick compensates in the velocities.
-FROM_REST = Promise(1, rate=2, gap=2, slip=1, differences=1)
+FROM_REST = ConvergenceOrder(1, rate=2, gap=2, slip=1, differences=1)
 # A prescribed motion needs no kick: the error of a pose is its gap.
-PRESCRIBED = Promise(2, rate=1, slip=1, energy=1, reaction=1, differences=1)
+PRESCRIBED = ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1, differences=1)
 # Only the pin acts on a body that turns steadily: its kick is perpendicular to the path and keeps the energy.
-STEADY = Promise(2, rate=1, slip=1, reaction=1, differences=1)
+STEADY = ConvergenceOrder(2, rate=1, slip=1, reaction=1, differences=1)
 # Half a kick ahead: every step is symmetric in time.
-LEAPFROG = Promise(2, differences=1)
+LEAPFROG = ConvergenceOrder(2, differences=1)
 
 
-def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
-    """The orders; Unpromised for joint constructions whose error does not vanish with the step."""
+def promise(engine: Pymunk, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
+    """The orders; NotDeclared for joint constructions whose error does not vanish with the step."""
     skating, rolling = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Skate, Roll))
     if engine.slot == "groove" and any(_is_rewritten(joint, mechanism) for joint in mechanism.joints):
-        return Unpromised(
+        return NotDeclared(
             "a groove off the centre of mass of a body that turns settles at a wrong impulse, at any step"
         )
     if engine.skate in ("centre", "point") and any(_is_off_centre(joint) for joint in mechanism.joints):
-        return Unpromised(
+        return NotDeclared(
             "a velocity that is zeroed without the turning of a force at the blade is another body's, at any step"
         )
     if isinstance(engine.iterations, int) and _grows(engine, mechanism, engine.iterations):
-        return Unpromised(
+        return NotDeclared(
             f"{engine.iterations} sweeps that begin with the impulses of the step before let these grow, at any step"
         )
     closing = isinstance(engine.error_bias, str) or engine.error_bias == 0
@@ -205,11 +205,11 @@ def _grows(engine: Pymunk, mechanism: Mechanism, iterations: int) -> bool:
     """
     if mechanism.row_count > DENSE:
         return False
-    closes = closing(mechanism, engine.touches) * float(engine.error_bias == 0)
+    closes = closing(mechanism, engine.uses_contacts) * float(engine.error_bias == 0)
     return growth(mechanism, mechanism.pose, iterations, closes) > 1 + GROWING
 
 
-def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Holder:
+def enforcement(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Enforcement:
     """Pivots, grooves, motors, prescribed bodies and contacts are pymunk's; joints placed in every step are shared."""
     match joint:
         case Slot() if engine.slot == "exact" and _is_rewritten(joint, mechanism):

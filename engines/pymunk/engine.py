@@ -8,7 +8,7 @@ from typing import Literal
 import pymunk
 from pymunk.constraints import PivotJoint
 
-from engines import Around, Engine, Holder, Instant, Promise, Run, Softness, Unpromised
+from engines import ConvergenceOrder, Enforcement, Engine, EngineWrapper, Instant, NotDeclared, Regularisation, Run
 from engines.extrapolated import Extrapolated
 from engines.motions import over_three
 from engines.pymunk import declared
@@ -77,11 +77,11 @@ class Pymunk(Engine, Valid):
     work: Whole = 0
 
     @property
-    def touches(self) -> bool:
+    def uses_contacts(self) -> bool:
         return self.roll == "contact"
 
     @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """See `engines.pymunk.declared`."""
         return declared.promise(self, mechanism)
 
@@ -92,28 +92,28 @@ class Pymunk(Engine, Valid):
         return STEP_COST * over_three(mechanism) + sweeps
 
     @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         """See `engines.pymunk.declared`."""
-        return declared.holder(self, joint, mechanism)
+        return declared.enforcement(self, joint, mechanism)
 
-    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+    def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
         """How joints give way with steps of dt [s], None where they are set for the pose after the drift.
 
         One step stops a slip and closes a share of a gap; a row of the pose before the drift has no term of velocities.
         """
-        stale = self.touches and any(isinstance(joint, Roll) for joint in mechanism.joints)
+        stale = self.uses_contacts and any(isinstance(joint, Roll) for joint in mechanism.joints)
         closed = 1.0 if isinstance(self.error_bias, str) else 1 - self.error_bias**dt
         if not stale and (closed == 1 or not mechanism.holonomic.any()):
             return None
-        return Softness(max(closed, 1e-9) / dt**2, 1 / dt, 0.0, (True,) * mechanism.row_count, complete=False)
+        return Regularisation(max(closed, 1e-9) / dt**2, 1 / dt, 0.0, (True,) * mechanism.row_count, complete=False)
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
-    ) -> tuple[Instant, ...] | Unpromised:
+    ) -> tuple[Instant, ...] | NotDeclared:
         """Velocities after each step; see `engines.pymunk.declared`."""
         return declared.instants(self, mechanism, dt, steps, built or mechanism)
 
-    def alike(self, mechanism: Mechanism) -> Pymunk | None:
+    def stricter(self, mechanism: Mechanism) -> Pymunk | None:
         """With ten times as many sweeps, where their number is a setting."""
         return replace(self, iterations=10 * self.iterations) if isinstance(self.iterations, int) else None
 
@@ -144,7 +144,7 @@ class Pymunk(Engine, Valid):
         """How the mechanism is swept in a motion of `duration` [s]: by its worst pose, where it is by contraction."""
         if isinstance(self.iterations, int) and self.error_bias != CONTRACTION:
             return Sweeping(self.iterations)
-        rho = worst_contraction(mechanism, duration, self.touches)
+        rho = worst_contraction(mechanism, duration, self.uses_contacts)
         if isinstance(self.iterations, int):
             return swept_by(rho, self.iterations)
         found = sweeping(rho, max(1, len(mechanism.joints)), self.fewest, self.work)
@@ -176,7 +176,7 @@ class Pymunk(Engine, Valid):
 
 
 @dataclass(frozen=True)
-class Extended(Around, Valid):
+class Extended(EngineWrapper, Valid):
     """The extrapolation whose powers fit the mechanism: pymunk has two orders.
 
     `skates`: for skates, or dampers, which act at the end of a step instead of around it, so of first order. `pins`:
@@ -198,8 +198,8 @@ class Extended(Around, Valid):
             return self.skates
         return self.pins
 
-    def alike(self, mechanism: Mechanism) -> Engine | None:
-        return self.chosen(mechanism).alike(mechanism)
+    def stricter(self, mechanism: Mechanism) -> Engine | None:
+        return self.chosen(mechanism).stricter(mechanism)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:

@@ -142,7 +142,7 @@ def asked(named: Named, limit: float = TIME_LIMIT) -> Iterator[tuple[Engine, Ite
     One worker at a time, so that what an engine has run is kept. Raises BadInput, and WorkersLost (`supervise`).
     """
     for place, engine in enumerate(named.engines()):
-        yield engine, _answers(named, place, engine, limit + MODELS * engine.building)
+        yield engine, _answers(named, place, engine, limit + MODELS * engine.build_time)
 
 
 def _answers(named: Named, place: int, engine: Engine, limit: float) -> Iterator[tuple[Case, Result]]:

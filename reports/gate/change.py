@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from engines import Around, Engine, Instant, Run, Unpromised
+from engines import Engine, EngineWrapper, Instant, NotDeclared, Run
 from reference.mechanism import Mechanism
 from reports.model.cells import Cell
 from reports.model.checks import CHANGE, Check
@@ -146,7 +146,7 @@ Part = TypeVar("Part")
 
 
 @dataclass(frozen=True)
-class Altered(Around):
+class Altered(EngineWrapper):
     """An engine in the sense of `engines.Engine`: another one, which builds `change(mechanism)`.
 
     It goes by the name of the engine inside and is held to what that one promises of the mechanism as it is. `change`
@@ -160,15 +160,15 @@ class Altered(Around):
     def variant(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
         return self.engine.variant
 
-    def within(self, mechanism: Mechanism) -> Engine:
+    def stepped(self, mechanism: Mechanism) -> Engine:
         """Itself: what is inside is not stepped as it is."""
         return self
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
-    ) -> tuple[Instant, ...] | Unpromised:
+    ) -> tuple[Instant, ...] | NotDeclared:
         """What the engine that is stepped computes with a model of the changed mechanism, beside the right law."""
-        return self.engine.within(mechanism).instants(mechanism, dt, steps, self.change(mechanism))
+        return self.engine.stepped(mechanism).instants(mechanism, dt, steps, self.change(mechanism))
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:
         """Raises whatever the change and the engine raise."""
@@ -234,7 +234,7 @@ def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), ampli
     """The checks of a row that was made with the baseline's versions: the same numbers, to rounding.
 
     The bound is the `room` of the quantity (`reports.model.quantities`), which is never zero, and what `nudged`, the
-    same cell in other roundings, differ by: where the motion amplifies rounding. `amplified`: as `Promise.amplified`.
+    same cell in other roundings, differ by: where the motion amplifies rounding. `amplified`: see `ConvergenceOrder`.
     """
     if not _has_numbers(row.outcome, old.outcome):
         same = row.outcome == old.outcome or any(other.outcome == old.outcome for other in nudged)

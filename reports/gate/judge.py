@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Softness
+from engines import Regularisation
 from engines.lagrange.arrays import SMALLEST
 from engines.lagrange.dynamics import (
     LEAST_INVERSE_INERTIA,
@@ -51,19 +51,23 @@ TABLEAUS: dict[int, Tableau] = {
 }
 
 
-def giving_way(mechanism: Mechanism, soft: Softness) -> NDArray[np.bool_]:
+def giving_way(mechanism: Mechanism, soft: Regularisation) -> NDArray[np.bool_]:
     """Which rows give way (rows,): those declared, but a drive only if its row has a compliance. Else it is held by its
     rate, and no spring pulls it to an angle."""
     return np.array(soft.rows) & ((mechanism.rate == 0) | (soft.compliance > 0))
 
 
-def dynamics_of(mechanism: Mechanism, soft: Softness | None = None, least: float = LEAST_INVERSE_INERTIA) -> Dynamics:
+def dynamics_of(
+    mechanism: Mechanism, soft: Regularisation | None = None, least: float = LEAST_INVERSE_INERTIA
+) -> Dynamics:
     """A mechanism with ideal joints, or with soft ones: see `giving_way`; the smallest reactions of dependent rows."""
     gives = None if soft is None else giving_way(mechanism, soft)
     return Dynamics(mechanism, soft, gives, least, RANK_TOLERANCE)
 
 
-def integrate(scene: Scene, order: int, every: int, soft: Softness | None = None, project: bool = False) -> Trajectory:
+def integrate(
+    scene: Scene, order: int, every: int, soft: Regularisation | None = None, project: bool = False
+) -> Trajectory:
     """The scene's motion by Runge and Kutta's method of this order, `every` steps a sample."""
     return stepped(scene.mechanism(), _samples(scene), scene.spacing, order, every, soft, project)
 
@@ -74,7 +78,7 @@ def stepped(
     spacing: float,
     order: int,
     every: int,
-    soft: Softness | None = None,
+    soft: Regularisation | None = None,
     project: bool = False,
 ) -> Trajectory:
     """A mechanism's motion as the gate has it: by compiled steps where there are some, else as `in_numpy`."""
@@ -88,7 +92,13 @@ def _samples(scene: Scene) -> int:
 
 
 def _compiled(
-    mechanism: Mechanism, samples: int, spacing: float, order: int, every: int, soft: Softness | None, project: bool
+    mechanism: Mechanism,
+    samples: int,
+    spacing: float,
+    order: int,
+    every: int,
+    soft: Regularisation | None,
+    project: bool,
 ) -> Trajectory | None:
     """As `in_numpy`; None where rows depend on each other, a motion is lost, or what is soft is to be projected too.
 
@@ -107,7 +117,7 @@ def _compiled(
     return _trajectory(mechanism, spacing, poses, twists, reactions)
 
 
-def _machine(mechanism: Mechanism, soft: Softness | None) -> Machine | None:
+def _machine(mechanism: Mechanism, soft: Regularisation | None) -> Machine | None:
     """The compiled mechanism, with joints that give way where a softness is given; None without numba."""
     machine = Machine.of(mechanism) if installed() else None
     if machine is not None and soft is not None:
@@ -122,7 +132,7 @@ def _trajectory(mechanism: Mechanism, spacing: float, poses: Array, twists: Arra
     return Trajectory(t, poses[:, :-3].reshape(shape), twists[:, :-3].reshape(shape), reactions)
 
 
-def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Softness) -> Trajectory | None:
+def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Regularisation) -> Trajectory | None:
     """A soft motion by the method of order 4, samples `spacing` [s] apart. Each PART of a sample is stepped anew with a
     third of the step until that changes it by less than SAME, in parts of the mechanism's length and speed: so a
     singular position is passed, where a spring pulls with its gap over a singular value. None without numba, or where
@@ -163,7 +173,7 @@ def in_numpy(
     spacing: float,
     order: int,
     every: int,
-    soft: Softness | None = None,
+    soft: Regularisation | None = None,
     project: bool = False,
     least: float = LEAST_INVERSE_INERTIA,
 ) -> Trajectory:
@@ -196,13 +206,13 @@ def _truth(scene: Scene, instants: bytes) -> Trajectory:
 
 
 def errors(
-    scene: Scene, order: int, every: int, soft: Softness | None = None, project: bool = False
+    scene: Scene, order: int, every: int, soft: Regularisation | None = None, project: bool = False
 ) -> Mapping[str, float]:
     """Largest errors of the judge's own run, by the name of the quantity; infinite ones where it failed."""
     return _told(scene, lambda: integrate(scene, order, every, soft, project))
 
 
-def errors_as_soft(scene: Scene, soft: Softness) -> Mapping[str, float]:
+def errors_as_soft(scene: Scene, soft: Regularisation) -> Mapping[str, float]:
     """The same of joints that give way in a method's own manner, in steps that are as short as each part of the motion
     asks for; infinite without numba, or where steps don't end."""
     return _told(scene, lambda: refined(scene.mechanism(), _samples(scene), scene.spacing, soft))

@@ -15,7 +15,7 @@ from functools import cache
 
 import numpy as np
 
-from engines import EXACT, Engine, Softness
+from engines import EXACT, Engine, Regularisation
 from engines.motions import is_prescribed
 from reference.scene import Scene
 from reference.trajectory import Trajectory
@@ -105,11 +105,11 @@ class Prediction:
             fall = min(fall, self.fourth["angle"] / self.second["angle"])
         return second * fall ** ((order - 2) / 2) * (step / self.step) ** order
 
-    def give(self, quantity: str, softness: Softness | None) -> float:
+    def give(self, quantity: str, softness: Regularisation | None) -> float:
         """What this softness costs, in proportion to what the judge's own does."""
         return given(self.soft, quantity, softness, self.gapped)
 
-    def closing(self, quantity: str, gap: float, softness: Softness | None) -> float:
+    def closing(self, quantity: str, gap: float, softness: Regularisation | None) -> float:
         """What a spring costs that closes a gap [m] of the step's: it moves at gap times damping, which is a slip."""
         if softness is None or not softness.complete or math.isnan(gap):
             return 0.0
@@ -117,7 +117,7 @@ class Prediction:
             return gap * softness.stiffness / self.acceleration
         return self._slipping(quantity, gap * softness.damping)
 
-    def settling(self, quantity: str, softness: Softness | None) -> float:
+    def settling(self, quantity: str, softness: Regularisation | None) -> float:
         """What springs cost that are tied to the step while they take up their load: a critically damped one opens to
         its gap [m] at 1 / e of the gap times the root of its stiffness, at most."""
         if softness is None or softness.compliance == 0:
@@ -153,7 +153,7 @@ class Prediction:
 
 
 def given(
-    soft: Mapping[SoftKind, Mapping[str, float]], quantity: str, softness: Softness | None, gapped: Sequence[bool]
+    soft: Mapping[SoftKind, Mapping[str, float]], quantity: str, softness: Regularisation | None, gapped: Sequence[bool]
 ) -> float:
     """What a softness costs, in proportion to the judge's own errors by kind (`Prediction.soft`).
 
@@ -187,7 +187,7 @@ def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[SoftKind]:
     """What the judge has to know of softness to judge these engines in a scene."""
     mechanism, found = scene.mechanism(), set()
     for engine in engines:
-        softness = engine.softness(mechanism, scene.spacing)
+        softness = engine.regularisation(mechanism, scene.spacing)
         if softness is not None:
             found |= {(softness.rows, True)} if softness.compliance > 0 else set()
             found |= set() if softness.complete else {(softness.rows, False)}
@@ -265,7 +265,7 @@ def softened(scene: Scene, rows: tuple[bool, ...], complete: bool) -> Mapping[st
         return found
     # Where this much softness loses the motion, a thousandth of it is tried, and a thousandth of that.
     for less in (1.0, 1e3, 1e6):
-        soft = Softness(STIFFNESS, DAMPING, COMPLIANCE / less, rows, complete)
+        soft = Regularisation(STIFFNESS, DAMPING, COMPLIANCE / less, rows, complete)
         found = {name: value * less for name, value in errors(scene, 4, every, soft).items()}
         if not complete or found["angle"] / less <= SATURATED:
             break
@@ -317,7 +317,7 @@ def soft_tasks(scene: Scene, engines: tuple[Engine, ...]) -> tuple[Softened, ...
 def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine, quantity: str, step: float) -> float:
     """What the engine's declared softness alone costs at this step [s]; 0 where it declares none, NaN if not known."""
     mechanism = mechanism_of(scene)
-    softness = engine.softness(mechanism, step)
+    softness = engine.regularisation(mechanism, step)
     soft: dict[SoftKind, dict[str, float]] = {}
     for complete in (True, False):
         rows = softness.rows if softness is not None else ()

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from engines import EXACT, Engine, Promise, Softness, Unpromised, method_name
+from engines import EXACT, ConvergenceOrder, Engine, NotDeclared, Regularisation, method_name
 from engines.motions import is_prescribed
 from reference.scene import Scene
 from reports.gate.judge import errors_as_soft
@@ -35,14 +35,14 @@ PROPORTIONAL = 0.1
 TOO_FEW = "fewer than three steps have an error above rounding and below a tenth of a radian"
 
 
-def order(promise: Promise | Unpromised, rows: Sequence[Measurement]) -> tuple[Check, ...]:
+def order(promise: ConvergenceOrder | NotDeclared, rows: Sequence[Measurement]) -> tuple[Check, ...]:
     """The check of one method's rows, if they can tell: three points that are above rounding and small enough. With
     fewer it can't fail, and says so.
 
     measured: how far the observed order is from the promised one, in multiples of what it may be. An error that levels
     off, grows or jumps about has the order 0.
     """
-    if isinstance(promise, Unpromised) or promise.order == EXACT:
+    if isinstance(promise, NotDeclared) or promise.order == EXACT:
         return ()
     usable = [row for row in rows if Outcome(row.outcome).comparable and row.angle <= PROPORTIONAL]
     found = fit([row.step for row in usable], [row.angle for row in usable], ROUNDING["angle"])
@@ -89,8 +89,8 @@ SMALL = 1e-3
 def terms(
     quantity: str,
     prediction: Prediction,
-    promise: Promise,
-    softness: Softness | None,
+    promise: ConvergenceOrder,
+    softness: Regularisation | None,
     step: float,
     as_soft: Mapping[str, float] | None = None,
 ) -> tuple[float, float, float]:
@@ -120,8 +120,8 @@ def terms(
 
 def theory(
     prediction: Prediction,
-    promise: Promise | Unpromised,
-    softness: Softness | None,
+    promise: ConvergenceOrder | NotDeclared,
+    softness: Regularisation | None,
     row: Measurement,
     coarser: Sequence[Measurement] = (),
     as_soft: Mapping[str, float] | None = None,
@@ -146,7 +146,7 @@ def theory(
         if reason and (math.isnan(measured) or not outcome.comparable):
             checks.append(Check(name, quantity, 0.0, math.inf, sentence=f", {reason}"))
             continue
-        if isinstance(promise, Unpromised):
+        if isinstance(promise, NotDeclared):
             bound, parts = _without_promise(quantity, prediction, [*usable, row])
         else:
             bound, parts = _promised(quantity, prediction, promise, softness, row, usable, as_soft)
@@ -156,14 +156,14 @@ def theory(
 
 
 def _reason_not_applicable(
-    quantity: str, outcome: Outcome, prediction: Prediction, promise: Promise | Unpromised
+    quantity: str, outcome: Outcome, prediction: Prediction, promise: ConvergenceOrder | NotDeclared
 ) -> str:
     """Why there need not be a number that a check could hold; "" where there has to be one."""
     if not outcome.comparable:
         return "the run can't be compared, so its outcome alone is held"
     if not prediction.has(quantity):
         return "the scene has no such number"
-    untold = isinstance(promise, Promise) and math.isnan(promise.of(quantity))
+    untold = isinstance(promise, ConvergenceOrder) and math.isnan(promise.of(quantity))
     return "the engine says that it can't tell it" if untold else ""
 
 
@@ -173,8 +173,8 @@ Bound = tuple[float, tuple[tuple[str, float], ...]]
 def _promised(
     quantity: str,
     prediction: Prediction,
-    promise: Promise,
-    softness: Softness | None,
+    promise: ConvergenceOrder,
+    softness: Regularisation | None,
     row: Measurement,
     usable: Sequence[Measurement],
     as_soft: Mapping[str, float] | None,
@@ -225,7 +225,7 @@ class Case:
 
     scene: Scene
     engine: Engine
-    promise: Promise | Unpromised
+    promise: ConvergenceOrder | NotDeclared
     known: tuple[tuple[str, Deviation], ...] = ()
 
     @property
@@ -247,7 +247,7 @@ class Case:
     @property
     def amplified(self) -> float:
         """How many times the usual rounding of velocities the method carries."""
-        return self.promise.amplified if isinstance(self.promise, Promise) else 1.0
+        return self.promise.amplified if isinstance(self.promise, ConvergenceOrder) else 1.0
 
     def cells(self) -> tuple[Cell, ...]:
         """What is run of it, coarse steps first.
@@ -256,8 +256,10 @@ class Case:
         wrong by as much as they change in a step, need finer ones.
         """
         mechanism = mechanism_of(self.scene)
-        alone = is_prescribed(mechanism) and isinstance(self.promise, Promise) and self.promise.of("reaction") == 1
-        rigid = self.engine.softness(mechanism, self.scene.spacing) is None
+        alone = (
+            is_prescribed(mechanism) and isinstance(self.promise, ConvergenceOrder) and self.promise.of("reaction") == 1
+        )
+        rigid = self.engine.regularisation(mechanism, self.scene.spacing) is None
         steps = FINER if alone and rigid else STEPS
         return sweep_cells((self.scene,), (self.engine,), steps, COST_LIMIT, math.inf)
 
@@ -284,13 +286,13 @@ def predictions(chosen: Iterable[Case]) -> dict[Scene, frozenset]:
     return {scene: kinds(scene, engines) for scene, engines in by_scene.items()}
 
 
-def own_softness(case: Case, rows: Sequence[Measurement], judge: Prediction) -> Softness | None:
+def own_softness(case: Case, rows: Sequence[Measurement], judge: Prediction) -> Regularisation | None:
     """The softness of a case whose cost no other softness tells of, so that the judge has to run with it; else None.
 
     Through singular positions nothing is in proportion to softness.
     """
-    softness = case.engine.softness(mechanism_of(case.scene), rows[-1].step)
-    wanted = isinstance(case.promise, Promise) and Outcome(rows[-1].outcome).comparable
+    softness = case.engine.regularisation(mechanism_of(case.scene), rows[-1].step)
+    wanted = isinstance(case.promise, ConvergenceOrder) and Outcome(rows[-1].outcome).comparable
     return softness if wanted and not math.isfinite(judge.give("angle", softness)) else None
 
 
@@ -307,7 +309,7 @@ def checks(
     if judge is None:
         judge = prediction(case.scene, kinds(case.scene, [case.engine]))
     finest = rows[-1]
-    softness = case.engine.softness(mechanism_of(case.scene), finest.step)
+    softness = case.engine.regularisation(mechanism_of(case.scene), finest.step)
     own = own_softness(case, rows, judge)
     if own is not None and as_soft is None:
         as_soft = errors_as_soft(case.scene, own)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any
 
-from engines import Softness
+from engines import Regularisation
 from reference.scene import Scene
 from reports.gate.change import (
     DEAR,
@@ -85,10 +85,10 @@ class JudgeRun:
     """A run of the judge: the prediction for a scene and kinds of softness, or its errors with a method's softness."""
 
     scene: Scene
-    soft: frozenset[SoftKind] | Softness
+    soft: frozenset[SoftKind] | Regularisation
 
     def __call__(self) -> Prediction | Mapping[str, float]:
-        if isinstance(self.soft, Softness):
+        if isinstance(self.soft, Regularisation):
             return errors_as_soft(self.scene, self.soft)
         return prediction(self.scene, self.soft)
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Any, Literal
 
-from engines import Engine, Promise, method_name
+from engines import ConvergenceOrder, Engine, method_name
 from reference.checks import Count, Valid
 from reference.mechanism import Mechanism
 from reference.scene import Scene
@@ -110,7 +110,7 @@ def estimated_cost(cell: Cell) -> float:
 
 def estimated_seconds(cell: Cell) -> float:
     """The same with the making of a model that takes long, as its engine says."""
-    return estimated_cost(cell) + cell.engine.building
+    return estimated_cost(cell) + cell.engine.build_time
 
 
 @lru_cache(maxsize=4096)
@@ -155,7 +155,7 @@ def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool
     """Engines that are no part of a scene's grid and stand beside it on its page, each at the finest of the QUICK steps
     that is cheap enough; at all of these with `sweep`.
     """
-    engines = tuple(engine for engine in engines if engine.building < SLOW_TO_BUILD)
+    engines = tuple(engine for engine in engines if engine.build_time < SLOW_TO_BUILD)
     out: list[Cell] = []
     for scene in scenes:
         for engine in engines:
@@ -180,7 +180,7 @@ def too_much(cell: Cell, cost_limit: float = COST_LIMIT, divided: float = DIVIDE
 def _promised_order(scene: Scene, engine: Engine) -> float:
     """Of poses; 0 where none is promised."""
     promise = _call(engine, "order", scene)
-    return promise.order if isinstance(promise, Promise) else 0.0
+    return promise.order if isinstance(promise, ConvergenceOrder) else 0.0
 
 
 def is_step(step: float, wanted: float) -> bool:

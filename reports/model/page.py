@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from engines import Engine, Promise
+from engines import ConvergenceOrder, Engine
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.model.cells import FEATURED, Cell, Purpose
@@ -124,7 +124,7 @@ class Page:
     words: Callable[[Material], Mapping[str, Any]] = no_words  # the template's own variables
     further: Callable[[Material], Mapping[str, str]] = no_words  # Markdown files beside the page, by name
     # (scene, method) -> the promise where the motion, not the mechanism alone, makes it another than the engine's.
-    orders: Mapping[tuple[str, str], Promise] = field(default_factory=dict, compare=False)
+    orders: Mapping[tuple[str, str], ConvergenceOrder] = field(default_factory=dict, compare=False)
     # (scene, method, check) -> by how much that check (`reports.model.checks`) is missed, and why.
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
     tasks: tuple[Task, ...] = ()  # of its pictures and words; those of an experiment stand there

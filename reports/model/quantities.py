@@ -71,7 +71,7 @@ def room(name: str, before: float, amplified: float = 1.0) -> tuple[float, float
     name: a field of a Measurement that is an error, a root mean square or an estimate of one; KeyError for another.
     Where another processor rounds each step otherwise, the motion moves by no more than `Quantity.rounding`, and by the
     triangle inequality its error too, however small it is. amplified: how many times the usual rounding the method
-    carries (`engines.Promise.amplified`). What a motion itself amplifies has to be measured (`reports.gate.change`).
+    carries (`engines.ConvergenceOrder`). The amplification by the motion itself is measured (`reports.gate.change`).
     """
     return printed(before), quantity(OF.get(name, name)).rounding * amplified
 

@@ -3,7 +3,7 @@
 A check fails where its error is more than MARGIN times the noise of its case, and more than a floor. Noise is the
 largest difference of the same case in descriptions that are shifted and turned a little and rounded otherwise, so that
 every number of every step is rounded anew, and of the same engine with a solver that goes much farther
-(`Engine.alike`). So it has the condition of the case in it: nearly dependent rows, masses far apart, weights of
+(`Engine.stricter`). So it has the condition of the case in it: nearly dependent rows, masses far apart, weights of
 combined runs, gaps that are closed although they are but rounded.
 """
 
@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Instant, Unpromised
+from engines import Engine, Instant, NotDeclared
 from engines.conformance.same import Described, Isometry, Three
 from engines.constrained import constrained
 from reference.checks import InvalidMechanism
@@ -115,7 +115,7 @@ def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | Skip:
     """Errors of what an engine computes at one instant, in its first steps, against the law that it declares there
     (`engines.Engine.instants`), relative to the largest of what enters the law."""
     here = _instants(engine, mechanism)
-    if isinstance(here, Unpromised):
+    if isinstance(here, NotDeclared):
         return Skip(here.reason)
     bound = max(LAW, ROUNDINGS * engine.precision)
     missed: dict[str, float] = {}
@@ -126,13 +126,13 @@ def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | Skip:
         return {check: (error, bound) for check, error in missed.items()}
     for nudged, back in nudges(mechanism):
         others = _instants(engine, nudged)
-        if not isinstance(others, Unpromised):
+        if not isinstance(others, NotDeclared):
             for instant, other in zip(here, others, strict=False):  # the later states of one may be left out
                 noise[instant.check] = max(noise[instant.check], _apart(mechanism, instant, other, back))
     return {check: (error, max(bound, MARGIN * noise[check])) for check, error in missed.items()}
 
 
-def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | Unpromised:
+def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDeclared:
     """Instants of the first steps; only the start if something turns by a radian in a step, or rolls: rows of a roll
     are those of a closed gap, and turn by an open one over the radius of curvature.
     """
@@ -143,8 +143,8 @@ def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | Unpro
 
     rolls = any(isinstance(joint, Roll) for joint in mechanism.joints)
     short = turned_in_a_step(mechanism, dt, mechanism.pose, mechanism.twist) <= 1 and not rolls
-    found = engine.within(mechanism).instants(mechanism, dt, STEPS if short else 0)
-    if isinstance(found, Unpromised):
+    found = engine.stepped(mechanism).instants(mechanism, dt, STEPS if short else 0)
+    if isinstance(found, NotDeclared):
         return found
     first = len({instant.check for instant in found})
     return [instant for place, instant in enumerate(found) if place < first or followed(instant)]

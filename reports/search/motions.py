@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import CLAIM, Engine, Promise, Unpromised
+from engines import CLAIM, ConvergenceOrder, Engine, NotDeclared
 from engines.constraint_error import FORCES, largest_force
 from engines.lagrange import HELD, TRUTH
 from engines.lagrange.dynamics import inverse_inertia
@@ -66,12 +66,12 @@ def errors(engine: Engine, mechanism: Mechanism) -> Errors | Skip:
 
     Raises Fault where a motion is lost in silence.
     """
-    if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.touches:
+    if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
         return Skip("shapes that touch may part, and those with corners do not roll as the curves do, at any step")
     dt = SPAN * mechanism.time_scale / SAMPLES / COARSE
     coarse = _run(engine, mechanism, dt, 1)
     promise = engine.order(mechanism)
-    if isinstance(promise, Unpromised):
+    if isinstance(promise, NotDeclared):
         return Skip(f"no order is promised: {promise.reason}")
     if _gives_way(engine, mechanism, dt):
         return Skip("joints give way as the engine says, by the same at every step")
@@ -104,7 +104,7 @@ def _run(engine: Engine, mechanism: Mechanism, dt: float, parts: int) -> Traject
 
 def _gives_way(engine: Engine, mechanism: Mechanism, dt: float) -> bool:
     """Whether joints give way visibly, and at half the step nearly as much."""
-    coarse, fine = (engine.softness(mechanism, step) for step in (dt, dt / 2))
+    coarse, fine = (engine.regularisation(mechanism, step) for step in (dt, dt / 2))
     if coarse is None or fine is None:
         return False
     ways = [soft.compliance / soft.stiffness / mechanism.time_scale**2 for soft in (coarse, fine)]
@@ -115,7 +115,7 @@ def _fails(found: Errors) -> bool:
     return any(not error <= bound for error, bound in found.values())
 
 
-def _tolerance(promise: Promise, name: str, coarser: float, floor: float) -> float:
+def _tolerance(promise: ConvergenceOrder, name: str, coarser: float, floor: float) -> float:
     order = promise.of("angle" if name == "motion" else "reaction")
     return min(max(ROOM * coarser * 0.5 ** min(order, 20.0), LEAST[name], floor), LOST)
 
@@ -126,7 +126,7 @@ class _Case:
 
     engine: Engine
     mechanism: Mechanism
-    promise: Promise
+    promise: ConvergenceOrder
     truth: Trajectory
     dt: float
 
@@ -188,7 +188,7 @@ class _Case:
     def excuse(self, run: Trajectory, parts: int, out: dict[str, tuple[float, float]]) -> Skip | None:
         """Raise what errors may be by noise and by declared softness; the reason why they count for nothing, if any."""
         if not np.isfinite(run.pose).all():
-            stricter = self.engine.alike(self.mechanism)
+            stricter = self.engine.stricter(self.mechanism)
             if stricter is not None and np.isfinite(_run(stricter, self.mechanism, self.dt, parts).pose).all():
                 return Skip("its solver leaves so much at these steps that the motion is lost, and not if it goes on")
             raise Fault(f"at a step of {self.dt / parts:.3g} s it lost the motion, and says nothing")
@@ -210,7 +210,7 @@ class _Case:
             for plain, other in ((run, _run(self.engine, nudged, self.dt, parts)), (self.truth, truth)):
                 pose, twist, reaction = back(other)
                 pairs.append((replace(other, pose=pose, twist=twist, reaction=reaction), plain))
-        stricter = self.engine.alike(self.mechanism)
+        stricter = self.engine.stricter(self.mechanism)
         if stricter is not None:
             pairs.append((_run(stricter, self.mechanism, self.dt, parts), run))
         differences = [self.apart(*pair) for pair in pairs]
@@ -222,7 +222,7 @@ class _Case:
         A spring that shrinks to nothing for less than a step pushes one way and then the other: the error depends on
         where a method's stages fall, and on no power of the step.
         """
-        usual = Promise(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
+        usual = ConvergenceOrder(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
         spacing, parts = SPAN * self.mechanism.time_scale / SAMPLES, max(4, parts)
         try:
             runs = [
@@ -246,7 +246,7 @@ class _Case:
         that the judge takes at each pose and MuJoCo at the start, as far as their largest ratio leads.
         """
         mechanism, spacing = self.mechanism, SPAN * self.mechanism.time_scale / SAMPLES
-        softness = self.engine.softness(mechanism, self.dt / parts)
+        softness = self.engine.regularisation(mechanism, self.dt / parts)
         if softness is None or not softness.compliance:
             return {}
         order, gives = int(self.promise.step("angle")), giving_way(mechanism, softness)

@@ -187,7 +187,7 @@ class Control(Task):
 
     @property
     def cost(self) -> float:
-        return 10.0 + max(engine.building for engine in LEAST[self.name])
+        return 10.0 + max(engine.build_time for engine in LEAST[self.name])
 
     @property
     def label(self) -> str:
@@ -216,7 +216,7 @@ class Control(Task):
 
 def searched(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[tuple[int, bool, str]]:
     """(case, whether it was judged, the check that fails by this change and not without it), until one does."""
-    of_motion = ("instant",) if any(engine.building for engine in engines) else ("instant", "motions")
+    of_motion = ("instant",) if any(engine.build_time for engine in engines) else ("instant", "motions")
     oracles = ("relations",) if change.is_relation else of_motion  # one is enough where each shape is compiled
     for number, engine in product(range(cases), engines):
         if change.is_relation and relations.NAMES[number % len(relations.NAMES)] != change.kind:
@@ -244,6 +244,6 @@ def controls() -> list[Control]:
     """A control for each fault in each engine."""
     out = []
     for (name, engines), fault in product(LEAST.items(), FAULTS):
-        shaped = any(engine.building for engine in engines)  # after all shapes come the first ones again
+        shaped = any(engine.build_time for engine in engines)  # after all shapes come the first ones again
         out.append(Control(name, fault, cases=SHAPES * RUN if shaped else CASES))
     return out

@@ -48,7 +48,7 @@ NAMES = (*CHANGES, *UNITS)
 def errors(engine: Engine, recipe: Recipe, number: int) -> Errors | Skip:
     """By what the poses and velocities of two descriptions differ, relative to the motion."""
     mechanism = build(recipe)
-    if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.touches:
+    if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
         return Skip("whether two shapes that just touch do touch depends on rounding")
     if _turns(mechanism, mechanism.pose, mechanism.twist):
         return TOO_LONG
@@ -59,7 +59,7 @@ def errors(engine: Engine, recipe: Recipe, number: int) -> Errors | Skip:
     if isinstance(described, Skip):
         return described
     changed, back = described
-    found = _compared(engine, mechanism, changed, back, engine.alike(mechanism))
+    found = _compared(engine, mechanism, changed, back, engine.stricter(mechanism))
     return found if isinstance(found, Skip) else {name: found}
 
 

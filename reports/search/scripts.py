@@ -72,7 +72,7 @@ def script(subject: Subject, case: Any, check: str, number: int) -> str:
     if isinstance(subject, Alone):
         return _of_mujoco_alone(case, subject.release)
     mechanism = build(case)
-    engine: Any = subject.engine.within(mechanism)
+    engine: Any = subject.engine.stepped(mechanism)
     if engine.name not in IMPORTS:
         return ""
     try:
@@ -144,7 +144,7 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
         data = model.start()
         data.time, data.qpos[:], data.qvel[:] = state.time, state.qpos, state.qvel
         mujoco.mj_forward(model.compiled, data)
-        expected = State.of(mechanism, model, data, method.softness(mechanism, dt)).coordinates(term)
+        expected = State.of(mechanism, model, data, method.regularisation(mechanism, dt)).coordinates(term)
         numbers = f"{data.time!r}, {data.qpos.tolist()!r}, {data.qvel.tolist()!r}"
         lines = [f"data.time, data.qpos[:], data.qvel[:] = {numbers}", "mujoco.mj_forward(model, data)"]
         blocks.append(Block(f"accelerations {title}", [*begin, *lines], read, expected))

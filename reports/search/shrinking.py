@@ -108,7 +108,7 @@ class Shrink(Task):
 
     @property
     def cost(self) -> float:
-        return SECONDS + (self.engine.building if self.engine else 0.0)  # few shapes of a compiled engine are tried
+        return SECONDS + (self.engine.build_time if self.engine else 0.0)  # few shapes of a compiled engine are tried
 
     @property
     def label(self) -> str:

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from engines import Around, Engine, Unsupported
+from engines import Engine, EngineWrapper, Unsupported
 from reports.search import mechanisms, motions, mujoco_alone
 from reports.search.law import LAW, Errors, Fault, Skip
 from reports.search.mechanisms import of_a_shape
@@ -105,7 +105,7 @@ _drawn, _built = lru_cache(motions.ASKED)(mechanisms.recipe), lru_cache(motions.
 
 def is_shaped(subject: Subject) -> bool:
     """Whether its cases are of few shapes, since a model takes seconds to build."""
-    return isinstance(subject, Adapted) and subject.engine.building > 0
+    return isinstance(subject, Adapted) and subject.engine.build_time > 0
 
 
 def _asked(oracles: Mapping[str, Callable[[], Errors | Skip]], engine: Engine | None) -> Result:
@@ -139,7 +139,7 @@ def _asked(oracles: Mapping[str, Callable[[], Errors | Skip]], engine: Engine | 
 def _passed_through(error: Exception, engine: Engine) -> bool:
     """Whether an exception came out of the engine's own code, and not of what asks it alone."""
     modules = [type(engine).__module__]
-    while isinstance(engine, Around):
+    while isinstance(engine, EngineWrapper):
         engine = engine.engine
         modules.append(type(engine).__module__)
     # A package of an engine is all of it; beside modules of engines stand others, the judge's among them.

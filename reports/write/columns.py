@@ -14,7 +14,7 @@ from enum import StrEnum
 from functools import cache
 from types import MappingProxyType
 
-from engines import Engine, Holder
+from engines import Enforcement, Engine
 from engines.registry import method_name
 from reference.joints import Skate
 from reference.mechanism import Mechanism
@@ -47,10 +47,10 @@ VARIANTS = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Col
 def column_of(scene: Scene, engine: Engine) -> Column:
     """Where a method stands for a scene; one that is neither as shipped nor extended has settings."""
     mechanism = mechanism_of(scene)
-    held = {engine.holder(joint, mechanism) for joint in mechanism.joints}
+    held = {engine.enforcement(joint, mechanism) for joint in mechanism.joints}
     if "ours" in held:
         return Column.NAIVE
-    if "engine, our rows" in held or len(engine.steps_of_runs(mechanism)) > 1:
+    if "engine, our rows" in held or len(engine.inner_steps(mechanism)) > 1:
         return Column.CODE
     return VARIANTS.get(engine.variant, Column.SETTINGS)
 
@@ -72,13 +72,13 @@ def held_by(engine: Engine, mechanism: Mechanism) -> str:
 
     Joints are named by kind; where those of one kind differ, by their own names.
     """
-    holders: list[Holder] = [engine.holder(joint, mechanism) for joint in mechanism.joints]
+    holders: list[Enforcement] = [engine.enforcement(joint, mechanism) for joint in mechanism.joints]
     if len({*holders}) <= 1:
         return holders[0] if holders else "no joints"
-    kinds: dict[str, set[Holder]] = {}
+    kinds: dict[str, set[Enforcement]] = {}
     for joint, holder in zip(mechanism.joints, holders, strict=True):
         kinds.setdefault(_kind(joint), set()).add(holder)
-    found: dict[Holder, dict[str, None]] = {}
+    found: dict[Enforcement, dict[str, None]] = {}
     for joint, holder in zip(mechanism.joints, holders, strict=True):
         name = _kind(joint) if len(kinds[_kind(joint)]) == 1 else joint.name
         found.setdefault(holder, {})[name] = None
@@ -115,7 +115,7 @@ NO_JOINT, NOT_BUILT, TOO_DEAR = "no such joint", "not built", "too dear"
 
 def runs_of(engine: Engine, scene: Scene, step: float) -> str:
     """'5 runs, finest 0.125 ms' for steps as told [s]; empty for a single run."""
-    steps = engine.steps_of_runs(mechanism_of(scene))
+    steps = engine.inner_steps(mechanism_of(scene))
     return f"{len(steps)} runs, finest {number(1e3 * step * min(steps), 3)} ms" if len(steps) > 1 else ""
 
 

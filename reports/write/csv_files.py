@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 
-from engines import Promise
+from engines import ConvergenceOrder
 from reports.model.cells import Cell, mechanism_of
 from reports.model.ending import BadInput
 from reports.model.fingerprint import SHORT, digest
@@ -183,4 +183,4 @@ def near(now: float, before: float, factor: float) -> bool:
 
 def _amplified(cell: Cell) -> float:
     order = cell.engine.order(mechanism_of(cell.scene))
-    return order.amplified if isinstance(order, Promise) else 1.0
+    return order.amplified if isinstance(order, ConvergenceOrder) else 1.0

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from engines import CLAIM, Engine, Unpromised, Unsupported, bullet, exudyn, method_name, mujoco, pymunk
+from engines import CLAIM, Engine, NotDeclared, Unsupported, bullet, exudyn, method_name, mujoco, pymunk
 from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts
 from engines.lagrange import TRUTH
 from engines.mujoco.solver_check import _lost
@@ -265,7 +265,7 @@ def test_random_mechanisms_move_in_extras_as_the_judge_moves_them(engine):
         truth = TRUTH.build(own, spacing)(20, 1)
         way = np.abs(truth.pose - truth.pose[0]).max()
         promise = engine.order(own)
-        bound = SOFT if isinstance(promise, Unpromised) else JUDGED.get(int(min(promise.order, 4)), 1e-9)
+        bound = SOFT if isinstance(promise, NotDeclared) else JUDGED.get(int(min(promise.order, 4)), 1e-9)
         assert np.abs(run.pose - truth.pose).max() < bound * way, (engine, own)
         built += 1
         if built == 3:

@@ -26,7 +26,7 @@ SPECIAL = (
 # Daily one of each adapter, and one that is extrapolated; the others differ by settings alone.
 DAILY = (
     *(pymunk.DEFAULT, pymunk.EXTENDED, mujoco.DEFAULT, lagrange.Lagrange("rk4", "projection")),
-    *(each for each in registry.OTHERS if each.building < SLOW_TO_BUILD and each.variant == "default"),
+    *(each for each in registry.OTHERS if each.build_time < SLOW_TO_BUILD and each.variant == "default"),
 )
 ALL = (*DAILY, *(pytest.param(each, marks=pytest.mark.slow) for each in (*METHODS, *SPECIAL) if each not in DAILY))
 DESCRIPTIONS = {

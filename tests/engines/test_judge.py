@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from engines import Softness
+from engines import Regularisation
 from engines.lagrange.loading import installed
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
@@ -64,13 +64,13 @@ class HeavyDisc(Disc):
 
 def test_a_soft_joint_sags_by_its_compliance_and_carries_the_weight():
     # At rest 0 = -stiffness gap - compliance A reaction: 0.01 * 40 N / 4 kg / 2500 s^-2, after twenty of its times.
-    found = integrate(HeavyDisc(), 4, 2, Softness(2500.0, 100.0, 0.01, (True, True)))
+    found = integrate(HeavyDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.01, (True, True)))
     assert found.pose[-1, 0] == pytest.approx([0.0, -4e-5, 0.0], rel=1e-6)
     assert found.reaction[-1] == pytest.approx([0.0, 40.0], rel=1e-6)
 
 
 def test_rows_that_do_not_give_way_hold_while_others_sag():
-    found = integrate(HeavyDisc(), 4, 2, Softness(2500.0, 100.0, 0.01, (True, False)))
+    found = integrate(HeavyDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.01, (True, False)))
     assert found.pose[-1, 0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-15)
 
 
@@ -86,7 +86,7 @@ class TurningDisc(HeavyDisc):
 @pytest.mark.parametrize("complete", [True, False])
 def test_a_joint_without_the_term_of_velocities_gives_way_to_what_turns_on_it(complete):
     mechanism = TurningDisc().mechanism()
-    found = integrate(TurningDisc(), 4, 2, Softness(2500.0, 100.0, 0.0, (True, True), complete))
+    found = integrate(TurningDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.0, (True, True), complete))
     opened = np.hypot(*mechanism.gap(found.pose[-1], found.t[-1]))
     # The bias is the centripetal acceleration, 0.1 m * 4 rad^2/s^2, and without it the spring of 2500 s^-2 has to give.
     # Its damper resists too, as the gap turns with the disc: 2 rad/s * 100 s^-1 is 8 %, at right angles.
@@ -98,7 +98,7 @@ compiled = pytest.mark.skipif(not installed(), reason="numba, the extra 'fast', 
 
 @compiled
 def test_refined_steps_end_where_short_ones_of_one_length_do():
-    soft = Softness(2500.0, 100.0, 0.01, (True,) * 4)
+    soft = Regularisation(2500.0, 100.0, 0.01, (True,) * 4)
     found = refined(SWINGING.mechanism(), SWINGING.samples, SWINGING.spacing, soft)
     assert found is not None
     by_short = integrate(SWINGING, 4, 60, soft)
@@ -110,10 +110,10 @@ def test_refined_steps_end_where_short_ones_of_one_length_do():
 THROUGH = NFourBar(duration=1.0, horizon=1.0)  # the cranks lie along the couplers once, after 0.714 s
 
 
-def spring(mechanism: Mechanism) -> Softness:
+def spring(mechanism: Mechanism) -> Regularisation:
     """As an engine closes loops with pins of the first loop: the others hold."""
     gives = tuple(name.split()[-2] == "left" for name in mechanism.row_names)
-    return Softness(4e4, 400.0, 1e-4, gives)
+    return Regularisation(4e4, 400.0, 1e-4, gives)
 
 
 @compiled
@@ -141,6 +141,6 @@ def test_declared_rows_give_way_and_a_drive_by_a_compliance_alone():
     driven = mechanism.rate != 0
     declared = np.arange(mechanism.row_count) % 2 == 0
     for compliance in (0.0, 1e-3):
-        gives = giving_way(mechanism, Softness(1e4, 2e2, compliance, tuple(declared.tolist())))
+        gives = giving_way(mechanism, Regularisation(1e4, 2e2, compliance, tuple(declared.tolist())))
         assert gives.tolist() == (declared & (~driven | (compliance > 0))).tolist()
     assert driven.sum() == 1

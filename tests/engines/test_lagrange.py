@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from engines import Softness
+from engines import Regularisation
 from engines.constrained import constrained
 from engines.lagrange import HELD, TRUTH, Judge, Lagrange
 from engines.lagrange.dynamics import RK4, Dynamics, constrained_acceleration, inverse_inertia, runge_kutta
@@ -122,14 +122,14 @@ def test_constrained_acceleration_solves_newtons_law_with_the_rows_ideal_or_soft
         assert force.reshape(-1) == pytest.approx(rows.T @ reaction, abs=1e-12)
         left = rows @ acceleration.reshape(-1) + (compliance + np.zeros_like(rows @ rows.T)) @ reaction
         assert left == pytest.approx(mechanism.bias(pose, twist) if target is None else target, abs=1e-11)
-    dynamics = Dynamics(mechanism, Softness(0.0, 3.0, 0.2, tuple(soft)), soft)
+    dynamics = Dynamics(mechanism, Regularisation(0.0, 3.0, 0.2, tuple(soft)), soft)
     assert dynamics.acceleration(pose, twist, 0.0) == pytest.approx(acceleration, abs=1e-11)
 
 
 def test_baumgarte_closes_an_open_joint_critically_damped():
     # A bar pulled off its pin along its own axis, nothing turning it: one coordinate, gap'' = -2 gap'/T - gap/T^2.
     mechanism, constant = replace(pendulum(angle=0.0), gravity=(0.0, 0.0)), 0.1
-    softness = Lagrange("rk4", "baumgarte").softness(mechanism, constant / 5)  # its time constant is five steps
+    softness = Lagrange("rk4", "baumgarte").regularisation(mechanism, constant / 5)  # its time constant is five steps
     step = runge_kutta(Dynamics(mechanism, softness), RK4)
     pose, twist, dt = mechanism.pose + np.array([0.02, 0.0, 0.0]), mechanism.twist, constant / 50
     for i in range(150):

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engines import Softness
+from engines import Regularisation
 from engines.lagrange import METHODS, Lagrange, loading
 from engines.lagrange.arrays import CHANGE, FORCE_KINDS, KINDS, MATRIX, ROWS, arrays_of
 from engines.lagrange.dynamics import RK4
@@ -118,9 +118,9 @@ def test_a_pendulum_that_no_step_can_follow_is_told_and_ends(compiled, monkeypat
 
 
 SOFT = (
-    Softness(2500.0, 100.0, 0.01, (True,) * 8),
-    Softness(2500.0, 100.0, 0.0, (True,) * 8, complete=False),
-    Softness(2500.0, 100.0, 0.01, (True, True, False, False, True, True, False, True)),
+    Regularisation(2500.0, 100.0, 0.01, (True,) * 8),
+    Regularisation(2500.0, 100.0, 0.0, (True,) * 8, complete=False),
+    Regularisation(2500.0, 100.0, 0.01, (True, True, False, False, True, True, False, True)),
 )
 
 

@@ -120,7 +120,7 @@ def test_a_blade_stands_on_one_end_however_deep_the_weight_presses_it(mass: floa
 
 def test_the_softness_that_is_declared_of_a_written_row_is_what_it_slips_by():
     engine, mechanism = SOFT, SLEIGH.mechanism()
-    soft = engine.softness(mechanism, 1e-3)
+    soft = engine.regularisation(mechanism, 1e-3)
     assert soft is not None
     found = engine.build(mechanism, 1e-3)(SLEIGH.samples, 10)
     rows = mechanism.rows(mechanism.pose)

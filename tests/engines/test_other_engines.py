@@ -309,7 +309,7 @@ def test_forces_of_a_loop_are_those_of_its_declared_compliance_without_the_veloc
     truth = scene.motion(np.linspace(0.2, 1.0, 4) * scene.duration)
     for pose, twist in zip(truth.pose, truth.twist, strict=True):
         now = started_anew(scene.mechanism(), pose, twist)
-        soft = present(MJX_TUNED.softness(now, 1e-3))
+        soft = present(MJX_TUNED.regularisation(now, 1e-3))
         model = MJX_TUNED.settings.model(now, 1e-3)
         declared = np.zeros(now.row_count)
         # A connect has a third row, out of the plane; in the model masses have a unit.

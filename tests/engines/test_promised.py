@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from engines import EXACT, Engine, Promise, Unsupported, method_name, mujoco, pymunk, registry
+from engines import EXACT, ConvergenceOrder, Engine, Unsupported, method_name, mujoco, pymunk, registry
 from engines.lagrange import TRUTH, Lagrange
 from engines.mujoco.writers import MJCF, URDF
 from engines.pymunk.written_script import SCRIPT
@@ -25,7 +25,7 @@ from reports.model.cells import SLOW_TO_BUILD
 from tests.mechanisms import ALL, ALONE, DAMPED, GRAVITY
 from tests.reference.test_units import in_other_units
 
-QUICKLY = tuple(engine for engine in registry.OTHERS if engine.building < SLOW_TO_BUILD)
+QUICKLY = tuple(engine for engine in registry.OTHERS if engine.build_time < SLOW_TO_BUILD)
 ENGINES = (*registry.ENGINES, *QUICKLY)
 DEFAULTS = tuple(engine for engine in QUICKLY if engine.variant == "default")
 FURTHER = tuple(engine for engine in QUICKLY if engine not in DEFAULTS)
@@ -174,8 +174,10 @@ def test_an_engine_moves_with_the_order_it_promises_or_refuses_by_name(engine: E
     coarse, fine = (missed(engine, own, name, every) for every in (40, 80))
     way = np.abs(exact(name) - exact(name)[0]).max() / own.length_scale
     promise = engine.order(own)
-    soft = [engine.softness(own, span(name) / SAMPLES / every) for every in (40, 80)]
-    if not isinstance(promise, Promise) or (soft[0] is not None and soft[0] == soft[1] and soft[0].compliance > 1e-6):
+    soft = [engine.regularisation(own, span(name) / SAMPLES / every) for every in (40, 80)]
+    if not isinstance(promise, ConvergenceOrder) or (
+        soft[0] is not None and soft[0] == soft[1] and soft[0].compliance > 1e-6
+    ):
         assert fine < max(0.05, 0.1 * way)  # a joint that gives way whatever the step: its spring's error stays
         return
     order = promise.of("angle")

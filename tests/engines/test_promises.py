@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 
-from engines import EXACT, Engine, Holder, Promise, Unpromised, method_name, mujoco, pymunk
+from engines import EXACT, ConvergenceOrder, Enforcement, Engine, NotDeclared, method_name, mujoco, pymunk
 from engines.extrapolated import Extrapolated
 from engines.lagrange import TRUTH, Lagrange
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
@@ -72,7 +72,7 @@ ENGINES: tuple[Engine, ...] = (
 def words(engine: Engine, mechanism: Mechanism) -> str:
     """A promise in the fields that differ from their defaults."""
     promise = engine.order(mechanism)
-    if isinstance(promise, Unpromised):
+    if isinstance(promise, NotDeclared):
         return "no order"
     values = {field.name: (getattr(promise, field.name), field.default) for field in fields(promise)}
     return ", ".join(f"{name} {value:.4g}" for name, (value, default) in values.items() if value != default)
@@ -113,22 +113,26 @@ def test_a_motion_is_known_by_its_joints_loads_and_start():
 def test_an_altered_engine_is_held_to_what_is_promised_of_the_mechanism_as_it_is():
     inside = mujoco.DEFAULT
     altered = Altered(inside, lambda mechanism: replace(mechanism, joints=mechanism.joints[:2]))
-    assert altered.softness(FREE, 1e-3) == inside.softness(FREE, 1e-3) != inside.softness(altered.change(FREE), 1e-3)
+    assert (
+        altered.regularisation(FREE, 1e-3)
+        == inside.regularisation(FREE, 1e-3)
+        != inside.regularisation(altered.change(FREE), 1e-3)
+    )
     assert altered.order(FREE) == inside.order(FREE) != inside.order(altered.change(FREE))
 
 
 def test_an_extrapolation_carries_more_rounding_and_reads_reactions_of_its_finest_steps():
     promise = pymunk.EXTENDED.order(MECHANISMS["moving"])
-    assert isinstance(promise, Promise)
+    assert isinstance(promise, ConvergenceOrder)
     assert (promise.order, promise.reaction, promise.differences, promise.of("gap")) == (6, 4, 8, 6)
-    assert Promise(1, gap=EXACT).of("gap") == EXACT
+    assert ConvergenceOrder(1, gap=EXACT).of("gap") == EXACT
 
 
 @dataclass(frozen=True)
 class Divided(Toy):
     """Holds the first joint by itself, the others by our rows."""
 
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         return "engine" if joint == mechanism.joints[0] else "engine, our rows"
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engines import Promise
+from engines import ConvergenceOrder
 from engines.lagrange import TRUTH
 from engines.pymunk import DEFAULT, LEAPFROG, TUNED, Pymunk
 from engines.pymunk.contraction import (
@@ -108,8 +108,8 @@ def test_welds_and_motors_do_not_blow_up_however_short_steps_are_and_where_they_
         return largest(engine.build(own, span / steps)(1, steps).pose[-1] - truth.pose[-1])
 
     assert missed(TUNED, 640) < 0.3 * missed(TUNED, 160)
-    assert isinstance(TUNED.order(own), Promise)
-    assert isinstance(DEFAULT.order(own), Promise) == (missed(DEFAULT, 640) < missed(DEFAULT, 160))
+    assert isinstance(TUNED.order(own), ConvergenceOrder)
+    assert isinstance(DEFAULT.order(own), ConvergenceOrder) == (missed(DEFAULT, 640) < missed(DEFAULT, 160))
 
 
 @pytest.mark.parametrize(("seed", "number", "few"), [(*MOTOR, 30), (31, 655, 9), (31, 981, 8)])

@@ -12,7 +12,7 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.patches import PathPatch
 
-from engines import Softness, method_name
+from engines import Regularisation, method_name
 from engines.registry import VARIANTS
 from reference.mechanism import Mechanism
 from reference.scenes.pendulum.link import BarPendulum
@@ -89,9 +89,9 @@ class Soft:
     complete: bool = True
     tied: bool = False
 
-    def softness(self, mechanism: Mechanism, dt: float) -> Softness:
+    def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation:
         stiffness = self.stiffness / dt**2 if self.tied else self.stiffness
-        return Softness(stiffness, 1.0, self.compliance, (True,) * mechanism.row_count, self.complete)
+        return Regularisation(stiffness, 1.0, self.compliance, (True,) * mechanism.row_count, self.complete)
 
 
 def test_softness_gives_where_the_gap_of_the_weight_is_a_twentieth_of_the_length():

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from engines import EXACT, Promise, Softness, Unpromised
+from engines import EXACT, ConvergenceOrder, NotDeclared, Regularisation
 from reports.gate.change import Baseline
 from reports.gate.prediction import Prediction
 from reports.gate.pytest_plugin import lines, report
@@ -73,9 +73,11 @@ def test_two_orders_tell_what_any_order_costs(order_of, expected):
 @pytest.mark.parametrize("quantity", NAMES)
 def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
     # Second order at a tenth of the judge's step: a hundredth of 1e-4, and the room above it.
-    found = theory(JUDGE, Promise(2), None, row(**alone(quantity, 1.1 * (ROOM * 1e-6 + 2e-9))))
+    found = theory(JUDGE, ConvergenceOrder(2), None, row(**alone(quantity, 1.1 * (ROOM * 1e-6 + 2e-9))))
     assert [check.quantity for check in found if not check.passed] == [quantity]
-    assert all(check.passed for check in theory(JUDGE, Promise(2), None, row(**alone(quantity, 0.9 * ROOM * 1e-6))))
+    assert all(
+        check.passed for check in theory(JUDGE, ConvergenceOrder(2), None, row(**alone(quantity, 0.9 * ROOM * 1e-6)))
+    )
 
 
 @pytest.mark.parametrize(
@@ -99,33 +101,35 @@ def coarser(quantity: str = "angle", **errors: Any) -> list[Measurement]:
     return [row(every=int(name[2:]), **{quantity: error}) for name, error in errors.items()]
 
 
-SOFT = Softness(2500.0, 100.0, 0.01, (True, True))
-UNKNOWN = Unpromised("nobody knows")
+SOFT = Regularisation(2500.0, 100.0, 0.01, (True, True))
+UNKNOWN = NotDeclared("nobody knows")
 WITHOUT_SOFT = replace(JUDGE, soft={((True, True), True): dict.fromkeys(NAMES, math.inf)})
 LOST = replace(JUDGE, second=dict.fromkeys(NAMES, math.inf), fourth=dict.fromkeys(NAMES, math.inf))
 WILD = replace(JUDGE, second=dict.fromkeys(NAMES, 1e3), fourth=dict.fromkeys(NAMES, 1e3))
 PRESCRIBED = replace(JUDGE, prescribed=True, earlier=dict.fromkeys(NAMES, 2.0))
-Given = tuple[Prediction, Promise | Unpromised, Softness | None, list[Measurement]]
+Given = tuple[Prediction, ConvergenceOrder | NotDeclared, Regularisation | None, list[Measurement]]
 BOUNDS: dict[str, tuple[Given, str, float]] = {  # what is known of a row, a quantity, and its bound
     "two coarser steps bound by the promised order": (
-        (JUDGE, Promise(2), None, coarser(at1=1e-7, at3=1e-8)), "angle", ROOM_OWN * 1e-9 + 1e-11),
-    "one coarser step may be luck": ((JUDGE, Promise(2), None, coarser(at1=1e-9)), "angle", ROOM * 1e-6 + 1e-11),
+        (JUDGE, ConvergenceOrder(2), None, coarser(at1=1e-7, at3=1e-8)), "angle", ROOM_OWN * 1e-9 + 1e-11),
+    "one coarser step may be luck": (
+        (JUDGE, ConvergenceOrder(2), None, coarser(at1=1e-9)), "angle", ROOM * 1e-6 + 1e-11),
     "one coarser step where the judge is lost": (
-        (LOST, Promise(2), None, coarser(at1=1e-7)), "angle", ROOM_OWN * 1e-9 + 1e-11),
+        (LOST, ConvergenceOrder(2), None, coarser(at1=1e-7)), "angle", ROOM_OWN * 1e-9 + 1e-11),
     "a promise of one quantity": (
-        (JUDGE, Promise(4, rate=2, gap=EXACT, reaction=0), None, []), "rate", ROOM * 1e-6 + 1e-10),
-    "a promise of all others": ((JUDGE, Promise(4, rate=2), None, []), "angle", ROOM * 1e-12 + 1e-11),
-    "an exact gap": ((JUDGE, Promise(4, gap=EXACT), None, []), "gap", 1e-12),
+        (JUDGE, ConvergenceOrder(4, rate=2, gap=EXACT, reaction=0), None, []), "rate", ROOM * 1e-6 + 1e-10),
+    "a promise of all others": ((JUDGE, ConvergenceOrder(4, rate=2), None, []), "angle", ROOM * 1e-12 + 1e-11),
+    "an exact gap": ((JUDGE, ConvergenceOrder(4, gap=EXACT), None, []), "gap", 1e-12),
     "a reaction of a single step without a promise": ((JUDGE, UNKNOWN, None, []), "reaction", 0.5),
     # 2 rad/s^2 for half of a thousandth, whatever the coarser steps allow; a spring lags by its own time.
     "the middle of a step": (
-        (PRESCRIBED, Promise(2, rate=1), None, coarser("rate", at1=1e-2, at3=3.3e-3)), "rate", 1.25e-3 + 1e-10),
+        (PRESCRIBED, ConvergenceOrder(2, rate=1), None, coarser("rate", at1=1e-2, at3=3.3e-3)),
+        "rate", 1.25e-3 + 1e-10),
     # The coarsest would allow 1.25e-7, and with the room of a free motion 2.5e-7.
     "prescribed, the next coarser step": (
-        (PRESCRIBED, Promise(2), None, coarser(at1=1e-5, at3=1e-7, at5=4e-8)), "angle", 1.25e-8 + 1e-11),
+        (PRESCRIBED, ConvergenceOrder(2), None, coarser(at1=1e-5, at3=1e-7, at5=4e-8)), "angle", 1.25e-8 + 1e-11),
     "free, all coarser steps": (
-        (JUDGE, Promise(2), None, coarser(at1=1e-5, at3=1e-7, at5=4e-8)), "angle", ROOM_OWN * 1e-7 + 1e-11),
-    **{f"no {name} above what the outcome refuses": ((WILD, Promise(1), None, []), name, most)
+        (JUDGE, ConvergenceOrder(2), None, coarser(at1=1e-5, at3=1e-7, at5=4e-8)), "angle", ROOM_OWN * 1e-7 + 1e-11),
+    **{f"no {name} above what the outcome refuses": ((WILD, ConvergenceOrder(1), None, []), name, most)
        for name, most in {"angle": 0.5, "rate": 1.0, "slip": 1.0, "reaction": 1.0, "gap": 0.05}.items()},
 }  # fmt: skip
 
@@ -141,13 +145,13 @@ def test_a_row_passes_just_below_its_bound_and_fails_just_above_it(name):
 def test_where_nothing_is_in_proportion_to_softness_its_own_run_bounds_a_row():
     own = dict.fromkeys(NAMES, 1e-5)
     for error, passes in ((1.9e-5, True), (2.1e-5, False)):  # ROOM_SOFT
-        found = theory(WITHOUT_SOFT, Promise(2), SOFT, row(angle=error), [row(every=1), row(every=3)], own)
+        found = theory(WITHOUT_SOFT, ConvergenceOrder(2), SOFT, row(angle=error), [row(every=1), row(every=3)], own)
         assert of(found, "angle").passed is passes
 
 
 def test_rounding_of_a_change_of_velocity_is_carried_by_a_combination_of_runs():
     for carried in (1.0, 17.0):
-        found = of(theory(JUDGE, Promise(2, differences=8, amplified=carried), None, row()), "reaction")
+        found = of(theory(JUDGE, ConvergenceOrder(2, differences=8, amplified=carried), None, row()), "reaction")
         # 1e-10 m/s over 1/8000 s in parts of 10 m/s^2, above the 1e-9 of any reaction.
         assert dict(found.terms)["rounding"] == pytest.approx(carried * 8e-8 + 1e-9, rel=1e-12)
 
@@ -161,28 +165,28 @@ def test_without_a_promise_an_error_may_not_be_far_above_what_the_methods_own_st
 
 
 def test_a_page_knows_better_what_its_motion_asks_for_than_the_engine_and_of_no_other_scene():
-    own = Promise(1)
+    own = ConvergenceOrder(1)
     page = Page("discs", "Discs", "Discs turn.", (SCENE, Slow()), (Toy(),), orders={("disc", "toy default"): own})
-    assert [case.promise for case in cases([page])] == [own, Promise(2)]
+    assert [case.promise for case in cases([page])] == [own, ConvergenceOrder(2)]
 
 
 def test_a_run_that_can_not_be_compared_fails_by_its_outcome_and_an_unsupported_one_has_no_check():
-    found = theory(JUDGE, Promise(1), None, row(outcome=Outcome.TORN))
+    found = theory(JUDGE, ConvergenceOrder(1), None, row(outcome=Outcome.TORN))
     assert [check.name for check in found if not check.passed] == ["outcome"]
     assert idle(found) == {"the run can't be compared, so its outcome alone is held": len(NAMES)}
-    assert theory(JUDGE, Promise(1), None, row(outcome=Outcome.UNSUPPORTED)) == ()
+    assert theory(JUDGE, ConvergenceOrder(1), None, row(outcome=Outcome.UNSUPPORTED)) == ()
 
 
 def test_a_number_that_is_none_fails_unless_there_is_none_to_tell_and_that_is_counted():
-    found = theory(JUDGE, Promise(1), None, row(reaction=math.nan, angle=math.inf))
+    found = theory(JUDGE, ConvergenceOrder(1), None, row(reaction=math.nan, angle=math.inf))
     assert [check.quantity for check in found if not check.passed] == ["angle", "reaction"]
     assert not idle(found)
-    untold = theory(JUDGE, Promise(1, reaction=math.nan), None, row(reaction=math.nan))
+    untold = theory(JUDGE, ConvergenceOrder(1, reaction=math.nan), None, row(reaction=math.nan))
     assert idle(untold) == {"the engine says that it can't tell it": 1}
     for none in (replace(JUDGE, gapped=(False, False)), replace(JUDGE, second={**JUDGE.second, "gap": math.nan})):
-        assert idle(theory(none, Promise(1), None, row(gap=math.nan))) == {"the scene has no such number": 1}
+        assert idle(theory(none, ConvergenceOrder(1), None, row(gap=math.nan))) == {"the scene has no such number": 1}
     for coarse in permutations(coarser(at1=math.nan, at2=1e-7, at3=1e-8)):  # a step without a number bounds nothing
-        bound = of(theory(JUDGE, Promise(2), None, row(), coarse), "angle").bound
+        bound = of(theory(JUDGE, ConvergenceOrder(2), None, row(), coarse), "angle").bound
         assert bound == pytest.approx(ROOM_OWN * 1e-7 * (2 / 10) ** 2 + 1e-11)
 
 
@@ -207,18 +211,18 @@ def falling_errors(power: float, points: int = 4) -> tuple[float, ...]:
     ],
 )
 def test_the_promised_order_passes_and_another_a_plateau_and_growth_do_not(promised, errors, passes):
-    (check,) = order(Promise(promised), rows(*errors))
+    (check,) = order(ConvergenceOrder(promised), rows(*errors))
     assert check.passed is passes
 
 
 def test_no_order_is_asked_of_two_points_or_of_rounding():
     for few in (rows(*falling_errors(2, points=2)), rows(1e-12, 1e-13, 1e-13, 1e-12)):
-        assert idle(order(Promise(2), few)) == {TOO_FEW: 1}
+        assert idle(order(ConvergenceOrder(2), few)) == {TOO_FEW: 1}
 
 
 def toy_checks(engine: Toy) -> tuple[Check, ...]:
     """The angle's checks of a toy that promises second order, by a judge that says 1 rad/s^2 times the step squared."""
-    case = Case(SCENE, engine, Promise(2))
+    case = Case(SCENE, engine, ConvergenceOrder(2))
     measured = [measure(cell, repeat=False) for cell in case.cells()]
     return tuple(check for check in checks(case, measured, JUDGE) if check.quantity == "angle")
 
@@ -257,12 +261,12 @@ def test_a_deviation_that_doubled_or_went_away_or_has_no_check_is_a_complaint():
 
 @pytest.mark.parametrize("outcome", [Outcome.ABORTED, Outcome.TORN, Outcome.SATURATED])
 def test_an_outcome_that_is_known_is_that_one_and_no_other(outcome):
-    case = Case(SCENE, Toy(), Promise(2), (("outcome", Deviation("by design: x", outcome=Outcome.SATURATED)),))
+    case = Case(SCENE, Toy(), ConvergenceOrder(2), (("outcome", Deviation("by design: x", outcome=Outcome.SATURATED)),))
     ended = row(outcome=outcome)
-    told = CaseVerdict(case, (ended,), theory(JUDGE, Promise(2), None, ended)).theory_complaints
+    told = CaseVerdict(case, (ended,), theory(JUDGE, ConvergenceOrder(2), None, ended)).theory_complaints
     assert len(told) == (outcome != Outcome.SATURATED)
     assert all("known is saturated" in line for line in told)
-    better = CaseVerdict(case, (row(),), theory(JUDGE, Promise(2), None, row())).theory_complaints
+    better = CaseVerdict(case, (row(),), theory(JUDGE, ConvergenceOrder(2), None, row())).theory_complaints
     assert any("deviates no longer" in line for line in better)
 
 
@@ -281,7 +285,7 @@ def test_the_nearest_check_is_the_one_farthest_beyond_its_bound():
 
 
 def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> CaseVerdict:
-    return CaseVerdict(Case(SCENE, Toy(), Promise(2), known), (row(angle=2e-5),), found, moved, before=(None,))
+    return CaseVerdict(Case(SCENE, Toy(), ConvergenceOrder(2), known), (row(angle=2e-5),), found, moved, before=(None,))
 
 
 def test_the_report_tells_every_case_its_bound_and_what_failed():
@@ -298,4 +302,6 @@ def test_the_report_tells_every_case_its_bound_and_what_failed():
     assert "disc-toy default: error (angle): 0.0002, bound 0.0001" in text
     assert "| disc | toy default | error | 3 | by design: soft |" in text
     assert "cells are not in the baseline" in text
-    assert "3 checks of theory; 1 of them can't fail." in report([good, verdict(*order(Promise(2), ()))], Baseline({}))
+    assert "3 checks of theory; 1 of them can't fail." in report(
+        [good, verdict(*order(ConvergenceOrder(2), ()))], Baseline({})
+    )

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from engines import Promise
+from engines import ConvergenceOrder
 from engines.lagrange import Lagrange
 from reference.mechanism import Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar
@@ -157,11 +157,11 @@ def known_of(row: Measurement) -> Old:
 
 
 def test_a_scene_of_ours_that_a_baseline_has_no_row_of_fails_and_somebody_elses_is_new():
-    case = Case(SCENE, Toy(), Promise(2))
+    case = Case(SCENE, Toy(), ConvergenceOrder(2))
     assert vanished(case, (None, None)) == ()
     assert vanished(case, (old(), None)) == (), "it ends at a coarser step"
     assert not vanished(case, (None, old()))[0].passed
-    ours = Case(DrivenFourBar(), Lagrange(), Promise(1))
+    ours = Case(DrivenFourBar(), Lagrange(), ConvergenceOrder(1))
     (check,) = vanished(ours, (None, None))
     assert not check.passed
     assert "write it anew" in str(check)
@@ -170,7 +170,7 @@ def test_a_scene_of_ours_that_a_baseline_has_no_row_of_fails_and_somebody_elses_
 
 def test_what_a_baseline_has_and_the_grid_has_lost_is_named():
     cells = {identity(row()): old(), identity(replace(row(), engine="gone")): old()}
-    assert lost(Baseline(cells), [Case(SCENE, Toy(), Promise(2))]) == (("disc", "gone default"),)
+    assert lost(Baseline(cells), [Case(SCENE, Toy(), ConvergenceOrder(2))]) == (("disc", "gone default"),)
 
 
 def test_a_cost_is_that_of_the_cells_that_both_have_timed():
@@ -182,7 +182,7 @@ def test_a_cost_is_that_of_the_cells_that_both_have_timed():
 
 
 def test_a_walk_holds_each_row_and_its_cost_against_the_baselines_row_of_the_same_cell(at_home):
-    case = Case(SCENE, Toy("one", factor=1e-4), Promise(2))
+    case = Case(SCENE, Toy("one", factor=1e-4), ConvergenceOrder(2))
     measured = [measure(cell, repeat=False) for cell in case.cells()]
     same = {identity(each): known_of(each) for each in measured}
     coarsest = identity(measured[0])

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import pytest
 
-from engines import Engine, Promise, mujoco, pymunk
+from engines import ConvergenceOrder, Engine, mujoco, pymunk
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.gate import grid_tests
 from reports.gate.judge import integrate
@@ -76,7 +76,7 @@ def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite, 
 
 def test_an_engine_that_is_not_there_is_skipped_with_its_extra():
     with pytest.raises(pytest.skip.Exception, match="what pip install brings"):
-        grid_tests.verdict_of({}, Case(Disc(), Absent(), Promise(2)))
+        grid_tests.verdict_of({}, Case(Disc(), Absent(), ConvergenceOrder(2)))
 
 
 def test_workers_of_pytest_leave_the_grid_to_its_own(suite):

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import Promise, Unpromised
+from engines import ConvergenceOrder, NotDeclared
 from reference.scenes.pendulum.scenes import LinkPendulum, LongPendulum
 from reports.cli.selection import BadInput, steps_per_sample
 from reports.model import measure as measuring
@@ -173,7 +173,13 @@ def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
 
 @pytest.mark.parametrize(
     ("order", "finest"),
-    [(Promise(1), 300), (Promise(4), 100), (Promise(5), 30), (Promise(8), 10), (Unpromised("?"), 300)],
+    [
+        (ConvergenceOrder(1), 300),
+        (ConvergenceOrder(4), 100),
+        (ConvergenceOrder(5), 30),
+        (ConvergenceOrder(8), 10),
+        (NotDeclared("?"), 300),
+    ],
 )
 def test_steps_end_where_the_promised_order_has_divided_the_error_by_1e8(order, finest, monkeypatch):
     monkeypatch.setattr(Toy, "order", lambda toy, mechanism: order)

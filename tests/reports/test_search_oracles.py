@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import Around, Engine, Promise, Run
+from engines import ConvergenceOrder, Engine, EngineWrapper, Run
 from engines.constrained import constrained
 from engines.lagrange import Judge, Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED
@@ -258,7 +258,7 @@ def test_a_groove_off_the_centre_of_mass_misses_its_velocities_and_obeys_the_law
 
 
 @dataclass(frozen=True)
-class Beside(Around):
+class Beside(EngineWrapper):
     """Its velocities along x are off by this; those of `alike` are not, if it `tells`."""
 
     engine: Any
@@ -266,7 +266,7 @@ class Beside(Around):
     speed: float = 1e-4
     tells: bool = False
 
-    def alike(self, mechanism: Mechanism) -> Engine | None:
+    def stricter(self, mechanism: Mechanism) -> Engine | None:
         return self.engine if self.tells else None
 
     def build(self, mechanism: Mechanism, dt: float) -> Any:
@@ -302,8 +302,8 @@ class Boasting(Lagrange):
 
     warns: str = ""
 
-    def order(self, mechanism: Mechanism) -> Promise:
-        return Promise(4)
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder:
+        return ConvergenceOrder(4)
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
         rough = motions.SPAN * mechanism.time_scale / motions.SAMPLES / motions.COARSE

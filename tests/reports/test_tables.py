@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from engines import Holder, Softness, mujoco, pymunk
+from engines import Enforcement, Regularisation, mujoco, pymunk
 from engines.lagrange import loading
 from engines.pymunk.methods import SKATE_POINT
 from reference.joints import Joint
@@ -66,9 +66,9 @@ FREE, SLEIGH = KNOWN["free_four_bar"], KNOWN["sleigh"]
 
 @dataclass(frozen=True)
 class HeldBy(Toy):
-    by: Holder = "engine"
+    by: Enforcement = "engine"
 
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         return self.by
 
 
@@ -277,7 +277,7 @@ def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):
     assert "/" not in told.replace("w/", "")
 
 
-COLUMNS: tuple[tuple[str, Holder, Column], ...] = (
+COLUMNS: tuple[tuple[str, Enforcement, Column], ...] = (
     ("default", "engine", Column.SHIPPED),
     ("default", "ours", Column.NAIVE),
     ("tuned", "engine", Column.SETTINGS),
@@ -383,8 +383,8 @@ class SoftToy(Plain):
     def build(self, mechanism, dt):
         raise NotImplementedError
 
-    def softness(self, mechanism, dt):
-        return Softness(STIFFNESS, DAMPING, self.share, (True,) * mechanism.row_count)
+    def regularisation(self, mechanism, dt):
+        return Regularisation(STIFFNESS, DAMPING, self.share, (True,) * mechanism.row_count)
 
 
 def test_what_is_declared_is_in_proportion_to_the_judges_own_softness():

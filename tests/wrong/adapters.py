@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from engines import Around, Engine, Softness, Unpromised
+from engines import Engine, EngineWrapper, NotDeclared, Regularisation
 from engines.pymunk import LEAPFROG
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
@@ -45,7 +45,7 @@ from tests.wrong.mistakes import Mistake
 
 
 @dataclass(frozen=True)
-class Wrong(Around):
+class Wrong(EngineWrapper):
     """A right engine with the mistake that its variant names: in what it builds, or in an answer about itself."""
 
     variant: str
@@ -67,7 +67,7 @@ def answer_of(member: str) -> Callable[..., Any]:
     return answer
 
 
-for MEMBER in ("order", "step_cost", "holder", "softness", "steps_of_runs"):
+for MEMBER in ("order", "step_cost", "enforcement", "regularisation", "inner_steps"):
     setattr(Wrong, MEMBER, answer_of(MEMBER))
 
 
@@ -179,7 +179,7 @@ SMALL: dict[str, tuple[str, Build]] = {
 # By the name of the mistake: the check that finds it, the member of the engine, and its wrong answer.
 ANSWERS: dict[str, tuple[str, str, Callable[..., Any]]] = {
     "the order is a number": ("promises_an_order", "order", lambda mechanism: 2),
-    "an order is refused in a word": ("promises_an_order", "order", lambda mechanism: Unpromised("no")),
+    "an order is refused in a word": ("promises_an_order", "order", lambda mechanism: NotDeclared("no")),
     "a step costs nothing": ("tells_what_a_step_costs", "step_cost", lambda mechanism: 0.0),
     "a step's cost is measured": (
         "tells_what_a_step_costs",
@@ -188,15 +188,15 @@ ANSWERS: dict[str, tuple[str, str, Callable[..., Any]]] = {
     ),
     "who holds a skate is told in another word": (
         "tells_who_holds_a_joint",
-        "holder",
+        "enforcement",
         lambda joint, mechanism: "us" if isinstance(joint, Skate) else "engine",
     ),
     "softness counts joints": (
         "tells_how_joints_give_way",
-        "softness",
-        lambda mechanism, dt: Softness(1.0, 1.0, 0.0, (True,) * len(mechanism.joints)),
+        "regularisation",
+        lambda mechanism, dt: Regularisation(1.0, 1.0, 0.0, (True,) * len(mechanism.joints)),
     ),
-    "runs are counted instead of their steps": ("tells_the_steps_of_its_runs", "steps_of_runs", lambda mechanism: 5),
+    "runs are counted instead of their steps": ("tells_the_steps_of_its_runs", "inner_steps", lambda mechanism: 5),
 }
 
 
@@ -206,7 +206,7 @@ class TwoLines(Wrong):
 
 
 @dataclass
-class Changeable(Around):
+class Changeable(EngineWrapper):
     """Not frozen."""
 
     variant: str = "changeable"

@@ -147,7 +147,7 @@ def _power(row: Measurement) -> float:
 def gives_from(scene: Scene, mechanism: Mechanism, engine: Engine, least: float, largest: float) -> float:
     """The step [s] from which on a joint opens so far by the engine's own softness that a cell counts as torn.
 
-    What an engine declares (`engines.Softness`) is J a = bias - damping slip - stiffness gap - compliance A reaction, A
+    An engine declares (`engines.Regularisation`) J a = bias - damping slip - stiffness gap - compliance A reaction, A
     each row's own inverse inertia. Where the gap no longer changes it is (compliance A reaction, and bias where the
     engine leaves that out) over stiffness; the forces are those of the ideal motion. Looked for from `least` to
     `largest` [s]: 0 and inf stand for all and for no step; NaN where no truth is known.
@@ -165,7 +165,7 @@ def gives_from(scene: Scene, mechanism: Mechanism, engine: Engine, least: float,
         wanted.append(np.abs((rows * weights) @ (rows.T @ reaction) + rows @ gravity))
     push, bias = np.nanmax(pushed, axis=0), np.nanmax(wanted, axis=0)
     for step in np.geomspace(least, largest, 81):
-        softness = engine.softness(mechanism, float(step))
+        softness = engine.regularisation(mechanism, float(step))
         if softness is None:
             continue
         gap = (softness.compliance * push + (0.0 if softness.complete else bias)) / softness.stiffness

@@ -36,7 +36,7 @@ class Asked(OfMethod):
 
     @property
     def cost(self) -> float:
-        return 0.1 + self.method.building
+        return 0.1 + self.method.build_time
 
 
 STEP = 1e-2  # s
@@ -86,7 +86,7 @@ class Capabilities(Asked):
                 touching = any(isinstance(joint, Skate | Roll) for joint in mechanism.joints)
                 told[what] = CONTACT if touching and self.method.name not in ROLLING_JOINTS else YES
                 with suppress(ValueError):
-                    held = {self.method.holder(joint, mechanism) for joint in mechanism.joints}
+                    held = {self.method.enforcement(joint, mechanism) for joint in mechanism.joints}
                     if mechanism.forces:
                         held.add(self.method.forces_by)
                     told[what] = told[what] if held == {"engine"} else CODE
@@ -139,7 +139,7 @@ class VelocityTerm(Asked):
     def run(self) -> Values:
         scene = FreeFourBar()
         described = scene.mechanism()
-        softness = self.method.softness(described, ROWS_STEP)
+        softness = self.method.regularisation(described, ROWS_STEP)
         if softness is None:
             raise ValueError(f"{method_name(self.method)} declares no soft rows: its loops are exact")
         t = np.linspace(0.2, 1.0, INSTANTS) * scene.duration
@@ -168,7 +168,7 @@ COMPILED = tuple(
     Cell(BY_NAME[name], engine, MILLISECOND, "beside")
     for name in ("free_four_bar", "pendulum_2")
     for engine in registry.OTHERS
-    if engine.building >= SLOW_TO_BUILD
+    if engine.build_time >= SLOW_TO_BUILD
 )
 BORROWED = sweep_cells(CHARTED_SCENES, registry.VARIANTS, FULL)
 SWEPT = beside_cells(CHARTED_SCENES, registry.OTHERS, sweep=True)

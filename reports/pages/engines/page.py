@@ -87,7 +87,9 @@ MATRIX = tuple(map(Capabilities, ASKED_OF))
 TERMS = tuple(
     VelocityTerm(engine)
     for engine in (*registry.VARIANTS, *registry.OTHERS)
-    if engine.variant == "tuned" and (soft := engine.softness(FREE.mechanism(), 1e-3)) is not None and soft.compliance
+    if engine.variant == "tuned"
+    and (soft := engine.regularisation(FREE.mechanism(), 1e-3)) is not None
+    and soft.compliance
 )
 EXPERIMENTS = (
     Failure(

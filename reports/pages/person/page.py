@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from engines import Promise, pymunk
+from engines import ConvergenceOrder, pymunk
 from engines.registry import VARIANTS
 from reference.scenes.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
 from reports.model.page import Failure, Material, Observation, Page
@@ -81,7 +81,7 @@ def words(material: Material) -> Mapping[str, Any]:
 
 # Observed on all three: an error of the fifth power is left.
 ORDERS = {
-    (scene, "pymunk extended"): Promise(5, reaction=4, differences=8, amplified=17.0)
+    (scene, "pymunk extended"): ConvergenceOrder(5, reaction=4, differences=8, amplified=17.0)
     for scene in ("person_swaying", "person_one_foot", "person_two_feet")
 }
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engines import EXACT, Engine, Holder, Promise, Size, Unpromised, Unsupported
+from engines import EXACT, ConvergenceOrder, Enforcement, Engine, NotDeclared, Size, Unsupported
 from engines.sampling import sampled
 from reference.checks import Count, Positive, validated
 from reference.joints import Joint, Pin
@@ -29,9 +29,9 @@ class BandedChain(Engine):
     packages = ("numpy",)
 
     @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """Runge-Kutta's, of angles between which no pin can part."""
-        return Promise(4, gap=EXACT, slip=EXACT)
+        return ConvergenceOrder(4, gap=EXACT, slip=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
@@ -39,7 +39,7 @@ class BandedChain(Engine):
         return 50e-6 * max(1.0, len(mechanism.bodies) / 3)
 
     @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         return "engine"
 
     @validated

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from engines import Engine, Promise
+from engines import ConvergenceOrder, Engine
 from engines.registry import VARIANTS
 from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.chapter.skates import (
@@ -227,7 +227,7 @@ def words(material: Material) -> Mapping[str, Any]:
 
 # Another body's motion has no order; here it is held to an ideal row's all the same, so that by how much it misses that
 # stays known.
-ORDERS = {("sleigh_backwards", "pymunk default"): Promise(1, differences=1)}
+ORDERS = {("sleigh_backwards", "pymunk default"): ConvergenceOrder(1, differences=1)}
 
 PAGE = Page(
     name="skate",
