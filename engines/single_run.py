@@ -102,7 +102,7 @@ class SingleRun(OneShot):
         return Trajectory(t, pose, twist, reaction, recorded.stepping, warnings)
 
 
-class Recorder(Protocol):
+class EngineModel(Protocol):
     """A model of an engine for steps of a fixed length."""
 
     @property
@@ -144,7 +144,7 @@ class ExtraEngine(Engine, Valid):
         return "engine"
 
     @abstractmethod
-    def model(self, mechanism: Mechanism, dt: float) -> Recorder:
+    def model(self, mechanism: Mechanism, dt: float) -> EngineModel:
         """The engine's objects for steps of dt [s]; raises Unsupported for what `capability` does not cover."""
 
     @validated

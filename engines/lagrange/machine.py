@@ -29,7 +29,7 @@ MOST_MOVES = 8  # of windows, for one sample
 MOST_CELLS = 2**15
 
 
-class Windows:
+class CellWindows:
     """The cells of all tables of a mechanism that compiled code may use, around the rotations that it has met.
 
     Compiled code can't ask for cells that are not there: it stops and says so, and the window is moved. Where a table
@@ -98,7 +98,7 @@ class Machine:
 
     mechanism: Mechanism
     arrays: Arrays
-    windows: Windows
+    windows: CellWindows
     run: Callable[..., int] = field(default_factory=compiled)
 
     @classmethod
@@ -113,7 +113,7 @@ class Machine:
         records = arrays.rolls
         if np.any(records[:, 0] == ix.NOT_TABULATED):
             return None
-        return cls(mechanism, arrays, Windows(rolls, records))
+        return cls(mechanism, arrays, CellWindows(rolls, records))
 
     def soften(self, softness: Regularisation, gives: NDArray[np.bool_]) -> None:
         """Let the rows that `gives` (rows,) names give way by springs, dampers and a compliance."""

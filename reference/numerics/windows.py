@@ -46,7 +46,7 @@ FEW_WINDOWS = 200
 COARSE_STAGES = 16  # of the rule that shows the error of the other
 
 
-class Rule(NamedTuple):
+class CollocationRule(NamedTuple):
     """Gauss's rule on a step of length 1."""
 
     weights: Extended  # (stages,)
@@ -63,7 +63,7 @@ def legendre(degree: int, x: Extended) -> Extended:
 
 
 @lru_cache
-def rule_of(stages: int) -> Rule:
+def rule_of(stages: int) -> CollocationRule:
     """The rule with so many stages, to the rounding of numpy.longdouble."""
     nodes = np.polynomial.legendre.leggauss(stages)[0].astype(np.longdouble)
     for _ in range(3):  # Newton: the table is in double
@@ -77,7 +77,7 @@ def rule_of(stages: int) -> Rule:
     to_coefficients = (2 * degrees + 1) / 2 * weights * values[:stages]
     # The integral of P_n from -1 is (P_{n+1} - P_{n-1}) / (2 n + 1), and x + 1 for n = 0.
     integrals = np.concatenate([(nodes + 1)[None], (values[2:] - values[:-2]) / (2 * degrees[1:] + 1)])
-    return Rule(weights / 2, integrals.T @ to_coefficients / 2, to_coefficients)
+    return CollocationRule(weights / 2, integrals.T @ to_coefficients / 2, to_coefficients)
 
 
 @dataclass(frozen=True)
@@ -210,7 +210,7 @@ def bound(fine: NDArray[Any], coarse: NDArray[Any]) -> Array:
 
 def _found(
     accelerations: Accelerations,
-    rule: Rule,
+    rule: CollocationRule,
     angle: Extended,
     rate: Extended,
     length: Any,

@@ -165,7 +165,7 @@ def test_a_thousand_mechanisms_are_so_and_at_most_two_in_a_hundred_right_ones_ar
 
 
 @dataclass(frozen=True)
-class Known:
+class DifficultCase:
     """A random mechanism that was difficult: errors are below `error`, or estimated, up to `factor` times too large."""
 
     engine: Engine
@@ -181,21 +181,21 @@ class Known:
 
 KNOWN = {
     # A torsion spring with a time scale of 16 ms.
-    "a stiff spring": Known(mujoco.EXTENDED, 3, 134, EVERY, unresolved=True),
+    "a stiff spring": DifficultCase(mujoco.EXTENDED, 3, 134, EVERY, unresolved=True),
     # A damper stops a rod within three steps, so that double and half steps differ by 4 to 1, and not by 16 to 1.
-    "no order is seen": Known(mujoco.EXTENDED, 31, 49, EVERY, 1e-2, unresolved=True, factor=3),
+    "no order is seen": DifficultCase(mujoco.EXTENDED, 31, 49, EVERY, 1e-2, unresolved=True, factor=3),
     # 1.05e-7 off after the first step, where the estimate was 6.7e-8, and 2e-9 after the next.
-    "the first step alone": Known(bullet.EXTENDED, 7001, 245, EVERY, 1e-2, unresolved=True),
+    "the first step alone": DifficultCase(bullet.EXTENDED, 7001, 245, EVERY, 1e-2, unresolved=True),
     # 5 kg slide in a body of 0.1 kg, and a drive spans both: rows as hard as usual lose 4e-4 rad.
-    "a light body carries a heavy one": Known(mujoco.EXTENDED, 1, 130, error=1e-9),
+    "a light body carries a heavy one": DifficultCase(mujoco.EXTENDED, 1, 130, error=1e-9),
     # A slot on a crank runs along a rod: 3 rad/s become 20 within 0.2 s. Rates rise fivefold within 10 ms.
-    "becomes fast in pymunk": Known(pymunk.EXTENDED, 22, 358, unresolved=True, lasts=0.2),
-    "becomes fast in MuJoCo": Known(mujoco.EXTENDED, 1, 479, unresolved=True, lasts=0.2),
+    "becomes fast in pymunk": DifficultCase(pymunk.EXTENDED, 22, 358, unresolved=True, lasts=0.2),
+    "becomes fast in MuJoCo": DifficultCase(mujoco.EXTENDED, 1, 479, unresolved=True, lasts=0.2),
 }
 
 
 @pytest.mark.parametrize("case", KNOWN.values(), ids=KNOWN.keys())
-def test_mechanisms_that_were_difficult_are_right_or_unresolved(case: Known) -> None:
+def test_mechanisms_that_were_difficult_are_right_or_unresolved(case: DifficultCase) -> None:
     own = mechanism(case.seed, case.number, case.kinds)
     samples = max(1, round(case.lasts / case.step))
     run = installed(case.engine).build(own, case.step)(samples, 1)

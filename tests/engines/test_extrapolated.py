@@ -21,7 +21,7 @@ from tests.toys import Plain
 
 
 @dataclass(frozen=True)
-class Toy(Plain):
+class SeriesToy(Plain):
     """Its pose is cos t plus coefficient * t * dt^power for every term; twist and reaction err by multiples of it."""
 
     terms: dict[int, float] = field(default_factory=lambda: {2: 1.0, 3: -2.0})
@@ -34,11 +34,11 @@ class Toy(Plain):
     def build(self, mechanism: Mechanism, dt: float) -> Run:
         if len(mechanism.bodies) != 1:
             raise Unsupported("a toy has one body")
-        return ToyRun(self, mechanism, dt)
+        return SeriesRun(self, mechanism, dt)
 
 
-class ToyRun:
-    def __init__(self, toy: Toy, mechanism: Mechanism, dt: float) -> None:
+class SeriesRun:
+    def __init__(self, toy: SeriesToy, mechanism: Mechanism, dt: float) -> None:
         self.toy, self.dt, self.rows = toy, dt, mechanism.row_count
         self.size = Size(1, 3, 2, 2)
 
@@ -91,19 +91,19 @@ def test_the_weights_keep_a_constant_and_cancel_every_power():
 
 
 def test_an_error_in_the_named_powers_vanishes_from_poses_twists_and_reactions():
-    inner = Toy().build(sledge(), 0.1)(10, 3)
+    inner = SeriesToy().build(sledge(), 0.1)(10, 3)
     assert min(errors(inner)) > 1e-2
-    assert max(errors(run(Extrapolated(Toy(), "extended", (1, 2, 3), (2, 3))))) < 1e-13  # rounding
-    right = run(Extrapolated(Toy(), "extended", (1, 2, 3, 4), (2, 3, 4)))
+    assert max(errors(run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), (2, 3))))) < 1e-13  # rounding
+    right = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3, 4), (2, 3, 4)))
     assert present(right.estimate).max() < 1e-12  # what all steps together may round
     # What (2, 4) leaves of 2 t dt^3 is 2 * 3 * 1e-3 / 60; of others more remains, and the estimate shows it.
     for powers in ((2, 4), (1, 3), (3, 4)):
-        left = run(Extrapolated(Toy(), "extended", (1, 2, 3), powers))
+        left = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), powers))
         assert min(errors(left)) > 0.9e-4
         assert present(left.estimate).max() > 1e-5
     # A series in the step is resolved whatever its size.
     for size in (1e-6, 1.0, 30.0):
-        toy = Toy({2: size, 3: -2 * size, 4: size})
+        toy = SeriesToy({2: size, 3: -2 * size, 4: size})
         told = [
             run(Extrapolated(toy, "extended", (1, 2), (2,))),
             run(Extrapolated(toy, "extended", (1, 2, 3, 4), (2, 3, 4))),
@@ -113,8 +113,8 @@ def test_an_error_in_the_named_powers_vanishes_from_poses_twists_and_reactions()
 
 def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_on():
     # As if all but the finest had passed a singular position the other way at t = 2 s.
-    turned = Extrapolated(Toy(turned_above=0.03), "extended", (1, 2, 3, 4), (2, 3, 4)).build(sledge(), 0.1)(10, 3)
-    finest = Toy(turned_above=0.03).build(sledge(), 0.025)(10, 12)
+    turned = Extrapolated(SeriesToy(turned_above=0.03), "extended", (1, 2, 3, 4), (2, 3, 4)).build(sledge(), 0.1)(10, 3)
+    finest = SeriesToy(turned_above=0.03).build(sledge(), 0.025)(10, 12)
     assert turned.unresolved_at == pytest.approx(2.1)
     assert turned.warnings == (
         "ours: reactions are resolved to 5e+00 of the largest force",  # those of the other runs are of their poses
@@ -132,7 +132,7 @@ def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_o
 
 @pytest.mark.parametrize("every", [1, 2, 3, 10])
 def test_how_often_it_is_sampled_changes_neither_the_motion_nor_the_estimate_nor_what_is_told(every):
-    method = Extrapolated(Toy({2: 1.0, 3: 300.0, 4: 100.0, 5: 5000.0}), "extended", (1, 2, 3, 4), (2, 3, 4))
+    method = Extrapolated(SeriesToy({2: 1.0, 3: 300.0, 4: 100.0, 5: 5000.0}), "extended", (1, 2, 3, 4), (2, 3, 4))
     each, sampled = (method.build(sledge(), 0.025)(60 // count, count) for count in (1, every))
     for name in ("t", "pose", "twist", "estimate"):
         assert np.array_equal(present(getattr(sampled, name)), present(getattr(each, name))[::every])
@@ -172,7 +172,7 @@ def test_the_estimate_is_near_the_error_of_a_series_also_where_it_is_no_longer_a
 def test_runs_that_step_over_a_damper_are_unresolved_from_the_start():
     # 1 / 3 kg m^2 about the pin, and so strong a damper: what moves is at rest after a third of a millisecond.
     own = replace(sledge(), forces=(TorsionDamper("damper", None, "bar", 1e3),))
-    exact = Extrapolated(Toy({2: 0.0}), "extended", (1, 2, 3), (2, 3))
+    exact = Extrapolated(SeriesToy({2: 0.0}), "extended", (1, 2, 3), (2, 3))
     assert exact.build(own, 0.9 * own.time_scale)(10, 1).unresolved_at is None
     over = exact.build(own, 1.1 * own.time_scale)(10, 1)
     assert over.unresolved_at == 0
@@ -180,21 +180,21 @@ def test_runs_that_step_over_a_damper_are_unresolved_from_the_start():
 
 
 def test_reactions_are_told_by_the_forces_that_act_and_not_by_themselves(monkeypatch):
-    own, plain = sledge(), ToyRun.__call__
+    own, plain = sledge(), SeriesRun.__call__
     weight = own.bodies[0].mass * 9.81
     for size, told in ((weight, True), (1e-9 * weight, False)):
 
-        def noisy(self: ToyRun, samples: int, every: int, size: float = size) -> Trajectory:
+        def noisy(self: SeriesRun, samples: int, every: int, size: float = size) -> Trajectory:
             found = plain(self, samples, every)  # no two runs agree on the reactions
             return replace(found, reaction=np.full_like(found.reaction, size * np.sin(1e4 * self.dt)))
 
-        monkeypatch.setattr(ToyRun, "__call__", noisy)
-        found = Extrapolated(Toy({2: 0.0}), "extended", (1, 2, 3), (2, 3)).build(own, 0.01)(10, 3)
+        monkeypatch.setattr(SeriesRun, "__call__", noisy)
+        found = Extrapolated(SeriesToy({2: 0.0}), "extended", (1, 2, 3), (2, 3)).build(own, 0.01)(10, 3)
         assert any("reactions are resolved" in words for words in found.warnings) == told
 
 
 def test_a_level_that_fails_makes_the_samples_not_a_number_and_is_not_dropped():
-    trajectory = run(Extrapolated(Toy(broken_below=0.04), "extended", (1, 2, 3), (2, 3)))
+    trajectory = run(Extrapolated(SeriesToy(broken_below=0.04), "extended", (1, 2, 3), (2, 3)))
     assert np.all(np.isfinite(trajectory.pose[0]))
     for values in (trajectory.pose, trajectory.twist, trajectory.reaction, trajectory.estimate):
         assert values is not None
@@ -205,11 +205,11 @@ def test_a_level_that_fails_makes_the_samples_not_a_number_and_is_not_dropped():
 
 
 def test_cost_is_the_sum_and_warnings_and_the_first_reset_are_passed_on():
-    trajectory = run(Extrapolated(Toy(resets_below=0.06), "extended", (1, 2, 3), (2, 3)))
+    trajectory = run(Extrapolated(SeriesToy(resets_below=0.06), "extended", (1, 2, 3), (2, 3)))
     assert trajectory.stepping == pytest.approx(1e-3 * 30 * (1 + 2 + 3))
     assert trajectory.reset_at == pytest.approx(100 * 0.1 / 3)
     assert trajectory.warnings[:3] == ("reset", "at step 0.05", "at step 0.0333")
-    assert run(Extrapolated(Toy(), "extended", (1, 2), (2,))).reset_at is None
+    assert run(Extrapolated(SeriesToy(), "extended", (1, 2), (2,))).reset_at is None
 
 
 @pytest.mark.parametrize(
@@ -218,7 +218,7 @@ def test_cost_is_the_sum_and_warnings_and_the_first_reset_are_passed_on():
 )
 def test_levels_and_powers_that_do_not_fit_are_refused(levels, powers):
     with pytest.raises(ValueError, match=r"(?i)extrapolated: (levels|powers|.* levels remove)"):
-        Extrapolated(Toy(), "extended", levels, powers)
+        Extrapolated(SeriesToy(), "extended", levels, powers)
 
 
 def test_differences_that_are_small_by_chance_are_decided_by_a_further_run():
@@ -229,7 +229,7 @@ def test_differences_that_are_small_by_chance_are_decided_by_a_further_run():
     without = {power: float(extrapolation_weights(levels[1:], powers[:-1]) @ steps[1:] ** power) for power in (5, 6)}
     last = {power: left[power] - without[power] for power in (5, 6)}
     size = 3 * CLAIM / abs(left[5] - left[6] * last[5] / last[6])  # the error is 3 claims after a second, and grows
-    toy = Toy({2: 1e-3, 3: -2e-3, 4: 1e-3, 5: size, 6: -size * last[5] / last[6]})
+    toy = SeriesToy({2: 1e-3, 3: -2e-3, 4: 1e-3, 5: size, 6: -size * last[5] / last[6]})
     trajectory = run(Extrapolated(toy, "extended", levels, powers), dt)
     error = np.abs(trajectory.pose - np.cos(trajectory.t)[:, None, None]).max(axis=(1, 2))
     assert error.max() > 3 * CLAIM

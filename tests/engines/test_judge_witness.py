@@ -28,7 +28,7 @@ MOST_ASKED = {"DOP853": 3_000, "Radau": 60_000}  # accelerations; others take 50
 KINDS = tuple(kind for kind in EVERY if kind != "roll")
 
 
-class State(NamedTuple):
+class BodyState(NamedTuple):
     """A body's place and angle, and its velocities, each a number or an array."""
 
     x: Any
@@ -39,21 +39,21 @@ class State(NamedTuple):
     omega: Any
 
 
-GROUND = State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+GROUND = BodyState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def at(body: State, point: Any) -> tuple[Any, Any]:
+def at(body: BodyState, point: Any) -> tuple[Any, Any]:
     """A point of a body's frame in the world [m]."""
     c, s = np.cos(body.angle), np.sin(body.angle)
     return body.x + c * point[0] - s * point[1], body.y + s * point[0] + c * point[1]
 
 
-def moving(body: State, place: tuple[Any, Any]) -> tuple[Any, Any]:
+def moving(body: BodyState, place: tuple[Any, Any]) -> tuple[Any, Any]:
     """The velocity [m/s] of a body's material at a place of the world."""
     return body.vx - body.omega * (place[1] - body.y), body.vy + body.omega * (place[0] - body.x)
 
 
-def slip(part: Any, first: State, second: State) -> list[Any]:
+def slip(part: Any, first: BodyState, second: BodyState) -> list[Any]:
     """How fast a joint's rows, or the ends of a force element, move against each other, a value a row."""
     turning = second.omega - first.omega
     match part:
@@ -84,7 +84,7 @@ def slip(part: Any, first: State, second: State) -> list[Any]:
     raise TypeError(part)
 
 
-def pull(force: Any, first: State, second: State) -> Any:
+def pull(force: Any, first: BodyState, second: BodyState) -> Any:
     """The strength of a force element along its `slip`."""
     match force:
         case Spring():
@@ -110,9 +110,9 @@ class Witness:
         self.mass = np.array([[body.mass, body.mass, body.inertia] for body in mechanism.bodies]).reshape(-1)
         self.units = np.eye(len(self.mass)).reshape(-1, 3, len(self.mass))
 
-    def between(self, pose: Any, twist: Any, part: Any) -> tuple[State, State]:
+    def between(self, pose: Any, twist: Any, part: Any) -> tuple[BodyState, BodyState]:
         """The two bodies of a part at poses and twists (bodies, 3), or twists (bodies, 3, n) of n motions."""
-        first, second = (GROUND if i < 0 else State(*pose[i], *twist[i]) for i in self.ends[part.name])
+        first, second = (GROUND if i < 0 else BodyState(*pose[i], *twist[i]) for i in self.ends[part.name])
         return first, second
 
     def rows(self, pose: Any) -> Any:
@@ -182,7 +182,7 @@ def test_the_judge_moves_random_mechanisms_as_newtons_law_does(number: int) -> N
             assert np.abs(pushed).max() < 1e-9 * most
 
 
-class Compared(NamedTuple):
+class WitnessedCase(NamedTuple):
     """In radians and parts of the mechanism's length, velocities in its time: by how much judge and witness are
     `apart`, and the witness from itself at another tolerance; NaN where one of them stops. `resolved`: whether the
     judge claims to hold HELD.
@@ -202,7 +202,9 @@ def witnessed(mechanism: Mechanism, t: Any, method: str, tolerance: float) -> tu
         return np.zeros((0, 0, 3)), np.zeros((0, 0, 3))
 
 
-def compared(number: int, mechanism: Mechanism, span: float, method: str, tolerances: tuple[float, float]) -> Compared:
+def compared(
+    number: int, mechanism: Mechanism, span: float, method: str, tolerances: tuple[float, float]
+) -> WitnessedCase:
     """Over a `span` [s], by the witness's method at two tolerances, the tighter one last."""
     t = np.linspace(0.0, span, SAMPLES + 1)
     with np.errstate(all="ignore"):
@@ -217,14 +219,14 @@ def compared(number: int, mechanism: Mechanism, span: float, method: str, tolera
         return float(np.maximum(places, mechanism.time_scale * rates).max())
 
     here = (judge.pose, judge.twist)
-    return Compared(number, judge.unresolved_at is None, apart(here, tight), apart(loose, tight))
+    return WitnessedCase(number, judge.unresolved_at is None, apart(here, tight), apart(loose, tight))
 
 
 SEED = 291528136  # the first eight digits of a commit's hash, so that nobody chose it
 STIFF_CASES = (59, 114, 237, 411)  # 10 to 3,204 times faster than gravity and their start, and cheap
 
 
-def held(found: list[Compared]) -> list[Compared]:
+def held(found: list[WitnessedCase]) -> list[WitnessedCase]:
     """Those that can be compared: the judge claims them, and the witness knows them better than the claim."""
     both = [one for one in found if one.resolved and one.doubt < HELD]
     wrong = [one for one in both if not one.apart < HELD + one.doubt]

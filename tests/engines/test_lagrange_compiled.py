@@ -101,7 +101,7 @@ def test_a_body_that_rolls_beyond_its_table_gets_another_window_and_moves_as_bef
 def test_where_a_table_has_no_cell_numpy_goes_on(monkeypatch):
     mechanism = RollingEllipse().mechanism()
     expected = Lagrange("rk4", compiled=False).build(mechanism, 1e-3)(4, 2)
-    monkeypatch.setattr("engines.lagrange.machine.Windows.move", lambda self, which, theta: False)
+    monkeypatch.setattr("engines.lagrange.machine.CellWindows.move", lambda self, which, theta: False)
     found = Lagrange("rk4").build(mechanism, 1e-3)(4, 2)
     np.testing.assert_array_equal(found.pose, expected.pose)
     np.testing.assert_array_equal(found.reaction, expected.reaction)

@@ -18,7 +18,7 @@ from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reports.model.outcomes import Loss
 from reports.run.running import worker_count
 from reports.run.supervisor import supervise
-from tests.wrong.mistakes import KINDS, Mistake, Sighting, Trial, mistakes, noticed
+from tests.wrong.mistakes import KINDS, Mistake, Sighting, MistakeTrial, mistakes, noticed
 
 # What has to be noticed: a ten-thousandth by methods that reach rounding, a hundredth by what documented settings give.
 EXTENDED: dict[Engine, float] = {pymunk.EXTENDED: 1e-4, mujoco.EXTENDED: 1e-4}
@@ -146,10 +146,10 @@ def limit(scene: Scene) -> float:
     return 2 * LIMIT if scene.name == "andrews" else LIMIT
 
 
-def whole(engines: Mapping[Engine, float]) -> list[Trial]:
+def whole(engines: Mapping[Engine, float]) -> list[MistakeTrial]:
     """Every mistake in every scene."""
     return [
-        Trial(
+        MistakeTrial(
             short(scene),
             engine,
             relative,
@@ -161,7 +161,7 @@ def whole(engines: Mapping[Engine, float]) -> list[Trial]:
     ]
 
 
-def representative(trials: Iterable[Trial], each: int = 2) -> list[Trial]:
+def representative(trials: Iterable[MistakeTrial], each: int = 2) -> list[MistakeTrial]:
     """Of every trial the last mistake of `each` kinds that have to be noticed, those kinds that its engine met least
     often in the trials before. The slow test makes all mistakes, and those too of which nothing can be noticed."""
     met: dict[str, Counter[str]] = {}
@@ -185,9 +185,9 @@ EVERYTHING = whole({**EXTENDED, **OTHERS})
 Findings = Mapping[tuple[str, str], Mapping[Mistake, Sighting] | Loss]
 
 
-def found(trials: Iterable[Trial]) -> Findings:
+def found(trials: Iterable[MistakeTrial]) -> Findings:
     """What was noticed, by scene and method, in supervised processes."""
-    by_scene: dict[str, list[Trial]] = {}
+    by_scene: dict[str, list[MistakeTrial]] = {}
     for trial in trials:
         by_scene.setdefault(trial.scene.name, []).append(trial)
     # s: two engines' hundred bodies in some forty runs each, on a loaded machine.
@@ -211,11 +211,11 @@ def all_findings(request: pytest.FixtureRequest) -> Findings:
     return found(EVERYTHING)
 
 
-def named(trials: Iterable[Trial]) -> list:
+def named(trials: Iterable[MistakeTrial]) -> list:
     return [pytest.param(trial, id=f"{trial.scene.name}-{trial.method}") for trial in trials]
 
 
-def unseen(trial: Trial, findings: Findings) -> list[str]:
+def unseen(trial: MistakeTrial, findings: Findings) -> list[str]:
     """The mistakes that no check of theory notices; asserts that those excused change nothing, and others something."""
     result = findings[trial.scene.name, trial.method]
     assert not isinstance(result, Loss), result
@@ -233,14 +233,14 @@ def unseen(trial: Trial, findings: Findings) -> list[str]:
 
 
 @pytest.mark.parametrize("trial", named(REPRESENTATIVE))
-def test_a_number_that_is_wrong_in_an_engine_alone_is_noticed(findings: Findings, trial: Trial) -> None:
+def test_a_number_that_is_wrong_in_an_engine_alone_is_noticed(findings: Findings, trial: MistakeTrial) -> None:
     """Two of a scene, in scenes that cost little: the slow test below makes them all, in all scenes and methods."""
     assert not unseen(trial, findings) or (trial.scene.name, trial.method) in LARGER
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("trial", named(EVERYTHING))
-def test_every_number_that_is_wrong_in_an_engine_alone_is_noticed(all_findings: Findings, trial: Trial) -> None:
+def test_every_number_that_is_wrong_in_an_engine_alone_is_noticed(all_findings: Findings, trial: MistakeTrial) -> None:
     left = unseen(trial, all_findings)
     if (trial.scene.name, trial.method) in LARGER:
         assert left, "every mistake is noticed: take it out of LARGER"

@@ -180,7 +180,7 @@ def _mistakes(mechanism: Mechanism) -> Iterator[Mistake]:
 
 
 @dataclass(frozen=True)
-class Made:
+class Misnumbered:
     """The change of a mechanism that makes this mistake, so large."""
 
     mistake: Mistake
@@ -192,11 +192,11 @@ class Made:
 
 def mistaken(engine: Engine, mistake: Mistake, relative: float) -> Altered:
     """An engine with one mistake in every model that it builds, held to the promises of the right one."""
-    return Altered(engine, Made(mistake, relative))
+    return Altered(engine, Misnumbered(mistake, relative))
 
 
 @dataclass(frozen=True)
-class Trial:
+class MistakeTrial:
     """Mistakes of one relative size in a scene and engine, in runs that are estimated to step `limit` [s] at most."""
 
     scene: Scene
@@ -241,14 +241,14 @@ def shift(right: Measurement, wrong: Measurement) -> float:
     return max((abs(one - other) for one, other in pairs if not math.isnan(one)), default=0.0)
 
 
-def noticed(trials: Sequence[Trial]) -> tuple[Mapping[Mistake, Sighting], ...]:
+def noticed(trials: Sequence[MistakeTrial]) -> tuple[Mapping[Mistake, Sighting], ...]:
     """What noticed the mistakes of trials in one scene, in their order: the judge works the scene out once."""
     scene = trials[0].scene
     judge = prediction(scene, kinds(scene, [trial.engine for trial in trials]))
     return tuple(sightings(trial, judge) for trial in trials)
 
 
-def sightings(trial: Trial, judge: Prediction) -> Mapping[Mistake, Sighting]:
+def sightings(trial: MistakeTrial, judge: Prediction) -> Mapping[Mistake, Sighting]:
     """Every mistake with what noticed it. Empty where the engine can't build the scene.
 
     Runs at finer and finer steps, those alone which nothing has noticed yet. In the grid a wrong engine is wrong at
