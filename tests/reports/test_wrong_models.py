@@ -18,7 +18,7 @@ from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reports.model.outcomes import Loss
 from reports.run.running import worker_count
 from reports.run.supervisor import supervise
-from tests.wrong.mistakes import KINDS, Mistake, Sighting, MistakeTrial, mistakes, noticed
+from tests.wrong.mistakes import KINDS, Mistake, MistakeTrial, Sighting, mistakes, noticed
 
 # What has to be noticed: a ten-thousandth by methods that reach rounding, a hundredth by what documented settings give.
 EXTENDED: dict[Engine, float] = {pymunk.EXTENDED: 1e-4, mujoco.EXTENDED: 1e-4}
