@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -237,6 +237,8 @@ class CoupledForce(Valid):
 
 
 ForceElement = Spring | Damper | TorsionSpring | TorsionDamper | Torque | Force | CoupledForce
+# Every force class. Tables of forces in engines and tools are tested against this tuple.
+FORCES: tuple[type[ForceElement], ...] = get_args(ForceElement)
 Ends = tuple[tuple[int, int], ...]  # places of the first and the second body of each term
 
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -262,3 +262,5 @@ class Weld(_JointOfTwo):
 
 
 Joint = Pin | Slot | Skate | Roll | Drive | Rod | Gear | Weld | Coupling
+# Every joint class. Tables of joints in engines and tools are tested against this tuple.
+JOINTS: tuple[type[Joint], ...] = get_args(Joint)
