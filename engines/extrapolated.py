@@ -21,8 +21,6 @@ from engines.richardson import (
     further_level,
 )
 from reference.checks import Count, InvalidMechanism, Name, Positive, Valid, validated
-from reference.forces import Damper, Spring
-from reference.joints import Rod
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
@@ -280,10 +278,10 @@ class ExtrapolatedRun(OneShot):
     def _turned(self, pose: Array) -> Array:
         """(times,) by how much the line of any spring, damper or rod turns up to the next of these poses [rad]."""
         mechanism, out = self._mechanism, np.zeros(len(pose))
-        lines = [part for part in (*mechanism.forces, *mechanism.joints) if isinstance(part, Spring | Damper | Rod)]
+        lines = [part for part in (*mechanism.forces, *mechanism.joints) if part.acts_along_line]
         for line in lines:
             along = np.zeros(len(pose), dtype=complex)
-            for name, (x, y), sign in ((line.first, line.first_point, -1.0), (line.second, line.second_point, 1.0)):
+            for (name, (x, y)), sign in zip(line.points, (-1.0, 1.0), strict=True):
                 body = pose[:, mechanism.body_index(name)] if name else np.zeros((1, 3))
                 with np.errstate(all="ignore"):
                     along += sign * (body[:, 0] + 1j * body[:, 1] + np.exp(1j * body[:, 2]) * complex(x, y))

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import assert_never
 
-from reference.forces import CoupledForce, Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Drive
 from reference.mechanism import Mechanism
 
 
@@ -28,31 +25,6 @@ def counted_in(mechanism: Mechanism, mass: float = 1.0, time: float = 1.0) -> Me
         )
         for body in mechanism.bodies
     ]
-    joints = [
-        replace(joint, turning_rate=joint.turning_rate * time) if isinstance(joint, Drive) else joint
-        for joint in mechanism.joints
-    ]
-    forces = tuple(_counted(force, mass, time) for force in mechanism.forces)
-    return Mechanism(tuple(bodies), tuple(joints), (x * time**2, y * time**2), forces)
-
-
-def _counted(force: ForceElement, mass: float, time: float) -> ForceElement:
-    match force:
-        case Spring() | TorsionSpring():
-            return replace(force, stiffness=force.stiffness / mass * time**2)
-        case Damper() | TorsionDamper():
-            return replace(force, damping=force.damping / mass * time)
-        case Torque():
-            return replace(force, torque=force.torque / mass * time**2)
-        case Force():
-            x, y = force.force
-            return replace(force, force=(x / mass * time**2, y / mass * time**2))
-        case CoupledForce():
-            return replace(
-                force,
-                force=force.force / mass * time**2,
-                stiffness=force.stiffness / mass * time**2,
-                damping=force.damping / mass * time,
-            )
-        case _:
-            assert_never(force)
+    joints = tuple(joint.in_units(mass, time) for joint in mechanism.joints)
+    forces = tuple(force.in_units(mass, time) for force in mechanism.forces)
+    return Mechanism(tuple(bodies), joints, (x * time**2, y * time**2), forces)

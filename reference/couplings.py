@@ -1,7 +1,7 @@
 """Linear relations of relative coordinates, between any number of bodies: a mimic joint, rack and pinion, a tendon.
 
-A `Term` is a factor times one relative coordinate of two bodies, so that a sum of terms has the rows of each of them,
-added up. A `Coupling` holds such a sum at a value; `forces.CoupledForce` pulls along it.
+A `Term` is a factor times one relative coordinate of two bodies; the row of a sum of terms is the sum of their rows. A
+`Coupling` keeps such a sum constant; `forces.CoupledForce` acts along it.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import InvalidMechanism, Name, Valid
+from reference.elements import Element, JointElement, Pair
 from reference.plane import apart, direction_row
 
 AnyArray = NDArray[Any]
@@ -22,10 +23,10 @@ AnyArray = NDArray[Any]
 class Term(Valid):
     """`factor` times a relative coordinate of two bodies.
 
-    That is the second body's angle less the first's [rad], as the poses count it, not wrapped; or, if it is `sliding`,
-    how far the point `second_point` of the second body is along a line in the first [m], which passes through
-    `first_point` at `line_angle` [rad]. Points [m] are in the bodies' own frames, from the centre of mass; on the
-    ground (None) world coordinates.
+    The coordinate is the second body's angle less the first's [rad], not wrapped. If `sliding`, it is the position of
+    the point `second_point` of the second body along a line in the first [m], which passes through `first_point` at
+    `line_angle` [rad]. Points [m] are in the bodies' own frames, from the centre of mass; on the ground (None) they are
+    world coordinates.
     """
 
     holonomic: ClassVar[bool] = True
@@ -62,36 +63,24 @@ class Term(Valid):
 
 
 @dataclass(frozen=True)
-class Coupling(Valid):
-    """A linear relation of relative coordinates: the sum of the `terms` is `offset`.
-
-    Of hinges' angles it is a train of gears or a mimic joint; of a slide and a hinge, rack and pinion or a screw. Row:
-    the rate of the sum. Reaction: what acts along it, a force [N] where the first term is sliding, else a torque [N m];
-    each body gets it times the sum's derivative by its coordinates, and the frame, as in a `Gear`, takes the rest.
-    """
-
-    size: ClassVar[int] = 1
-    holonomic: ClassVar[bool] = True
+class OfTerms(Element):
+    """An element along the sum of its `terms`. Raises InvalidMechanism if there is no term."""
 
     name: Name
     terms: tuple[Term, ...]
-    offset: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_terms(f"coupling {self.name!r}", self.terms)
+        if not self.terms:
+            raise InvalidMechanism(f"{type(self).__name__} {self.name!r}: it has no terms; give at least one")
 
     @property
-    def labels(self) -> tuple[str, ...]:
-        return ("along",) if self.terms[0].sliding else ("torque",)
-
-    @property
-    def rate(self) -> tuple[float, ...]:
-        return (0.0,)
+    def pairs(self) -> tuple[Pair, ...]:
+        return tuple((term.first, term.second) for term in self.terms)
 
     @property
     def first(self) -> str | None:
-        """That of the first term, for who names a joint by two bodies."""
+        """The first body of the first term, for messages that name an element by two bodies."""
         return self.terms[0].first
 
     @property
@@ -99,13 +88,30 @@ class Coupling(Valid):
         return self.terms[0].second
 
 
-def require_terms(owner: str, terms: tuple[Term, ...]) -> None:
-    """Raises InvalidMechanism where there is no term."""
-    if not terms:
-        raise InvalidMechanism(f"{owner}: it has no terms; give at least one")
+@dataclass(frozen=True)
+class Coupling(OfTerms, JointElement):
+    """A linear relation of relative coordinates: the sum of the `terms` is `offset`.
 
+    With terms of hinge angles it is a gear train or a mimic joint; with a slide and a hinge, rack and pinion or a
+    screw. Row: the rate of the sum. Reaction: the generalised force along the sum, a force [N] if the first term is
+    sliding, else a torque [N m]. Each body gets it times the sum's derivative by its coordinates; the frame, as in a
+    `Gear`, takes the rest.
+    """
 
-def pairs(member: Any) -> tuple[tuple[str | None, str | None], ...]:
-    """The pairs of bodies between which a joint or a force element acts: one, or one for each term."""
-    terms = getattr(member, "terms", None)
-    return ((member.first, member.second),) if terms is None else tuple((each.first, each.second) for each in terms)
+    offset: float = 0.0
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        return ("along",) if self.terms[0].sliding else ("torque",)
+
+    @property
+    def is_angular(self) -> tuple[bool, ...]:
+        return (not self.terms[0].sliding,)
+
+    @property
+    def fallback_lengths(self) -> tuple[float, ...]:
+        """How far the first slide moves per radian of each angle [m], as the radius of a pinion."""
+        slide = next((abs(term.factor) for term in self.terms if term.sliding and term.factor), None)
+        if slide is None:
+            return ()
+        return tuple(abs(term.factor) / slide for term in self.terms if not term.sliding and term.factor)

@@ -1,15 +1,16 @@
 """The force elements that act besides joints and gravity: springs, dampers, constant forces and torques.
 
-A closed vocabulary, like the joints: engines `match` on it. An element has `name`; `first` and `second`, names of
-bodies or None for the ground; for poses and twists of the two bodies (..., 3), the ground's zero,
-`on(first, second, first_twist, second_twist)`, the generalised force (..., 6) on the first body's x, y, angle and then
-the second's [N, N, N m]; and `potential(first, second)` (...) [J], whose negative derivative by the poses that is,
-unless the element `dissipates`. All are analytic, so a complex step passes through them. As with joints, what acts on
-the second body acts in the opposite direction on the first.
+The vocabulary is closed, like that of the joints: `FORCES` has every class. Besides the facts of `elements.Element`, an
+element has two functions of the poses and twists of its two bodies (..., 3), which are zero for the ground:
+`on(first, second, first_twist, second_twist)` is the generalised force (..., 6) [N, N, N m] on x, y and angle of the
+first body and then of the second; `potential(first, second)` (...) [J] is zero if the element `dissipates`, else `on`
+is its negative derivative by the poses. Both are analytic, so they can be differentiated by a complex step. The force
+on the first body is opposite to that on the second.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, get_args
@@ -17,30 +18,51 @@ from typing import Any, ClassVar, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.checks import Name, NonNegative, Positive, Valid
-from reference.couplings import Term, require_terms
+from reference.checks import Name, NonNegative, Positive
+from reference.couplings import OfTerms
+from reference.elements import BetweenTwo, Element, Pair, Place, UnitExponents, Vector
+from reference.joints import Body
 from reference.plane import apart, distance, from_body, length_of, point_rows
 from reference.rows import stacked
 
-Vector = tuple[float, float]
 AnyArray = NDArray[Any]
+Bodies = Mapping[str, Body]
+
+# Extension of a spring, relative to its length, up to which it is rounding.
+ROUNDED_EXTENSION = 1e-12
+
+
+class ForceFacts(Element):
+    """Base of force elements."""
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether the element takes energy and stores none."""
+        return False
+
+    def fastest_rate(self, places: tuple[Place, ...], bodies: Bodies, length: float) -> float:
+        """The rate [1/s] of the motion that the force alone gives its bodies, at these points; `length` [m]."""
+        raise NotImplementedError
+
+    def fallback_length(self, span: float, is_guided: bool) -> float:
+        """A length [m] for a mechanism whose points all coincide; `span` [m]: the distance of the points at t = 0.
+
+        `is_guided`: a slot's line is the line of the force in all positions.
+        """
+        return 0.0
 
 
 @dataclass(frozen=True)
-class _ForceOfTwo(Valid):
-    """What all elements between two bodies share."""
-
-    dissipates: ClassVar[bool] = False
-
-    name: Name
-    first: Name | None
-    second: Name | None
+class _ForceOfTwo(BetweenTwo, ForceFacts):
+    """Base of the force elements between two bodies."""
 
 
 class _Dissipative(_ForceOfTwo):
-    """What takes energy and stores none."""
+    """Base of the elements that take energy and store none."""
 
-    dissipates: ClassVar[bool] = True
+    @property
+    def dissipates(self) -> bool:
+        return True
 
     def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
         """Zero (...) [J]."""
@@ -55,10 +77,23 @@ class Spring(_ForceOfTwo):
     mass, on the ground (None) world coordinates. Shorter than its rest length it pushes.
     """
 
+    acts_along_line: ClassVar[bool] = True
+    unit_exponents: ClassVar[UnitExponents] = {"stiffness": (1, -2)}
+
     first_point: Vector
     second_point: Vector
     stiffness: Positive
     rest_length: NonNegative = 0.0
+
+    def fastest_rate(self, places: tuple[Place, ...], bodies: Bodies, length: float) -> float:
+        return math.sqrt(self.stiffness * _inverse_mass(places, bodies))
+
+    def fallback_length(self, span: float, is_guided: bool) -> float:
+        """The rest length, or the span if that is zero; the extension at t = 0 of a spring along a slot."""
+        if not is_guided:
+            return self.rest_length or span
+        extension = abs(span - self.rest_length)
+        return extension if extension > ROUNDED_EXTENSION * span else 0.0
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
         """Generalised force (..., 6) [N, N, N m]; NaN where the points coincide, unless the rest length is zero."""
@@ -83,9 +118,15 @@ class Damper(_Dissipative):
     damping [N s/m]; points [m] as of a Spring. With a spring of the same points it is what engines call a damped one.
     """
 
+    acts_along_line: ClassVar[bool] = True
+    unit_exponents: ClassVar[UnitExponents] = {"damping": (1, -1)}
+
     first_point: Vector
     second_point: Vector
     damping: Positive
+
+    def fastest_rate(self, places: tuple[Place, ...], bodies: Bodies, length: float) -> float:
+        return self.damping * _inverse_mass(places, bodies)
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
         """Generalised force (..., 6) [N, N, N m]; NaN where the points coincide: it has no direction there."""
@@ -102,8 +143,13 @@ class TorsionSpring(_ForceOfTwo):
     wrapped.
     """
 
+    unit_exponents: ClassVar[UnitExponents] = {"stiffness": (1, -2)}
+
     stiffness: Positive
     rest_angle: float = 0.0
+
+    def fastest_rate(self, places: tuple[Place, ...], bodies: Bodies, length: float) -> float:
+        return math.sqrt(self.stiffness * _inverse_inertia(self, bodies))
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
         """Generalised force (..., 6) [N, N, N m]: torques alone."""
@@ -122,7 +168,12 @@ class TorsionSpring(_ForceOfTwo):
 class TorsionDamper(_Dissipative):
     """A linear torsion damper between two bodies: damping [N m s/rad] times their relative rate of turning."""
 
+    unit_exponents: ClassVar[UnitExponents] = {"damping": (1, -1)}
+
     damping: Positive
+
+    def fastest_rate(self, places: tuple[Place, ...], bodies: Bodies, length: float) -> float:
+        return self.damping * _inverse_inertia(self, bodies)
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
         """Generalised force (..., 6) [N, N, N m]: torques alone."""
@@ -133,7 +184,12 @@ class TorsionDamper(_Dissipative):
 class Torque(_ForceOfTwo):
     """A constant torque [N m] on the second body, and its opposite on the first."""
 
+    unit_exponents: ClassVar[UnitExponents] = {"torque": (1, -2)}
+
     torque: float
+
+    def fastest_rate(self, places: tuple[Place, ...], bodies: Bodies, length: float) -> float:
+        return math.sqrt(abs(self.torque) * _inverse_inertia(self, bodies))
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
         """Generalised force (..., 6) [N, N, N m]."""
@@ -145,20 +201,31 @@ class Torque(_ForceOfTwo):
 
 
 @dataclass(frozen=True)
-class Force(Valid):
+class Force(ForceFacts):
     """A constant force (x, y) [N] in the world's directions, at a point of the second body.
 
     second_point [m] is in the body's own frame, from its centre of mass. Nothing acts on a first body: `first` is
     always the ground.
     """
 
-    dissipates: ClassVar[bool] = False
     first: ClassVar[None] = None
+    unit_exponents: ClassVar[UnitExponents] = {"force": (1, -2)}
 
     name: Name
     second: Name
     second_point: Vector
     force: Vector
+
+    @property
+    def pairs(self) -> tuple[Pair, ...]:
+        return ((None, self.second),)
+
+    @property
+    def points(self) -> tuple[Place, ...]:
+        return ((self.second, self.second_point),)
+
+    def fastest_rate(self, places: tuple[Place, ...], bodies: Bodies, length: float) -> float:
+        return math.sqrt(math.hypot(*self.force) * _inverse_mass(places, bodies) / length)
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
         """Generalised force (..., 6) [N, N, N m]; the first body's share is zero."""
@@ -176,37 +243,39 @@ class Force(Valid):
 
 
 @dataclass(frozen=True)
-class CoupledForce(Valid):
-    """What a tendon over several joints does: force - stiffness (sum - rest) - damping rate, along the sum of `terms`.
+class CoupledForce(OfTerms, ForceFacts):
+    """A tendon over several joints: force - stiffness (sum - rest) - damping rate, along the sum of `terms`.
 
-    `rate` is that of the sum. With a sum in metres: force [N], stiffness [N/m], damping [N s/m], rest [m]; without a
-    unit or in rad: [N m], [N m/rad], [N m s/rad], [rad]. Each body gets the force times the sum's derivative by its
-    coordinates. See `couplings`; the functions take poses and twists of all bodies, the ground after them.
+    `rate` is that of the sum. If the sum is in metres: force [N], stiffness [N/m], damping [N s/m], rest [m]; if it is
+    in rad or has no unit: [N m], [N m/rad], [N m s/rad], [rad]. Each body gets the force times the sum's derivative by
+    its coordinates. See `couplings`; the functions take poses and twists of all bodies and, last, of the ground.
     """
 
-    name: Name
-    terms: tuple[Term, ...]
+    unit_exponents: ClassVar[UnitExponents] = {
+        "force": (1, -2),
+        "stiffness": (1, -2),
+        "damping": (1, -1),
+    }
+
     force: float = 0.0
     stiffness: NonNegative = 0.0
     damping: NonNegative = 0.0
     rest: float = 0.0
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_terms(f"force {self.name!r}", self.terms)
-
     @property
     def dissipates(self) -> bool:
         return self.damping > 0
 
-    @property
-    def first(self) -> str | None:
-        """That of the first term, for who names a force by two bodies."""
-        return self.terms[0].first
-
-    @property
-    def second(self) -> str | None:
-        return self.terms[0].second
+    def fastest_rate(self, places: tuple[Place, ...], bodies: Bodies, length: float) -> float:
+        inverse_mass = sum(
+            term.factor**2 * (1 / bodies[name].mass if term.sliding else 1 / bodies[name].inertia)
+            for term in self.terms
+            for name in (term.first, term.second)
+            if name is not None
+        )
+        unit = length if self.terms[0].sliding else 1.0
+        stiffness = max(self.stiffness, abs(self.force) / unit)
+        return max(math.sqrt(stiffness * inverse_mass), self.damping * inverse_mass)
 
     def total(self, poses: AnyArray, ends: Ends) -> AnyArray:
         """The sum (...) of the terms at poses (..., bodies + 1, 3), between the bodies that `ends` names by place."""
@@ -240,6 +309,17 @@ ForceElement = Spring | Damper | TorsionSpring | TorsionDamper | Torque | Force 
 # Every force class. Tables of forces in engines and tools are tested against this tuple.
 FORCES: tuple[type[ForceElement], ...] = get_args(ForceElement)
 Ends = tuple[tuple[int, int], ...]  # places of the first and the second body of each term
+
+
+def _inverse_mass(places: tuple[Place, ...], bodies: Bodies) -> float:
+    """The largest inverse of the mass that a force between these points accelerates [1/kg]."""
+    ends = [(bodies[name], point) for name, point in places if name is not None]
+    return sum(1 / body.mass + (x * x + y * y) / body.inertia for body, (x, y) in ends)
+
+
+def _inverse_inertia(element: BetweenTwo, bodies: Bodies) -> float:
+    """The inverse of the inertia that a torque between the element's bodies accelerates [1/(kg m^2)]."""
+    return sum(1 / bodies[name].inertia for name in (element.first, element.second) if name is not None)
 
 
 def _couple(torque: AnyArray) -> AnyArray:

@@ -1,19 +1,19 @@
-"""Rigid bodies, and the joints that join two of them, or one and the ground: gap, and velocity rows J v = rate.
+"""Rigid bodies, and the joints between two of them, or one and the ground: gap, and velocity rows J v = rate.
 
-A closed vocabulary: engines `match` on it, and a joint enters only when a scene needs it and `engines.lagrange` runs
-it. A joint has `name`; `first` and `second`, names of bodies or None for the ground; `size` rows with `labels`;
-`holonomic`, whether the rows are derivatives of a position; `rate`, the right-hand side (size,); and, for poses of the
-two bodies (..., 3), the ground's zero, `gap(first, second, t)` (..., size) and `rows(first, second)` (..., size, 6),
-whose columns are the first body's x, y, angle and then the second's. Rows are analytic functions, so a complex step
-passes through them. The reaction of a row acts along it on the second body, and against it on the first.
-`mechanism.Mechanism` stacks joints of one kind: numeric fields then carry the joints along their first axis. A kind
-with `stackable = False` is evaluated joint by joint. A `Coupling` has the rows of several pairs of bodies, added up.
+The vocabulary is closed: `JOINTS` has every class, and a joint enters only when a scene needs it and `engines.lagrange`
+runs it. Besides the facts of `elements.JointElement`, a joint has `labels`, the names of its `size` rows, and two
+functions of the poses of its two bodies (..., 3), which are zero for the ground: `gap(first, second, t)` (..., size),
+and `rows(first, second)` (..., size, 6), whose columns are x, y and angle of the first body and then of the second.
+Rows are analytic functions, so they can be differentiated by a complex step. The reaction of a row acts along it on the
+second body, and in the opposite direction on the first. `rows.JointRows` evaluates stackable joints of one class
+together; their numeric fields are then arrays with the joints along the first axis.
 
 Points (..., 2) [m] are in the bodies' own frames, from the centre of mass; on the ground (None) world coordinates.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, get_args
@@ -23,14 +23,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import Name, Positive, Valid
 from reference.couplings import Coupling
+from reference.elements import BetweenTwo, JointElement, Place, UnitExponents, Vector
 from reference.kinds import Rule
 from reference.plane import apart, direction_row, distance, point_rows
 from reference.rolling.roll import Roll
 
-Vector = tuple[float, float]
 Triple = tuple[float, float, float]
 Ratio = Annotated[float, Rule(lambda value: value != 0, "other than zero")]
 AnyArray = NDArray[Any]
+
+# Distance from a slot's line, relative to the span of a spring, up to which the spring's end is on the line: far above
+# rounding, far below a mistake.
+ON_LINE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -49,25 +53,14 @@ class Body(Valid):
 
 
 def bodies_of(names: Sequence[str], masses: Any, inertias: Any, pose: Any, twist: Any) -> tuple[Body, ...]:
-    """A body for each name, of masses and inertias (bodies,), at poses and twists (bodies, 3)."""
-    numbers = (np.asarray(each, dtype=float).tolist() for each in (masses, inertias, pose, twist))
+    """One body per name, from masses and inertias (bodies,), poses and twists (bodies, 3)."""
+    numbers = (np.asarray(values, dtype=float).tolist() for values in (masses, inertias, pose, twist))
     return tuple(Body(name, m, i, tuple(p), tuple(v)) for name, m, i, p, v in zip(names, *numbers, strict=True))
 
 
 @dataclass(frozen=True)
-class _JointOfTwo(Valid):
-    """What all joints of two bodies share; they are at rest, J v = 0, unless they say otherwise."""
-
-    size: ClassVar[int] = 1
-    holonomic: ClassVar[bool] = True
-
-    name: Name
-    first: Name | None
-    second: Name | None
-
-    @property
-    def rate(self) -> tuple[float, ...]:
-        return (0.0,) * self.size
+class _JointOfTwo(BetweenTwo, JointElement):
+    """Base of the joints of two bodies."""
 
 
 @dataclass(frozen=True)
@@ -103,8 +96,14 @@ class Drive(_JointOfTwo):
 
     labels: ClassVar[tuple[str, ...]] = ("torque",)
 
+    unit_exponents: ClassVar[UnitExponents] = {"turning_rate": (0, -1)}
+
     turning_rate: float
     offset: float
+
+    @property
+    def is_angular(self) -> tuple[bool, ...]:
+        return (True,)
 
     @property
     def rate(self) -> tuple[float, ...]:
@@ -128,8 +127,8 @@ class Slot(_JointOfTwo):
     """A straight slot in the first body, in which the point `second_point` of the second slides.
 
     The line passes through `first_point` [m] of the first body at `line_angle` [rad] in its frame; points are from the
-    centre of mass, on the ground (None) world coordinates. The second body may turn: a block that keeps its angle has,
-    besides, a `Drive` of rate zero. Row: velocity of the second point across the line, to the left of its direction,
+    centre of mass, on the ground (None) world coordinates. The second body may turn; add a `Drive` of rate zero for a
+    block that keeps its angle. Row: velocity of the second point across the line, to the left of its direction,
     relative to the first body's material there. Reaction: force across the line on the second body [N].
     """
 
@@ -138,6 +137,21 @@ class Slot(_JointOfTwo):
     first_point: Vector
     line_angle: float
     second_point: Vector
+
+    @property
+    def fixed_points(self) -> tuple[Place, ...]:
+        return ((self.second, self.second_point),)
+
+    def guides(self, places: tuple[Place, ...], span: float) -> bool:
+        """True if one place is the sliding point and the other is on the line, in the first body."""
+        for (line_body, on_line), (sliding_body, sliding_point) in (places, places[::-1]):
+            if (line_body, sliding_body) != (self.first, self.second):
+                continue
+            x, y = on_line[0] - self.first_point[0], on_line[1] - self.first_point[1]
+            off_line = abs(math.cos(self.line_angle) * y - math.sin(self.line_angle) * x)
+            if max(off_line, math.dist(sliding_point, self.second_point)) <= ON_LINE * span:
+                return True
+        return False
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Distance of the second point from the line, positive to its left (..., 1) [m], for poses (..., 3)."""
@@ -155,10 +169,10 @@ class Slot(_JointOfTwo):
 class Skate(_JointOfTwo):
     """An ideal skate or massless wheel (18.64): a point of the second body can't move across the blade.
 
-    `second_point` [m] is where the blade touches, in the second body's own frame from its centre of mass, and `angle`
-    [rad] the blade's direction in that frame. On the ground (first None) the row is the velocity of that point across
-    the blade; on another body it is that velocity relative to the first body's material under the blade. It limits no
-    configuration, so the gap is NaN. Reaction: force across the blade, to its left, on the second body [N].
+    `second_point` [m] is the contact of the blade, in the second body's own frame from its centre of mass, and `angle`
+    [rad] the blade's direction in that frame. Row: the velocity of that point across the blade, relative to the
+    material of the first body under it. A skate constrains no configuration, so the gap is NaN. Reaction: force across
+    the blade, to its left, on the second body [N].
     """
 
     holonomic: ClassVar[bool] = False
@@ -168,7 +182,7 @@ class Skate(_JointOfTwo):
     angle: float = 0.0
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """NaN (..., 1): no function of the pose is held (18.65)."""
+        """NaN (..., 1): the constraint is no function of the pose (18.65)."""
         return np.full((*np.broadcast_shapes(first.shape[:-1], second.shape[:-1]), 1), np.nan)
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
@@ -182,15 +196,20 @@ class Rod(_JointOfTwo):
     """A massless rigid rod: the distance of a point of each body stays `length` [m].
 
     `first_point` and `second_point` [m] are in the bodies' own frames, from the centre of mass; on the ground (None)
-    world coordinates. Row: how fast the distance grows [m/s]. Reaction: force on the second body along the direction
+    world coordinates. Row: the rate of the distance [m/s]. Reaction: force on the second body along the direction
     from the first point to the second [N], positive where the rod pushes.
     """
 
     labels: ClassVar[tuple[str, ...]] = ("along",)
+    acts_along_line: ClassVar[bool] = True
 
     first_point: Vector
     second_point: Vector
     length: Positive
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        return (self.length,)
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Distance of the two points minus the rod's length (..., 1) [m], for the bodies' poses (..., 3)."""
@@ -206,10 +225,10 @@ class Rod(_JointOfTwo):
 class Gear(_JointOfTwo):
     """A pair of gears on fixed axles, or a belt: second angle = `ratio` times first angle + `phase` [rad].
 
-    Angles are those of the poses, counted in the world and not wrapped; the ground's (None) is zero. A negative ratio
-    is of wheels that mesh from outside, a positive one of a belt or a ring. Row: omega of the second minus `ratio`
-    times omega of the first [rad/s]. Reaction: torque on the second body [N m]; on the first acts -ratio times as much,
-    so that the frame, which is not in the equations, takes the rest.
+    Angles are those of the poses in the world, not wrapped; the ground's (None) is zero. The ratio of external gears is
+    negative, that of a belt or a ring gear positive. Row: omega of the second minus `ratio` times omega of the first
+    [rad/s]. Reaction: torque on the second body [N m]; -ratio times that torque acts on the first. The frame, which is
+    not in the equations, takes the rest.
     """
 
     labels: ClassVar[tuple[str, ...]] = ("torque",)
@@ -217,8 +236,12 @@ class Gear(_JointOfTwo):
     ratio: Ratio
     phase: float = 0.0
 
+    @property
+    def is_angular(self) -> tuple[bool, ...]:
+        return (True,)
+
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Second angle minus what the gear prescribes (..., 1) [rad], for the bodies' poses (..., 3)."""
+        """Second angle minus the prescribed one (..., 1) [rad], for the bodies' poses (..., 3)."""
         return (second[..., 2] - np.asarray(self.ratio) * first[..., 2] - np.asarray(self.phase))[..., None]
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
@@ -231,7 +254,7 @@ class Gear(_JointOfTwo):
 
 @dataclass(frozen=True)
 class Weld(_JointOfTwo):
-    """Two bodies as one: a point of each coincide, and the second stands at `angle` [rad] to the first.
+    """A rigid connection: a point of each body coincide, and the second body is at `angle` [rad] to the first.
 
     Points [m] are in the bodies' own frames, from the centre of mass; on the ground (None) world coordinates. The angle
     is the difference of the poses' angles, not wrapped. Rows: velocity of the second point minus that of the first, x
@@ -246,10 +269,15 @@ class Weld(_JointOfTwo):
     second_point: Vector
     angle: float = 0.0
 
+    @property
+    def is_angular(self) -> tuple[bool, ...]:
+        return (False, False, True)
+
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Distance of the points, second minus first, and what the angle is off (..., 3) [m, m, rad]."""
-        off = second[..., 2] - first[..., 2] - np.asarray(self.angle)
-        return np.concatenate([apart(first, second, self.first_point, self.second_point), off[..., None]], axis=-1)
+        """Vector from the first point to the second, and the error of the relative angle (..., 3) [m, m, rad]."""
+        angle_error = second[..., 2] - first[..., 2] - np.asarray(self.angle)
+        vector = apart(first, second, self.first_point, self.second_point)
+        return np.concatenate([vector, angle_error[..., None]], axis=-1)
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
         """Velocity rows (..., 3, 6): columns are the first body's x, y, angle and then the second's."""

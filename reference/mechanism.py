@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import AnyComplexes, InvalidMechanism, Name, Numbers, Valid, kept, require_room, validated
-from reference.couplings import pairs
-from reference.forces import AppliedForces, CoupledForce, ForceElement
+from reference.forces import AppliedForces, ForceElement
 from reference.joints import Body, Joint, Vector
 from reference.kinds import Floats, of_shape
 from reference.plane import COMPLEX_STEP
@@ -53,7 +52,7 @@ class Mechanism(Valid):
                     raise InvalidMechanism(f"mechanism: two {kind} are called {name!r}; names must differ")
         for kind, members in (("joint", self.joints), ("force", self.forces)):
             for member in members:
-                for first, second in pairs(member):
+                for first, second in member.pairs:
                     for name in (first, second):
                         if name is not None and name not in self._index:
                             raise self._unknown(f"{kind} {member.name!r}", name)
@@ -94,7 +93,7 @@ class Mechanism(Valid):
     @kept
     def turning(self) -> NDArray[np.bool_]:
         """Which rows are rotations [rad, rad/s, N m] and not lengths [m, m/s, N] (rows,)."""
-        return np.array([label == "torque" for joint in self.joints for label in joint.labels], dtype=bool)
+        return np.array([is_angular for joint in self.joints for is_angular in joint.is_angular], dtype=bool)
 
     @cached_property
     def row_count(self) -> int:
@@ -285,15 +284,10 @@ def refuse_a_bad_start(mechanism: Mechanism) -> None:
         gap, slip = mechanism.gap(mechanism.pose, 0.0), mechanism.slip(*start)
         if sentence := open_joint(mechanism, gap, slip, *start, mechanism.length_scale):
             raise InvalidMechanism(f"mechanism: {sentence}")
+    still = np.zeros_like(mechanism.pose)
     for element in mechanism.forces:
-        if isinstance(element, CoupledForce):  # a sum of coordinates, which has a direction everywhere
-            continue
-        still = np.zeros(3)
-        first, second = (
-            still if name is None else mechanism.pose[mechanism.body_index(name)]
-            for name in (element.first, element.second)
-        )
-        if not np.isfinite(element.on(first, second, still, still)).all():
+        alone = AppliedForces.of((element,), mechanism._index)
+        if not np.isfinite(alone.on(mechanism.pose, still)).all():
             raise InvalidMechanism(
                 f"force {element.name!r}: at t = 0 its two points coincide, so it has no direction; move one of them"
             )

@@ -165,7 +165,7 @@ class JointRows:
                     terms.append(JointGroup(term, first, second, np.array([[start]]), number > 0, offset))
                 start += 1
                 continue
-            kind = type(joint) if getattr(joint, "stackable", True) else joint.name
+            kind = type(joint) if joint.stackable else joint.name
             kinds.setdefault(kind, []).append((joint, range(start, start + joint.size)))
             start += joint.size
         groups = tuple(
@@ -226,7 +226,7 @@ class JointRows:
 
 def stacked(joints: Sequence[Any]) -> Any:
     """One joint, or force element, that stands for several of its kind: every numeric field becomes an array."""
-    if not getattr(joints[0], "stackable", True):
+    if not joints[0].stackable:
         return joints[0]
     numeric = [f.name for f in fields(joints[0]) if f.name not in ("name", "first", "second")]
     stacked = copy(joints[0])  # not made anew: arrays are no valid fields of one joint

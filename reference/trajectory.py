@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.checks import Numbers, Valid, validated
-from reference.joints import Slot
 from reference.kinds import NOT_FINITE, of_shape
 from reference.mechanism import Mechanism
 from reference.plane import rotated
@@ -91,9 +90,8 @@ def body_points(mechanism: Mechanism, pose: Array) -> dict[str, Array]:
     """World points (points, 2) [m] of each body's joints, in the order of the joints, for one pose (bodies, 3)."""
     own: dict[str, list[tuple[float, float]]] = {body.name: [] for body in mechanism.bodies}
     for joint in mechanism.joints:
-        for name, attribute in ((joint.first, "first_point"), (joint.second, "second_point")):
-            point = getattr(joint, attribute, None)
-            if name is not None and point is not None and point not in own[name]:
+        for name, point in joint.points:
+            if name is not None and point not in own[name]:
                 own[name].append(point)
     out = {}
     for name, points in own.items():
@@ -104,10 +102,5 @@ def body_points(mechanism: Mechanism, pose: Array) -> dict[str, Array]:
 
 def ground_points(mechanism: Mechanism) -> Array:
     """World points (points, 2) [m] at which joints hold to the ground; a slot holds to a line, which has none."""
-    points = [
-        getattr(joint, attribute)
-        for joint in mechanism.joints
-        for name, attribute in ((joint.first, "first_point"), (joint.second, "second_point"))
-        if name is None and hasattr(joint, attribute) and not isinstance(joint, Slot)
-    ]
+    points = [point for joint in mechanism.joints for name, point in joint.fixed_points if name is None]
     return np.array(list(dict.fromkeys(points)), dtype=float).reshape(-1, 2)

@@ -79,7 +79,7 @@ def instants(
 
 def why_no_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> str:
     """The reason why constructions of a mechanism obey no law of an instant; empty if they do."""
-    if engine.drive != "inertia" and any(joint.labels == ("torque",) for joint in mechanism.joints):
+    if engine.drive != "inertia" and any(all(joint.is_angular) for joint in mechanism.joints):
         return f"a drive by {engine.drive!r} obeys no law of an instant"
     if engine.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints):
         return "a blade whose row is that of another pose obeys no law of an instant"

@@ -9,14 +9,14 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import Name, Valid
+from reference.elements import BetweenTwo, JointElement
 from reference.plane import components, rotation_velocity
 from reference.rolling.curves import Vector
 from reference.rolling.kinematics import Contact, Rolling
 
 
 @dataclass(frozen=True)
-class Roll(Valid):
+class Roll(BetweenTwo, JointElement):
     """Ideal rolling of two bodies (18.66): at the contact, the material of the second has the velocity of the first's.
 
     `rolling` holds both curves, `ground` in the frame of the first body (None: the world) and `body` in that of the
@@ -31,18 +31,17 @@ class Roll(Valid):
     """
 
     size: ClassVar[int] = 2
-    holonomic: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("tangent", "normal")
     stackable: ClassVar[bool] = False  # curves don't stack as numbers do
 
-    name: Name
-    first: Name | None
-    second: Name | None
     rolling: Rolling
 
     @property
-    def rate(self) -> tuple[float, ...]:
-        return (0.0, 0.0)
+    def fallback_lengths(self) -> tuple[float, ...]:
+        """The radii of curvature of both curves [m] where they touch at the start."""
+        sides = ((self.rolling.ground, self.rolling.ground_arc), (self.rolling.body, self.rolling.body_arc))
+        curvatures = [abs(float(curve.curvature(arc))) for curve, arc in sides]
+        return tuple(1 / curvature for curvature in curvatures if curvature)
 
     @cached_property
     def first_point(self) -> Vector:

@@ -10,8 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from reference.forces import Spring
-from reference.joints import Rod, Slot
+from reference.joints import Slot
 from reference.mechanism import Mechanism
 from reference.plane import rotated
 from reference.trajectory import Trajectory, body_points, ground_points
@@ -124,8 +123,8 @@ def pose_of(mechanism: Mechanism, pose: Array) -> Pose:
             middle = point(joint.second, joint.second_point)
             rails.append([(middle - way).tolist(), (middle + way).tolist()])
     for link in (*mechanism.joints, *mechanism.forces):
-        if isinstance(link, Rod | Spring):
-            first, second = point(link.first, link.first_point), point(link.second, link.second_point)
+        if link.acts_along_line:
+            first, second = (point(*place) for place in link.points)
             if np.linalg.norm(second - first) < 3 * reach:  # not one that stands for a spring along a slide
                 links.append([first.tolist(), second.tolist()])
     for name, points in body_points(mechanism, pose).items():

@@ -65,12 +65,8 @@ def body_lines(mechanism: Mechanism, look: Look, name: str) -> list[Stroke]:
     points: list[Point] = list(look.ends.get(name, ()))
     lines: list[Stroke] = []
     for joint in mechanism.joints:
-        for owner, attribute in ((joint.first, "first_point"), (joint.second, "second_point")):
-            if owner != name or isinstance(joint, Roll) or not hasattr(joint, attribute):
-                continue
-            point = getattr(joint, attribute)
-            if not (isinstance(joint, Slot) and owner == joint.first) and point not in points:
-                points.append(point)
+        if not isinstance(joint, Roll):
+            points += [point for owner, point in joint.fixed_points if owner == name and point not in points]
         if isinstance(joint, Skate) and joint.second == name:
             half = BLADE * size / 2 * np.array([np.cos(joint.angle), np.sin(joint.angle)])
             across = look.axle * np.array([-half[1], half[0]]) / np.hypot(*half)
@@ -110,13 +106,8 @@ def body_shape(mechanism: Mechanism, look: Look, name: str) -> str:
 
 def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
     """The points of a body at which it is pinned [m]."""
-    sides = [
-        (owner, point)
-        for joint in mechanism.joints
-        if isinstance(joint, Pin)
-        for owner, point in ((joint.first, joint.first_point), (joint.second, joint.second_point))
-    ]
-    return list(dict.fromkeys(point for owner, point in sides if owner == name))
+    pins = [joint for joint in mechanism.joints if isinstance(joint, Pin)]
+    return list(dict.fromkeys(point for pin in pins for owner, point in pin.points if owner == name))
 
 
 def ground_lines(mechanism: Mechanism, look: Look, pose: Array) -> list[Stroke]:
@@ -186,8 +177,8 @@ def index_of(mechanism: Mechanism, name: str | None) -> int:
 
 
 def measure_of(mechanism: Mechanism) -> Literal["angle", "position"]:
-    """Which error is told of a mechanism: that of places where it moves on skates, which hold none, else of angles."""
-    return "position" if any(isinstance(joint, Skate) for joint in mechanism.joints) else "angle"
+    """The error to show: of positions for a mechanism with skates, which constrain velocities alone, else of angles."""
+    return "angle" if mechanism.holonomic.all() else "position"
 
 
 def joints_of(mechanism: Mechanism) -> list[dict[str, Any]]:

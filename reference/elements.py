@@ -1,0 +1,105 @@
+"""Facts about joints and force elements, so that tools can treat an element without naming its class.
+
+An element has `name`; `first` and `second` are names of bodies, None for the ground. Points [m] are in the bodies' own
+frames, from the centre of mass; on the ground they are world coordinates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+from reference.checks import Name, Valid
+
+Vector = tuple[float, float]
+Pair = tuple[str | None, str | None]  # names of two bodies, None for the ground
+Place = tuple[str | None, Vector]  # the name of a body, None for the ground, and a point in its frame [m]
+UnitExponents = Mapping[str, tuple[int, int]]
+
+
+class Element(Valid):
+    """Base of joints and force elements.
+
+    `stackable`: several elements of the class can be evaluated as one, with arrays in its numeric fields.
+    `acts_along_line`: the element acts along the line between its two points.
+    `unit_exponents`: by field, the exponents of mass and time in the field's unit; absent fields have neither.
+    """
+
+    stackable: ClassVar[bool] = True
+    acts_along_line: ClassVar[bool] = False
+    unit_exponents: ClassVar[UnitExponents] = {}
+
+    @property
+    def pairs(self) -> tuple[Pair, ...]:
+        """The pairs of bodies between which the element acts."""
+        raise NotImplementedError
+
+    @property
+    def points(self) -> tuple[Place, ...]:
+        """The points by which the element is described, the first body's before the second's."""
+        return ()
+
+    @property
+    def fixed_points(self) -> tuple[Place, ...]:
+        """The points at which the element holds or pulls always the same material of a body or of the ground."""
+        return self.points
+
+    def in_units(self, mass: float, time: float) -> Self:
+        """The element with masses in units of `mass` [kg] and times in units of `time` [s]."""
+        changes: dict[str, Any] = {}
+        for field, (of_mass, of_time) in self.unit_exponents.items():
+            value = getattr(self, field)
+            divisor, factor = mass**of_mass, time**-of_time
+            is_vector = isinstance(value, tuple)
+            changes[field] = tuple(x / divisor * factor for x in value) if is_vector else value / divisor * factor
+        return replace(self, **changes) if changes else self  # type: ignore[type-var]
+
+
+class JointElement(Element):
+    """Base of joints: `size` velocity rows, which are derivatives of a position where `holonomic`."""
+
+    size: ClassVar[int] = 1
+    holonomic: ClassVar[bool] = True
+
+    @property
+    def is_angular(self) -> tuple[bool, ...]:
+        """Whether each row is a rotation [rad, rad/s, N m] and not a length [m, m/s, N] (size,)."""
+        return (False,) * self.size
+
+    @property
+    def rate(self) -> tuple[float, ...]:
+        """The right-hand side of the rows J v = rate (size,) [m/s or rad/s]."""
+        return (0.0,) * self.size
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """Lengths of the joint [m] that count as the mechanism's like distances between points of a body."""
+        return ()
+
+    @property
+    def fallback_lengths(self) -> tuple[float, ...]:
+        """Lengths of the joint [m] for a mechanism whose points all coincide."""
+        return ()
+
+    def guides(self, places: tuple[Place, ...], span: float) -> bool:
+        """Whether a force between two places, `span` [m] apart at t = 0, acts along a line of this joint for ever."""
+        return False
+
+
+@dataclass(frozen=True)
+class BetweenTwo(Element):
+    """An element between two bodies, or one and the ground."""
+
+    name: Name
+    first: Name | None
+    second: Name | None
+
+    @property
+    def pairs(self) -> tuple[Pair, ...]:
+        return ((self.first, self.second),)
+
+    @property
+    def points(self) -> tuple[Place, ...]:
+        places = ((self.first, getattr(self, "first_point", None)), (self.second, getattr(self, "second_point", None)))
+        return tuple((body, point) for body, point in places if point is not None)
