@@ -54,7 +54,7 @@ def closed_positions(
     if not joints:
         return None
     mechanism = _AnyStart(tuple(bodies), tuple(joints), gravity, tuple(forces))
-    row_unit = np.where(mechanism.turning, 1.0, mechanism.length_scale)
+    row_unit = np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
     still, size = np.zeros(mechanism.row_count), mechanism.length_scale
 
     def gap_at(pose: Array) -> Array:
@@ -86,7 +86,7 @@ def closed_positions(
     return pose, Note(
         "the start",
         f"its positions leave {mechanism.row_names[row]} open by {abs(gap_at(mechanism.pose)[row]):.2g} "
-        f"{'rad' if mechanism.turning[row] else 'm'}, as rounded digits do; both motions begin with the nearest "
+        f"{'rad' if mechanism.is_angular[row] else 'm'}, as rounded digits do; both motions begin with the nearest "
         f"positions that close all joints: {name} moves most, by {moved_by:.2g} {'rad' if coordinate == 2 else 'm'}",
     )
 
@@ -110,7 +110,7 @@ def with_consistent_start(
         return Mechanism(tuple(bodies), *elements), ()
     twist = own.twist + _least_change(own, slip, own.pose)
     missed = own.slip(own.pose, twist)
-    speed = np.where(own.turning, 1.0, own.length_scale) * float(
+    speed = np.where(own.is_angular, 1.0, own.length_scale) * float(
         max(np.abs(own.twist[:, 2]).max(), np.abs(own.twist[:, :2]).max() / size, np.abs(_per_length(own, slip)).max())
     )
     if np.any(np.abs(missed) > START_TOLERANCE * speed):
@@ -153,7 +153,7 @@ def _least_change(own: Mechanism, slip: Array, pose: Array) -> Array:
 
 def _per_length(own: Mechanism, slip: Array) -> Array:
     """Slips (rows,) as rates [1/s]."""
-    return np.where(own.turning, slip, slip / own.length_scale)
+    return np.where(own.is_angular, slip, slip / own.length_scale)
 
 
 def _contradiction(own: Mechanism, missed: Array) -> str:
@@ -164,7 +164,7 @@ def _contradiction(own: Mechanism, missed: Array) -> str:
     taking = [name for name, size in zip(joints, sizes, strict=True) if size > TAKES_PART * sizes.max()]
     names = list(dict.fromkeys(sorted(taking, key=lambda name: name not in driven)))
     worst = int(np.argmax(sizes))
-    unit = "rad/s" if own.turning[worst] else "m/s"
+    unit = "rad/s" if own.is_angular[worst] else "m/s"
     more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
     return (
         f"no velocities satisfy {', '.join(names[:MOST_NAMED])}{more} together: at best {own.row_names[worst]!r} is "
@@ -181,7 +181,7 @@ def _note(own: Mechanism, slip: Array, twist: Array) -> Note:
     most = int(np.argmax(energies))
     before, after = own.twist[most], twist[most]
     worst = int(np.argmax(rates))
-    unit = "rad/s" if own.turning[worst] else "m/s"
+    unit = "rad/s" if own.is_angular[worst] else "m/s"
     return Note(
         "the start",
         f"its velocities do not satisfy {', '.join(broken[:MOST_NAMED])}{more} (by {abs(slip[worst]):.3g} {unit}), so "

@@ -76,7 +76,7 @@ def largest_force(mechanism: Mechanism, pose: Array, twist: Array, reaction: Arr
     and of m v^2 / length.
     """
     length = mechanism.length_scale
-    arm, sizes = np.where(mechanism.turning, length, 1.0), np.array([1.0, 1.0, 1 / length])
+    arm, sizes = np.where(mechanism.is_angular, length, 1.0), np.array([1.0, 1.0, 1 / length])
     with np.errstate(all="ignore"):
         loads = np.abs(mechanism.inertias * mechanism.unconstrained(pose, twist) * sizes)
         turned = np.sum(mechanism.inertias * np.square(twist), axis=(1, 2)) / length
@@ -88,7 +88,7 @@ def reaction_doubts(mechanism: Mechanism, pose: Array, twist: Array, reaction: A
     """The sentence for reactions (times, rows) whose `error` is above FORCES of the `largest_force`, if it is."""
     if not mechanism.row_count:
         return []
-    arm = np.where(mechanism.turning, mechanism.length_scale, 1.0)
+    arm = np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
     with np.errstate(all="ignore"):
         missed = np.fmax.reduce(np.abs(error / arm), axis=None, initial=0.0)
     share = missed / largest_force(mechanism, pose, twist, reaction)

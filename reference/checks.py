@@ -4,7 +4,7 @@ A frozen dataclass that inherits from `Valid` has its fields checked when it is 
 arguments when it is called. Either raises InvalidMechanism, a ValueError, in a sentence that says which value, why, and
 what would be valid. Values become plain ones: numpy's numbers become Python's, lists and arrays become tuples where a
 tuple is declared and arrays of floats where an array is; so equal settings have equal reprs. Relations between values
-(lengths that assemble) are checked by hand afterwards. `reference.kinds` has the validators.
+(lengths that assemble) are checked by hand afterwards. `reference.validators` has the validators.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Annotated, Any, ClassVar, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.kinds import COMPLEX, NOT_FINITE, NOT_TAKEN, Floats, Kind, Rule, from_to, kind_of
+from reference.validators import COMPLEX, INVALID, NOT_FINITE, Floats, Rule, Validator, from_to, validator_of
 
 MOST_LETTERS = 80  # of a value in a message
 
@@ -51,7 +51,7 @@ class NotFinite(InvalidMechanism, ArithmeticError):
     """An argument that overflowed or is NaN where a finite number must be."""
 
 
-def shown(value: Any) -> str:
+def short_repr(value: Any) -> str:
     """A value in one short line."""
     try:
         text = " ".join(repr(value).split())
@@ -64,14 +64,14 @@ def refusal(owner: str, name: str, value: Any, words: str) -> InvalidMechanism:
     """The error for a value that isn't what the words say; NotFinite for numbers with an infinity or NaN."""
     plain = isinstance(value, float | complex | np.ndarray | np.generic) and np.asarray(value).dtype.kind in "fc"
     error = NotFinite if plain and not np.isfinite(value).all() else InvalidMechanism
-    return error(f"{owner}: {name} is {shown(value)}; it must be {words}")
+    return error(f"{owner}: {name} is {short_repr(value)}; it must be {words}")
 
 
 @cache
-def _kinds_of_fields(cls: type) -> dict[str, Kind]:
+def _validators_of_fields(cls: type) -> dict[str, Validator]:
     """The validator of every field, by name."""
     hints = typing.get_type_hints(cls, include_extras=True)
-    return {field.name: kind_of(hints[field.name]) for field in fields(cls)}
+    return {field.name: validator_of(hints[field.name]) for field in fields(cls)}
 
 
 class Valid:
@@ -85,20 +85,20 @@ class Valid:
 
     def __post_init__(self) -> None:
         values = self.__dict__
-        for name, kind in _kinds_of_fields(type(self)).items():
+        for name, kind in _validators_of_fields(type(self)).items():
             value = values[name]
-            taken = kind.take(value)
-            if taken is NOT_TAKEN:
+            taken = kind.validate(value)
+            if taken is INVALID:
                 raise refusal(self._owner(), name, value, kind.words)
             if self._copies and isinstance(taken, np.ndarray) and taken.flags.writeable:
-                taken = fixed(taken.copy())
+                taken = freeze(taken.copy())
             if taken is not value:
                 values[name] = taken
 
     def _owner(self) -> str:
         """Who it is in a message: its class, and its name if that is a field."""
         name = self.__dict__.get("name")
-        return f"{type(self).__name__} {shown(name)}" if isinstance(name, str) else type(self).__name__
+        return f"{type(self).__name__} {short_repr(name)}" if isinstance(name, str) else type(self).__name__
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -113,14 +113,14 @@ def validated(function: Function) -> Function:
     names = [each.name for each in parameters if each.kind not in (each.VAR_KEYWORD, each.VAR_POSITIONAL)]
 
     @cache
-    def kinds() -> dict[str, Kind]:
+    def kinds() -> dict[str, Validator]:
         hints = typing.get_type_hints(function, include_extras=True)
-        return {name: kind_of(hints[name]) for name in names if name in hints}
+        return {name: validator_of(hints[name]) for name in names if name in hints}
 
     def take_argument(name: str, value: Any) -> Any:
         kind = kinds().get(name)
-        taken = value if kind is None else kind.take(value)
-        if taken is NOT_TAKEN and kind is not None:
+        taken = value if kind is None else kind.validate(value)
+        if taken is INVALID and kind is not None:
             raise refusal(function.__qualname__, name, value, kind.words)
         return taken
 
@@ -143,19 +143,19 @@ def validated(function: Function) -> Function:
 
 def index_of(owner: str, name: str, value: int, count: int) -> int:
     """A place among `count`, counted from 0; InvalidMechanism for any other."""
-    return take(owner, name, value, Annotated[int, from_to(0, count - 1)])
+    return validate(owner, name, value, Annotated[int, from_to(0, count - 1)])
 
 
 def sample_times(owner: str, t: ArrayLike) -> Floats:
     """Times (times,) [s], or one, as an array; InvalidMechanism unless all are finite and none lies before 0."""
-    return np.atleast_1d(np.asarray(take(owner, "t", t, Times), dtype=float))
+    return np.atleast_1d(np.asarray(validate(owner, "t", t, Times), dtype=float))
 
 
-def take(owner: str, name: str, value: Any, annotation: Any) -> Any:
+def validate(owner: str, name: str, value: Any, annotation: Any) -> Any:
     """One value checked by hand, as a field or an argument with this annotation would be."""
-    kind = kind_of(annotation)
-    taken = kind.take(value)
-    if taken is NOT_TAKEN:
+    kind = validator_of(annotation)
+    taken = kind.validate(value)
+    if taken is INVALID:
         raise refusal(owner, name, value, kind.words)
     return taken
 
@@ -163,7 +163,7 @@ def take(owner: str, name: str, value: Any, annotation: Any) -> Any:
 Value = TypeVar("Value")
 
 
-def fixed(value: Value) -> Value:
+def freeze(value: Value) -> Value:
     """The same value, no array of which can be written any more: numpy refuses it as "read-only".
 
     An engine that changed a mechanism's arrays would falsify the rows of the engines after it.
@@ -172,18 +172,18 @@ def fixed(value: Value) -> Value:
         value.flags.writeable = False
     elif isinstance(value, tuple):
         for each in value:
-            fixed(each)
+            freeze(each)
     elif is_dataclass(value):
         for field in fields(value):
-            fixed(getattr(value, field.name))
+            freeze(getattr(value, field.name))
     return value
 
 
-class kept(cached_property[Value]):
-    """A cached property whose arrays are `fixed`."""
+class cached_readonly(cached_property[Value]):
+    """A cached property whose arrays are `freeze`."""
 
     def __init__(self, function: Callable[[Any], Value]) -> None:
-        super().__init__(lambda owner: fixed(function(owner)))
+        super().__init__(lambda owner: freeze(function(owner)))
         self.__doc__ = function.__doc__
 
 

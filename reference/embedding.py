@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.numerics import windows
+from reference.numerics import gauss_collocation as gauss
 from reference.numerics.integration import units_of_motion
 from reference.plane import COMPLEX_STEP
 from reference.scene import PlacedScene, shared
@@ -85,9 +85,9 @@ class EmbeddedScene(PlacedScene):
         moved = self.coordinate_rates(coordinates, velocities)
         return np.concatenate([moved, self.accelerations(coordinates, velocities)], axis=-1)
 
-    def solved(self, until: float) -> windows.Motion:
-        """The motion up to `until` [s]: times to states. Of positions and their rates; see `windows.motion`."""
-        return windows.motion(self.rates, self.start, until, units_of_motion(self.rates, self.start, self.angle_unit))
+    def solved(self, until: float) -> gauss.Motion:
+        """The motion up to `until` [s], a function from times to states: see `gauss_collocation.motion`."""
+        return gauss.motion(self.rates, self.start, until, units_of_motion(self.rates, self.start, self.angle_unit))
 
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
         """c and nu (times, ...) at times t >= 0 [s]."""
@@ -101,7 +101,7 @@ class EmbeddedScene(PlacedScene):
     def truth_error(self, t: ArrayLike) -> Array:
         """A bound on the truth's own error (times,) in c and nu, by two rules."""
         units = units_of_motion(self.rates, self.start, self.angle_unit)
-        return windows.error_of(self.rates, self.start, self.times(t), units)
+        return gauss.error_of(self.rates, self.start, self.times(t), units)
 
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
         return self.embedded(*self._states(times))[1:]

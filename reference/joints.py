@@ -24,9 +24,9 @@ from numpy.typing import ArrayLike, NDArray
 from reference.checks import Name, Positive, Valid
 from reference.couplings import Coupling
 from reference.elements import BetweenTwo, JointElement, Place, UnitExponents, Vector
-from reference.kinds import Rule
 from reference.plane import apart, direction_row, distance, point_rows
 from reference.rolling.roll import Roll
+from reference.validators import Rule
 
 Triple = tuple[float, float, float]
 Ratio = Annotated[float, Rule(lambda value: value != 0, "other than zero")]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from reference.checks import InvalidMechanism, shown
+from reference.checks import InvalidMechanism, short_repr
 from reference.joints import Pin, Vector
 from reference.mechanism import Body, Mechanism
 
@@ -47,6 +47,6 @@ def _place(points: Mapping[str, tuple[float, float]], name: str) -> Vector:
     try:
         x, y = map(float, points[name])
     except (TypeError, ValueError):
-        words = f"point {name!r} is {shown(points[name])}; it must be two numbers, x and y [m]"
+        words = f"point {name!r} is {short_repr(points[name])}; it must be two numbers, x and y [m]"
         raise InvalidMechanism(words) from None
     return x, y

@@ -14,13 +14,22 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import AnyComplexes, InvalidMechanism, Name, Numbers, Valid, kept, require_room, validated
+from reference.checks import (
+    AnyComplexes,
+    InvalidMechanism,
+    Name,
+    Numbers,
+    Valid,
+    cached_readonly,
+    require_room,
+    validated,
+)
 from reference.forces import AppliedForces, ForceElement
 from reference.joints import Body, Joint, Vector
-from reference.kinds import Floats, of_shape
 from reference.plane import COMPLEX_STEP
 from reference.rows import MANY_ROWS, JointRows, banded_reaction, rank, reactions
 from reference.scales import length_scale, time_scale
+from reference.validators import Floats, of_shape
 
 States = Annotated[AnyComplexes, of_shape("...", "bodies", 3)]
 Reals = Annotated[Numbers, of_shape("...", "bodies", 3)]
@@ -69,7 +78,7 @@ class Mechanism(Valid):
     def _index(self) -> dict[str | None, int]:
         return {**{body.name: index for index, body in enumerate(self.bodies)}, None: len(self.bodies)}
 
-    @kept
+    @cached_readonly
     def joint_rows(self) -> JointRows:
         """The joints, ready to be evaluated; unchecked, for loops that ask at every step."""
         return JointRows.of(self.joints, self._index)
@@ -90,8 +99,8 @@ class Mechanism(Valid):
         """One name a row, 'B x' for the x row of joint B; reactions stand in this order."""
         return tuple(f"{joint.name} {label}" for joint in self.joints for label in joint.labels)
 
-    @kept
-    def turning(self) -> NDArray[np.bool_]:
+    @cached_readonly
+    def is_angular(self) -> NDArray[np.bool_]:
         """Which rows are rotations [rad, rad/s, N m] and not lengths [m, m/s, N] (rows,)."""
         return np.array([is_angular for joint in self.joints for is_angular in joint.is_angular], dtype=bool)
 
@@ -99,27 +108,27 @@ class Mechanism(Valid):
     def row_count(self) -> int:
         return sum(joint.size for joint in self.joints)
 
-    @kept
+    @cached_readonly
     def pose(self) -> NDArray[np.float64]:
         """Poses at t = 0 (bodies, 3) [m, m, rad]."""
         return np.array([body.pose for body in self.bodies], dtype=float)
 
-    @kept
+    @cached_readonly
     def twist(self) -> NDArray[np.float64]:
         """Twists at t = 0 (bodies, 3) [m/s, m/s, rad/s]."""
         return np.array([body.twist for body in self.bodies], dtype=float)
 
-    @kept
+    @cached_readonly
     def inertias(self) -> NDArray[np.float64]:
         """The diagonal of the mass matrix (bodies, 3) [kg, kg, kg m^2]."""
         return np.array([(body.mass, body.mass, body.inertia) for body in self.bodies], dtype=float)
 
-    @kept
+    @cached_readonly
     def free_fall(self) -> NDArray[np.float64]:
         """Accelerations by gravity alone (bodies, 3) [m/s^2, m/s^2, rad/s^2]."""
         return np.array([(*self.gravity, 0.0)] * len(self.bodies), dtype=float)
 
-    @kept
+    @cached_readonly
     def applied(self) -> AppliedForces:
         """The force elements, ready to be evaluated; unchecked, for loops that ask at every step."""
         return AppliedForces.of(self.forces, self._index)
@@ -137,12 +146,12 @@ class Mechanism(Valid):
         fallen = -np.sum(self.inertias * self.free_fall * pose, axis=(-2, -1))
         return fallen + self.applied.potential(pose) if self.forces else fallen
 
-    @kept
+    @cached_readonly
     def rate(self) -> NDArray[np.float64]:
         """The prescribed right-hand side of J v = rate (rows,), zero but for drives."""
         return np.array([value for joint in self.joints for value in joint.rate], dtype=float)
 
-    @kept
+    @cached_readonly
     def holonomic(self) -> NDArray[np.bool_]:
         """Which rows are derivatives of a position (rows,)."""
         return np.array([joint.holonomic for joint in self.joints for _ in range(joint.size)], dtype=bool)
@@ -221,7 +230,7 @@ class Mechanism(Valid):
     def _dense_reaction(
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        size = np.where(self.turning, self.length_scale, 1.0)
+        size = np.where(self.is_angular, self.length_scale, 1.0)
         stacked = excess.reshape((*excess.shape[:-2], 3 * len(self.bodies)))
         return reactions(self.rows(pose), inertias.reshape(-1), stacked, size, self.length_scale)
 
@@ -251,7 +260,7 @@ class Mechanism(Valid):
         """The largest distance between two joint points of one body, or of one and the centre of mass [m]."""
         return length_scale(self.bodies, self.joints, self.forces)
 
-    @kept
+    @cached_readonly
     def pose_unit(self) -> NDArray[np.float64]:
         """The unit of a body's pose, (3,) [m, m, rad]: the length scale twice, and 1."""
         return np.array([self.length_scale, self.length_scale, 1.0])
@@ -306,11 +315,11 @@ def open_joint(mechanism: Mechanism, gap: Array, slip: Array, pose: Array, twist
         (gap, allowed_gap, ("m", "rad"), "open by"),
         (slip, (START_TOLERANCE * speed, START_TOLERANCE * speed / size), ("m/s", "rad/s"), "moving apart at"),
     ):
-        value, allowed = np.nan_to_num(np.abs(missed)), np.where(mechanism.turning, angle, length)
+        value, allowed = np.nan_to_num(np.abs(missed)), np.where(mechanism.is_angular, angle, length)
         row = int(np.argmax(value - allowed))
         if value[row] > allowed[row]:
             return (
                 f"at t = 0 row {mechanism.row_names[row]!r} is {words} {value[row]:.3g} "
-                f"{angular if mechanism.turning[row] else unit}; the start must satisfy it to {allowed[row]:.1g}"
+                f"{angular if mechanism.is_angular[row] else unit}; the start must satisfy it to {allowed[row]:.1g}"
             )
     return None

@@ -25,13 +25,13 @@ from reference.checks import (
     Valid,
     refusal,
     sample_times,
-    shown,
-    take,
+    short_repr,
+    validate,
     validated,
 )
-from reference.kinds import NOT_TAKEN, Floats, kind_of, of_shape
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
+from reference.validators import INVALID, Floats, of_shape, validator_of
 
 # Samples stand about this far apart [s]; every step of a sweep divides the distance: all steps meet the same instants.
 SAMPLE_SPACING = 1e-2
@@ -65,7 +65,7 @@ class Scene(Valid, ABC):
 
     name: ClassVar[str]
     source: ClassVar[str]
-    reach: ClassVar[float] = 10.0  # durations, see `latest`
+    max_durations: ClassVar[float] = 10.0  # durations, see `max_time`
     duration: float
     horizon: float
 
@@ -82,7 +82,7 @@ class Scene(Valid, ABC):
             # What a class sets without a field; a property is worked out only when it is asked for.
             value = inspect.getattr_static(self, name)
             if name not in own and not hasattr(value, "__get__"):
-                take(self._owner(), name, value, annotation)
+                validate(self._owner(), name, value, annotation)
 
     def __getstate__(self) -> dict[str, Any]:
         """Its numbers alone, so that a scene travels to another process without what it has worked out.
@@ -99,8 +99,8 @@ class Scene(Valid, ABC):
     def motion(self, t: ArrayLike) -> Trajectory:
         """The truth at times t (times,) [s], or at one: poses, twists, reactions.
 
-        Raises InvalidMechanism unless all times are finite and lie from 0 to `latest`, or where the motion itself ends;
-        NoMotion where it can't be computed, or is not finite.
+        Raises InvalidMechanism unless all times are finite and lie from 0 to `max_time`, or where the motion itself
+        ends; NoMotion where it can't be computed, or is not finite.
         """
         times = self.times(t)
         until = f"no motion is known up to {times.max(initial=0.0):.9g} s"
@@ -130,23 +130,23 @@ class Scene(Valid, ABC):
                 raise OverflowError(f"its {name} are not finite numbers at {motion.t[np.argmin(at_instants)]:.6g} s")
 
     def times(self, t: ArrayLike) -> Floats:
-        """Times [s], or one, as an array (times,); InvalidMechanism unless each is finite and from 0 to `latest`."""
+        """Times [s], or one, as an array (times,); InvalidMechanism unless each is finite and from 0 to `max_time`."""
         times = sample_times(self._owner(), t)
-        if times.size and times.max() > self.latest:
+        if times.size and times.max() > self.max_time:
             raise InvalidMechanism(
-                f"{self._owner()}: t is {shown(t)}; its motion is known up to {self.latest:.9g} s, which is "
-                f"{self.reach:g} times its duration: for later times make the scene with a longer duration"
+                f"{self._owner()}: t is {short_repr(t)}; its motion is known up to {self.max_time:.9g} s, which is "
+                f"{self.max_durations:g} times its duration: for later times make the scene with a longer duration"
             )
         return times
 
     @property
-    def latest(self) -> float:
-        """The last time that `motion` answers [s], `reach` times the duration.
+    def max_time(self) -> float:
+        """The last time that `motion` answers [s], `max_durations` times the duration.
 
         A truth by integration takes time and loses digits in proportion to the time asked for, a chaotic one loses all
         of them, and even a closed form knows the angle after a time t only to about 1e-16 of what was turned since 0.
         """
-        return self.reach * self.duration * (1 + 1e-9)  # multiples of a step may be rounded upwards
+        return self.max_durations * self.duration * (1 + 1e-9)  # multiples of a step may be rounded upwards
 
     def _owner(self) -> str:
         return f"scene {self.name!r}"
@@ -241,9 +241,9 @@ def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:
             raise InvalidMechanism(
                 f"{scene.name} has no number called {name!r}; did you mean {near[0]!r}? There are {', '.join(known)}"
             )
-        kind = kind_of(hints[name])
-        taken = next((value for each in _readings(text) if (value := kind.take(each)) is not NOT_TAKEN), NOT_TAKEN)
-        if taken is NOT_TAKEN:
+        kind = validator_of(hints[name])
+        taken = next((value for each in _readings(text) if (value := kind.validate(each)) is not INVALID), INVALID)
+        if taken is INVALID:
             raise refusal(scene.name, name, _readings(text)[0], kind.words)
         if taken != getattr(scene, name):
             values[name] = taken

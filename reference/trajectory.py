@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.checks import Numbers, Valid, validated
-from reference.kinds import NOT_FINITE, of_shape
 from reference.mechanism import Mechanism
 from reference.plane import rotated
+from reference.validators import NOT_FINITE, of_shape
 
 Array = NDArray[np.float64]
 SHOWN = 6  # instants in a notebook's table

@@ -263,7 +263,7 @@ def reactions_have_sign_and_size(subject: Subject, world: World) -> None:
     _promise(subject, world)  # a method without one holds another motion, with other forces
     run = finite(subject.run(world.mechanism))
     exact = world.exact(run.t).reaction
-    turning = world.mechanism.turning
+    turning = world.mechanism.is_angular
     known = ~np.isnan(run.reaction).all(axis=0)
     if not known.any():
         raise NotAsked("the engine tells no reactions here")

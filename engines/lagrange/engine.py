@@ -26,10 +26,10 @@ from engines.lagrange.machine import Machine, left_open, not_held
 from engines.motions import is_prescribed, over_three
 from reference.checks import Count, InvalidMechanism, Positive, Valid, validated
 from reference.joints import Joint
-from reference.kinds import Rule
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
+from reference.validators import Rule
 
 Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4", "dop853"]
@@ -238,7 +238,7 @@ class _LagrangeRun(OneShot):
         """(times,) where a row is more than this part of the largest rate, each as of a length; `slow` is let pass."""
         mechanism = self._mechanism
         size = np.array([1.0, 1.0, mechanism.length_scale])
-        row = np.abs(rows) * np.where(mechanism.turning, mechanism.length_scale, 1.0)
+        row = np.abs(rows) * np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
         return row.max(axis=1, initial=0.0) > part * (np.abs(rates * size).max(axis=(1, 2)) + slow)
 
     def _in_machine_code(self, machine: Machine, poses: Array, twists: Array, every: int) -> int:

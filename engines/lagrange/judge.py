@@ -79,7 +79,7 @@ class _JudgeRun(OneShot):
         mechanism, out = self._mechanism, np.full((len(found.t), 2 * self._mechanism.row_count), np.nan)
         alive = np.isfinite(found.pose).all(axis=(1, 2)) & np.isfinite(found.twist).all(axis=(1, 2))
         t, pose, twist = found.t[alive], found.pose[alive], found.twist[alive]
-        size = np.where(mechanism.turning, 1.0, mechanism.length_scale)
+        size = np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
         gap = np.abs(np.nan_to_num(mechanism.gap(pose, t))) / size
         slip = np.abs(mechanism.slip(pose, twist)) * mechanism.time_scale / size
         far = np.abs(pose[..., :2]).max(axis=(1, 2)) / mechanism.length_scale

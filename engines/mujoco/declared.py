@@ -153,7 +153,7 @@ def _declared(
     gap, slip = np.nan_to_num(mechanism.gap(pose, data.time)), mechanism.slip(pose, twist)
     # What the coordinates of the tree can't move, but by rounding of arms, is held by them.
     rounding = 10 * np.finfo(float).eps * float(np.abs(pose[:, :2]).max())
-    length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
+    length = np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
     loose = np.abs(in_tree).max(axis=1, initial=0.0) > SAME_ROW * length + rounding
     lines = jacobian(compiled, data)
     seen, beside = model.address, [column for column in range(compiled.nv) if column not in model.address]

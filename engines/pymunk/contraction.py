@@ -32,9 +32,9 @@ from engines.pymunk.joints.drive import find_cranks, find_turned
 from engines.remembered import by_identity
 from reference.checks import LARGEST_COUNT, Count, Numbers, Positive, validated
 from reference.joints import Drive, Joint, Roll, Skate, Weld
-from reference.kinds import Rule, from_to
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE, ranks
+from reference.validators import Rule, from_to
 
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]  # what a sweep leaves of each

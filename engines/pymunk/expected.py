@@ -74,6 +74,6 @@ def _poses(mechanism: Mechanism, duration: float) -> list[np.ndarray]:
         if not any(isinstance(joint, Roll) for joint in mechanism.joints):
             raise
         return []
-    torn = np.abs(gap) > TORN * np.where(mechanism.turning, 1.0, mechanism.length_scale)
+    torn = np.abs(gap) > TORN * np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
     sound = np.isfinite(poses).all(axis=(1, 2)) & ~torn.any(axis=1)
     return list(poses[sound])

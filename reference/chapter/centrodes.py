@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.checks import LARGEST_COUNT, InvalidMechanism, Numbers, Positive, Valid, index_of, validated
-from reference.kinds import NOT_FINITE, from_to, of_shape
 from reference.plane import perpendicular, rotated
 from reference.rolling.curves import Array
 from reference.rolling.kinematics import Rolling
 from reference.rolling.traced import FEWEST, STILL, Traced, spline
 from reference.trajectory import Trajectory
+from reference.validators import NOT_FINITE, from_to, of_shape
 
 # A rotation this much slower than its fastest has its instant centre a million times farther away than the motion is
 # large: for the shapes it is at infinity.

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from scipy.linalg import qr
 
 from reference.checks import InvalidMechanism, validated
-from reference.kinds import of_shape
 from reference.mechanism import Mechanism
 from reference.plane import COMPLEX_STEP
 from reference.rows import RANK_TOLERANCE
+from reference.validators import of_shape
 
 Array = NDArray[np.float64]
 Place = Annotated[Array, of_shape("coordinates")]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipeinc, elliprd, elliprf
 
-from reference.checks import InvalidMechanism, Positive, kept
+from reference.checks import InvalidMechanism, Positive, cached_readonly
 from reference.numerics.roots import solve_increasing
 from reference.rolling.curves import Array, Curve, along
 
@@ -82,7 +82,7 @@ class Ellipse(Curve):
         root = solve_increasing(lambda u: (self.arc_of(u), self.speed_of(u)), rest, self._guess(rest), 1e-3)
         return root + half_turns * math.pi
 
-    @kept
+    @cached_readonly
     def _half_turn(self) -> tuple[Array, Array, Array]:
         """Parameters, arcs [m] and speeds [m] from -pi/2 to pi/2, for guesses."""
         u = np.linspace(-math.pi / 2, math.pi / 2, GUESSES)
@@ -148,7 +148,7 @@ class Cam(Curve):
                 "radius + sum (1 - k^2) c_k stays positive"
             )
 
-    @kept
+    @cached_readonly
     def _harmonics(self) -> tuple[Array, Array, Array]:
         count = max(len(self.cosines), len(self.sines))
         cosines, sines = np.zeros(count), np.zeros(count)

@@ -21,7 +21,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import InvalidMechanism, Numbers, Positive, Valid, take, validated
+from reference.checks import InvalidMechanism, Numbers, Positive, Valid, validate, validated
 from reference.plane import rotated
 
 Array = NDArray[np.float64]
@@ -118,7 +118,7 @@ def along(arc: ArrayLike) -> Array:
     """Arcs or angles as an array of floats, refused if they are no numbers; NaN stays NaN, a search may pass there."""
     if type(arc) is np.ndarray and arc.dtype == np.float64:  # at every step of a search
         return arc
-    return take("curve", "the place", arc, Numbers)
+    return validate("curve", "the place", arc, Numbers)
 
 
 def within(owner: str, arc: ArrayLike, limits: tuple[float, float], why: str) -> Array:

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.checks import InvalidMechanism, Valid, validated
-from reference.kinds import of_shape
 from reference.numerics.roots import solve_increasing
 from reference.plane import rotated, rotation_acceleration, rotation_velocity
 from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
+from reference.validators import of_shape
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline, make_interp_spline
 
-from reference.checks import InvalidMechanism, kept
-from reference.kinds import of_shape
+from reference.checks import InvalidMechanism, cached_readonly
 from reference.numerics.roots import solve_increasing
 from reference.rolling.curves import Array, Curve, along, within
+from reference.validators import of_shape
 
 DEGREE = 7
 FEWEST = 16  # points: twice the degree and more, so that half of them can still show the error
@@ -77,7 +77,7 @@ class Traced(Curve):
     def _tangents(self, p: Array) -> Array:
         return self._splines[1](p)
 
-    @kept
+    @cached_readonly
     def _knots(self) -> tuple[Array, Array]:
         """Arcs and unwrapped tangent angles at the points."""
         start, width = self.parameters[:-1, None], np.diff(self.parameters)[:, None]

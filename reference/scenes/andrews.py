@@ -18,11 +18,11 @@ from numpy.typing import ArrayLike, NDArray
 from reference.checks import InvalidMechanism, NonNegative, Positive, Sign, Valid, validated
 from reference.forces import Spring, Torque
 from reference.joints import Pin, Vector, bodies_of
-from reference.kinds import Floats
 from reference.mechanism import Mechanism
-from reference.numerics import windows
+from reference.numerics import gauss_collocation as gauss
 from reference.plane import from_complex
 from reference.scene import PlacedScene, shared
+from reference.validators import Floats
 
 Array = NDArray[Any]
 Pair = tuple[Positive, float]
@@ -31,7 +31,7 @@ Seven = tuple[Positive, Positive, Positive, Positive, Positive, Positive, Positi
 
 BODIES = ("K1", "K2", "K3", "K4", "K5", "K6", "K7")
 QUARTER = math.pi / 2
-TOLERANCE = windows.TOLERANCE / 10  # the last of the printed digits, which other methods confirm
+TOLERANCE = gauss.TOLERANCE / 10  # the last of the printed digits, which other methods confirm
 SIDES = (-1, 1, -1)  # of the joints of the three pairs: bar and rod, upper, lower
 
 
@@ -178,14 +178,14 @@ class Andrews(PlacedScene):
         until = max(self.duration, float(times.max()))
         return shared(Andrews._solved, self, until)(times * self.rate_unit) * [1.0, self.rate_unit]
 
-    def _solved(self, until: float) -> windows.Windows:
+    def _solved(self, until: float) -> gauss.Windows:
         """The motion of time in units of 1 / `rate_unit`."""
 
         def accelerations(phi: Array, rate: Array) -> Array:
             return self._rates(np.concatenate([phi, rate], axis=-1))[..., 1:]
 
         end = until * self.rate_unit * (1 + 1e-15)
-        return windows.integrate(accelerations, [self.angle], [0.0], end, 1.0, tolerance=TOLERANCE)
+        return gauss.integrate(accelerations, [self.angle], [0.0], end, 1.0, tolerance=TOLERANCE)
 
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
         state = self._states(times)

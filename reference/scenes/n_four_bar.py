@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 
 from reference.checks import Count, NonNegative, Positive, require_room, validated
 from reference.joints import Joint, Pin, bodies_of
-from reference.kinds import Floats
 from reference.mechanism import Mechanism
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Scene
 from reference.scenes.pendulum.link import Pendulum, direction_of
 from reference.trajectory import Trajectory
+from reference.validators import Floats
 
 Array = NDArray[np.float64]
 

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eig
 
-from reference.checks import Fraction, InvalidMechanism, Positive, Sign, Valid, kept, validated
+from reference.checks import Fraction, InvalidMechanism, Positive, Sign, Valid, cached_readonly, validated
 from reference.embedding import EmbeddedScene
 from reference.joints import Joint, Pin, bodies_of
-from reference.kinds import Floats
 from reference.mechanism import Mechanism
+from reference.validators import Floats
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ class OneFoot(EmbeddedScene):
 
     name: ClassVar[str] = "person_one_foot"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a model of the human body, one foot on the ground"
-    reach: ClassVar[float] = 1.0  # the duration ends where the ground, which is no joint, would be met
+    max_durations: ClassVar[float] = 1.0  # the duration ends where the ground, which is no joint, would be met
     mass: Positive = 75.0
     height: Positive = 1.75
     gravity: float = 9.81
@@ -85,24 +85,24 @@ class OneFoot(EmbeddedScene):
         aside = [self.left_shank, self.left_thigh, self.trunk, self.right_thigh, self.right_shank]
         return np.concatenate([np.array(aside) + UPRIGHT, np.zeros(5)])
 
-    @kept
+    @cached_readonly
     def lengths(self) -> Array:
         """(5,) [m]."""
         return np.array([segment.length * self.height for segment in self.segments])
 
-    @kept
+    @cached_readonly
     def _behind(self) -> Array:
         """(5,) [m] from each body's joint nearer to the left ankle to its centre of mass, along its x axis."""
         centres = np.array([segment.centre for segment in self.segments])
         centres[:2] = 1 - centres[:2]  # the left leg is walked upwards, from its lower ends
         return centres * self.lengths
 
-    @kept
+    @cached_readonly
     def masses(self) -> Array:
         """(5,) [kg]."""
         return np.array([segment.mass * self.mass for segment in self.segments])
 
-    @kept
+    @cached_readonly
     def inertias(self) -> Array:
         """(5,) [kg m^2] about the centres of mass."""
         gyration = np.array([segment.gyration for segment in self.segments]) * self.lengths

@@ -17,13 +17,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import InvalidMechanism, NonNegative, Positive, validated
 from reference.joints import Pin, Skate, Triple, Vector, bodies_of
-from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
 from reference.numerics.calculus import Antiderivative
 from reference.plane import rotated, rotation_acceleration, rotation_velocity
 from reference.scene import Scene
 from reference.scenes.pendulum.link import Pendulum
 from reference.trajectory import Trajectory
+from reference.validators import Floats
 
 Array = NDArray[np.float64]
 

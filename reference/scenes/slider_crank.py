@@ -22,10 +22,10 @@ from numpy.typing import ArrayLike, NDArray
 from reference.checks import Complexes, InvalidMechanism, Positive, Sign, Valid, validated
 from reference.embedding import EmbeddedScene
 from reference.joints import Drive, Joint, Pin, Slot, bodies_of
-from reference.kinds import Floats
 from reference.mechanism import Mechanism
 from reference.plane import from_complex
 from reference.scene import PlacedScene
+from reference.validators import Floats
 
 Array = NDArray[np.float64]
 

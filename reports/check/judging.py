@@ -155,7 +155,7 @@ def _known(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> NDArra
     off = apart(mechanism, motion.pose + np.asarray(motion.estimate), motion.pose)
     if mechanism.row_count:
         gap = np.abs(np.nan_to_num(mechanism.joint_rows.gap(motion.pose, motion.t)))
-        off = np.maximum(off, (gap / np.where(mechanism.turning, 1.0, mechanism.length_scale)).max(axis=1))
+        off = np.maximum(off, (gap / np.where(mechanism.is_angular, 1.0, mechanism.length_scale)).max(axis=1))
     return off < KNOWN * tolerance
 
 
@@ -275,7 +275,7 @@ def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array
     if not mechanism.row_count:
         return out
     determined = ~undetermined(mechanism.rows(mechanism.pose), mechanism.length_scale)
-    turning, length = mechanism.turning, mechanism.length_scale
+    turning, length = mechanism.is_angular, mechanism.length_scale
     joint_of_row = np.repeat(np.arange(len(mechanism.joints)), [joint.size for joint in mechanism.joints])
     acting = mechanism.inertias * mechanism.unconstrained(truth.pose, truth.twist)
     forces = [acting[..., :2], acting[..., 2] / length]
@@ -309,9 +309,9 @@ def opening(mechanism: Mechanism, run: Trajectory) -> Opening | None:
     if not mechanism.row_count:
         return None
     gap = np.abs(mechanism.gap(run.pose, run.t))
-    scaled = np.nan_to_num(np.where(mechanism.turning, gap, gap / mechanism.length_scale))
+    scaled = np.nan_to_num(np.where(mechanism.is_angular, gap, gap / mechanism.length_scale))
     sample, row = np.unravel_index(int(np.argmax(scaled)), scaled.shape)
-    unit = "rad" if mechanism.turning[row] else "m"
+    unit = "rad" if mechanism.is_angular[row] else "m"
     return Opening(mechanism.row_names[row], float(gap[sample, row]), unit, float(run.t[sample]))
 
 

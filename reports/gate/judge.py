@@ -29,7 +29,7 @@ from engines.lagrange.dynamics import (
 )
 from engines.lagrange.loading import installed
 from engines.lagrange.machine import Machine
-from reference.checks import fixed
+from reference.checks import freeze
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE
 from reference.scene import Scene
@@ -202,7 +202,7 @@ def in_numpy(
 @lru_cache(maxsize=1)
 def _truth(scene: Scene, instants: bytes) -> Trajectory:
     """The scene's motion at instants [s], as bytes: a dozen runs of a prediction are held against the same one."""
-    return fixed(scene.motion(np.frombuffer(instants)))
+    return freeze(scene.motion(np.frombuffer(instants)))
 
 
 def errors(

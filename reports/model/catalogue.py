@@ -15,7 +15,7 @@ from typing import Any
 
 from engines import Engine, method_name, registry
 from engines.loading import Kind, registered
-from reference.checks import InvalidMechanism, take
+from reference.checks import InvalidMechanism, validate
 from reference.scene import TIMES, Scene
 from reports.model.page import Page
 
@@ -41,7 +41,7 @@ def _no_scene(value: Any) -> str:
         return ""
     try:  # a scene has looked at these when it was made, but not at those that a property works out
         for name, annotation in TIMES:
-            take(f"scene {value.name!r}", name, getattr(value, name, None), annotation)
+            validate(f"scene {value.name!r}", name, getattr(value, name, None), annotation)
     except InvalidMechanism as reason:
         return str(reason)
     return ""

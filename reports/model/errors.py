@@ -35,7 +35,7 @@ def usable_samples(trajectory: Trajectory) -> int:
 
 def constraint_errors(mechanism: Mechanism, trajectory: Trajectory) -> dict[str, float]:
     """What needs no truth: `gap` [m], `drive_gap` [rad] and `slip` [m/s or rad/s], the largest over the samples."""
-    turning = mechanism.turning
+    turning = mechanism.is_angular
     gap, speed = joint_gap(mechanism, trajectory), slip(mechanism, trajectory)
     return {"gap": largest(gap[:, ~turning]), "drive_gap": largest(gap[:, turning]), "slip": largest(speed)}
 
@@ -69,7 +69,7 @@ def motion_errors(scene: Scene, mechanism: Mechanism, truth: Trajectory, traject
 
 def reaction_error(mechanism: Mechanism, truth: Array, reaction: Array) -> float:
     """Largest error over the rows that both know (times, rows), relative to the largest true reaction of its kind."""
-    turning = mechanism.turning
+    turning = mechanism.is_angular
     worst = [NAN]
     for rows in (turning, ~turning):
         scale = largest(truth[:, rows])

@@ -20,11 +20,11 @@ import numpy as np
 
 from engines import Unsupported
 from engines.contract import flaw
-from reference.checks import fixed
-from reference.kinds import Floats
+from reference.checks import freeze
 from reference.mechanism import Mechanism
 from reference.scene import NoMotion, Scene
 from reference.trajectory import Trajectory
+from reference.validators import Floats
 from reports.model.cells import Cell, mechanism_of
 from reports.model.errors import branch_flips, constraint_errors, motion_errors, usable_samples
 from reports.model.fingerprint import LONG, digest
@@ -144,14 +144,14 @@ def exact_motion(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
 def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Trajectory:
     """A file is named by all that its motion depends on, and so is never stale."""
     if folder is None or not folder.is_dir():
-        return fixed(scene.motion(np.frombuffer(instants)))
+        return freeze(scene.motion(np.frombuffer(instants)))
     file = folder / f"{digest(name.encode() + instants, LONG)}.npz"
     with suppress(*DAMAGES), np.load(io.BytesIO(file.read_bytes())) as stored:
-        return fixed(Trajectory(*(stored[part] for part in PARTS)))
+        return freeze(Trajectory(*(stored[part] for part in PARTS)))
     seconds, motion = process_seconds(lambda: scene.motion(np.frombuffer(instants)))
     if seconds > SHORT_MOTION:
         _store_motion(motion, file)
-    return fixed(motion)
+    return freeze(motion)
 
 
 def _store_motion(motion: Trajectory, file: Path) -> None:

@@ -74,7 +74,7 @@ def force_difference(mechanism: Mechanism, found: Array, expected: Array, scales
     Rows whose force is NaN, since the engine can't tell it, are left out.
     """
     known = ~np.isnan(found)
-    size = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
+    size = np.where(mechanism.is_angular, 1 / mechanism.length_scale, 1.0)
     return _relative(np.where(known, found, 0.0), np.where(known, expected, 0.0), size, (expected, *scales))
 
 
@@ -153,7 +153,7 @@ def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDe
 def _missed(mechanism: Mechanism, instant: Instant) -> float:
     if instant.found.ndim == 1:
         force = np.full(mechanism.row_count, driving_force(mechanism, instant.state[1]))
-        force[mechanism.turning] *= mechanism.length_scale
+        force[mechanism.is_angular] *= mechanism.length_scale
         return force_difference(mechanism, instant.found, instant.expected, (force, *instant.scales))
     return difference(mechanism, instant.found, instant.expected, instant.scales)
 

@@ -25,8 +25,8 @@ import numpy as np
 
 from engines import Engine, Unsupported
 from reference.checks import LARGEST_COUNT, InvalidMechanism, validated
-from reference.kinds import from_to
 from reference.mechanism import Mechanism
+from reference.validators import from_to
 from reports.search.parts import EVERY, FOLD, FORCES, KINDS, SINGULAR, TOGGLE, Link, Part, Recipe, Rim
 from reports.search.recipe import Held, Standing, build
 

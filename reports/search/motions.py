@@ -147,7 +147,7 @@ class _Case:
     def forces(self) -> tuple[Array, ...]:
         """What reactions are compared with: those of the judge, and the forces that act."""
         acting = max(driving_force(self.mechanism, twist) for twist in self.truth.twist)
-        arms = np.where(self.mechanism.turning, self.mechanism.length_scale, 1.0)
+        arms = np.where(self.mechanism.is_angular, self.mechanism.length_scale, 1.0)
         return np.nan_to_num(self.truth.reaction), arms * max(acting, np.finfo(float).tiny)
 
     def apart(self, run: Trajectory, other: Trajectory | None = None) -> Floors:
@@ -311,7 +311,7 @@ def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | 
 def compared(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str, tuple[float, float]]:
     """The same of a run, whose samples are among those of the judge."""
     at = np.linspace(0, len(truth.t) - 1, len(run.t)).round().astype(int)
-    length, arm = mechanism.length_scale, np.where(mechanism.turning, mechanism.length_scale, 1.0)
+    length, arm = mechanism.length_scale, np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
     missed = np.nan_to_num(np.abs(run.pose - truth.pose[at]) / [length, length, 1.0], nan=np.inf).max(axis=(1, 2))
     until = run.t < (np.inf if run.unresolved_at is None else run.unresolved_at)
     of_reactions = [words for words in run.warnings if "reactions are" in words]

@@ -192,7 +192,7 @@ def in_units(engine: Engine, name: str, length: float = 1.0, mass: float = 1.0) 
     """Poses, twists and reactions of the scene in other units, told in metres and kilograms."""
     own = in_other_units(scene(name), (length, 1.0, mass)).mechanism()
     run = engine.build(own, 1e-3)(5, 10)
-    unit, arm = np.array([length, length, 1.0]), np.where(own.turning, length**2, length)
+    unit, arm = np.array([length, length, 1.0]), np.where(own.is_angular, length**2, length)
     return [run.pose / unit, run.twist / unit, run.reaction / (mass * arm)]
 
 

@@ -14,7 +14,7 @@ import pytest
 from engines import method_name
 from engines.lagrange import TRUTH
 from engines.registry import ENGINES
-from reference.checks import InvalidMechanism, kept
+from reference.checks import InvalidMechanism, cached_readonly
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Pin, Rod, Skate, Slot
 from reference.mechanism import Body, Mechanism
@@ -125,7 +125,9 @@ def test_a_start_off_a_joint_is_judged_by_the_mechanisms_own_size_and_speed(unit
 
 def test_no_array_that_a_mechanism_keeps_can_be_written():
     values = [
-        getattr(SCENES[0].mechanism(), name) for name, member in vars(Mechanism).items() if isinstance(member, kept)
+        getattr(SCENES[0].mechanism(), name)
+        for name, member in vars(Mechanism).items()
+        if isinstance(member, cached_readonly)
     ]
     values += [getattr(value, field.name) for value in values if is_dataclass(value) for field in fields(value)]
     arrays = [value for value in values if isinstance(value, np.ndarray)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reference.numerics import windows
+from reference.numerics import gauss_collocation as gauss
 from reference.numerics.integration import IntegrationFailed
 
 EXTENDED = np.finfo(np.longdouble).eps < 1e-18
@@ -28,7 +28,7 @@ def pull(angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
 @pytest.mark.skipif(not EXTENDED, reason="numpy.longdouble is the ordinary double here: windows are short then")
 def test_a_fast_oscillation_beside_a_slow_one_is_exact_at_all_times():
     t = np.sort(np.random.default_rng(1).uniform(0, 2, 300))
-    found = windows.integrate(pull, [1.0, 1.0], [0.0, 1.0], 2.0, 1.0)
+    found = gauss.integrate(pull, [1.0, 1.0], [0.0, 1.0], 2.0, 1.0)
     # A rounding of a time of 2 s moves the fast oscillation by 2e-16 s times 1 rad/s.
     assert np.abs(found(t) - oscillations(t))[:, :2].max() < 1e-15
     assert np.abs(found(t) - oscillations(t))[:, 2:].max() < 1e-15 * 700
@@ -40,11 +40,11 @@ def circle(state: np.ndarray) -> np.ndarray:
     return np.stack([state[..., 1], -state[..., 0]], axis=-1)
 
 
-@pytest.mark.parametrize("few", [windows.FEW_WINDOWS, 2], ids=["windows", "steps"])
+@pytest.mark.parametrize("few", [gauss.FEW_WINDOWS, 2], ids=["windows", "steps"])
 def test_a_motion_whose_rates_are_doubles_is_exact_by_windows_and_by_steps(monkeypatch, few):
-    monkeypatch.setattr(windows, "FEW_WINDOWS", few)
+    monkeypatch.setattr(gauss, "FEW_WINDOWS", few)
     t = np.linspace(0, 30, 50)
-    found = windows.motion(circle, [0.0, 1.0], 30.0, np.ones(2))(t)
+    found = gauss.motion(circle, [0.0, 1.0], 30.0, np.ones(2))(t)
     # The explicit method lets 3e-14 pass in each of some fifty steps; windows leave rounding, and that of every window
     # where numpy.longdouble is the ordinary double.
     allowed = 2e-12 if few == 2 else 5e-14
@@ -54,20 +54,20 @@ def test_a_motion_whose_rates_are_doubles_is_exact_by_windows_and_by_steps(monke
 def test_the_error_stated_of_a_motion_by_few_windows_is_above_its_true_one():
     t = np.linspace(1, 30, 30)
     rates = lambda state: np.stack([state[..., 1], -np.sin(state[..., 0])], axis=-1)  # noqa: E731
-    found = windows.motion(rates, [3.0, 0.5], 30.0, np.ones(2))(t)
+    found = gauss.motion(rates, [3.0, 0.5], 30.0, np.ones(2))(t)
     # A turning pendulum: twice as many stages, and a tenth of the tolerance.
-    exact = windows.integrate(
+    exact = gauss.integrate(
         lambda angle, rate: -np.sin(angle), [3.0], [0.5], 30.0, 1.0, 32, 3e-18 if EXTENDED else 3e-15
     )
-    stated = windows.error_of(rates, [3.0, 0.5], t, np.ones(2))
+    stated = gauss.error_of(rates, [3.0, 0.5], t, np.ones(2))
     assert np.all(stated > np.abs(found - exact(t)).max(axis=-1))
     # More than rounding ten times over: the coarser rule is another one.
-    assert stated.max() > 1.5 * windows.COARSER * np.finfo(float).eps * np.abs(found).max()
+    assert stated.max() > 1.5 * gauss.COARSER * np.finfo(float).eps * np.abs(found).max()
     assert stated.max() < 1e-10
 
 
 def test_a_motion_that_does_not_last_is_refused():
     with pytest.raises(IntegrationFailed, match="the motion stops at t = 1 s"), np.errstate(all="ignore"):
-        windows.integrate(lambda angle, rate: rate**2, [0.0], [1.0], 2.0, 1.0)  # 1 / (1 - t)
+        gauss.integrate(lambda angle, rate: rate**2, [0.0], [1.0], 2.0, 1.0)  # 1 / (1 - t)
     with pytest.raises(ValueError, match="times must lie in"):
-        windows.integrate(pull, [1.0, 1.0], [0.0, 1.0], 0.01, 1.0)([0.02])
+        gauss.integrate(pull, [1.0, 1.0], [0.0, 1.0], 0.01, 1.0)([0.02])

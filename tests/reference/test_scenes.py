@@ -114,7 +114,7 @@ def fastest(mechanism: Mechanism, motion: Trajectory) -> float:
 def off_the_joints(mechanism: Mechanism, motion: Trajectory) -> float:
     """The largest gap and slip, in lengths and speeds of the motion."""
     place = 1 + np.abs(motion.pose / mechanism.pose_unit).max()
-    length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
+    length = np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
     gap = np.nanmax(np.abs(joint_gap(mechanism, motion) / length), initial=0.0) / place
     return max(gap, np.abs(slip(mechanism, motion) / length).max(initial=0.0) / fastest(mechanism, motion))
 

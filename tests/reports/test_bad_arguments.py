@@ -25,14 +25,14 @@ from reference.checks import (
     Sign,
     Signs,
     Times,
-    take,
+    validate,
     validated,
 )
 from reference.joints import Gear, Pin
-from reference.kinds import Floats
 from reference.mechanism import Body
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.linkage import FourBar
+from reference.validators import Floats
 from reports.model.cells import Cell
 from tests.mechanisms import SCENES_OF_LIMITS, four_bar
 
@@ -60,10 +60,10 @@ KINDS = [
 @pytest.mark.parametrize(("annotation", "refused", "taken"), KINDS, ids=lambda value: str(value)[:20])
 def test_every_kind_of_argument_has_its_bounds(annotation, refused, taken):
     for value in taken:
-        np.testing.assert_array_equal(take("test", "value", value, annotation), np.asarray(value))
+        np.testing.assert_array_equal(validate("test", "value", value, annotation), np.asarray(value))
     for value in refused:
         with pytest.raises(InvalidMechanism, match=r"^test: value is .*must be"):
-            take("test", "value", value, annotation)
+            validate("test", "value", value, annotation)
 
 
 POINTS = ((0.0, 0.5), (1.0, 0.0))

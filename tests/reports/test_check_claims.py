@@ -257,15 +257,15 @@ def test_a_torque_that_is_zero_by_symmetry_is_no_measure_of_an_error_and_one_tha
     reading = read("b04_gripper.xml", INPUTS, ("actuation", "limit"))
     found = check(reading, "gripper", 0.3, 1e-4, plan=Plan(5.0, quick=True))
     mechanism, truth = found.reading.mechanism, found.judge.trajectory
-    forces, torques = (np.abs(truth.reaction[:, rows]) for rows in (~mechanism.turning, mechanism.turning))
+    forces, torques = (np.abs(truth.reaction[:, rows]) for rows in (~mechanism.is_angular, mechanism.is_angular))
     assert torques.max() < 1e-9 * forces.max() * found.facts.length
     assert found.own_errors.worst["reaction"] < 0.01
     assert found.advised is not None
-    off = np.abs(found.advised.run.reaction - truth.reaction)[:, ~mechanism.turning].max()
+    off = np.abs(found.advised.run.reaction - truth.reaction)[:, ~mechanism.is_angular].max()
     assert off < 1e-5 * forces.max()  # the compliance that the stiffest loop keeps
     # The measure compares vectors of two components, and here single components.
     assert off / forces.max() / 2 < found.advised.reaction < 2 * off / forces.max()
-    wrong = truth.reaction + 0.1 * mechanism.turning * np.abs(truth.reaction).max() * found.facts.length
+    wrong = truth.reaction + 0.1 * mechanism.is_angular * np.abs(truth.reaction).max() * found.facts.length
     run = type(truth)(truth.t, truth.pose, truth.twist, wrong, 0.0)
     assert errors(mechanism, truth, run).worst["reaction"] > 0.05
 

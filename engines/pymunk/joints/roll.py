@@ -23,10 +23,10 @@ from pymunk.constraints import PivotJoint
 from engines import Unsupported
 from engines.rolling_table import rolled, unplaced
 from reference.checks import Fraction, NonNegative, Valid
-from reference.kinds import from_to
 from reference.mechanism import Mechanism
 from reference.rolling.curves import Circle, Curve, Line, Vector
 from reference.rolling.roll import Roll
+from reference.validators import from_to
 
 RollConstruction = Literal["contact", "pivot"]
 

@@ -16,14 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.checks import InvalidMechanism, Positive, Sign, Valid, validated
-from reference.numerics import windows
+from reference.numerics import gauss_collocation as gauss
 from reference.numerics.integration import IntegrationFailed
 from reference.scenes.four_bar.linkage import FourBar
 
 Array = NDArray[np.float64]
 
 States = Callable[[Array], Any]
-TOLERANCE = windows.TOLERANCE / 10  # a thousand roundings of numpy.longdouble, or one of a double
+TOLERANCE = gauss.TOLERANCE / 10  # a thousand roundings of numpy.longdouble, or one of a double
 # Of the longest bar's square: what t comes down to where bars lie in line but for the rounding of their lengths.
 PASSED = 1e-7
 
@@ -63,7 +63,7 @@ class CurveMotion(Valid):
             )
         return np.append(angle, np.longdouble(theta_dot) / along)
 
-    def motion(self, start: Any, until: float, stages: int = windows.STAGES) -> States:
+    def motion(self, start: Any, until: float, stages: int = gauss.STAGES) -> States:
         """States (times, 4) of a start, up to `until` [s], in extended precision: call it with times (times,) [s].
 
         Raises IntegrationFailed at a change point.
@@ -87,7 +87,7 @@ class CurveMotion(Valid):
         root = np.sqrt(self._inertia(start[:3], self._direction(start[:3]))) / largest
         state = np.append(unit * start[:3], start[3] * root)
         # What is known of the first order is the rate of something that nothing asks for.
-        by = windows.integrate(slopes, np.zeros(4), state, until, float(unit), stages, TOLERANCE)
+        by = gauss.integrate(slopes, np.zeros(4), state, until, float(unit), stages, TOLERANCE)
 
         def states(times: Array) -> Any:
             found = by.extended(times)[:, 4:]

@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, Radau
 
-from reference.checks import Count, InvalidMechanism, Numbers, Positive, Sign, Signs, Valid, shown, validated
+from reference.checks import Count, InvalidMechanism, Numbers, Positive, Sign, Signs, Valid, short_repr, validated
 from reference.joints import Vector
-from reference.kinds import of_shape
 from reference.plane import from_complex
 from reference.scenes.four_bar.closed_form import Constants, Interval, Kinematics, OutOfReach, closed_form, grashof
+from reference.validators import of_shape
 
 Array = NDArray[np.float64]
 Densities = Positive | tuple[Positive, Positive, Positive]  # kg/m, of all bars or of crank, coupler and rocker
@@ -134,7 +134,9 @@ def integrate_rates(
     """
     times = t
     if times.size < 2 or not np.all(np.diff(times) > 0):
-        raise InvalidMechanism(f"rate integration: t is {shown(t)}; it must be a row of at least two increasing times")
+        raise InvalidMechanism(
+            f"rate integration: t is {short_repr(t)}; it must be a row of at least two increasing times"
+        )
     l1, l2, l3 = lengths
 
     def odes(_: float, angles: Array) -> Array:

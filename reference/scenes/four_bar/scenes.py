@@ -13,13 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import InvalidMechanism, Positive, Sign
 from reference.joints import Drive, Joint, Pin, Vector, bodies_of
-from reference.kinds import Floats
 from reference.mechanism import Mechanism
-from reference.numerics.windows import COARSE_STAGES, STAGES
+from reference.numerics.gauss_collocation import COARSE_STAGES, STAGES
 from reference.scene import Scene, shared
 from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion, States
 from reference.scenes.four_bar.linkage import Densities, FourBar, Unreachable, three_densities
 from reference.trajectory import Trajectory
+from reference.validators import Floats
 
 Array = NDArray[np.float64]
 

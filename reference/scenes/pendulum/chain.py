@@ -24,12 +24,12 @@ from reference.checks import (
     Positive,
     Times,
     Valid,
-    kept,
+    cached_readonly,
     require_room,
     sample_times,
     validated,
 )
-from reference.numerics import windows
+from reference.numerics import gauss_collocation as gauss
 from reference.numerics.integration import error_of, integrate, units_of_motion
 from reference.plane import perpendicular, rotation_acceleration, rotation_velocity
 from reference.scenes.pendulum.link import direction_of
@@ -72,15 +72,15 @@ class Chain(Valid):
     def links(self) -> int:
         return len(self.lengths)
 
-    @kept
+    @cached_readonly
     def _length(self) -> Array:
         return np.array(self.lengths, dtype=float)
 
-    @kept
+    @cached_readonly
     def _mass(self) -> Array:
         return np.array(self.masses, dtype=float)
 
-    @kept
+    @cached_readonly
     def inertia(self) -> Array:
         """About the centres of mass (links,) [kg m^2]."""
         return self._mass * self._length**2 / 12
@@ -196,12 +196,12 @@ class Chain(Valid):
             return integrate(self.rates, start, until, unit=units_of_motion(self.rates, start))
         return self._by_windows(start, until)
 
-    def _by_windows(self, start: Array, until: float, coarse: bool = False) -> windows.Windows:
+    def _by_windows(self, start: Array, until: float, coarse: bool = False) -> gauss.Windows:
         """The same for a few links; `coarse`: by another rule that lets ten times as much pass."""
         angle, rate = np.split(start, 2)
         unit = float(units_of_motion(self.rates, start)[-1])
-        stages, tolerance = (windows.COARSE_STAGES, windows.COARSER) if coarse else (windows.STAGES, 1.0)
-        return windows.integrate(self._accelerations, angle, rate, until, unit, stages, tolerance * windows.TOLERANCE)
+        stages, tolerance = (gauss.COARSE_STAGES, gauss.COARSER) if coarse else (gauss.STAGES, 1.0)
+        return gauss.integrate(self._accelerations, angle, rate, until, unit, stages, tolerance * gauss.TOLERANCE)
 
     @validated
     def motion(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> tuple[Array, Array, Array]:
@@ -214,7 +214,7 @@ class Chain(Valid):
         angles, rates = state[:, : self.links], state[:, self.links :]
         return angles, rates, self._accelerations(angles, rates).astype(float)
 
-    @kept
+    @cached_readonly
     def inertia_matrix(self) -> Array:
         """The constants M_ij of the kinetic energy sum M_ij cos(angle_i - angle_j) rate_i rate_j / 2 (links, links).
 
@@ -228,7 +228,7 @@ class Chain(Valid):
         np.fill_diagonal(matrix, self._length**2 * (self._mass / 3 + below))
         return matrix
 
-    @kept
+    @cached_readonly
     def stiffness(self) -> Array:
         """The weights K_i of the potential energy -sum K_i cos(angle_i) (links,) [N m]."""
         below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])
@@ -310,7 +310,7 @@ class Chain(Valid):
         if self.links > FEW_LINKS:
             return error_of(self.rates, start, times, unit=units_of_motion(self.rates, start))
         until = max(float(times.max(initial=0.0)), math.ulp(1.0))
-        return windows.bound(*(self._by_windows(start, until, coarse).extended(times) for coarse in (False, True)))
+        return gauss.bound(*(self._by_windows(start, until, coarse).extended(times) for coarse in (False, True)))
 
     def _start(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         return np.concatenate(self._alike(angle, rate))

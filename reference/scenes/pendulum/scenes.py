@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import LARGEST_COUNT, Count, Positive, require_room, validated
 from reference.joints import Pin, bodies_of
-from reference.kinds import from_to
 from reference.mechanism import Mechanism
 from reference.scene import PlacedScene, Scene, shared
 from reference.scenes.pendulum.chain import Chain
 from reference.trajectory import Trajectory
+from reference.validators import from_to
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ class LinkPendulum(Scene):
 
     name: ClassVar[str] = "pendulum_2"
     source: ClassVar[str] = "problems 18.5.1 and 18.5.2; section 18.5, closed kinematic chains: a double pendulum"
-    reach: ClassVar[float] = 2.0  # a chaotic truth: by then a pendulum of two links has lost half of its digits
+    max_durations: ClassVar[float] = 2.0  # a chaotic truth: by then a pendulum of two links has lost half of its digits
     links: Count = 2
     length: Positive = 1.0
     mass: Positive = 1.0

@@ -11,8 +11,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism, Positive, Valid, kept, sample_times, validated
-from reference.numerics import windows
+from reference.checks import InvalidMechanism, Positive, Valid, cached_readonly, sample_times, validated
+from reference.numerics import gauss_collocation as gauss
 from reference.numerics.integration import IntegrationFailed, units_of_motion
 from reference.numerics.roots import first_below
 from reference.plane import rotation_acceleration
@@ -87,14 +87,14 @@ class RollingBody(Valid):
                 self.rolling.contact(self._beyond[0])
             raise
 
-    @kept
+    @cached_readonly
     def _units(self) -> Array:
         """Next to a rest, a start that hardly moves is known no better than the rounding of its angle lets it go."""
-        unknown = np.finfo(float).eps * self._pace_of_rest / windows.TOLERANCE
+        unknown = np.finfo(float).eps * self._pace_of_rest / gauss.TOLERANCE
         return np.maximum(units_of_motion(self._rates, self.start), [0.0, unknown])
 
     @cached_property
-    def _known(self) -> list[tuple[float, windows.Motion]]:
+    def _known(self) -> list[tuple[float, gauss.Motion]]:
         return []
 
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
@@ -104,7 +104,7 @@ class RollingBody(Valid):
         # Always integrated from zero with its own steps; kept, because samples and searches ask for many times.
         if not self._known or self._known[0][0] < until:
             with self._rolling_on():
-                self._known[:] = [(until, windows.motion(self._rates, self.start, until, self._units))]
+                self._known[:] = [(until, gauss.motion(self._rates, self.start, until, self._units))]
         states = self._known[0][1](t)
         return states[:, 0], states[:, 1]
 
@@ -112,7 +112,7 @@ class RollingBody(Valid):
         """A bound on the error of theta and theta' (times,) [rad, rad/s], from a coarser rule."""
         times = sample_times("rolling body", t)
         with self._rolling_on():
-            return windows.error_of(self._rates, self.start, times, self._units)
+            return gauss.error_of(self._rates, self.start, times, self._units)
 
     def forces(self, t: ArrayLike) -> tuple[Array, Array]:
         """T along e_t and N along e_n (times,) [N], on the body at the contact."""

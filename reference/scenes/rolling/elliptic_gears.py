@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from reference.checks import Positive, validated
 from reference.joints import Drive, Pin, bodies_of
-from reference.kinds import from_to, of_shape
 from reference.mechanism import Mechanism
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.rolling.closed_curves import Ellipse
@@ -21,6 +20,7 @@ from reference.rolling.roll import Roll
 from reference.rows import undetermined
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validators import from_to, of_shape
 
 
 @dataclass(frozen=True)

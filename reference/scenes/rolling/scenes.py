@@ -15,7 +15,6 @@ import numpy as np
 from scipy.integrate import quad
 
 from reference.checks import Positive
-from reference.kinds import Rule
 from reference.mechanism import Body, Mechanism
 from reference.rolling.closed_curves import Cam, Ellipse
 from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
@@ -25,6 +24,7 @@ from reference.rolling.roll import Roll
 from reference.scene import Scene, shared
 from reference.scenes.rolling.body import GRAVITY, RollingBody
 from reference.trajectory import Trajectory
+from reference.validators import Rule
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,9 @@ class RollingScene(Scene):
 
     source: ClassVar[str] = "rolling of not round objects, (18.66)"
 
-    reach: ClassVar[float] = 2.0  # the contact is searched for at every step, and bodies roll ever faster downhill
+    max_durations: ClassVar[float] = (
+        2.0  # the contact is searched for at every step, and bodies roll ever faster downhill
+    )
 
     mass: Positive = 1.0  # kg
     start_angle: float = 0.0  # rad

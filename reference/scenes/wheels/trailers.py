@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import Complexes, InvalidMechanism, Positive, Times, Valid, sample_times, validated
 from reference.joints import Triple
-from reference.kinds import NOT_FINITE, Rule, from_to, of_shape
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.numerics.roots import first_below
+from reference.validators import NOT_FINITE, Rule, from_to, of_shape
 
 Array = NDArray[np.float64]
 Input = float | Callable[[Array], Array]

@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from engines import method_name
 from engines.registry import VARIANTS
 from reference.chapter.centrodes import Centrodes, centrode_error, centrodes, from_poses
-from reference.checks import InvalidMechanism, fixed
+from reference.checks import InvalidMechanism, freeze
 from reference.joints import Pin
 from reference.mechanism import Mechanism
 from reference.plane import rotated
@@ -129,7 +129,7 @@ def times(count: int) -> np.ndarray:
 @cache
 def exact() -> tuple[Trajectory, Centrodes]:
     """The motion over the arc and both curves of the coupler."""
-    truth = fixed(DrivenFourBar().motion(times(SAMPLES)))
+    truth = freeze(DrivenFourBar().motion(times(SAMPLES)))
     return truth, centrodes(truth.t, truth.pose[:, COUPLER], truth.twist[:, COUPLER])
 
 
