@@ -16,7 +16,7 @@ from reports.model.measure import Measurement
 from reports.model.tasks import Answer, Motion, Task, trajectory_of
 
 
-def no_words(material: Material) -> dict[str, Any]:
+def no_context(material: Material) -> dict[str, Any]:
     return {}
 
 
@@ -33,12 +33,12 @@ class Observation:
 class Failure:
     """An experiment in which methods are expected to fail.
 
-    expected: what should happen according to the reference, a template with the variables of `words`. cells: of the
+    expected: what should happen according to the reference, a template with the variables of `context`. cells: of the
     purpose "failure". tasks: run with them. observations: reads their answers; it steps and integrates nothing.
     columns: the quantities whose largest errors are printed for every cell; without any, a grid of methods and steps
     has the angle's. remark: a template with `at(method, step)`, the row at about a step [s], `count(outcome)`, how many
-    rows ended so (all of them without an outcome), and the variables of `words`; a clause within `if_measured` vanishes
-    where one of its numbers is missing.
+    rows ended so (all of them without an outcome), and the variables of `context`; a clause within `if_measured` is
+    left out where one of its numbers is missing.
     """
 
     title: str
@@ -48,7 +48,7 @@ class Failure:
     remark: str = ""  # what the outcomes teach
     columns: tuple[str, ...] = ()
     tasks: tuple[Task, ...] = ()
-    words: Callable[[Material], Mapping[str, Any]] = no_words
+    context: Callable[[Material], Mapping[str, Any]] = no_context
     claims: tuple[str, ...] = ()  # expressions that hold where the remark is true (`reports.pages.claims`)
 
 
@@ -120,9 +120,9 @@ class Page:
     quantity: str = "angle"  # by whose error methods are compared and charted
     advised: str = ""  # the scene for which the page says which setting gives which accuracy; the first if empty
     featured: Callable[[Measurement], bool] = usual_series
-    figures: Callable[[Material], Mapping[str, str]] = no_words  # SVG texts by file name without ending
-    words: Callable[[Material], Mapping[str, Any]] = no_words  # the template's own variables
-    further: Callable[[Material], Mapping[str, str]] = no_words  # Markdown files beside the page, by name
+    figures: Callable[[Material], Mapping[str, str]] = no_context  # SVG texts by file name without ending
+    context: Callable[[Material], Mapping[str, Any]] = no_context  # the template's own variables
+    further: Callable[[Material], Mapping[str, str]] = no_context  # Markdown files beside the page, by name
     # (scene, method) -> the promise where the motion, not the mechanism alone, makes it another than the engine's.
     orders: Mapping[tuple[str, str], ConvergenceOrder] = field(default_factory=dict, compare=False)
     # (scene, method, check) -> by how much that check (`reports.model.checks`) is missed, and why.

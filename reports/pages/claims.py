@@ -75,7 +75,7 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         "above": above,
         "share": share,
         "alike": alike,
-        **failure.words(material),
+        **failure.context(material),
     }
 
 

@@ -77,8 +77,8 @@ def described(source: str, *failures: Failure, **values: Any) -> tuple[Failure, 
 
 
 def _with_text(failure: Failure, paragraphs: Iterable[str], values: Mapping[str, Any]) -> Failure:
-    def words(material: Material) -> Mapping[str, Any]:
-        return {**values, **failure.words(material)}
+    def context(material: Material) -> Mapping[str, Any]:
+        return {**values, **failure.context(material)}
 
     texts = [
         paragraph if paragraph.startswith("|") else " ".join(paragraph.split())
@@ -91,7 +91,7 @@ def _with_text(failure: Failure, paragraphs: Iterable[str], values: Mapping[str,
         expected=texts[0],
         remark="\n\n".join(texts[1:]),
         claims=tuple(claims),
-        words=words if values else failure.words,
+        context=context if values else failure.context,
     )
 
 

@@ -86,5 +86,5 @@ def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
     Raises ValueError where the marks of the part are missing.
     """
     material = next((given for page, given in pages.items() if page.name == YOUR_LOOP.name), Material({}))
-    told = environment().get_template(f"{YOUR_LOOP.name}/readme.md").render(dict(YOUR_LOOP.words(material)))
+    told = environment().get_template(f"{YOUR_LOOP.name}/readme.md").render(dict(YOUR_LOOP.context(material)))
     return with_part(text, "loop", unmeasured.without_marks(told).strip())

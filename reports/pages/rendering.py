@@ -98,7 +98,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         "failures": [told_experiment(failure, material) for failure in page.failures],
         "maps": [subject for subject in SUBJECTS if subject.page == page.name],
         "foot": f"Made by `{command}`. Versions and machine: [index](index.md). Numbers: [errors.csv](errors.csv).",
-        **page.words(material),
+        **page.context(material),
     }
     texts = {page.document: template_of(page).render(given)} | dict(page.further(material))
     return files | {name: inert_page(unmeasured.without_marks(text)) for name, text in texts.items()}

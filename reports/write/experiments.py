@@ -42,7 +42,7 @@ def told_experiment(failure: Failure, material: Material) -> ToldExperiment:
     lines = [[o.method, o.setting, o.outcome] for o in seen]
     return ToldExperiment(
         failure.title,
-        template(failure.expected).render(**failure.words(material)),
+        template(failure.expected).render(**failure.context(material)),
         tables.markdown(["method", "setting", "outcome"], lines, left=3) if seen else "",
         (tables.cell_table(rows, failure.columns) if failure.columns else tables.outcome_grid(rows)) if rows else "",
         told_remark(failure, rows, material),
@@ -58,7 +58,7 @@ def told_remark(failure: Failure, rows: Sequence[Measurement], material: Materia
     def at(method: str, step: float) -> Any:
         return asked.of(method=method, purpose="").near(step)
 
-    return template(failure.remark).render(at=at, count=asked.count, **failure.words(material))
+    return template(failure.remark).render(at=at, count=asked.count, **failure.context(material))
 
 
 def compared_only(cell: Cell, row: Measurement) -> Measurement:

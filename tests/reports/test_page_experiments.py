@@ -184,7 +184,7 @@ FAIL = (
 
 def test_a_claim_that_rows_contradict_or_do_not_have_is_named():
     cells = [replace(SETS, every=every) for every in range(1, 7)]
-    failure = Failure("Falls", cells=tuple(cells), claims=(*HOLD, *FAIL), words=lambda material: {"times": 4e-2})
+    failure = Failure("Falls", cells=tuple(cells), claims=(*HOLD, *FAIL), context=lambda material: {"times": 4e-2})
     page = replace(four_bar.PAGE, name="toy", failures=(failure,))
     wrong = claims.contradicted({page: Material(dict(zip(cells, ROWS, strict=True)))})
     assert wrong == [f"toy, Falls: {claim}" for claim in FAIL]
@@ -209,7 +209,7 @@ def test_an_experiment_without_its_section_of_text_is_refused(tmp_path):
     (tmp_path / "experiments.md").write_text(text)
     (one,) = common.described(str(tmp_path / "page.py"), Failure("One"), times=3)
     assert (one.expected, one.remark) == ("It turns {{ times }} times.", "It does.")
-    assert (one.claims, one.words(Material({}))) == (("times == 3", "times > 2"), {"times": 3})
+    assert (one.claims, one.context(Material({}))) == (("times == 3", "times > 2"), {"times": 3})
     with pytest.raises(ValueError, match=r"experiments\.md has the sections"):
         common.described(str(tmp_path / "page.py"), Failure("Two"))
 

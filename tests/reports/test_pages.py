@@ -30,7 +30,7 @@ from reports.model.catalogue import PAGES, _without_doubles, generic_page, with_
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, blank, measure
 from reports.model.outcomes import Outcome
-from reports.model.page import Material, Page, no_words
+from reports.model.page import Material, Page, no_context
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task
 from reports.pages.engines.experiments import ASKED
@@ -182,7 +182,7 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
     said = (
         task
         for failure in page.failures
-        if failure.words is not no_words
+        if failure.context is not no_context
         for task in failure.tasks
         if not isinstance(task, Neighbours)  # takes seconds, and any growth makes a sentence
     )

@@ -133,7 +133,7 @@ def test_a_page_is_written_without_engines(name, monkeypatch):
     for kind in {type(engine) for engine in known_engines(PAGES)}:
         monkeypatch.setattr(kind, "build", None)
     # A figure or a table that was kept in memory would hide an engine.
-    for value in list(vars(__import__(page.words.__module__, fromlist=["words"])).values()):
+    for value in list(vars(__import__(page.context.__module__, fromlist=["context"])).values()):
         if isinstance(value, functools._lru_cache_wrapper):
             value.cache_clear()
     assert render_page(page, material, "the command")

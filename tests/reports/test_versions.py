@@ -156,7 +156,7 @@ def test_the_page_counts_changes_and_names_those_that_are_known(monkeypatch):
     entries = (entry("3.6.0", 1e-2), entry("3.7.0", 1e-6), entry("4.0.1", 1e-2))
     table = ReleaseTable((*entries, entry("7.0.0", 1e-2, engine="pymunk")), {("mujoco", "3.6.0"): "it is old"})
     monkeypatch.setattr(page, "released", lambda: table)
-    mujoco, pymunk = page.words(Material({}))["engines"]
+    mujoco, pymunk = page.context(Material({}))["engines"]
     _, _, first, second, third = mujoco["table"].splitlines()
     assert first == "| 3.6.0 | - | - | - | 1.00 |"
     assert second.startswith("| 3.7.0 | `connect` and `weld` got the velocity term")
@@ -166,7 +166,7 @@ def test_the_page_counts_changes_and_names_those_that_are_known(monkeypatch):
     assert (pymunk["name"], len(pymunk["table"].splitlines())) == ("pymunk", 3)
     assert set(page.figures(Material({}))) == {"mujoco_heat", "pymunk_heat"}
     monkeypatch.setattr(page, "released", lambda: ReleaseTable((), {}))
-    assert page.words(Material({}))["engines"] == []
+    assert page.context(Material({}))["engines"] == []
 
 
 def toy(folder: Path, version: str, source: str) -> Path:

@@ -70,7 +70,7 @@ PAGE = Page(
     scenes=(SCENE,),
     engines=VARIANTS,
     template=Path(__file__).with_name("page.md"),
-    words=lambda material: lookups(material, (SCENE,)),
+    context=lambda material: lookups(material, (SCENE,)),
 )
 """
 THEIR_TEMPLATE = """{% extends "base.md" %}

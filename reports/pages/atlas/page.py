@@ -111,7 +111,7 @@ def agreement(own: Sequence[Line]) -> tuple[int, int]:
     return near, count
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """A dictionary a map that was run; nothing else on the page has numbers."""
     maps = []
     for subject, lines in ((subject, of(subject)) for subject in SUBJECTS):
@@ -263,6 +263,6 @@ PAGE = Page(
     name="atlas",
     title="Failure atlas",
     lesson="Where methods fail: step against the parameter that breaks a scene, and where borders could be expected.",
-    words=words,
+    context=context,
     figures=figures,
 )

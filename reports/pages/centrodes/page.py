@@ -183,7 +183,7 @@ def largest(values: np.ndarray) -> float:
     return float(values.max()) if values.size else math.nan
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     truth, curves = exact()
     position, table = round_trip(curves), round_trip(from_poses(truth.t, truth.pose[:, COUPLER]))
     rows = measured(material)
@@ -219,6 +219,6 @@ PAGE = Page(
     lesson="Every plane motion is one curve rolling on another, and the instant centre shows errors of velocity.",
     companions=(DrivenFourBar(),),
     figures=figures,
-    words=words,
+    context=context,
     tasks=tuple(map(Motion, CELLS)),
 )

@@ -135,7 +135,7 @@ def _terms(material: Material) -> str:
     return markdown(header, body) if body else ""
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """Tables by name, each empty where nothing was run."""
     answers = {task: answer for task in MATRIX if (answer := material.finished(task)) is not None}
     return {
@@ -155,6 +155,6 @@ PAGE = Page(
     cells=SWEPT,
     failures=EXPERIMENTS,
     figures=figures,
-    words=words,
+    context=context,
     tasks=(*MATRIX, *TERMS),
 )

@@ -315,7 +315,7 @@ def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
     ], lost
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """Values of the formulas, which are computed at once, and decisions of engines, from their stored motions."""
     found, lost = rulings(material.answers.items())
     slips = [
@@ -345,6 +345,6 @@ PAGE = Page(
     lesson="Printed slips of section 18.5 of a textbook, *advanced kinematics of planar motion*: each decided by a "
     "derivative, by engines, and by a few lines to run.",
     companions=COMPANIONS,
-    words=words,
+    context=context,
     tasks=TASKS,
 )

@@ -176,7 +176,7 @@ PAGE = Page(
     lesson="Wrong in a release, not soft or coarse: the formula behind it, what it costs, what to send to its authors.",
     companions=(DrivenFourBar(), FreeFourBar(), SpinningFourBar(), DrivenSliderCrank()),
     figures=figures,
-    words=lambda material: {
+    context=lambda material: {
         "unfinished": [material.unfinished(task) for task in SCRIPTS.values() if not material.finished(task)]
     },
     further=lambda material: {f"upstream/{path.name}": path.read_text("utf-8") for path in sorted(UPSTREAM.iterdir())},

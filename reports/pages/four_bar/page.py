@@ -167,7 +167,7 @@ def assemblies() -> str:
     return markdown(["assembly", "θ [°]", "β [°]", "φ [°]", "gap at C [m]"], body)
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """Rows and sweeps by method, for sentences; what MuJoCo's regularisation yields, and how pymunk closes a gap."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
     before = [
@@ -198,7 +198,7 @@ PAGE = Page(
     compared=compared,
     failures=FAILURES,
     figures=figures,
-    words=words,
+    context=context,
     known=deviations("four_bar"),
     tasks=(*map(Motion, POSED.values()), *MOVED),
 )

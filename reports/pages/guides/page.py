@@ -35,7 +35,7 @@ def table(material: Material) -> str:
     return markdown(header, body) if body else ""
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """The table, and the functions that look up single rows."""
     return {**lookups(material, (FOUR_BAR,)), "table": table(material)}
 
@@ -55,6 +55,6 @@ PAGES = (
         engines=ENGINES,
         borrowed=sweep_cells((FOUR_BAR,), ENGINES, FULL),
         template=FOLDER / "settings.md",
-        words=words,
+        context=context,
     ),
 )

@@ -69,7 +69,7 @@ def figures(material: Material) -> dict[str, str]:
     return {"stroboscope": svg(stroboscope(strips), "N four-bars in motion")}
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """Rows, the exact instants of each scene, `failed`: how a method without a best row ended, and `soft`: errors of
     soft loops, UNMEASURED unless all that was run of them left the branch, as the sentence says.
     """
@@ -101,6 +101,6 @@ PAGE = Page(
     engines=VARIANTS,
     failures=FAILURES,
     figures=figures,
-    words=words,
+    context=context,
     known=deviations("n_four_bar"),
 )

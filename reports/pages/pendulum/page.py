@@ -123,10 +123,10 @@ FAILURES = described(
         "Beyond the horizon of the double pendulum",
         cells=LATE,
         tasks=(PARTING,),
-        words=beyond_the_horizon,
+        context=beyond_the_horizon,
         observations=divergence,
     ),
-    Failure("A hundred links at large steps", cells=LARGE_STEPS, words=opened_joints),
+    Failure("A hundred links at large steps", cells=LARGE_STEPS, context=opened_joints),
     period=f"{PERIOD:.7f}",
     swings=f"{PointPendulum().duration / PERIOD:.1f}",
     oscillates=number(fastest(tip(1e4))),
@@ -169,7 +169,7 @@ def answers() -> str:
     return markdown(["problem", "answer", "off the derivative by"], body, left=2)
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """Rows by method, and the answers to the chapter's problems."""
     numbers = (errata.BAR, *errata.PHI, *errata.PHI_RATE, *errata.PHI_ACCELERATION)
     return {**lookups(material, SCENES), "answers": answers(), "numbers": numbers}
@@ -186,6 +186,6 @@ PAGE = Page(
     failures=FAILURES,
     featured=lambda row: row.variant in SHOWN,
     figures=figures,
-    words=words,
+    context=context,
     known=deviations("pendulum"),
 )

@@ -72,7 +72,7 @@ def figures(material: Material) -> dict[str, str]:
     return {"stroboscope": svg(stroboscope(strips, columns=1), "A person swaying and falling, as a film")}
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """Rows, and freedoms by rank."""
     freedoms = {scene.name: scene.mechanism().degrees_of_freedom()[0] for scene in SCENES}
     knee = float(modes_upright(SwayingOnOneFoot())[0][-1]) ** -0.5
@@ -94,7 +94,7 @@ PAGE = Page(
     engines=VARIANTS,
     failures=FAILURES,
     figures=figures,
-    words=words,
+    context=context,
     orders=ORDERS,
     known=deviations("person"),
 )

@@ -138,7 +138,7 @@ def figures(material: Material) -> dict[str, str]:
     return {"stroboscope": svg(stroboscope(strips), "Andrews' squeezing mechanism in motion")}
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """Published numbers beside ours; `by_method`: the costs of three benchmarks by tolerance; `bounds`."""
     rows = Rows([*material.sweep(SCENES), *material.of(BORROWED)])
     problems = (PointPendulum(), NFourBar(), SCENES[0])
@@ -169,7 +169,7 @@ PAGE = Page(
     engines=VARIANTS,
     borrowed=BORROWED,
     figures=figures,
-    words=words,
+    context=context,
     tasks=(BY_HAND, *ACROBOTS, *NEWTONS),
     known=deviations("published"),
 )

@@ -153,10 +153,10 @@ FAILURES = described(
         cells=cells(RollingOnCircle(), (*PUBLIC, mujoco.EXTENDED), (10, 100)),
         tasks=tuple(map(Motion, PARTINGS)),
         observations=partings,
-        words=after_parting,
+        context=after_parting,
     ),
-    Failure("Chatter on curved ground", tasks=tuple(map(Motion, CHATTERING)), observations=chatter, words=absence),
-    Failure("Steps far too large", cells=TOO_LARGE, words=least_opening),
+    Failure("Chatter on curved ground", tasks=tuple(map(Motion, CHATTERING)), observations=chatter, context=absence),
+    Failure("Steps far too large", cells=TOO_LARGE, context=least_opening),
     corner=f"{SquareOnCatenaries().corner:.4f}",
 )
 
@@ -198,7 +198,7 @@ def figures(material: Material) -> dict[str, str]:
     }
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """Rows and sweeps by method, for sentences; `at` takes a method in one word, and a step."""
     rows = Rows(material.sweep(SCENES))
 
@@ -218,6 +218,6 @@ PAGE = Page(
     failures=FAILURES,
     compared=compared,
     figures=figures,
-    words=words,
+    context=context,
     known=deviations("rolling"),
 )

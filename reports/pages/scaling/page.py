@@ -253,7 +253,7 @@ def _words(point: Any, value: Callable[[Point], float]) -> str:
     return "" if not point else f"**{point.outcome}**" if math.isnan(value(point)) else number(value(point))
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """The tables, the laws, and single points for sentences, UNMEASURED where nothing was run."""
     found = found_series(material)
     by_method = {series.method: series for series in found}
@@ -293,7 +293,7 @@ PAGE = Page(
     lesson="From one link to a thousand: what coordinates, sweeps and exact multipliers cost as the chain grows.",
     companions=pendulum.SCENES,
     figures=figures,
-    words=words,
+    context=context,
     cells=CELLS,
     tasks=(OWN,),
 )

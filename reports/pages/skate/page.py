@@ -203,7 +203,7 @@ def only() -> str:
     return tables.markdown(["(a, b, c)", "skate: its point, its blade's angle", "w · curl w"], body, left=2)
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """Tables, and rows of the sleigh, UNMEASURED where there is none.
 
     at: of a method at about a step [s]; least: with the least position error of an engine's variant; finest: of a
@@ -239,7 +239,7 @@ PAGE = Page(
     compared=compared,
     quantity="position",
     figures=figures,
-    words=words,
+    context=context,
     orders=ORDERS,
     known=deviations("skate"),
     tasks=tuple(Motion(cell) for _, _, cells in PATHS for cell in cells.values()),

@@ -94,7 +94,7 @@ FAILURES = described(
         "A slider that has to start the crank, next to its dead centre",
         cells=cells(SliderAtDeadCentre(), (*ALL, Lagrange("rk4", "projection")), (1, 10)),
         tasks=LEAVING,
-        words=delay,
+        context=delay,
         observations=leaving,
     ),
     Failure("A slider in its dead centre", cells=cells(SliderAtDeadCentre(angle=0.0), ALL, (1, 10))),
@@ -118,7 +118,7 @@ def figures(material: Material) -> dict[str, str]:
     return {"stroboscope": svg(stroboscope(strips), "Slider-cranks in motion")}
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """Rows, and the dead centres and stroke of the scene from the formulas."""
     shape = DrivenSliderCrank().shape
     stretched, folded = shape.dead_centres()
@@ -135,6 +135,6 @@ PAGE = Page(
     engines=VARIANTS,
     failures=FAILURES,
     figures=figures,
-    words=words,
+    context=context,
     known=deviations("slider_crank"),
 )

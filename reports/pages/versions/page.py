@@ -100,7 +100,7 @@ def version_table(table: ReleaseTable, engine: str) -> str:
     return markdown(header, body, left=2)
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """A dictionary for each engine."""
     table, described = released(), []
     for engine in table.engines:
@@ -133,6 +133,6 @@ PAGE = Page(
     name="versions",
     title="Versions",
     lesson="What changed when an engine was upgraded: errors and costs of every scene over released versions.",
-    words=words,
+    context=context,
     figures=figures,
 )

@@ -117,7 +117,7 @@ FAILURES = described(
         *(BACKING, (1, 10), MOTION),
         tasks=(REFERENCE, *map(Motion, RUNS)),
         observations=folding,
-        words=lateness,
+        context=lateness,
     ),
     to_rounding("Casters swing round when the cart is pushed back", PUSHED, (1, 10), MOTION),
     to_rounding("Both wheels of every axle: the car and its trailer", CAR, (1, 10), FORCES),
@@ -252,7 +252,7 @@ def figures(material: Material) -> dict[str, str]:
     }
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """`counted`: the freedoms' table."""
     shown = (*SCENES, CAR, CART)
     doubled = ("car_and_trailer, both wheels of each axle", "cart, both wheels of the fixed axle")
@@ -268,7 +268,7 @@ PAGE = Page(
     failures=FAILURES,
     quantity="position",
     figures=figures,
-    words=words,
+    context=context,
     known=deviations("wheels"),
     tasks=tuple(Motion(cell) for _, _, cells in COASTING for cell in cells.values()),
 )

@@ -132,7 +132,7 @@ def aimed(engine: str) -> str:
     return source[source.index("def aim():") : source.index("end = ")].rstrip()
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """The lines and tables; `reactions`: relative errors of the joints' forces on the loop, by engine; `fresh`: by
     engine the spreads as shipped and with the lines, of the closed linkage."""
     old = [e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
@@ -162,6 +162,6 @@ PAGE = Page(
     companions=(LOOP,),
     borrowed=tuple(each for each in ASKED if each not in OWN),
     cells=OWN,
-    words=words,
+    context=context,
     tasks=(*FRESH, *BUILT),
 )

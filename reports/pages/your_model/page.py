@@ -152,7 +152,7 @@ def table(found: Mapping[str, Any]) -> str:
     return markdown(["setting", "largest error", "reaction error"], body)
 
 
-def words(material: Material) -> Mapping[str, Any]:
+def context(material: Material) -> Mapping[str, Any]:
     """By a model's name what was found in it, its text and its table; None for one that was not run."""
     return {
         "read": read_elements(),
@@ -168,6 +168,6 @@ PAGE = Page(
     lesson="What `crosscheck check` tells of a model of your own: how wrong it is, why, and which settings are enough.",
     companions=(FreeFourBar(),),  # a full run of it runs the checks too
     figures=figures,
-    words=words,
+    context=context,
     tasks=WALKS,
 )
