@@ -1,4 +1,4 @@
-"""What a notebook or a script needs, and the program's start, under the one name that is ours alone.
+"""The functions for notebooks and scripts, and the start of the program.
 
     import planar_crosscheck as crosscheck
     from engines.importers import mujoco

@@ -49,8 +49,8 @@ def animate(
     with opened(results / STORE) as store:  # those that are not stored are run by the pool first
         run_interruptible(terminal, store, motions, fresh=False, limit=60.0)
         picture = shown(take, dict(store.answers(motions)))
-    for word, why in picture.lost.items():
-        terminal.say(f"{word}: {why}")
+    for label, why in picture.missing.items():
+        terminal.say(f"{label}: {why}")
     _write(picture, to, path)
     if not is_stream(path):
         terminal.say(f"written: {path}, {path.stat().st_size / 1000:.0f} kB")

@@ -1,4 +1,4 @@
-"""A motion that moves: as an SVG whose lines move by rules of style, no script, and as a film of the same picture."""
+"""An animated motion: an SVG that is animated by CSS, without a script, and a film of the same picture."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ Array = NDArray[np.float64]
 Moving = list[tuple[Line2D, Array, Array]]  # lines, their points in the body's frame (points, 2), its poses (times, 3)
 Growing = list[tuple[Line2D, Array]]  # lines, and the error at every instant [rad]
 
-FRAMES = 100  # of a moving picture, at most: what an eye can tell in six seconds
-SECONDS = 8.0  # one round
-PAUSE = 0.12  # of a round of an SVG, at its end
-KEYS = 60  # instants of an SVG that are told apart; between them the pose goes steadily
-RATE = 25  # frames a second, of a film; a GIF's frames last whole hundredths of a second, as these do
+FRAMES = 100  # most frames of an animated SVG
+SECONDS = 8.0  # duration of one repetition
+PAUSE = 0.12  # pause at the end of a repetition of an SVG, as a fraction of SECONDS
+KEYS = 60  # key frames of an SVG; the browser interpolates linearly between them
+RATE = 25  # frames a second of a film: a GIF needs whole hundredths of a second for each frame
 INCHES = (12.8, 5.6)
-DOTS = 100  # an inch of a film: 1280 points wide
-# Width of motions [pt], and their lines, whose dashes are told in the widths of lines.
+DOTS = 100  # pixels an inch of a film, which is so 1280 pixels wide
+# Line width [pt] and dashes (in multiples of the width) of each motion.
 LOOKS: tuple[tuple[float, Any], ...] = (
     (5.6, "-"),
     (4.0, (0, (5, 2.5))),
@@ -55,9 +55,9 @@ DECADES = 8  # of the scale of errors, at most
 
 @dataclass(frozen=True)
 class Take(Look):
-    """One motion that a picture shows: the truth of a scene, and methods over it.
+    """The motion of a scene in a picture: the exact one, and that of several methods.
 
-    methods: (how it is called in the legend, engine, steps between samples). samples: of the scene unless given.
+    methods: (label of the legend, engine, steps between samples). samples: None takes the number of the scene.
     """
 
     scene: Scene
@@ -70,47 +70,47 @@ class Take(Look):
         return self.scene.samples if self.samples is None else self.samples
 
     def motions(self) -> dict[str, Motion]:
-        """What has to be run for it, by the word of the legend."""
+        """The tasks that have to be run, by the label of the legend."""
         return {
-            word: Motion(Cell(self.scene, engine, every, "failure", self.samples))
-            for word, engine, every in self.methods
+            label: Motion(Cell(self.scene, engine, every, "failure", self.samples))
+            for label, engine, every in self.methods
         }
 
     @property
     def shown(self) -> slice:
-        """The samples that the picture shows: at most about FRAMES."""
+        """The samples that the picture shows, about FRAMES at most."""
         return slice(0, None, max(1, -(-(self.sample_count + 1) // (FRAMES + 1))))
 
 
 @dataclass(frozen=True)
 class Shown:
-    """A take with its motions: what pictures are made of."""
+    """A take with its motions, from which a picture is drawn."""
 
     take: Take
     mechanism: Mechanism
     t: Array  # (frames,) s
     truth: Trajectory
-    motions: Mapping[str, Array]  # legend -> poses (frames, bodies, 3), NaN where the method gave up
-    lost: Mapping[str, str]  # legend -> why there is no motion
+    motions: Mapping[str, Array]  # label -> poses (frames, bodies, 3), NaN after the method has failed
+    missing: Mapping[str, str]  # label -> why there is no motion
 
 
 def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
-    """The take at its frames. A method that was not run, or did not finish, is told in `lost`."""
+    """Return the take at its frames; methods without a motion are in `missing` with the reason."""
     motions: dict[str, Array] = {}
-    lost: dict[str, str] = {}
+    missing: dict[str, str] = {}
     spacing = take.scene.duration / take.sample_count
     t = np.arange(take.sample_count + 1, dtype=np.float64)[take.shown] * np.float64(spacing)
-    for word, motion in take.motions().items():
+    for label, motion in take.motions().items():
         answer = answers.get(motion)
         if answer is None or not answer.finished:
-            lost[word] = "not run" if answer is None else f"{answer.outcome}: {answer.sentence}".rstrip(": ")
+            missing[label] = "not run" if answer is None else f"{answer.outcome}: {answer.sentence}".rstrip(": ")
         else:
-            motions[word] = trajectory_of(answer).pose[take.shown]
-    return Shown(take, take.scene.mechanism(), t, take.scene.motion(t), motions, lost)
+            motions[label] = trajectory_of(answer).pose[take.shown]
+    return Shown(take, take.scene.mechanism(), t, take.scene.motion(t), motions, missing)
 
 
 def animation(shown: Shown, title: str) -> str:
-    """The whole SVG; the same bytes for the same motions. Without motion it shows the first instant."""
+    """Return the SVG, deterministic for equal motions; without animation it shows the first frame."""
     keys = np.unique(np.linspace(0, len(shown.t) - 1, KEYS).round().astype(int))
     with settings():
         figure, moving, growing = _figure(shown, title, LIGHT, 72)  # the units of matplotlib's SVG
@@ -137,32 +137,33 @@ def animation(shown: Shown, title: str) -> str:
 
 
 def _keyframes(label: str, places: Array) -> str:
-    """The rules that move what is called label-... from its first place to the others: (keys, 3), x, y [pt], angle
-    [degrees]. Where the method gave up it stays as it was last.
+    """Return the CSS that moves the elements with the id `label-...` through `places` (keys, 3).
+
+    The columns are x, y [pt] and the angle [degrees]. After the first place that is not finite they keep the last one.
     """
-    told = []
+    frames = []
     x0, y0, first = last = places[0]
     for index, where in enumerate(places):
         x, y, angle = last = where if np.all(np.isfinite(where)) else last
         share = 100 * (1 - PAUSE) * index / (len(places) - 1)
-        told.append(
+        frames.append(
             f"{share:.2f}%{{transform:translate({drawn.number(x - x0, 2)}px,{drawn.number(y - y0, 2)}px) "
             f"rotate({drawn.number(angle - first, 2)}deg)}}"
         )
-    told.append(f"100%{told[-1].partition('%')[2]}")
+    frames.append(f"100%{frames[-1].partition('%')[2]}")
     origin = f"{drawn.number(x0, 2)}px {drawn.number(y0, 2)}px"
     rule = f"animation:{label} {SECONDS:g}s linear infinite;transform-origin:{origin}"
-    return f'@keyframes {label}{{{"".join(told)}}}[id^="{label}-"]{{{rule}}}'
+    return f'@keyframes {label}{{{"".join(frames)}}}[id^="{label}-"]{{{rule}}}'
 
 
 def _looks(shown: Shown, theme: Theme) -> list[tuple[str, float, Any]]:
-    """Colour, width and line of each motion: an engine's colour is that of all charts, variants differ by lines."""
-    roles = [role(family_of(engine.name)) for words, engine, _ in shown.take.methods if words in shown.motions]
-    return [(getattr(theme, own), *look) for own, look in zip(roles, LOOKS, strict=False)]
+    """Colour, width and dashes of each motion: engines differ by colour, as in charts, variants by dashes."""
+    roles = [role(family_of(engine.name)) for label, engine, _ in shown.take.methods if label in shown.motions]
+    return [(getattr(theme, colour), *look) for colour, look in zip(roles, LOOKS, strict=False)]
 
 
 def decades(errors: Sequence[Array]) -> tuple[int, int]:
-    """The powers of ten between which errors are drawn: those of most instants of each method."""
+    """Return the powers of ten (low, high) of the error axis, which cover most instants of each method."""
     positive = [error[np.isfinite(error) & (error > 0)] for error in errors]
     positive = [error for error in positive if len(error)] or [np.ones(1)]
     high = int(np.ceil(np.log10(max(error.max() for error in positive))))
@@ -171,21 +172,21 @@ def decades(errors: Sequence[Array]) -> tuple[int, int]:
 
 
 def film(shown: Shown, title: str, path: Path, theme: Theme = LIGHT) -> None:
-    """Write the film to a path that ends in .gif or .mp4. Raises BadInput where ffmpeg is needed and not there."""
+    """Write the film to a path that ends in .gif or .mp4. Raises BadInput where ffmpeg is needed and missing."""
     program = ffmpeg() if path.suffix == ".mp4" else "ffmpeg"
     with settings(), rc_context({"animation.ffmpeg_path": program}):
         figure, moving, growing = _figure(shown, title, theme, DOTS)
         FigureCanvasAgg(figure)
 
         def draw(frame: float) -> list[Line2D]:
-            """A pose between two samples is between theirs."""
-            before, share = int(frame), frame % 1
-            after = min(before + 1, len(shown.t) - 1)
+            """Set the poses by linear interpolation between samples."""
+            start, share = int(frame), frame % 1
+            end = min(start + 1, len(shown.t) - 1)
             for line, points, pose in moving:
-                now = pose[before] + share * (pose[after] - pose[before])
+                now = pose[start] + share * (pose[end] - pose[start])
                 line.set_data(*(rotated(now[2], points) + now[:2]).T)
             for line, error in growing:
-                line.set_data(shown.t[: after + 1], error[: after + 1])
+                line.set_data(shown.t[: end + 1], error[: end + 1])
             return []
 
         frames = np.linspace(0, len(shown.t) - 1, int(RATE * SECONDS)).tolist()
@@ -197,10 +198,10 @@ def film(shown: Shown, title: str, path: Path, theme: Theme = LIGHT) -> None:
 
 
 def ffmpeg() -> str:
-    """The program that writes MP4: as installed, or that of the package imageio-ffmpeg. Raises BadInput."""
-    found = shutil.which("ffmpeg")
-    if found is not None:
-        return found
+    """Return the path of ffmpeg: the installed one, or that of the package imageio-ffmpeg. Raises BadInput."""
+    installed = shutil.which("ffmpeg")
+    if installed is not None:
+        return installed
     try:
         return str(import_module("imageio_ffmpeg").get_ffmpeg_exe())
     except (ImportError, RuntimeError):
@@ -210,7 +211,7 @@ def ffmpeg() -> str:
 
 
 def _figure(shown: Shown, title: str, theme: Theme, dots: int) -> tuple[Figure, Moving, Growing]:
-    """The mechanism beside its errors, with the lines that move and those that grow."""
+    """Return the figure of the mechanism beside its errors, the lines that move, and those that grow."""
     figure = Figure(figsize=INCHES, dpi=dots, facecolor=theme.paper, layout="constrained")
     stage, chart = figure.subplots(1, 2, width_ratios=(1.2, 1))
     figure.suptitle(title, fontsize=15, color=theme.ink, x=0.02, ha="left")
@@ -221,9 +222,9 @@ def _stage(panel: Axes, shown: Shown, theme: Theme) -> Moving:
     style_axes(panel, theme, grid=False)
     panel.set_axis_off()
     panel.set_aspect("equal")
-    left, bottom, width, height = drawn.box(shown.mechanism, shown.take, shown.truth.pose)
-    panel.set_xlim(left, left + width)
-    panel.set_ylim(bottom, bottom + height)
+    x, y, width, height = drawn.box(shown.mechanism, shown.take, shown.truth.pose)
+    panel.set_xlim(x, x + width)
+    panel.set_ylim(y, y + height)
     for fixed in drawn.ground_lines(shown.mechanism, shown.take, shown.truth.pose):
         panel.plot(*fixed.outline.T, color=theme.quiet, linewidth=1.0)
     out: Moving = []
@@ -231,7 +232,7 @@ def _stage(panel: Axes, shown: Shown, theme: Theme) -> Moving:
     poses = [*shown.motions.values(), shown.truth.pose]
     for motion, ((colour, width, _), pose) in enumerate(zip(looks, poses, strict=True)):
         for index, body in enumerate(shown.mechanism.bodies):
-            lines = [each.outline for each in drawn.body_lines(shown.mechanism, shown.take, body.name)]
+            lines = [stroke.outline for stroke in drawn.body_lines(shown.mechanism, shown.take, body.name)]
             style: dict[str, Any] = {"color": colour, "linewidth": width, "solid_capstyle": "round"}
             for number, points in enumerate(lines):
                 (line,) = panel.plot([], [], gid=f"m{motion}b{index}-{number}", **style)
@@ -255,7 +256,7 @@ def _chart(panel: Axes, shown: Shown, theme: Theme) -> Growing:
         error = np.where(error > 0, error, np.nan)
         look: dict[str, Any] = {"color": colour, "linestyle": line_style}
         (line,) = panel.plot([], [], linewidth=2.0, **look)
-        panel.plot([], [], linewidth=3.0, label=name, **look)  # for the legend, which stands still
+        panel.plot([], [], linewidth=3.0, label=name, **look)  # for the legend
         out.append((line, error))
     low, high = decades([error for _, error in out])
     panel.set_ylim(10.0**low, 10.0**high)

@@ -1,4 +1,4 @@
-"""The whole site as files by name, from Markdown pages, stored motions, and packages that were fetched."""
+"""The files of the site, from Markdown pages, stored motions and fetched packages."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ from reports.write.templates import CODE, inert_page
 
 HERE = Path(__file__).parent
 MARKER = "site.json"
-# A link to a file beside the page; pictures are read by Sphinx.
+# A link to a file beside the page; Sphinx itself reads pictures.
 FILE_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?![a-z]+:|#)([^)#\s]+)(#[^)]*)?\)")
-DRAGGED = re.compile(r"\{(\w+)\}")  # a number in a lesson's words that moves a control
+DRAGGED = re.compile(r"\{(\w+)\}")  # the name of a control, in braces, in the text of a lesson
 ENGINE_FILES = {"munk2d": "packages/munk2d.js", "mujoco": "packages/mujoco.js"}
 
 # The columns of the page of charts.
@@ -47,12 +47,12 @@ Files = dict[str, bytes]
 
 
 def tasks(lessons: Iterable[Lesson] = LESSONS) -> tuple[Motion, ...]:
-    """All motions that the lessons show, each once."""
+    """Return all motions of the lessons, each once."""
     return tuple(dict.fromkeys(task for lesson in lessons for live in lesson.scenes for task in live.stored().values()))
 
 
 def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
-    """Every file of the site, by its path in it. Raises BadInput where the packages of the extra `site` are missing."""
+    """Return every file of the site by its path. Raises BadInput where packages of the extra `site` are missing."""
     lessons = tuple(lessons)
     extra = _extra_files(source, lessons)
     documents = _documents(source, lessons)
@@ -75,7 +75,7 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
 
 
 def _extra_files(source: Source, lessons: tuple[Lesson, ...]) -> Files:
-    """Scripts, packages, data of the lessons, and tables; a part that can't be had is a sentence in `troubles`."""
+    """Return scripts, packages, data of the lessons, tables; a missing part adds a sentence to `source.troubles`."""
     files: Files = {path.name: path.read_bytes() for path in sorted((HERE / "assets").iterdir())}
     files |= {"colours.css": colours().encode(), "front.svg": _front_picture(source).encode()}
     parts: dict[str, Callable[[], Files]] = {
@@ -96,20 +96,19 @@ def _extra_files(source: Source, lessons: tuple[Lesson, ...]) -> Files:
 
 
 def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
-    """All rows of sweeps for the page of charts, from the texts of three CSV files; a number that is missing is None.
+    """Return all rows of sweeps for the page of charts, from the texts of three CSV files; a missing number is None.
 
     Returns:
         columns, rows: `cpu` is CPU time per simulated second [s], settings are words.
-        looks: by engine the role of its colour, and whether it solves the equations as they are: such solvers are shown
-            when they are asked for.
+        looks: for each engine the role of its colour, and whether it is an exact solver: those are hidden at first.
         headings: the names of the variants.
     """
-    spent, words = _by(timings, *ROW_KEY), _by(descriptions, "digest")
+    times, texts = _by(timings, *ROW_KEY), _by(descriptions, "digest")
     rows = []
     for row in read_lines(errors)[1] if errors else ():
         if row["purpose"] == "sweep":
-            cost = spent.get(tuple(row[name] for name in ROW_KEY), {}).get("cpu", "nan")
-            settings = words.get((row["settings"],), {}).get("description", "")
+            cost = times.get(tuple(row[name] for name in ROW_KEY), {}).get("cpu", "nan")
+            settings = texts.get((row["settings"],), {}).get("description", "")
             numbers = [float(text or "nan") for text in (*(row[name] for name in NUMBERS), cost)]
             finite = [value if math.isfinite(value) else None for value in numbers]
             rows.append([*(row[name] for name in COLUMNS[:4]), settings, float(row["step"]), *finite])
@@ -128,13 +127,11 @@ def _json(value: object) -> bytes:
 
 
 def _documents(source: Source, lessons: tuple[Lesson, ...]) -> Files:
-    """The documents of Sphinx: pages of results, how-to pages, the lecture, the reference, and pages about the site."""
+    """Return the documents for Sphinx: results, how-to pages, the lecture, the reference, the page on the site."""
     texts = {f"results/{name}": inert_page(text) for name, text in source.pages.items()}
     guides = {path.stem: path.read_text(encoding="utf-8") for path in sorted((HERE / "howto").glob("*.md"))}
     quoted = {
-        "contributing": lambda part: (
-            section(source.contributing, part) or "The steps stand in CONTRIBUTING.md of the checkout."
-        ),
+        "contributing": lambda part: section(source.contributing, part) or "See CONTRIBUTING.md in the repository.",
         "meanings": {str(outcome): outcome.meaning for outcome in Outcome},
     }
     environment = jinja2.Environment(undefined=jinja2.StrictUndefined)
@@ -161,22 +158,22 @@ def _documents(source: Source, lessons: tuple[Lesson, ...]) -> Files:
 
 
 def _with_links(text: str, moved: Mapping[str, str], documents: Iterable[str]) -> str:
-    """A page whose links lead to documents of the site; a link to a file that is no document is HTML."""
+    """Return a page whose links lead to documents of the site; a link to another file becomes HTML."""
     for old, new in moved.items():
         text = text.replace(f"({old}", f"({new}")
 
-    def link(found: re.Match[str]) -> str:
-        known = Path(found[2]).name in documents or found[2].startswith("../")
-        return (
-            found[0] if known and found[2].endswith(".md") else f'<a href="{found[2]}{found[3] or ""}">{found[1]}</a>'
-        )
+    def link(match: re.Match[str]) -> str:
+        is_document = Path(match[2]).name in documents or match[2].startswith("../")
+        if is_document and match[2].endswith(".md"):
+            return match[0]
+        return f'<a href="{match[2]}{match[3] or ""}">{match[1]}</a>'
 
     parts = CODE.split(text)
     return "".join(part if index % 2 else FILE_LINK.sub(link, part) for index, part in enumerate(parts))
 
 
 def _index(heading: str, pages: list[tuple[str, str]]) -> str:
-    links = "\n".join(f"- [{words}]({name}.md)" for name, words in pages)
+    links = "\n".join(f"- [{text}]({name}.md)" for name, text in pages)
     tree = "\n".join(name for name, _ in pages)
     return f"# {heading}\n\n{links}\n\n```{{toctree}}\n:hidden:\n\n{tree}\n```\n"
 
@@ -184,7 +181,7 @@ def _index(heading: str, pages: list[tuple[str, str]]) -> str:
 def _front_page(lessons: tuple[Lesson, ...], results: list[tuple[str, str]], trees: Mapping[str, list[str]]) -> str:
     text = (HERE / "front.md").read_text(encoding="utf-8")
     taught = cards([(f"lessons/{lesson.name}.html", lesson.title) for lesson in lessons])
-    measured = cards([(f"results/{name}.html", words) for name, words in results])
+    measured = cards([(f"results/{name}.html", heading) for name, heading in results])
     tree = "\n\n".join(
         f"```{{toctree}}\n:hidden:\n:caption: {name}\n\n" + "\n".join(pages) + "\n```" for name, pages in trees.items()
     )
@@ -199,24 +196,24 @@ def _about(source: Source) -> str:
 
 
 def _lesson_context(lesson: Lesson, quote: Callable[[str], str | None]) -> dict[str, Any]:
-    """The values of lesson.html; `quote` gives the HTML of a part of the lesson's page of results."""
+    """Return the values of lesson.html; `quote` returns the HTML of a part of the lesson's page of results."""
     parts = []
-    for words, experiment in zip(lesson.parts, lesson.experiments, strict=True):
+    for part, experiment in zip(lesson.parts, lesson.experiments, strict=True):
         live = lesson.scene(experiment.scene)
-        before = live.located(experiment.before)
-        values = {name: control.texts[before.get(name, control.start)] for name, control in live.controls().items()}
+        start = live.located(experiment.before)
+        values = {name: control.texts[start.get(name, control.start)] for name, control in live.controls().items()}
         body = quote(experiment.section) if experiment.section else None
         parts.append(
             {
-                "heading": words.heading,
-                "text": _with_drags(words.text, values),
-                "question": Markup(render_html(words.question).removeprefix("<p>").removesuffix("</p>\n")),
-                "answers": words.answers,
-                "after_words": _with_drags(words.after, values),
+                "heading": part.heading,
+                "text": _with_drags(part.text, values),
+                "question": Markup(render_html(part.question).removeprefix("<p>").removesuffix("</p>\n")),
+                "answers": part.answers,
+                "after_words": _with_drags(part.after, values),
                 "scene": lesson.scenes.index(live),
-                "before": before,
+                "before": start,
                 "after": live.located(experiment.after),
-                "shown": " ".join(("paths", *experiment.shown)),
+                "shown": " ".join(("paths", *experiment.overlays)),
                 "more": None if body is None else {"heading": experiment.section, "body": Markup(body)},
             }
         )
@@ -232,16 +229,16 @@ def _lesson_context(lesson: Lesson, quote: Callable[[str], str | None]) -> dict[
 
 
 def _with_drags(text: str, values: Mapping[str, str]) -> Markup:
-    """Sentences of a lesson; a control's name in braces becomes a number that the reader can drag."""
+    """Return the HTML of a text; a control's name in braces becomes a number that the reader can drag."""
     number = r'<span class="drag" role="slider" tabindex="0" data-name="{0}" aria-label="{0}">{1}</span>'
-    return Markup(DRAGGED.sub(lambda found: number.format(found[1], escape(values[found[1]])), render_html(text)))
+    return Markup(DRAGGED.sub(lambda match: number.format(match[1], escape(values[match[1]])), render_html(text)))
 
 
 def _front_picture(source: Source) -> str:
-    """A motion of the first lesson that moves without a script."""
+    """Return an animated motion of the first lesson, without a script."""
     live = LESSONS[0].scene("let go")
     stored = live.stored()
-    cells = {words: stored[name, 0].cell for name, words in NAMES.items()}
-    methods = tuple((f"{words} {SHIPPED}", cell.engine, cell.every) for words, cell in cells.items())
+    cells = {label: stored[name, 0].cell for name, label in NAMES.items()}
+    methods = tuple((f"{label} {SHIPPED}", cell.engine, cell.every) for label, cell in cells.items())
     take = replace(take_like(live.scene, methods), samples=live.frames)
     return animation(shown(take, source.answers), "A four-bar linkage falls")

@@ -1,4 +1,4 @@
-"""A mechanism for a page: SVG groups, one a body that only has to be moved and turned, and its joints in numbers."""
+"""The drawing of a mechanism: an SVG group for each body, which a page moves and turns, and its joints as numbers."""
 
 from __future__ import annotations
 
@@ -17,33 +17,34 @@ from reports.site.live.sliders import Look, Point
 
 Array = NDArray[np.float64]
 
-BLOCK = 0.07  # of the mechanism's length: half the side of a body that has no extent of its own
-PIN = 0.018  # of the mechanism's length: the radius of a pin
-BLADE = 0.16  # of the mechanism's length: a blade
-SUPPORT = 0.05  # of the mechanism's length: half the width of a support
+# Sizes as fractions of the mechanism's length.
+BLOCK = 0.07  # half the side of a body without joints and ends
+PIN = 0.018  # radius of a pin
+BLADE = 0.16  # length of a blade
+SUPPORT = 0.05  # half the width of a support
 OUTLINE = 160  # points of a curve
 
 
 def number(value: float, digits: int = 5) -> str:
-    """A coordinate for a drawing, without trailing zeros."""
+    """Return a coordinate as text without trailing zeros."""
     text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text
 
 
 def path(points: Iterable[Sequence[float] | Array], closed: bool = False) -> str:
-    """The `d` of a line through points."""
+    """Return the attribute `d` of a line through points."""
     return "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points) + ("Z" if closed else "")
 
 
 def placed(pose: Sequence[float]) -> str:
-    """The transform of a body at a pose (x, y, angle) [m, m, rad]."""
+    """Return the SVG transform of a body at a pose (x, y, angle) [m, m, rad]."""
     x, y, angle = pose
     return f"translate({number(x)} {number(y)}) rotate({number(np.degrees(angle), 4)})"
 
 
 @dataclass(frozen=True)
 class Stroke:
-    """A line of a drawing: its kind, which gives its look, and its points (points, 2) [m]."""
+    """A line of a drawing: its kind, which selects its style, and its points (points, 2) [m]."""
 
     kind: str
     points: Array
@@ -55,12 +56,12 @@ class Stroke:
         return np.vstack([self.points, self.points[:1]]) if self.closed else self.points
 
     def svg(self) -> str:
-        """As an element."""
+        """Return the SVG element."""
         return f'<path class="{self.kind}" d="{path(self.points, self.closed)}"/>'
 
 
 def body_lines(mechanism: Mechanism, look: Look, name: str) -> list[Stroke]:
-    """What is drawn of a body, in its own frame; its pins are `pins_of`."""
+    """Return the lines of a body in its own frame, without its pins (see `pins_of`)."""
     size = mechanism.length_scale
     points: list[Point] = list(look.ends.get(name, ()))
     lines: list[Stroke] = []
@@ -96,7 +97,7 @@ def body_lines(mechanism: Mechanism, look: Look, name: str) -> list[Stroke]:
 
 
 def body_shape(mechanism: Mechanism, look: Look, name: str) -> str:
-    """The same as SVG, with its pins."""
+    """Return the lines and the pins of a body as SVG."""
     radius = number(PIN * mechanism.length_scale)
     pins = [
         f'<circle class="pin" cx="{number(x)}" cy="{number(y)}" r="{radius}"/>' for x, y in pins_of(mechanism, name)
@@ -105,13 +106,13 @@ def body_shape(mechanism: Mechanism, look: Look, name: str) -> str:
 
 
 def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
-    """The points of a body at which it is pinned [m]."""
+    """Return the points of a body at which it is pinned [m]."""
     pins = [joint for joint in mechanism.joints if isinstance(joint, Pin)]
     return list(dict.fromkeys(point for pin in pins for owner, point in pin.points if owner == name))
 
 
 def ground_lines(mechanism: Mechanism, look: Look, pose: Array) -> list[Stroke]:
-    """What does not move: supports, lines of slots, curves that are rolled on; `pose` (times, bodies, 3), the truth."""
+    """Return the fixed lines: supports, slots, curves on which bodies roll; `pose` (times, bodies, 3) is exact."""
     size = mechanism.length_scale
     lines = []
     for joint in mechanism.joints:
@@ -132,7 +133,7 @@ def ground_lines(mechanism: Mechanism, look: Look, pose: Array) -> list[Stroke]:
 
 
 def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:
-    """The part of the ground's curve on which a body rolls (points, 2) [m], or all of a closed one."""
+    """Return the part of the ground's curve on which a body rolls (points, 2) [m], or all of a closed curve."""
     curve = joint.rolling.ground
     low, high = curve.limits
     if np.isfinite(curve.length):
@@ -143,17 +144,17 @@ def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:
 
 
 def point_path(pose: Array, point: Point | Array) -> Array:
-    """Where a point of a body is (times, 2) [m], for its poses (times, 3)."""
+    """Return the positions (times, 2) [m] of a point of a body with poses (times, 3)."""
     return pose[:, :2] + rotated(pose[:, 2], np.array(point))
 
 
 def box(mechanism: Mechanism, look: Look, pose: Array) -> tuple[float, float, float, float]:
-    """Left, bottom, width and height [m] of what the truth passes through, with a margin."""
+    """Return left, bottom, width and height [m] of the area that the exact motion covers, with a margin."""
     corners = [
         point_path(pose[:, index], point)
         for index, body in enumerate(mechanism.bodies)
         for line in body_lines(mechanism, look, body.name)
-        if line.kind != "curve"  # an instant centre goes far away
+        if line.kind != "curve"  # the curve of an instant centre reaches far away
         for point in line.points
     ]
     fixed = [
@@ -172,17 +173,17 @@ def box(mechanism: Mechanism, look: Look, pose: Array) -> tuple[float, float, fl
 
 
 def index_of(mechanism: Mechanism, name: str | None) -> int:
-    """A body's place, -1 for the ground."""
+    """Return the index of a body, -1 for the ground."""
     return -1 if name is None else mechanism.body_index(name)
 
 
 def measure_of(mechanism: Mechanism) -> Literal["angle", "position"]:
-    """The error to show: of positions for a mechanism with skates, which constrain velocities alone, else of angles."""
+    """Return the error to show: of positions for a mechanism with skates, which constrain velocities alone, else of angles."""
     return "angle" if mechanism.holonomic.all() else "position"
 
 
 def joints_of(mechanism: Mechanism) -> list[dict[str, Any]]:
-    """The pins and slots, whose gaps a page reads off poses: their bodies, points, and a slot's line."""
+    """Return the pins and slots, whose gaps a page computes from poses: their bodies, points, and a slot's line."""
     return [
         {
             "name": joint.name,
@@ -198,7 +199,7 @@ def joints_of(mechanism: Mechanism) -> list[dict[str, Any]]:
 
 
 def between(mechanism: Mechanism, joint: Joint, pose: Array) -> tuple[Array, Array]:
-    """The poses (times, 3) of both bodies of a joint, those of the ground are zero."""
+    """Return the poses (times, 3) of both bodies of a joint; those of the ground are zero."""
     ground = np.zeros((len(pose), 3))
     names = (joint.first, joint.second)
     first, second = (ground if name is None else pose[:, mechanism.body_index(name)] for name in names)
@@ -206,21 +207,21 @@ def between(mechanism: Mechanism, joint: Joint, pose: Array) -> tuple[Array, Arr
 
 
 def place_of(joint: Joint, first: Array, second: Array) -> Array:
-    """Where a joint acts (times, 2) [m]: its point on the second body, or the contact of a Roll."""
+    """Return the point (times, 2) [m] at which a joint acts: its point on the second body, or the contact of a Roll."""
     if isinstance(joint, Roll):
         return first[:, :2] + rotated(first[:, 2], joint.rolling.contact(second[:, 2] - first[:, 2]).point)
     return point_path(second, getattr(joint, "second_point", (0.0, 0.0)))
 
 
 def loose(mechanism: Mechanism) -> list[Skate | Roll]:
-    """The joints whose opening can't be read off two points: skates, and rolling contacts."""
+    """Return the joints whose error is not a distance of two points: skates and rolling contacts."""
     return [joint for joint in mechanism.joints if isinstance(joint, Skate | Roll)]
 
 
-def demanded(own: Array) -> Array:
-    """The friction that rolling demands of its contact (times,) [1], from its reaction (times, 2) along and across.
+def required_friction(reaction: Array) -> Array:
+    """Return the friction coefficient (times,) [1] that rolling requires; reaction (times, 2): along, across.
 
-    NaN where the normal force doesn't press: no friction is enough there.
+    NaN where the normal force is not compressive: no friction is sufficient there.
     """
     with np.errstate(all="ignore"):
-        return np.where(own[:, 1] > 0, np.abs(own[:, 0]) / own[:, 1], np.nan)
+        return np.where(reaction[:, 1] > 0, np.abs(reaction[:, 0]) / reaction[:, 1], np.nan)

@@ -47,7 +47,7 @@ def write_site(output: Path, files: Mapping[str, bytes]) -> int:
 
 
 def compressed_size(files: Mapping[str, bytes]) -> int:
-    """What a server that compresses sends for all files [bytes], each by itself."""
+    """Return the sum of the sizes of the files [bytes], each compressed by gzip."""
     return sum(len(gzip.compress(content, 9, mtime=0)) for content in files.values())
 
 

@@ -26,10 +26,10 @@ LINE = re.compile(r' (?:d|x|y)="[^"]*"')
 LONG = re.compile(r"-?\d+\.\d{2,}(?![\de])")
 PACKAGES = ("reference", "engines")
 MODULE = "{name}\n{line}\n\n.. automodule:: {name}\n   :members:\n"
-# Kinds of warnings about docstrings, which are plain text, and about the look of pages.
-HARMLESS = ("docutils", "autodoc", "ref.", "toc.", "myst.header")  # warnings about docstrings, which are plain text
+# Kinds of Sphinx's warnings that are ignored: docstrings are plain text, and headings skip levels.
+HARMLESS = ("docutils", "autodoc", "ref.", "toc.", "myst.header")
 
-# Of the theme, but for the list of lessons.
+# The templates of Furo's sidebar, and ours with the lessons.
 SIDEBAR = ("scroll-start", "brand", "search", "lessons", "navigation", "scroll-end")
 
 Extra = tuple[str, dict[str, Any], str]  # page, context, template
@@ -61,19 +61,20 @@ def build_html(documents: Documents) -> tuple[dict[str, bytes], list[str]]:
     with TemporaryDirectory() as folder, docutils_namespace(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # deprecations of Sphinx that its theme and MyST still use
         source, extra, out = (Path(folder) / name for name in ("source", "extra", "out"))
-        for place, files in ((source, documents.sources), (extra, documents.extra)):
+        for folder_of_files, files in ((source, documents.sources), (extra, documents.extra)):
             for name, content in files.items():
-                (place / name).parent.mkdir(parents=True, exist_ok=True)
-                (place / name).write_bytes(content)
-        said = io.StringIO()
+                path = folder_of_files / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_bytes(content)
+        log = io.StringIO()
         settings = {**configure(extra), "html_context": dict(documents.context)}
-        app = Sphinx(source, None, out, Path(folder) / "trees", "html", settings, status=None, warning=said)
+        app = Sphinx(source, None, out, Path(folder) / "trees", "html", settings, status=None, warning=log)
         app.connect("html-collect-pages", documents.add_pages)
         app.build()
         names = (path for path in sorted(out.rglob("*")) if path.is_file() and path.name != ".buildinfo")
         built = {path.relative_to(out).as_posix(): path.read_bytes() for path in names}
-    lines = [re.sub(r"\x1b\[[\d;]*m", "", line).replace(folder, "") for line in said.getvalue().splitlines()]
-    ours = [line for line in lines if "WARNING" in line and not any(f"[{word}" in line for word in HARMLESS)]
+    lines = [re.sub(r"\x1b\[[\d;]*m", "", line).replace(folder, "") for line in log.getvalue().splitlines()]
+    ours = [line for line in lines if "WARNING" in line and not any(f"[{kind}" in line for kind in HARMLESS)]
     return built, [line for line in ours if "docstring of" not in line]
 
 
@@ -133,7 +134,7 @@ def furo_colours(theme: Theme) -> dict[str, str]:
 
 
 def colours() -> str:
-    """CSS that sets a variable for each role; the reader's own choice stands above the system's."""
+    """CSS that sets a variable for each role; the reader's choice overrides that of the system."""
     light, dark = (" ".join(f"--{f.name}: {getattr(theme, f.name)};" for f in fields(Theme)) for theme in (LIGHT, DARK))
     return (
         f":root {{ color-scheme: light dark; {light} }}\n"

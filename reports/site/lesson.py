@@ -1,4 +1,4 @@
-"""What a lesson is made of: scenes, experiments on them and their words; and what a site is built from."""
+"""The types of lessons (scenes, experiments and their texts) and of the input of a site."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FORCES, CENTRE = ("reactions",), ("centre",)  # overlays
 
 @dataclass(frozen=True)
 class Claim:
-    """What a change of settings does to an engine's error: it becomes `least` to `most` times as large."""
+    """A claim on the effect of a change of settings: an engine's error becomes `least` to `most` times as large."""
 
     engine: Name
     least: float = 0.0
@@ -28,11 +28,12 @@ class Claim:
 
 @dataclass(frozen=True)
 class Experiment:
-    """A setting to start from, and what is changed after the reader has guessed what will happen.
+    """The settings before a question, and the change of them that answers it.
 
-    `before`, `after`: values of the controls of the scene called `scene`, the others as they come; `after` is a change
-    of `before`. claims: of the errors after, in those before. causes: further changes with what they do to the error
-    after, so that a sentence that names a cause can be checked by switching it off. shown: overlays beside the paths.
+    `before`: values of controls of the scene called `scene`, the others have their start values; `after`: the values
+    that change then. claims: errors after the change relative to those before. causes: further changes, each with a
+    claim relative to the errors after the change, so that a text that names a cause is tested without that cause.
+    overlays: names of overlays beside the paths. section: the heading of a part of the Markdown page that is quoted.
     """
 
     scene: str
@@ -40,13 +41,13 @@ class Experiment:
     after: Mapping[str, Any] = field(default_factory=dict)
     claims: tuple[Claim, ...] = ()
     causes: tuple[tuple[Mapping[str, Any], Claim], ...] = ()
-    shown: tuple[str, ...] = ()
-    section: str = ""  # the heading of what the Markdown page of the same mechanism says of it
+    overlays: tuple[str, ...] = ()
+    section: str = ""
 
 
 @dataclass(frozen=True)
 class Part:
-    """The words of an experiment: a heading, what to see, a question with answers of which one is right, and why."""
+    """The texts of an experiment: heading, introduction, question, answers with the right one marked, explanation."""
 
     heading: str
     text: str
@@ -66,12 +67,12 @@ class Lesson:
     experiments: tuple[Experiment, ...]
 
     def scene(self, word: str) -> Live:
-        """The scene of this name. Raises StopIteration if there is none."""
+        """Return the scene of this name. Raises StopIteration without one."""
         return next(live for live in self.scenes if live.word == word)
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
-        """The words of each experiment. Raises ValueError unless there are as many as experiments."""
+        """The texts of each experiment. Raises ValueError where their number differs from that of the experiments."""
         text = (FOLDER / f"{self.name}.md").read_text(encoding="utf-8")
         parts = tuple(part_of(part) for part in text.split("\n## ")[1:])
         if len(parts) != len(self.experiments):
@@ -80,27 +81,30 @@ class Lesson:
 
 
 def part_of(text: str) -> Part:
-    """Read one: a heading, words, and perhaps a quotation: a question, a list of answers, the right one in bold."""
+    """Parse a part: a heading, text, and optionally a quotation with a question and three answers, the right one bold.
+
+    Raises ValueError for another number of answers.
+    """
     heading, _, body = text.partition("\n")
     lines = body.strip().splitlines()
     quoted = [index for index, line in enumerate(lines) if line.startswith(">")] or [len(lines)]
-    before, after = lines[: quoted[0]], lines[quoted[-1] + 1 :]
-    told = [line.removeprefix(">").strip() for line in lines[quoted[0] : quoted[-1] + 1]]
-    answers = [line.removeprefix("- ") for line in told if line.startswith("- ")]
+    introduction, explanation = lines[: quoted[0]], lines[quoted[-1] + 1 :]
+    quotation = [line.removeprefix(">").strip() for line in lines[quoted[0] : quoted[-1] + 1]]
+    answers = [line.removeprefix("- ") for line in quotation if line.startswith("- ")]
     if answers and (len(answers) != 3 or sum(answer.startswith("**") for answer in answers) != 1):
         raise ValueError(f"{heading!r}: a question has three answers, one of them right")
     return Part(
         heading.strip(),
-        "\n".join(before).strip(),
-        " ".join(line for line in told if line and not line.startswith("- ")),
+        "\n".join(introduction).strip(),
+        " ".join(line for line in quotation if line and not line.startswith("- ")),
         tuple((answer.strip("*"), answer.startswith("**")) for answer in answers),
-        "\n".join(after).strip(),
+        "\n".join(explanation).strip(),
     )
 
 
 @dataclass
 class Source:
-    """What a site is built from: Markdown pages and pictures by file name, and the answers to the lessons' tasks."""
+    """The input of a site: Markdown pages and pictures by file name, and the answers to the lessons' tasks."""
 
     pages: Mapping[str, str]
     pictures: Mapping[str, str]
@@ -108,7 +112,7 @@ class Source:
     answers: Mapping[Motion, Answer]
     cache: Path
     foot: str
-    contributing: str = ""  # CONTRIBUTING.md, of which how-to pages quote parts; empty outside of a checkout
+    contributing: str = ""  # CONTRIBUTING.md, parts of which are quoted; empty outside of a checkout
     api: bool = True  # whether docstrings become a reference, which takes a minute
     lecture: str = ""  # the notebook, as JSON
-    troubles: list[str] = field(default_factory=list)  # what could not be built, and why, a sentence each
+    troubles: list[str] = field(default_factory=list)  # a sentence for each part that could not be built

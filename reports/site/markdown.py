@@ -1,6 +1,6 @@
-"""Markdown of lessons as HTML, formulas as MathML, the parts of a Markdown page, and the lecture as one.
+"""Markdown of lessons as HTML, formulas as MathML, sections of a Markdown page, and the lecture as Markdown.
 
-The cells of the lecture are run once, in a process of their own, and stand with their output and their pictures.
+The cells of the lecture are run once, in a process of their own; the page has their output and their pictures.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ PATIENCE = 300  # s for all cells of the lecture
 
 @cache
 def mathml(formula: str, displayed: bool = False) -> str:
-    """A formula as browsers draw it without a script. Raises BadInput for a command that latex2mathml does not know."""
+    """Return a formula as MathML. Raises BadInput for a command that latex2mathml does not know."""
     from latex2mathml.converter import convert  # pyright: ignore[reportMissingImports]
 
-    drawn = convert(formula.replace(r"\arg", r"\operatorname{arg}"), display="block" if displayed else "inline")
-    if "\\" in drawn:
+    rendered = convert(formula.replace(r"\arg", r"\operatorname{arg}"), display="block" if displayed else "inline")
+    if "\\" in rendered:
         raise BadInput(f"the formula {formula!r} has a command that latex2mathml does not know: write it otherwise")
-    return drawn
+    return rendered
 
 
 def render_html(text: str) -> str:
-    """A few sentences of Markdown as HTML."""
+    """Return a short Markdown text as HTML."""
     from markdown_it import MarkdownIt
     from mdit_py_plugins.dollarmath import dollarmath_plugin  # pyright: ignore[reportMissingImports]
 
@@ -53,40 +53,40 @@ def render_html(text: str) -> str:
 
 
 def title(text: str) -> str:
-    """The first heading of a Markdown page."""
+    """Return the first heading of a Markdown page."""
     return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), "")
 
 
 def section(text: str, heading: str) -> str | None:
-    """The part of a Markdown page below a heading, up to the next of its rank; None on a page without that heading."""
+    """Return the part of a Markdown page below a heading, up to the next of its rank; None without that heading."""
     start, rank, fenced = None, 0, False
     lines = text.splitlines()
     for index, line in enumerate(lines):
         fenced ^= line.lstrip().startswith("```")
-        found = None if fenced else re.match(r"(#+) (.*)", line)
-        if found and start is None and found[2].strip() == heading:
-            start, rank = index + 1, len(found[1])
-        elif found and start is not None and len(found[1]) <= rank:
+        match = None if fenced else re.match(r"(#+) (.*)", line)
+        if match and start is None and match[2].strip() == heading:
+            start, rank = index + 1, len(match[1])
+        elif match and start is not None and len(match[1]) <= rank:
             return "\n".join(lines[start:index]).strip()
     return None if start is None else "\n".join(lines[start:]).strip()
 
 
 def cards(links: list[tuple[str, str]]) -> str:
-    """A list of (address, words) as HTML."""
-    items = "".join(f'<li><a href="{address}">{escape(words)}</a></li>' for address, words in links)
+    """Return a list of links (address, text) as HTML."""
+    items = "".join(f'<li><a href="{address}">{escape(text)}</a></li>' for address, text in links)
     return f'<ul class="cards">{items}</ul>'
 
 
 def render_lecture(notebook: str) -> dict[str, str]:
-    """The page "lecture.md" and its pictures by name; the last cell, the solutions, is folded.
+    """Return the page "lecture.md" and its pictures by name; the last cell, the solutions, is collapsed.
 
     Raises NotFetched with the reason where a cell fails.
     """
     cells = json.loads(notebook)["cells"]
     sources = ["".join(cell["source"]) for cell in cells]
     codes = [source for cell, source in zip(cells, sources, strict=True) if cell["cell_type"] == "code"]
-    words = [sys.executable, "-m", "reports.site.markdown"]
-    runs = iter(json.loads(printed(words, "a cell fails", PATIENCE, input=json.dumps(codes), env=environment(ROOT))))
+    command = [sys.executable, "-m", "reports.site.markdown"]
+    runs = iter(json.loads(printed(command, "a cell fails", PATIENCE, input=json.dumps(codes), env=environment(ROOT))))
     parts, files = [], {}
     for cell, source in zip(cells, sources, strict=True):
         if cell["cell_type"] == "markdown":
@@ -103,22 +103,22 @@ def render_lecture(notebook: str) -> dict[str, str]:
 
 
 def main() -> None:
-    """Run the cells that come as JSON, and write the output and the pictures of each."""
+    """Run cells from JSON on standard input; write the output and the pictures of each as JSON."""
     import matplotlib
 
     matplotlib.use("agg")
     import matplotlib.pyplot as plt
 
-    warnings.simplefilter("ignore")  # that nothing can be shown here
+    warnings.simplefilter("ignore")  # matplotlib warns that this backend shows no window
     names, runs = {"__name__": "lecture"}, []
     for code in json.load(sys.stdin):
         out, pictures = io.StringIO(), []
         with redirect_stdout(out):
             exec(code, names)
         for number in plt.get_fignums():
-            drawn = io.StringIO()
-            plt.figure(number).savefig(drawn, format="svg", metadata={"Date": None})
-            pictures.append(drawn.getvalue())
+            picture = io.StringIO()
+            plt.figure(number).savefig(picture, format="svg", metadata={"Date": None})
+            pictures.append(picture.getvalue())
         plt.close("all")
         runs.append((out.getvalue(), pictures))
     json.dump(runs, sys.stdout)

@@ -1,7 +1,7 @@
-"""Parts of the site that others made: packages of npm, and Munk2D, the engine inside pymunk, compiled by emscripten.
+"""Third-party parts of the site: packages of npm, and Munk2D, the engine inside pymunk, compiled by emscripten.
 
-They are fetched when the site is built, checked, and kept in a folder `cache`; nothing is fetched when a page is read.
-Without npm, a compiler or a network the site is built without the parts that need them.
+The build fetches them, checks their digests and stores them in a folder `cache`; pages fetch nothing. Without npm, a
+compiler or a network the site is built without the parts that need them.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from reports.model.fingerprint import digest
 from reports.run.files import temporary_folder
 from reports.run.installed import sources
 
-PATIENCE = 180  # s for one package
-ANSWERING = 8  # s in which a registry answers a short question: without one, a build says so soon
-COMPILING = 600  # s for emscripten, which builds its own library first
+PATIENCE = 180  # s: timeout for one package
+ANSWERING = 8  # s: timeout of a short query to a registry, so that a build without a network ends soon
+COMPILING = 600  # s: timeout of emscripten, which first builds its own library
 SHIM = Path(__file__).with_name("munk2d.c")
 # At -O2 emscripten 3.1.6 of Debian fails in a later step.
 FLAGS = (
     *("-O1", "-DNDEBUG", "-sSINGLE_FILE=1", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web,worker"),
     *("-sEXPORTED_FUNCTIONS=_munk_run,_malloc,_free", "-sALLOW_MEMORY_GROWTH=1", "-sFILESYSTEM=0"),
 )
-THREADED = "cpHastySpace.c"  # steps with threads, which pages have not
+THREADED = "cpHastySpace.c"  # needs threads, which pages have not
 
 
 @dataclass(frozen=True)
@@ -54,62 +54,62 @@ class Package:
 
 
 class NotFetched(Exception):
-    """Why a package is not there, in a sentence."""
+    """A part cannot be fetched or built; the message is one sentence with the reason."""
 
 
 @functools.cache
 def npm_trouble(cache: Path) -> str:
-    """Why nothing can be fetched; empty where all packages are in the folder or npm's registry answers."""
+    """Return why nothing can be fetched; empty if all packages are in the folder or npm's registry answers."""
     if all(package.path_in(cache).is_file() for package in PACKAGES):
         return ""
     npm = shutil.which("npm")
     if npm is None:
         return "npm is not installed"
-    words = [npm, "view", "d3", "version", "--fetch-retries=0", f"--fetch-timeout={1000 * ANSWERING}"]
+    command = [npm, "view", "d3", "version", "--fetch-retries=0", f"--fetch-timeout={1000 * ANSWERING}"]
     try:
-        printed(words, "npm's registry does not answer", ANSWERING)
+        printed(command, "npm's registry does not answer", ANSWERING)
     except NotFetched as reason:
         return str(reason)
     return ""
 
 
 def fetch_package(package: Package, cache: Path) -> dict[str, bytes]:
-    """The package's files by their names in the site, fetched once into `cache`. Raises NotFetched."""
+    """Return the package's files by their names in the site; fetched once into `cache`. Raises NotFetched."""
     path = package.path_in(cache)
     if not path.is_file():
         if trouble := npm_trouble(cache):
             raise NotFetched(trouble)
         cache.mkdir(parents=True, exist_ok=True)
         with temporary_folder(cache) as folder:
-            words = ["npm", "pack", f"{package.name}@{package.version}", "--silent", "--ignore-scripts"]
-            printed(words, f"npm could not fetch {package.name} {package.version}", PATIENCE, cwd=folder)
+            command = ["npm", "pack", f"{package.name}@{package.version}", "--silent", "--ignore-scripts"]
+            printed(command, f"npm could not fetch {package.name} {package.version}", PATIENCE, cwd=folder)
             (archive,) = folder.glob("*.tgz")
             archive.replace(path)
     if base64.b64encode(hashlib.sha512(path.read_bytes()).digest()).decode() != package.sha512:
         path.unlink()
-        raise NotFetched(f"{package.name} {package.version} has another digest than the one that is known")
+        raise NotFetched(f"{package.name} {package.version} has an unexpected digest")
     with tarfile.open(path, encoding="utf-8") as opened:
         return {name: opened.extractfile(f"package/{part}").read() for part, name in package.files}  # type: ignore[union-attr]
 
 
 def compile_munk2d(cache: Path) -> bytes:
-    """The engine as one JavaScript file, kept in `cache` for this version, shim and compiler. Raises NotFetched."""
+    """Return the engine as one JavaScript file, stored in `cache` by version, shim and compiler. Raises NotFetched."""
     compiler = shutil.which("emcc")
     if compiler is None:
         raise NotFetched("emscripten is not installed")
     release = version("pymunk")
-    told = printed([compiler, "--version"], "emscripten does not tell its version", COMPILING).splitlines()
-    parts = (release, SHIM.read_text(encoding="utf-8"), " ".join(FLAGS), *told[:1])
+    compiler_version = printed([compiler, "--version"], "emcc --version failed", COMPILING).splitlines()
+    parts = (release, SHIM.read_text(encoding="utf-8"), " ".join(FLAGS), *compiler_version[:1])
     path = cache / f"munk2d-{digest(repr(parts))}.js"
     if not path.is_file():
         cache.mkdir(parents=True, exist_ok=True)
         with temporary_folder(cache) as folder:
-            try:  # seconds without an answer, of which there may be two
-                words = ("--retries", "0", "--timeout", str(ANSWERING // 2))
-                engine = sources("pymunk", release, folder, *words) / "Munk2D"
+            try:  # pip may wait twice
+                options = ("--retries", "0", "--timeout", str(ANSWERING // 2))
+                engine = sources("pymunk", release, folder, *options) / "Munk2D"
             except BadInput as reason:
                 raise NotFetched(str(reason)) from None
-            files = sorted(str(each) for each in (engine / "src").glob("*.c") if each.name != THREADED)
+            files = sorted(str(path) for path in (engine / "src").glob("*.c") if path.name != THREADED)
             output = folder / "munk2d.mjs"
             command = [compiler, *FLAGS, f"-I{engine / 'include'}", str(SHIM), *files, "-o", str(output)]
             printed(command, "emscripten refuses Munk2D", COMPILING)
@@ -117,16 +117,18 @@ def compile_munk2d(cache: Path) -> bytes:
     return path.read_bytes()
 
 
-def printed(words: Sequence[str], trouble: str, patience: float, **given: Any) -> str:
-    """What a program prints. Raises NotFetched, which begins with `trouble`, where it fails or takes longer [s]."""
+def printed(command: Sequence[str], trouble: str, patience: float, **given: Any) -> str:
+    """Return the output of a program. Raises NotFetched, with a message that begins with `trouble`, if it fails or
+    takes longer than `patience` [s].
+    """
     try:
-        ended = subprocess.run(words, capture_output=True, encoding="utf-8", timeout=patience, **given)
+        ended = subprocess.run(command, capture_output=True, encoding="utf-8", timeout=patience, **given)
     except subprocess.TimeoutExpired:
         raise NotFetched(f"{trouble}: it did not end within {patience} s") from None
     if ended.returncode:
         lines = ended.stderr.strip().splitlines() or ["no reason was given"]
-        told = [line for line in lines if line.startswith("npm error")]  # further down npm names its own log
-        raise NotFetched(f"{trouble}: {told[0] if told else lines[-1]}")
+        errors = [line for line in lines if line.startswith("npm error")]  # the last lines name npm's log
+        raise NotFetched(f"{trouble}: {(errors or lines[-1:])[0]}")
     return ended.stdout
 
 

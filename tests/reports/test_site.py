@@ -170,7 +170,7 @@ def test_a_package_of_another_digest_is_refused(tmp_path):
     package = Package("some", "1.0", "AAAA", "MIT", "a test", ())
     path = tmp_path / "some-1.0.tgz"
     path.write_bytes(b"something else")
-    with pytest.raises(NotFetched, match="another digest"):
+    with pytest.raises(NotFetched, match="an unexpected digest"):
         fetch_package(package, tmp_path)
     assert not path.exists()
 

@@ -24,12 +24,12 @@ from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
-from reports.site.drawn import demanded, place_of
+from reports.site.drawn import place_of, required_friction
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders
 from reports.site.live.data import data as live_data
 from reports.site.live.data import forces
-from reports.site.live.models import Part, plan_of, text_of
+from reports.site.live.models import RecordKind, mujoco_text, space_of
 from reports.site.live.sliders import Live
 
 LIVE = {f"{lesson.name}: {live.word}": live for lesson in LESSONS for live in lesson.scenes}
@@ -43,7 +43,7 @@ def test_a_scene_is_a_place_of_its_sliders_and_sliders_that_do_not_fit_are_refus
     slider = sliders.Slider("crank", "crank", tuple(0.3 + 0.001 * i for i in range(126)))
     with pytest.raises(ValueError, match="7 steps don't fit 60 frames"):
         Live("x", DrivenFourBar(), (7,), 60, 0)
-    with pytest.raises(ValueError, match="more than 125 places"):
+    with pytest.raises(ValueError, match="more than 125 positions"):
         Live("x", DrivenFourBar(), (60,), 60, 0, (slider,))
 
 
@@ -63,14 +63,14 @@ def test_experiments_set_controls_that_are_there_and_have_their_words(lesson):
 def test_a_method_that_our_code_helps_is_no_model_of_a_page():
     sleigh = ChaplyginSleigh().mechanism()
     with pytest.raises(Unsupported, match="writes rows while it steps"):
-        text_of(mujoco_engine.TUNED, sleigh, 1e-3)
-    with pytest.raises(Unsupported, match="by code of ours in Python"):
-        plan_of(replace(pymunk_engine.DEFAULT, roll="pivot"), RollingDisc().mechanism(), 1.0)
+        mujoco_text(mujoco_engine.TUNED, sleigh, 1e-3)
+    with pytest.raises(Unsupported, match="needs Python code in every step"):
+        space_of(replace(pymunk_engine.DEFAULT, roll="pivot"), RollingDisc().mechanism(), 1.0)
 
 
 def records(engine: Any, scene: Any) -> tuple[tuple[float, ...], np.ndarray, list[tuple[float, ...]]]:
     """The head, the bodies and the records of a plan, which have to fill it."""
-    plan = plan_of(engine, scene.mechanism(), scene.duration).numbers
+    plan = space_of(engine, scene.mechanism(), scene.duration).numbers
     place, found = 8 + 11 * int(plan[4]), []
     while place < len(plan):
         found.append((plan[place], *plan[place + 2 : place + 2 + int(plan[place + 1])]))
@@ -88,19 +88,23 @@ def test_what_munk2d_is_given_is_what_pymunk_holds():
     held = [*mechanism.inertias[1:, 1:].T, *mechanism.pose[1:].T, *mechanism.twist[1:].T]
     free = bodies[1:, 1:9].T
     assert free == pytest.approx(np.array(held))
-    assert [each[:3] for each in found] == [(Part.PIVOT, 0, 1), (Part.PIVOT, 1, 2), (Part.PIVOT, -1, 2)]
-    told = plan_of(pymunk_engine.DEFAULT, mechanism, scene.duration)
+    assert [each[:3] for each in found] == [
+        (RecordKind.PIVOT, 0, 1),
+        (RecordKind.PIVOT, 1, 2),
+        (RecordKind.PIVOT, -1, 2),
+    ]
+    told = space_of(pymunk_engine.DEFAULT, mechanism, scene.duration)
     assert (told.impulses, told.idle) == ((-1, 0, 1, 2), ())
 
 
 @pytest.mark.parametrize(
     ("engine", "scene", "parts"),
     [
-        (pymunk_engine.DEFAULT, RollingDisc(), [Part.SEGMENT, Part.CIRCLE]),
-        (pymunk_engine.DEFAULT, RollingEllipse(), [Part.SEGMENT, Part.POLYGON]),
-        (SKATE_CENTRE, ChaplyginSleigh(), [Part.ZEROED]),
-        (SKATE_GROOVE, ChaplyginSleigh(), [Part.GROOVE, Part.AIMED]),
-        (pymunk_engine.DEFAULT, DrivenSliderCrank(), [Part.PIVOT, Part.PIVOT, Part.GROOVE]),
+        (pymunk_engine.DEFAULT, RollingDisc(), [RecordKind.SEGMENT, RecordKind.CIRCLE]),
+        (pymunk_engine.DEFAULT, RollingEllipse(), [RecordKind.SEGMENT, RecordKind.POLYGON]),
+        (SKATE_CENTRE, ChaplyginSleigh(), [RecordKind.ZEROED]),
+        (SKATE_GROOVE, ChaplyginSleigh(), [RecordKind.GROOVE, RecordKind.AIMED]),
+        (pymunk_engine.DEFAULT, DrivenSliderCrank(), [RecordKind.PIVOT, RecordKind.PIVOT, RecordKind.GROOVE]),
     ],
 )
 def test_a_plan_says_what_each_shape_and_each_hand_is(engine, scene, parts):
@@ -132,7 +136,7 @@ def test_forces_and_frictions_that_a_motion_determines_are_told_and_no_others():
     t = np.linspace(0, scene.duration, 50)
     (told,) = [each for each in forces(scene.mechanism(), scene.motion(t)) if "friction" in each]
     assert np.array(told["friction"]) == pytest.approx(scene.motion_law.required_friction(t), rel=1e-5, abs=1e-6)
-    assert demanded(np.array([[1.0, 2.0], [1.0, -1.0]])) == pytest.approx([0.5, np.nan], nan_ok=True)
+    assert required_friction(np.array([[1.0, 2.0], [1.0, -1.0]])) == pytest.approx([0.5, np.nan], nan_ok=True)
 
 
 def test_a_contact_turns_with_the_body_on_which_something_rolls():

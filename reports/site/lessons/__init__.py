@@ -1,4 +1,4 @@
-"""The lessons: the scenes each lets run and the experiments it makes; their words stand beside, one file each."""
+"""The lessons: their scenes and experiments; the text of each lesson is a Markdown file in this folder."""
 
 from engines import Engine
 from reference.scene import Scene
@@ -11,7 +11,7 @@ LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, SKATE, WHEELS, ROLLING, GEARS, CENT
 
 
 def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Take:
-    """A take of a scene in these methods, drawn as the lessons draw a scene of this name, if one of them does."""
+    """Return a take of a scene in these methods, with the look of the lesson that has a scene of this name, if any."""
     plain = next((live for lesson in LESSONS for live in lesson.scenes if live.scene.name == scene.name), None)
     if plain is None:
         return Take(scene, methods)

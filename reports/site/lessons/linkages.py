@@ -129,7 +129,7 @@ SLIDER_CRANK = Lesson(
         ),
     ),
     (
-        Experiment("driven", shown=CENTRE, section="In motion"),
+        Experiment("driven", overlays=CENTRE, section="In motion"),
         Experiment("let go", after=BOTH, claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.1))),
         Experiment(
             "driven",
@@ -177,7 +177,7 @@ PENDULUM = Lesson(
         Live("ten links", TenLinks(), (75, 150, 300, 600, 1500, 3000), 75, 3, ends={"link 10": TIP}),
     ),
     (
-        Experiment("one link", after={"integrator": 1}, claims=(Claim("mujoco", most=1e-3),), shown=FORCES),
+        Experiment("one link", after={"integrator": 1}, claims=(Claim("mujoco", most=1e-3),), overlays=FORCES),
         Experiment(
             "one link",
             after={"bias": 0.0},
@@ -243,13 +243,13 @@ CENTRODES = Lesson(
     "centrodes",
     (rolling_centrodes(), replace(DRIVEN, word="whole", sliders=())),
     (
-        Experiment("whole", shown=CENTRE),
-        Experiment("rolling", shown=CENTRE, section="The coupler of the four-bar"),
+        Experiment("whole", overlays=CENTRE),
+        Experiment("rolling", overlays=CENTRE, section="The coupler of the four-bar"),
         Experiment(
             "rolling",
             after=BOTH,
             claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.1)),
-            shown=CENTRE,
+            overlays=CENTRE,
             section="The centre as a measure of an engine",
         ),
     ),

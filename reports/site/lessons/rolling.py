@@ -52,10 +52,10 @@ ROLLING = Lesson(
         Live("a cam", RollingCam(), HUNDRED, 100, 3, (START_RATE,), munk=CORNERS, traces=ROLLER, centre="roller"),
     ),
     (
-        Experiment("a cam", shown=CENTRE, section="The contact"),
+        Experiment("a cam", overlays=CENTRE, section="The contact"),
         Experiment(
             "an ellipse",
-            shown=("friction",),
+            overlays=("friction",),
             section="Friction demanded, friction given",
         ),
         Experiment(
@@ -98,14 +98,16 @@ GEARS = Lesson(
         ),
     ),
     (
-        Experiment("two gears", after={"eccentricity": 0.7}, shown=FORCES, section="Elliptic gears"),
-        Experiment("two gears", after=BOTH, claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.5)), shown=FORCES),
+        Experiment("two gears", after={"eccentricity": 0.7}, overlays=FORCES, section="Elliptic gears"),
+        Experiment(
+            "two gears", after=BOTH, claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.5)), overlays=FORCES
+        ),
         Experiment(
             "two gears",
             BOTH,
             {"munk": FEW},
             (Claim("munk", least=10),),
-            shown=FORCES,
+            overlays=FORCES,
             section="The contact",
         ),
     ),

@@ -38,7 +38,7 @@ SKATE = Lesson(
         ),
     ),
     (
-        Experiment("the sleigh", BOTH, shown=FORCES + CENTRE, section="What the row takes, and what it leaves"),
+        Experiment("the sleigh", BOTH, overlays=FORCES + CENTRE, section="What the row takes, and what it leaves"),
         Experiment("the sleigh", after={"steps": 3000}, claims=(Claim("mujoco", 1.5, 2.5),)),
         Experiment(
             "the sleigh",
@@ -93,7 +93,7 @@ WHEELS = Lesson(
         ),
     ),
     (
-        Experiment("forwards", BOTH, shown=FORCES + CENTRE, section="How a vehicle can still move"),
+        Experiment("forwards", BOTH, overlays=FORCES + CENTRE, section="How a vehicle can still move"),
         Experiment("forwards", after={"steps": 5000}, claims=(Claim("mujoco", 0.5, 1.5),)),
         Experiment(
             "forwards",

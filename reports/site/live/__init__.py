@@ -1,1 +1,1 @@
-"""Engines that run in the page: the models of our adapters as text and numbers, for every place of the sliders."""
+"""Engines that run in the page: the models of our adapters for every position of the sliders."""

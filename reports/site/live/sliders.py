@@ -1,4 +1,4 @@
-"""What a reader can change: a mechanism's numbers, the step, how engines hold joints, the engines' own settings."""
+"""The controls of a page: parameters of the mechanism, the step, joint constructions, settings of the engines."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from reports.model.tasks import Motion
 Name = Literal["munk", "mujoco"]
 Point = tuple[float, float]
 NAMES: dict[Name, str] = {"munk": "pymunk", "mujoco": "MuJoCo"}
-MOST = 125  # places of a scene's sliders: each has a model of each engine and a drawing in the page
+MOST = 125  # positions of a scene's sliders: each has a model for each engine and a drawing in the page
 SHIPPED, DOCUMENTED = "as shipped", "documented settings"
-# Settings of the engines: values in the page, and what is written beside them. None: as the method has it.
-OWN = (None, "as the method has it")
+# Settings of the engines: values and their labels. None: the value of the chosen method.
+OWN = (None, "value of the method")
 INTEGRATORS = (OWN, (0, "Euler"), (3, "implicitfast"), (1, "RK4"))
 TIME_CONSTANTS = (OWN, *((value, f"{1000 * value:g} ms") for value in (0.002, 0.005, 0.01, 0.02, 0.05)))
 IMPEDANCES = (OWN, *((value, str(value)) for value in (0.9, 0.99, 0.999, 0.9999)))
@@ -28,8 +28,8 @@ SWEEPS = (OWN, *((value, str(value)) for value in (1, 2, 5, 10, 20, 50, 100)))
 BIASES = (OWN, (0.5, "0.5"), (float(pymunk.SHIPPED_ERROR_BIAS), "0.0018"), (1e-6, "1e-6"), (0.0, "0"))
 ENGINES: dict[Name, dict[str, tuple[str, tuple[tuple[Any, str], ...]]]] = {
     "munk": {
-        "iterations": ("iterations: sweeps over the joints", SWEEPS),
-        "bias": ("error_bias: left of a gap after a second", BIASES),
+        "iterations": ("iterations of the solver", SWEEPS),
+        "bias": ("error_bias: residual gap after a second", BIASES),
     },
     "mujoco": {
         "integrator": ("integrator", INTEGRATORS),
@@ -43,7 +43,7 @@ ENGINES: dict[Name, dict[str, tuple[str, tuple[tuple[Any, str], ...]]]] = {
 
 @dataclass(frozen=True)
 class Control:
-    """The values of a slider, what is written beside each, and the place at which it stands at first."""
+    """The values of a slider, their labels, and the index of the start value."""
 
     values: tuple[Any, ...]
     texts: tuple[str, ...]
@@ -51,33 +51,33 @@ class Control:
 
 
 CONTROLS = {
-    name: Control(tuple(value for value, _ in pairs), tuple(words for _, words in pairs))
-    for each in ENGINES.values()
-    for name, (_, pairs) in each.items()
+    name: Control(tuple(value for value, _ in pairs), tuple(label for _, label in pairs))
+    for settings in ENGINES.values()
+    for name, (_, pairs) in settings.items()
 }
 
 
 @dataclass(frozen=True)
 class Slider:
-    """A field of the scene and the values that it takes; `texts` are written beside them, the values unless given."""
+    """A field of the scene, its label and its values; `texts`: labels of the values, by default the values."""
 
     field: str
-    words: str
+    label: str
     values: tuple[Any, ...]
     texts: tuple[str, ...] = ()
 
     def control(self, scene: Scene) -> Control:
-        """At first the scene's own value. Raises ValueError if it is none of the slider's."""
+        """Return the control, which starts at the scene's value. Raises ValueError if the slider lacks that value."""
         texts = self.texts or tuple(f"{value:.3g}" for value in self.values)
         return Control(self.values, texts, self.values.index(getattr(scene, self.field)))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """What is drawn of a mechanism beside its joints.
+    """Additional elements of the drawing of a mechanism.
 
-    ends: points of bodies [m]. curves: closed or open lines in a body's frame, or the ground's (None) [m]. axle: half
-    of it [m], where a skate is drawn as an axle with two wheels.
+    ends: points of bodies [m]. curves: closed or open lines in the frame of a body, or of the ground (None) [m]. axle:
+    half the length [m] of the axle with two wheels as which a skate is drawn; 0 draws a blade.
     """
 
     ends: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
@@ -89,11 +89,11 @@ class Look:
 class Live(Look):
     """A scene that engines run in the page.
 
-    frames: sampling intervals that are shown; steps: of the whole motion, each a multiple or a divisor of `frames`, the
-    one at place `start` first. munk, mujoco: ways to hold the joints, each with its words, those as shipped and with
-    documented settings first; a sentence instead of an engine says why there is none. window: the frames that are
-    played, all unless given. traces: (body, point) whose paths are drawn. centre: the body whose instant centre can be
-    shown.
+    frames: number of sampling intervals; steps: choices for the number of steps of the whole motion, each a multiple or
+    a divisor of `frames`; start: index of the first choice. munk, mujoco: methods with labels, as shipped and with
+    documented settings first; a sentence instead of an engine is the reason why it is missing. window: first and last
+    frame that are played; None plays all. traces: (body, point) whose paths are drawn. centre: the body whose instant
+    centre can be shown.
     """
 
     word: str
@@ -113,47 +113,47 @@ class Live(Look):
             if steps % self.frames and self.frames % steps:
                 raise ValueError(f"live {self.word!r}: {steps} steps don't fit {self.frames} frames")
         if len(list(self.places())) > MOST:
-            raise ValueError(f"live {self.word!r}: more than {MOST} places of its sliders")
+            raise ValueError(f"live {self.word!r}: more than {MOST} positions of its sliders")
 
     @property
     def key(self) -> str:
-        """The name of its file of data."""
+        """The name of its data file."""
         return f"{self.scene.name}-{self.word}".replace(" ", "-")
 
     def places(self) -> Iterator[Scene]:
-        """The scene at every place of its sliders; the last slider changes first."""
+        """Yield the scene at every position of its sliders; the last slider changes first."""
         fields = [slider.field for slider in self.sliders]
         for values in itertools.product(*(slider.values for slider in self.sliders)):
             changed: Any = dict(zip(fields, values, strict=True))
             yield replace(self.scene, **changed)  # type: ignore[type-var]
 
     def samples(self, steps: int) -> int:
-        """Sampling intervals of a motion of so many steps."""
+        """Return the number of sampling intervals of a motion of `steps` steps."""
         return min(self.frames, steps)
 
     def ways(self, name: Name) -> Sequence[tuple[str, Engine | str]]:
-        """The ways of an engine."""
+        """Return the methods of an engine with their labels."""
         return self.munk if name == "munk" else self.mujoco
 
     def controls(self) -> dict[str, Control]:
-        """Every control, by its name."""
-        steps = tuple(f"{1000 * self.scene.duration / each:.3g} ms" for each in self.steps)
-        ways = {name: tuple(words for words, _ in self.ways(name)) for name in ENGINES}
+        """Return every control by its name."""
+        steps = tuple(f"{1000 * self.scene.duration / count:.3g} ms" for count in self.steps)
+        ways = {name: tuple(label for label, _ in self.ways(name)) for name in ENGINES}
         return {
             "steps": Control(self.steps, steps, self.start),
             **{slider.field: slider.control(self.scene) for slider in self.sliders},
-            **{name: Control(words, words) for name, words in ways.items()},
+            **{name: Control(labels, labels) for name, labels in ways.items()},
             **CONTROLS,
         }
 
     def located(self, given: Mapping[str, Any]) -> dict[str, int]:
-        """Places of controls from their values; raises ValueError for a value, KeyError for a control it has not."""
-        known = self.controls()
-        return {name: known[name].values.index(value) for name, value in given.items()}
+        """Return indices of controls from their values. Raises ValueError, KeyError for unknown values, controls."""
+        controls = self.controls()
+        return {name: controls[name].values.index(value) for name, value in given.items()}
 
     def stored(self) -> dict[tuple[Name, int], Motion]:
-        """The motions that Python's engines make of the scene itself, by engine and way: page and Python are compared,
-        and where the page has no engine for a way, its motion is shown.
+        """Return the motions of Python's engines, by engine and index of the method. A test compares page and Python;
+        the page plays the stored motion where it cannot run the method itself.
         """
         steps = self.steps[self.start]
         samples = self.samples(steps)
