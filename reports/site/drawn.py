@@ -178,7 +178,7 @@ def index_of(mechanism: Mechanism, name: str | None) -> int:
 
 
 def measure_of(mechanism: Mechanism) -> Literal["angle", "position"]:
-    """Return the error to show: of positions for a mechanism with skates, which constrain velocities alone, else of angles."""
+    """Return the error to show: of positions with skates, which constrain velocities alone, else of angles."""
     return "angle" if mechanism.holonomic.all() else "position"
 
 
