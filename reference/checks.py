@@ -1,10 +1,10 @@
 """Runtime validation of fields and arguments from their annotations.
 
-A frozen dataclass that inherits from `Valid` has its fields checked when it is made, a function with `validated` its
-arguments when it is called. Either raises InvalidMechanism, a ValueError, in a sentence that says which value, why, and
-what would be valid. Values become plain ones: numpy's numbers become Python's, lists and arrays become tuples where a
-tuple is declared and arrays of floats where an array is; so equal settings have equal reprs. Relations between values
-(lengths that assemble) are checked by hand afterwards. `reference.validators` has the validators.
+The fields of a frozen dataclass that inherits from `Valid` are checked when it is made, the arguments of a function
+with `validated` when it is called. Both raise InvalidMechanism, a ValueError, with a sentence that states which value
+is wrong, why, and which values are valid. Values become plain: numpy's numbers become Python's; lists and arrays become
+tuples or arrays of floats, as declared. So equal settings have equal reprs. Relations between values (lengths that
+assemble) are checked by the class itself. `reference.validators` has the validators.
 """
 
 from __future__ import annotations
@@ -22,9 +22,10 @@ from numpy.typing import ArrayLike
 
 from reference.validators import COMPLEX, INVALID, NOT_FINITE, Floats, Rule, Validator, from_to, validator_of
 
-MOST_LETTERS = 80  # of a value in a message
-
-LARGEST_COUNT = 2**31 - 1  # of a C int: engines count in these
+# Characters of a value in a message, at most.
+MAX_CHARACTERS = 80
+# The largest C int, since engines use these for counts.
+LARGEST_COUNT = 2**31 - 1
 _ABOVE_ZERO = Rule(lambda value: value > 0, "greater than zero")
 
 Positive = Annotated[float, _ABOVE_ZERO]
@@ -34,8 +35,8 @@ Count = Annotated[int, from_to(1, LARGEST_COUNT)]
 Sign = Annotated[int, Rule(lambda value: value in (1, -1), "that is 1 or -1")]
 Signs = Annotated[ArrayLike, Rule(lambda value: np.all(np.abs(value) == 1), "each 1 or -1")]
 Name = Annotated[str, Rule(lambda value: value.strip() and value.isprintable(), "that is not empty and can be printed")]
-Numbers = Annotated[Floats, NOT_FINITE]  # NaN where an engine or a truth can't tell
-Complexes = Annotated[Any, COMPLEX]  # in any shape, real or complex: a complex step passes through what takes these
+Numbers = Annotated[Floats, NOT_FINITE]  # NaN for unknown values
+Complexes = Annotated[Any, COMPLEX]  # in any shape, for functions that are differentiated by a complex step
 AnyComplexes = Annotated[Complexes, NOT_FINITE]
 Times = Annotated[
     ArrayLike,
@@ -44,11 +45,11 @@ Times = Annotated[
 
 
 class InvalidMechanism(ValueError):
-    """A body, joint, setting or argument that can't be: which value, why, and what would be valid."""
+    """An invalid body, joint, setting or argument: which value, why, and which values are valid."""
 
 
 class NotFinite(InvalidMechanism, ArithmeticError):
-    """An argument that overflowed or is NaN where a finite number must be."""
+    """An argument that is infinite or NaN and must be finite."""
 
 
 def short_repr(value: Any) -> str:
@@ -57,11 +58,11 @@ def short_repr(value: Any) -> str:
         text = " ".join(repr(value).split())
     except Exception:  # a whole number of too many digits, an object that can't be printed
         text = f"something of the type {type(value).__name__}"
-    return text if len(text) <= MOST_LETTERS else f"{text[: MOST_LETTERS - 3]}..."
+    return text if len(text) <= MAX_CHARACTERS else f"{text[: MAX_CHARACTERS - 3]}..."
 
 
 def refusal(owner: str, name: str, value: Any, words: str) -> InvalidMechanism:
-    """The error for a value that isn't what the words say; NotFinite for numbers with an infinity or NaN."""
+    """The error for a value that the words don't describe; NotFinite for numbers with an infinity or NaN."""
     plain = isinstance(value, float | complex | np.ndarray | np.generic) and np.asarray(value).dtype.kind in "fc"
     error = NotFinite if plain and not np.isfinite(value).all() else InvalidMechanism
     return error(f"{owner}: {name} is {short_repr(value)}; it must be {words}")
@@ -75,10 +76,10 @@ def _validators_of_fields(cls: type) -> dict[str, Validator]:
 
 
 class Valid:
-    """The base of a frozen dataclass whose fields are checked: what more a class has to check follows this.
+    """The base of a frozen dataclass whose fields are checked.
 
-    A class with a `__post_init__` of its own begins it with `super().__post_init__()`. An array becomes a copy that
-    can't be written, since what is worked out from it is kept.
+    A class with a `__post_init__` of its own begins it with `super().__post_init__()`. An array becomes a read-only
+    copy, since results that are computed from it are cached.
     """
 
     _copies: ClassVar[bool] = True
@@ -96,7 +97,7 @@ class Valid:
                 values[name] = taken
 
     def _owner(self) -> str:
-        """Who it is in a message: its class, and its name if that is a field."""
+        """The object in a message: its class, and its name if that is a field."""
         name = self.__dict__.get("name")
         return f"{type(self).__name__} {short_repr(name)}" if isinstance(name, str) else type(self).__name__
 
@@ -105,12 +106,12 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def validated(function: Function) -> Function:
-    """Check a function's arguments by their annotations before it runs; a method's own object is not looked at.
+    """Check a function's arguments by their annotations before it runs, but not a method's own object.
 
-    For what users call. A loop that calls a function at every step has an unchecked one inside.
+    For functions that users call. Loops call an unchecked function at every step.
     """
     parameters = inspect.signature(function).parameters.values()
-    names = [each.name for each in parameters if each.kind not in (each.VAR_KEYWORD, each.VAR_POSITIONAL)]
+    names = [item.name for item in parameters if item.kind not in (item.VAR_KEYWORD, item.VAR_POSITIONAL)]
 
     @cache
     def kinds() -> dict[str, Validator]:
@@ -142,7 +143,7 @@ def validated(function: Function) -> Function:
 
 
 def index_of(owner: str, name: str, value: int, count: int) -> int:
-    """A place among `count`, counted from 0; InvalidMechanism for any other."""
+    """An index below `count`; InvalidMechanism for any other number."""
     return validate(owner, name, value, Annotated[int, from_to(0, count - 1)])
 
 
@@ -152,7 +153,7 @@ def sample_times(owner: str, t: ArrayLike) -> Floats:
 
 
 def validate(owner: str, name: str, value: Any, annotation: Any) -> Any:
-    """One value checked by hand, as a field or an argument with this annotation would be."""
+    """Check one value as a field or an argument with this annotation is checked, and return the plain value."""
     kind = validator_of(annotation)
     taken = kind.validate(value)
     if taken is INVALID:
@@ -164,15 +165,15 @@ Value = TypeVar("Value")
 
 
 def freeze(value: Value) -> Value:
-    """The same value, no array of which can be written any more: numpy refuses it as "read-only".
+    """Make all arrays in the value read-only and return it.
 
-    An engine that changed a mechanism's arrays would falsify the rows of the engines after it.
+    An engine that changed a mechanism's arrays would falsify the rows of all engines that run later.
     """
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
     elif isinstance(value, tuple):
-        for each in value:
-            freeze(each)
+        for member in value:
+            freeze(member)
     elif is_dataclass(value):
         for field in fields(value):
             freeze(getattr(value, field.name))
@@ -180,19 +181,19 @@ def freeze(value: Value) -> Value:
 
 
 class cached_readonly(cached_property[Value]):
-    """A cached property whose arrays are `freeze`."""
+    """A cached property whose arrays are read-only."""
 
     def __init__(self, function: Callable[[Any], Value]) -> None:
         super().__init__(lambda owner: freeze(function(owner)))
         self.__doc__ = function.__doc__
 
 
-# Far above what the scenes of this suite need, and what a machine of 8 GB still has room for together with the copies
-# that linear algebra makes.
-LARGEST = 2 * 2**30  # bytes
+# Bytes of one array: far above the need of this suite's scenes. A machine with 8 GB has room for such an array and for
+# the copies that linear algebra makes.
+LARGEST_ARRAY = 2 * 2**30
 
 
-def require_room(what: str, shape: Sequence[int], size: int = 8, largest: int = LARGEST) -> None:
+def require_room(what: str, shape: Sequence[int], size: int = 8, largest: int = LARGEST_ARRAY) -> None:
     """Raise InvalidMechanism if an array of this shape, with elements of `size` bytes, takes more than `largest`."""
     wanted = math.prod(shape) * size
     if wanted > largest:

@@ -1,12 +1,13 @@
-"""Truths in as many coordinates as there are freedoms, and without any joint force: the embedding method.
+"""Reference motions in minimal coordinates, without joint forces: the embedding method.
 
 The allowed velocities of all bodies are V = T(c) nu, with coordinates c, quasi-velocities nu, and c' = nu unless a
-scene says otherwise. Ideal joints do no work in the columns of T, so (Kane and Levinson, Dynamics; Neimark and Fufaev)
+scene defines other rates. Ideal joints do no work in the columns of T, so (Kane and Levinson, Dynamics; Neimark and
+Fufaev)
 
     T^T M T nu' = T^T (f - M T' nu).
 
-T is derived by hand for each mechanism, its rate T' by a complex step along the motion, which is exact. The joints'
-rows are not used, so a motion from here checks them.
+T is derived by hand for each mechanism, its rate T' by a complex step along the motion, which is exact. Such a motion
+is an independent check of the joints' rows, which are not used.
 """
 
 from __future__ import annotations
@@ -43,12 +44,12 @@ class EmbeddedScene(PlacedScene):
 
     @property
     def freedoms(self) -> int:
-        """How many of the state's numbers are nu."""
+        """The number of components of nu."""
         return len(self.start) // 2
 
     @property
     def angle_unit(self) -> float:
-        """What the coordinates are counted in while they are integrated [rad or m]."""
+        """The unit of the coordinates in the tolerance of the integration [rad or m]."""
         return 1.0
 
     def _split(self, state: Array) -> tuple[Array, Array]:
@@ -80,7 +81,7 @@ class EmbeddedScene(PlacedScene):
         return self.embedded(coordinates, velocities)[0]
 
     def rates(self, state: Array) -> Array:
-        """d/dt of (c, nu) (..., states): what is integrated."""
+        """d/dt of (c, nu) (..., states)."""
         coordinates, velocities = self._split(state)
         moved = self.coordinate_rates(coordinates, velocities)
         return np.concatenate([moved, self.accelerations(coordinates, velocities)], axis=-1)
@@ -94,12 +95,12 @@ class EmbeddedScene(PlacedScene):
         return self._states(self.times(t))
 
     def _states(self, times: Array) -> tuple[Array, Array]:
-        if not times.any():  # a mechanism needs no more than the start
+        if not times.any():  # only the start, as for a mechanism
             return self._split(np.tile(self.start, (len(times), 1)))
         return self._split(shared(type(self).solved, self, max(self.duration, float(times.max())))(times))
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """A bound on the truth's own error (times,) in c and nu, by two rules."""
+        """A bound (times,) on the error of c and nu, from integrations by two collocation rules."""
         units = units_of_motion(self.rates, self.start, self.angle_unit)
         return gauss.error_of(self.rates, self.start, self.times(t), units)
 

@@ -3,8 +3,8 @@
 The vocabulary is closed, like that of the joints: `FORCES` has every class. Besides the facts of `elements.Element`, an
 element has two functions of the poses and twists of its two bodies (..., 3), which are zero for the ground:
 `on(first, second, first_twist, second_twist)` is the generalised force (..., 6) [N, N, N m] on x, y and angle of the
-first body and then of the second; `potential(first, second)` (...) [J] is zero if the element `dissipates`, else `on`
-is its negative derivative by the poses. Both are analytic, so they can be differentiated by a complex step. The force
+first body and then of the second; `potential(first, second)` (...) [J] has the negative derivative `on` by the poses,
+apart from damping. Both are analytic, so they can be differentiated by a complex step. The force
 on the first body is opposite to that on the second.
 """
 
@@ -115,7 +115,8 @@ class Spring(_ForceOfTwo):
 class Damper(_Dissipative):
     """A linear damper between a point of each body: damping times the rate at which their distance grows.
 
-    damping [N s/m]; points [m] as of a Spring. With a spring of the same points it is what engines call a damped one.
+    damping [N s/m]; points [m] as of a Spring. Engines call a spring and a damper between the same points a damped
+    spring.
     """
 
     acts_along_line: ClassVar[bool] = True
@@ -160,7 +161,7 @@ class TorsionSpring(_ForceOfTwo):
         return 0.5 * np.asarray(self.stiffness) * self._twisted(first, second) ** 2
 
     def _twisted(self, first: AnyArray, second: AnyArray) -> AnyArray:
-        """How far (...) the spring is from its rest [rad]."""
+        """The angle (...) of the spring minus its rest angle [rad]."""
         return second[..., 2] - first[..., 2] - np.asarray(self.rest_angle)
 
 
@@ -196,7 +197,7 @@ class Torque(_ForceOfTwo):
         return _couple(np.asarray(self.torque) + np.zeros_like(first[..., 2] + second[..., 2]))
 
     def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
-        """Minus torque times relative angle (...) [J]: it grows less by the work that the torque does."""
+        """Minus torque times relative angle (...) [J]."""
         return -np.asarray(self.torque) * (second[..., 2] - first[..., 2])
 
 
@@ -204,8 +205,7 @@ class Torque(_ForceOfTwo):
 class Force(ForceFacts):
     """A constant force (x, y) [N] in the world's directions, at a point of the second body.
 
-    second_point [m] is in the body's own frame, from its centre of mass. Nothing acts on a first body: `first` is
-    always the ground.
+    second_point [m] is in the body's own frame, from its centre of mass. `first` is always the ground.
     """
 
     first: ClassVar[None] = None
@@ -236,7 +236,7 @@ class Force(ForceFacts):
         return out
 
     def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
-        """Minus force times place of the point (...) [J], zero at the world's origin."""
+        """Minus force times position of the point (...) [J], zero at the world's origin."""
         arm_x, arm_y = from_body(second[..., 2], self.second_point)
         x, y = np.moveaxis(np.asarray(self.force), -1, 0)
         return -(x * (second[..., 0] + arm_x) + y * (second[..., 1] + arm_y))
@@ -278,7 +278,7 @@ class CoupledForce(OfTerms, ForceFacts):
         return max(math.sqrt(stiffness * inverse_mass), self.damping * inverse_mass)
 
     def total(self, poses: AnyArray, ends: Ends) -> AnyArray:
-        """The sum (...) of the terms at poses (..., bodies + 1, 3), between the bodies that `ends` names by place."""
+        """The sum (...) of the terms at poses (..., bodies + 1, 3); `ends` has the indices of each term's bodies."""
         return sum(
             (term.value(poses[..., a, :], poses[..., b, :]) for term, (a, b) in zip(self.terms, ends, strict=True)),
             np.zeros(poses.shape[:-2]),
@@ -308,7 +308,7 @@ class CoupledForce(OfTerms, ForceFacts):
 ForceElement = Spring | Damper | TorsionSpring | TorsionDamper | Torque | Force | CoupledForce
 # Every force class. Tables of forces in engines and tools are tested against this tuple.
 FORCES: tuple[type[ForceElement], ...] = get_args(ForceElement)
-Ends = tuple[tuple[int, int], ...]  # places of the first and the second body of each term
+Ends = tuple[tuple[int, int], ...]  # indices of the first and the second body of each term
 
 
 def _inverse_mass(places: tuple[Place, ...], bodies: Bodies) -> float:
@@ -331,10 +331,14 @@ def _couple(torque: AnyArray) -> AnyArray:
 
 @dataclass(frozen=True)
 class ForceGroup:
-    """Force elements of one kind, stacked so that one numpy expression serves them all."""
+    """Force elements of one class, evaluated together.
 
-    element: Any  # of the kind, each numeric field an array with the elements along its first axis
-    first: NDArray[np.intp]  # (elements,) index of the body; the ground is the index after the last body
+    element: each numeric field is an array with the elements along its first axis. first, second (elements,): indices
+    of the bodies; the ground has the index after the last body.
+    """
+
+    element: Any
+    first: NDArray[np.intp]
     second: NDArray[np.intp]
 
 
@@ -348,31 +352,29 @@ class AppliedForces:
 
     @classmethod
     def of(cls, forces: Sequence[ForceElement], index: Mapping[str | None, int]) -> AppliedForces:
-        """Of elements between bodies whose places `index` gives by name, and the ground's, the last, under None."""
-        kinds: dict[type, list[ForceElement]] = {}
-        coupled = tuple(
-            (each, tuple((index[term.first], index[term.second]) for term in each.terms))
-            for each in forces
-            if isinstance(each, CoupledForce)
-        )
-        for element in (each for each in forces if not isinstance(each, CoupledForce)):
-            kinds.setdefault(type(element), []).append(element)
+        """From elements; `index` has the index of each body by name, and the last index, the ground's, under None."""
+        by_class: dict[type, list[Any]] = {}
+        coupled: list[tuple[CoupledForce, Ends]] = []
+        for element in forces:
+            if isinstance(element, CoupledForce):
+                coupled.append((element, tuple((index[term.first], index[term.second]) for term in element.terms)))
+            else:
+                by_class.setdefault(type(element), []).append(element)
         groups = tuple(
             ForceGroup(
                 element=stacked(members),
                 first=np.array([index[element.first] for element in members]),
                 second=np.array([index[element.second] for element in members]),
             )
-            for members in kinds.values()
+            for members in by_class.values()
         )
-        return cls(groups, index[None], coupled)
+        return cls(groups, index[None], tuple(coupled))
 
     @property
     def dissipate(self) -> bool:
-        """Whether any depends on velocities."""
-        return any(
-            each.dissipates for each in (*(group.element for group in self.groups), *(own for own, _ in self.coupled))
-        )
+        """Whether an element depends on velocities."""
+        elements = (*(group.element for group in self.groups), *(element for element, _ in self.coupled))
+        return any(element.dissipates for element in elements)
 
     def on(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
         """Generalised forces (..., bodies, 3) [N, N, N m] at poses and twists (..., bodies, 3) of one shape."""
@@ -381,9 +383,9 @@ class AppliedForces:
         for group in self.groups:
             ends = (poses[..., group.first, :], poses[..., group.second, :])
             forces = group.element.on(*ends, twists[..., group.first, :], twists[..., group.second, :])
-            for place in range(len(group.first)):  # several elements may pull at one body
-                out[..., group.first[place], :] += forces[..., place, :3]
-                out[..., group.second[place], :] += forces[..., place, 3:]
+            for index in range(len(group.first)):  # one by one, since several elements may act on one body
+                out[..., group.first[index], :] += forces[..., index, :3]
+                out[..., group.second[index], :] += forces[..., index, 3:]
         for element, ends in self.coupled:
             element.push(poses, twists, ends, out)
         return out[..., :-1, :]

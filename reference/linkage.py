@@ -19,8 +19,8 @@ def linkage(
 ) -> Mechanism:
     """Bars between named points [m], pinned where they share one, and to the ground at the points of `ground`.
 
-    bars: by a bar's name its two ends, as ("A", "B") or "AB"; density [kg/m]; gravity [m/s^2]. It begins at rest. Where
-    more than two meet, each is pinned to the first of them. Raises InvalidMechanism.
+    bars: the two ends of each bar by its name, as ("A", "B") or "AB"; density [kg/m]; gravity [m/s^2]. The linkage
+    starts at rest. If more than two bars meet, each is pinned to the first of them. Raises InvalidMechanism.
     """
     bodies, joints = list[Body](), list[Pin]()
     first: dict[str, tuple[str | None, Vector]] = {name: (None, _place(points, name)) for name in ground}
@@ -30,14 +30,14 @@ def linkage(
         (x, y), (other_x, other_y) = (_place(points, end) for end in ends)
         length, angle = math.hypot(other_x - x, other_y - y), math.atan2(other_y - y, other_x - x)
         if not length > 0:
-            raise InvalidMechanism(f"bar {bar!r}: {ends[0]!r} and {ends[1]!r} are the same place; it has no length")
+            raise InvalidMechanism(f"bar {bar!r}: {ends[0]!r} and {ends[1]!r} are at the same point")
         mass, centre = density * length, ((x + other_x) / 2, (y + other_y) / 2)
         bodies.append(Body(bar, mass, mass * length**2 / 12, (*centre, angle), (0.0, 0.0, 0.0)))
         for end, side in zip(ends, (-length / 2, length / 2), strict=True):
-            held = first.setdefault(end, (bar, (side, 0.0)))
-            if held != (bar, (side, 0.0)):
+            base, base_point = first.setdefault(end, (bar, (side, 0.0)))
+            if (base, base_point) != (bar, (side, 0.0)):
                 count = sum(joint.name.split(" ")[0] == end for joint in joints)
-                joints.append(Pin(f"{end} {count + 1}" if count else end, held[0], bar, held[1], (side, 0.0)))
+                joints.append(Pin(f"{end} {count + 1}" if count else end, base, bar, base_point, (side, 0.0)))
     return Mechanism(tuple(bodies), tuple(joints), gravity)
 
 
@@ -47,6 +47,6 @@ def _place(points: Mapping[str, tuple[float, float]], name: str) -> Vector:
     try:
         x, y = map(float, points[name])
     except (TypeError, ValueError):
-        words = f"point {name!r} is {short_repr(points[name])}; it must be two numbers, x and y [m]"
-        raise InvalidMechanism(words) from None
+        message = f"point {name!r} is {short_repr(points[name])}; it must be two numbers, x and y [m]"
+        raise InvalidMechanism(message) from None
     return x, y

@@ -1,7 +1,7 @@
-"""What a planar mechanism is: rigid bodies, and joints written as velocity rows J(q) v = rate.
+"""Planar mechanisms: rigid bodies, and joints written as velocity rows J(q) v = rate.
 
 Maximal coordinates: every body has a pose (x, y, angle) of its centre of mass and a twist (vx, vy, omega), and the
-mechanism's vectors q and v stack them in the order of `Mechanism.bodies`. Nothing here knows a scene or an engine.
+mechanism's vectors q and v stack them in the order of `Mechanism.bodies`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from reference.validators import Floats, of_shape
 States = Annotated[AnyComplexes, of_shape("...", "bodies", 3)]
 Reals = Annotated[Numbers, of_shape("...", "bodies", 3)]
 
-# The rank of dense rows takes a minute at this size [bytes], and eight at twice the bodies.
+# Bytes of the dense rows whose rank is computed, at most: this size takes a minute, twice the bodies eight minutes.
 LARGEST_RANK = 2**28
 
 
@@ -43,7 +43,7 @@ class Mechanism(Valid):
     """Bodies, the joints between them, and gravity [m/s^2].
 
     Raises InvalidMechanism for a repeated or unknown name, a joint of a body with itself, or a start that does not
-    satisfy the joints: an engine that begins with a gap would be blamed for ours.
+    satisfy the joints, since that error would be attributed to the engine.
     """
 
     bodies: tuple[Body, ...]
@@ -80,23 +80,23 @@ class Mechanism(Valid):
 
     @cached_readonly
     def joint_rows(self) -> JointRows:
-        """The joints, ready to be evaluated; unchecked, for loops that ask at every step."""
+        """The rows of all joints, without checks of arguments, for use at every step."""
         return JointRows.of(self.joints, self._index)
 
     @validated
     def body_index(self, name: Name) -> int:
-        """Where a body stands in q, v and every trajectory of this mechanism."""
+        """The index of a body in q, v and every trajectory of this mechanism."""
         if name not in self._index:
             raise self._unknown("mechanism", name)
         return self._index[name]
 
     def _unknown(self, owner: str, name: str) -> InvalidMechanism:
-        known = ", ".join(repr(body.name) for body in self.bodies)
-        return InvalidMechanism(f"{owner}: no body is called {name!r}; there are {known}")
+        names = ", ".join(repr(body.name) for body in self.bodies)
+        return InvalidMechanism(f"{owner}: no body is called {name!r}; there are {names}")
 
     @cached_property
     def row_names(self) -> tuple[str, ...]:
-        """One name a row, 'B x' for the x row of joint B; reactions stand in this order."""
+        """The name of each row, 'B x' for the x row of joint B, in the order of reactions."""
         return tuple(f"{joint.name} {label}" for joint in self.joints for label in joint.labels)
 
     @cached_readonly
@@ -130,21 +130,21 @@ class Mechanism(Valid):
 
     @cached_readonly
     def applied(self) -> AppliedForces:
-        """The force elements, ready to be evaluated; unchecked, for loops that ask at every step."""
+        """The force elements, without checks of arguments, for use at every step."""
         return AppliedForces.of(self.forces, self._index)
 
     def unconstrained(self, pose: NDArray[np.float64], twist: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Accelerations by gravity and forces, without any joint (..., bodies, 3); unchecked, for loops."""
+        """Accelerations (..., bodies, 3) by gravity and forces, without joints and without checks of arguments."""
         return self.free_fall + self.applied.on(pose, twist) / self.inertias if self.forces else self.free_fall
 
     @validated
     def potential(self, pose: States) -> NDArray[Any]:
         """Potential energy (...) [J] of gravity, springs, constant forces and torques at poses (..., bodies, 3).
 
-        Zero at the world's origin, where springs are at rest, and at equal angles of the bodies that a torque turns.
+        The zero is: for gravity and forces the world's origin, for springs their rest, for torques equal angles.
         """
-        fallen = -np.sum(self.inertias * self.free_fall * pose, axis=(-2, -1))
-        return fallen + self.applied.potential(pose) if self.forces else fallen
+        of_gravity = -np.sum(self.inertias * self.free_fall * pose, axis=(-2, -1))
+        return of_gravity + self.applied.potential(pose) if self.forces else of_gravity
 
     @cached_readonly
     def rate(self) -> NDArray[np.float64]:
@@ -157,12 +157,12 @@ class Mechanism(Valid):
         return np.array([joint.holonomic for joint in self.joints for _ in range(joint.size)], dtype=bool)
 
     def require_room(self, samples: int) -> None:
-        """Raise InvalidMechanism if the poses of a trajectory of so many samples take more than checks.LARGEST."""
+        """Raise InvalidMechanism if a trajectory with this number of samples takes more than checks.LARGEST_ARRAY."""
         require_room("mechanism: a trajectory", (samples + 1, len(self.bodies), 3))
 
     @validated
     def gap(self, pose: States, t: ArrayLike) -> NDArray[Any]:
-        """How far every joint is open (..., rows) [m, rad for a drive]; NaN in rows that constrain velocity only.
+        """The position violation of every row (..., rows) [m or rad]; NaN in rows that constrain velocity only.
 
         pose (..., bodies, 3) and times t (...) [s].
         """
@@ -170,15 +170,15 @@ class Mechanism(Valid):
 
     @validated
     def rows(self, pose: States) -> NDArray[Any]:
-        """The velocity rows J (..., rows, 3 bodies) at poses (..., bodies, 3); analytic, so a complex step passes.
+        """The velocity rows J (..., rows, 3 bodies) at poses (..., bodies, 3), as a dense array; analytic in the poses.
 
-        Dense, though each row has two bodies: raises InvalidMechanism where that would take more than checks.LARGEST.
+        Raises InvalidMechanism if the array takes more than checks.LARGEST_ARRAY.
         """
         return self.joint_rows.dense(pose)
 
     @validated
     def slip(self, pose: States, twist: States) -> NDArray[Any]:
-        """J v - rate (..., rows) [m/s, rad/s for a drive]: how fast every joint is violated."""
+        """The velocity violation J v - rate of every row (..., rows) [m/s or rad/s]."""
         return self.joint_rows.velocities(pose, twist) - self.rate
 
     @validated
@@ -197,12 +197,12 @@ class Mechanism(Valid):
     ) -> NDArray[np.float64]:
         """The joints' reactions (..., rows) [N, N m] that these accelerations need: M a = f + J^T reaction.
 
-        pose, acceleration, and twist, which only dampers ask for, (..., bodies, 3). f is of gravity and forces. This is
-        Newton's law read backwards, so it tells what any engine must have applied. `inertias` (bodies, 3) [kg, kg,
-        kg m^2] and `gravity` (2,) [m/s^2] are the mechanism's unless an engine gives those of its own model (NaN for
-        what it has none of): then the reactions are the forces that the engine has applied, and a wrong mass in it
-        shows even where the motion is prescribed. Unique when the rows are independent; of redundant rows it gives the
-        smallest.
+        pose, acceleration, and twist, which only dampers need, (..., bodies, 3). f is the force of gravity and of force
+        elements. By Newton's law these are the reactions that an engine with this motion has applied. `inertias`
+        (bodies, 3) [kg, kg, kg m^2] and `gravity` (2,) [m/s^2] are the mechanism's unless those of an engine's own
+        model are given, with NaN where it has none: then a wrong mass in the engine changes the reactions even if the
+        motion is prescribed. The reactions are unique if the rows are independent, else the minimum-norm ones are
+        returned.
         """
         inertias = self.inertias if inertias is None else np.where(np.isnan(inertias), self.inertias, inertias)
         falling = self.free_fall if gravity is None else np.append(gravity, 0.0)
@@ -216,15 +216,15 @@ class Mechanism(Valid):
     def reactions_of(
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Reactions (..., rows) that give masses (bodies, 3) an `excess` (..., bodies, 3) over what acts without."""
+        """Reactions (..., rows) that give masses (bodies, 3) an `excess` acceleration (..., bodies, 3)."""
         if self.row_count >= MANY_ROWS and np.ndim(pose) == np.ndim(excess) == 2:
             return self.reactions_of(pose[None], excess[None], inertias)[0]
         if self.row_count >= MANY_ROWS and np.ndim(pose) == 3:
-            found = banded_reaction(self.joint_rows, pose, excess, inertias)
-            dependent = np.isnan(found).any(axis=1)
+            out = banded_reaction(self.joint_rows, pose, excess, inertias)
+            dependent = np.isnan(out).any(axis=1)
             if dependent.any():
-                found[dependent] = self._dense_reaction(pose[dependent], excess[dependent], inertias)
-            return found
+                out[dependent] = self._dense_reaction(pose[dependent], excess[dependent], inertias)
+            return out
         return self._dense_reaction(pose, excess, inertias)
 
     def _dense_reaction(
@@ -236,10 +236,10 @@ class Mechanism(Valid):
 
     @validated
     def degrees_of_freedom(self, pose: Annotated[Floats, of_shape("bodies", 3)] | None = None) -> tuple[int, int]:
-        """(configuration, velocity) freedoms by the rank of the rows at a pose, the start unless given (box 18.3).
+        """(configuration, velocity) freedoms by the rank of the rows at a pose, by default the start (box 18.3).
 
-        A skate takes a freedom of velocity and none of configuration; a drive takes one of both. Dense linear algebra,
-        O(bodies^3): raises InvalidMechanism where the rows take more than LARGEST_RANK.
+        A skate removes a freedom of velocity and none of configuration; a drive removes one of each. The cost is
+        O(bodies^3): raises InvalidMechanism if the rows take more than LARGEST_RANK.
         """
         return self._freedoms_at_start if pose is None else self._freedoms(pose)
 
@@ -257,7 +257,7 @@ class Mechanism(Valid):
 
     @cached_property
     def length_scale(self) -> float:
-        """The largest distance between two joint points of one body, or of one and the centre of mass [m]."""
+        """The mechanism's length [m]: see `scales.length_scale`."""
         return length_scale(self.bodies, self.joints, self.forces)
 
     @cached_readonly
@@ -267,19 +267,20 @@ class Mechanism(Valid):
 
     @cached_property
     def time_scale(self) -> float:
-        """One radian of the fastest motion that the description promises [s]: see `scales.time_scale`."""
+        """The mechanism's time [s]: see `scales.time_scale`."""
         return time_scale(self.length_scale, self.gravity, self.bodies, self.joints, self.forces)
 
 
 Array = NDArray[np.float64]
-# A start that misses a row by more than this fraction of the mechanism's own length or speed is refused: far above
-# rounding, far below a mistake.
+# The violation of a row at the start that is allowed, relative to the mechanism's length or speed: far above rounding,
+# far below a mistake.
 START_TOLERANCE = 1e-9
-ROUNDINGS = 64  # of a coordinate: what placing a body and its joints may take
+# Rounding of a coordinate, in units of its last digit, when a body and its joints are placed.
+PLACEMENT_ROUNDINGS = 64
 
 
 def refuse_a_bad_start(mechanism: Mechanism) -> None:
-    """Raise InvalidMechanism for a start that no engine could begin with, in a sentence that names the row or force."""
+    """Raise InvalidMechanism, with the row, body or force, for a start with which no engine can begin."""
     with np.errstate(over="ignore"):
         energies = 0.5 * np.sum(mechanism.inertias * mechanism.twist**2, axis=-1)
     for body, energy in zip(mechanism.bodies, energies.tolist(), strict=True):
@@ -293,33 +294,33 @@ def refuse_a_bad_start(mechanism: Mechanism) -> None:
         gap, slip = mechanism.gap(mechanism.pose, 0.0), mechanism.slip(*start)
         if sentence := open_joint(mechanism, gap, slip, *start, mechanism.length_scale):
             raise InvalidMechanism(f"mechanism: {sentence}")
-    still = np.zeros_like(mechanism.pose)
+    at_rest = np.zeros_like(mechanism.pose)
     for element in mechanism.forces:
         alone = AppliedForces.of((element,), mechanism._index)
-        if not np.isfinite(alone.on(mechanism.pose, still)).all():
+        if not np.isfinite(alone.on(mechanism.pose, at_rest)).all():
             raise InvalidMechanism(
                 f"force {element.name!r}: at t = 0 its two points coincide, so it has no direction; move one of them"
             )
 
 
 def open_joint(mechanism: Mechanism, gap: Array, slip: Array, pose: Array, twist: Array, size: float) -> str | None:
-    """The sentence about the row that misses the start most; None if all satisfy it.
+    """A sentence about the row with the largest violation at the start; None if all are within tolerance.
 
     gap, slip (rows,); pose, twist (bodies, 3); size [m].
     """
     speed = np.abs(twist[:, :2]).max() + size * np.abs(twist[:, 2]).max()
-    # Relative to the mechanism's own size and speed, and above the rounding of a place far from the origin.
-    far = ROUNDINGS * np.finfo(float).eps * np.abs(pose).max(axis=0)
-    allowed_gap = START_TOLERANCE * size + max(far[:2]), START_TOLERANCE + far[2]
-    for missed, (length, angle), (unit, angular), words in (
+    # Relative to the mechanism's own size and speed, and above the rounding of a pose far from the origin.
+    rounding = PLACEMENT_ROUNDINGS * np.finfo(float).eps * np.abs(pose).max(axis=0)
+    allowed_gap = START_TOLERANCE * size + max(rounding[:2]), START_TOLERANCE + rounding[2]
+    for violation, (length, angle), (unit, angular), verb in (
         (gap, allowed_gap, ("m", "rad"), "open by"),
         (slip, (START_TOLERANCE * speed, START_TOLERANCE * speed / size), ("m/s", "rad/s"), "moving apart at"),
     ):
-        value, allowed = np.nan_to_num(np.abs(missed)), np.where(mechanism.is_angular, angle, length)
+        value, allowed = np.nan_to_num(np.abs(violation)), np.where(mechanism.is_angular, angle, length)
         row = int(np.argmax(value - allowed))
         if value[row] > allowed[row]:
             return (
-                f"at t = 0 row {mechanism.row_names[row]!r} is {words} {value[row]:.3g} "
+                f"at t = 0 row {mechanism.row_names[row]!r} is {verb} {value[row]:.3g} "
                 f"{angular if mechanism.is_angular[row] else unit}; the start must satisfy it to {allowed[row]:.1g}"
             )
     return None

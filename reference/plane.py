@@ -1,8 +1,8 @@
-"""Vectors of the plane, once: rotation, k x vector, the velocity and acceleration that a rotation gives a point; and
-the vector from a point of one body to a point of another, with its derivatives by their poses (..., 3).
+"""Vectors of the plane: rotation, k x vector, the velocity and acceleration of a point of a rotating body, and the
+vector from a point of one body to a point of another, with its derivatives by their poses (..., 3).
 
 Vectors are arrays (..., 2) and broadcast against angles and rates (...). k points out of the plane, angles are
-counter-clockwise. All functions are analytic, so a complex step passes through them.
+counter-clockwise. All functions are analytic, so they can be differentiated by a complex step.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ COMPLEX_STEP = 1e-100
 
 
 def components(angle: Any, x: Any, y: Any) -> tuple[Any, Any]:
-    """World components (...) of the vector (x, y) (...) of a frame that stands at `angle` (...) [rad]."""
+    """World components (...) of the vector (x, y) (...) of a frame rotated by `angle` (...) [rad]."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return cosine * x - sine * y, sine * x + cosine * y
 
@@ -31,7 +31,7 @@ def from_body(angle: Any, point: Any) -> tuple[Any, Any]:
 
 
 def rotated(angle: Any, vector: AnyArray) -> AnyArray:
-    """The vector (..., 2) turned by `angle` (...) [rad]: a body's own vector in the world."""
+    """The vector (..., 2) rotated by `angle` (...) [rad]: a body's own vector in the world."""
     return np.stack(components(angle, vector[..., 0], vector[..., 1]), axis=-1)
 
 
@@ -65,7 +65,7 @@ def apart(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any
 
 
 def point_rows(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> AnyArray:
-    """Its derivative (..., 2, 6): columns are the first body's x, y, angle and then the second's."""
+    """The derivative of `apart` (..., 2, 6): columns are x, y, angle of the first body and then of the second."""
     first_x, first_y = from_body(first[..., 2], first_point)
     second_x, second_y = from_body(second[..., 2], second_point)
     rows = np.zeros((*first_x.shape, 2, 6), dtype=np.result_type(first_x, second_x))
@@ -77,7 +77,7 @@ def point_rows(first: AnyArray, second: AnyArray, first_point: Any, second_point
 
 
 def length_of(vector: AnyArray) -> AnyArray:
-    """The length (...) of a vector (..., 2); not its absolute value, so that it stays analytic."""
+    """The length (...) of a vector (..., 2), without an absolute value, so that it is analytic."""
     return np.sqrt(vector[..., 0] ** 2 + vector[..., 1] ** 2)
 
 

@@ -1,8 +1,8 @@
-"""Velocity rows J of a mechanism's joints: evaluated all at once, their rank, and the reactions that act along them.
+"""Velocity rows J of a mechanism's joints: their evaluation, their rank, and the reactions along them.
 
-A row's size depends on the unit of length, and J M^-1 J^T has the square of the condition of M^(-1/2) J^T. So ranks are
-counted on rows without units, and reactions of few rows are found by least squares, never through the product. Of many
-rows only those that share a body meet, so the product has a narrow band, and is refined once.
+The size of a row depends on the unit of length, so ranks are computed for rows without units. J M^-1 J^T has the
+squared condition number of M^(-1/2) J^T, so the reactions of few rows are a least-squares solution without that
+product. For many rows the product is used, since it has a narrow band, and the solution is refined once.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from reference.joints import Joint
 
 Array = NDArray[np.float64]
 
-# A row is counted as dependent below this fraction of the largest singular value: far above rounding, far below what a
-# mechanism is built with.
+# Singular values below this fraction of the largest count as zero: far above rounding, far below those of a regular
+# mechanism.
 RANK_TOLERANCE = 1e-9
 
 
 def rank(rows: Array, length: float) -> int:
-    """How many rows (rows, 3 bodies) are independent, whatever the unit: angles are counted as arcs of `length` [m]."""
+    """The number of independent rows (rows, 3 bodies), in any unit: angles are counted as arcs of `length` [m]."""
     return int(ranks(rows, np.asarray(length)))
 
 
 def ranks(rows: Array, length: Array) -> NDArray[np.int_]:
-    """`rank` of many (...) at once, of rows (..., rows, 3 bodies) and lengths (...) [m]."""
+    """The ranks (...) of rows (..., rows, 3 bodies), with lengths (...) [m]: see `rank`."""
     if rows.size == 0:
         return np.zeros(rows.shape[:-2], dtype=int)
     singular = np.linalg.svd(_unitless(rows, length), compute_uv=False)
@@ -43,9 +43,9 @@ def ranks(rows: Array, length: Array) -> NDArray[np.int_]:
 
 
 def undetermined(rows: Array, length: float) -> NDArray[np.bool_]:
-    """Which rows (..., rows) of (..., rows, 3 bodies) take part in forces that balance by themselves.
+    """Mask (..., rows) of the rows (..., rows, 3 bodies) that are part of self-equilibrated forces.
 
-    No motion tells how large these are, so the reactions of such rows are not determined by rigid bodies alone.
+    The motion does not depend on these forces, so rigid bodies alone don't determine the reactions of such rows.
     """
     _, singular, right = np.linalg.svd(np.swapaxes(_unitless(rows, length), -1, -2))
     count = rows.shape[-2]
@@ -74,15 +74,15 @@ def solve_symmetric(matrix: Array, right: Array) -> Array:
 
 
 def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: float) -> Array:
-    """Forces (..., rows) with M excess = rows^T forces, in the least squares of M^(-1/2).
+    """Forces (..., rows) with M excess = rows^T forces: least squares with the weights M^(-1/2).
 
     rows (..., rows, 3 bodies) at a pose; inertias (3 bodies,), the diagonal of M; excess (..., 3 bodies), acceleration
-    less that of free fall. Where rows are dependent the forces are not unique, and the smallest are given, counted in
-    `size` (rows,) [N or N m], the force of each row that is as large as one of any other. NaN where a number is not
-    finite. The columns of M^(-1/2) rows^T are made equally long first: a light body's rows then weigh as much as a
-    heavy one's, and what is lost is the square root of what the product J M^-1 J^T loses. Whether rows are dependent
-    does not depend on masses, which may be so far apart that a row is but its light body's: it is their `rank`, with
-    angles counted as arcs of `length` [m].
+    less that of free fall. If rows are dependent, the minimum-norm forces are returned; the unit of each row in that
+    norm is `size` (rows,) [N or N m]. NaN if a number is not finite.
+
+    The columns of M^(-1/2) rows^T are scaled to equal length, so that the rows of a light body have the same weight as
+    those of a heavy one. The dependence of rows is decided by their `rank`, with angles counted as arcs of `length`
+    [m], since a large ratio of masses can make independent rows look dependent.
     """
     root = np.sqrt(inertias)
     matrix = np.swapaxes(rows / root, -1, -2)
@@ -105,7 +105,7 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: 
 
 
 def _smallest(solution: Array, scale: Array, matrix: Array, size: Array) -> Array:
-    """The solution less its part that does no work on any motion, so that (solution / size) is shortest."""
+    """Remove the null-space component of rows^T from the solution: the minimum-norm forces, in units of `size`."""
     _, singular, right = np.linalg.svd(matrix, full_matrices=True)
     count = matrix.shape[-1]
     padded = np.zeros((*singular.shape[:-1], count))
@@ -124,14 +124,20 @@ def _times(matrix: Any, vector: Any) -> Array:
 
 @dataclass(frozen=True)
 class JointGroup:
-    """Joints of one kind, stacked so that one numpy expression serves them all."""
+    """Joints of one class, evaluated together, or one term of a coupling.
 
-    joint: Any  # of the kind, each numeric field an array with the joints along its first axis
-    first: NDArray[np.intp]  # (joints,) index of the body; the ground is the index after the last body
+    joint: each numeric field is an array with the joints along its first axis. first, second (joints,): indices of the
+    bodies; the ground has the index after the last body. rows (joints, size): indices of the rows in the mechanism.
+    adds: the group is a second or later term of a coupling, whose row is a sum over groups. offset: subtracted from the
+    gap, for the first term of a coupling.
+    """
+
+    joint: Any
+    first: NDArray[np.intp]
     second: NDArray[np.intp]
-    rows: NDArray[np.intp]  # (joints, size) where their rows stand in the mechanism
-    adds: bool = False  # a further term of a coupling, whose row another group has begun
-    offset: float = 0.0  # of the gap of a coupling's first term
+    rows: NDArray[np.intp]
+    adds: bool = False
+    offset: float = 0.0
 
     def blocks(self, everything: NDArray[Any]) -> NDArray[Any]:
         """Velocity rows (..., joints, size, 6) at poses of bodies and ground (..., bodies + 1, 3)."""
@@ -154,8 +160,8 @@ class JointRows:
 
     @classmethod
     def of(cls, joints: Sequence[Joint], index: Mapping[str | None, int]) -> JointRows:
-        """Of joints between bodies whose places `index` gives by name, and the ground's, the last, under None."""
-        kinds: dict[Any, list[tuple[Joint, range]]] = {}  # one that can't stack is a kind of its own
+        """From joints; `index` has the index of each body by name, and the last index, the ground's, under None."""
+        by_class: dict[Any, list[tuple[Joint, range]]] = {}  # a joint that is not stackable has an entry of its own
         start, terms = 0, list[JointGroup]()
         for joint in joints:
             if isinstance(joint, Coupling):
@@ -165,22 +171,22 @@ class JointRows:
                     terms.append(JointGroup(term, first, second, np.array([[start]]), number > 0, offset))
                 start += 1
                 continue
-            kind = type(joint) if joint.stackable else joint.name
-            kinds.setdefault(kind, []).append((joint, range(start, start + joint.size)))
+            key = type(joint) if joint.stackable else joint.name
+            by_class.setdefault(key, []).append((joint, range(start, start + joint.size)))
             start += joint.size
         groups = tuple(
             JointGroup(
                 joint=stacked([joint for joint, _ in members]),
                 first=np.array([index[joint.first] for joint, _ in members]),
                 second=np.array([index[joint.second] for joint, _ in members]),
-                rows=np.array([list(where) for _, where in members]),
+                rows=np.array([list(indices) for _, indices in members]),
             )
-            for members in kinds.values()
+            for members in by_class.values()
         )
         return cls((*groups, *terms), index[None], start)
 
     def with_ground(self, pose: NDArray[Any]) -> NDArray[Any]:
-        """Poses or twists (..., bodies, 3) with the ground's, zero, after them."""
+        """Poses or twists (..., bodies, 3) with zeros for the ground at the end."""
         if pose.shape[-2:] != (self.bodies, 3):
             raise InvalidMechanism(
                 f"mechanism: poses have the shape {pose.shape}; they must be of (..., {self.bodies}, 3), "
@@ -214,7 +220,7 @@ class JointRows:
         return out[..., :-1, :].reshape((*leading, self.count, 3 * self.bodies))
 
     def velocities(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
-        """J v (..., rows) joint by joint: O(joints), where J alone is O(joints bodies)."""
+        """J v (..., rows) joint by joint, at the cost O(joints); dense J costs O(joints bodies)."""
         poses, twists = self.with_ground(pose), self.with_ground(twist)
         leading = np.broadcast_shapes(poses.shape[:-2], twists.shape[:-2])
         out = np.zeros((*leading, self.count), dtype=np.result_type(poses, twists, float))
@@ -225,18 +231,18 @@ class JointRows:
 
 
 def stacked(joints: Sequence[Any]) -> Any:
-    """One joint, or force element, that stands for several of its kind: every numeric field becomes an array."""
+    """Several joints or force elements of one class as one object, whose numeric fields are arrays."""
     if not joints[0].stackable:
         return joints[0]
     numeric = [f.name for f in fields(joints[0]) if f.name not in ("name", "first", "second")]
-    stacked = copy(joints[0])  # not made anew: arrays are no valid fields of one joint
+    stacked = copy(joints[0])  # without validation, since arrays are no valid fields of one joint
     stacked.__dict__.update({name: np.array([getattr(joint, name) for joint in joints]) for name in numeric})
     return stacked
 
 
-# From this many rows on a band is worth its bookkeeping; below it, the dense system is as fast.
+# Number of rows from which the band solver is used; the dense solver is as fast for fewer.
 MANY_ROWS = 24
-# A pivot below this part of the largest, squared, counts as dependence: the same threshold as for ranks.
+# Squared pivots below this fraction of the largest show dependent rows: the same threshold as for ranks.
 SMALLEST_PIVOT = 1e-9
 
 
@@ -244,8 +250,9 @@ def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias:
     """Reactions (times, rows) [N, N m] at poses (times, bodies, 3); NaN where rows are dependent.
 
     `excess` (times, bodies, 3) are the accelerations without those of free fall, `inertias` (bodies, 3) the diagonal of
-    the mass matrix M. J M^-1 J^T times the reactions is J excess: a sparse product in an order that makes its band
-    narrow, factorised by Cholesky: O(bodies) for a chain, where the dense system costs O(bodies^3).
+    the mass matrix M. The equation is J M^-1 J^T reactions = J excess. The matrix is sparse; it is reordered to a
+    narrow band (reverse Cuthill-McKee) and factorised by Cholesky. The cost for a chain is O(bodies); that of the dense
+    system is O(bodies^3).
     """
     everything, count = joint_rows.with_ground(pose), joint_rows.count
     blocks = [group.blocks(everything) for group in joint_rows.groups]  # (times, joints, size, 6) each
@@ -269,8 +276,8 @@ def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias:
         factor, solution, failed = dpbsv(band, rows @ target, lower=1)
         if failed or not factor[0].min() ** 2 > SMALLEST_PIVOT * factor[0].max() ** 2:
             continue
-        # Once more with what the forces leave of the accelerations: the product J M^-1 J^T has squared the condition of
-        # J, and this gives the digits back (Bjorck 1987, corrected seminormal equations).
+        # One step of iterative refinement restores the digits that are lost since the condition number of J M^-1 J^T is
+        # the square of that of M^(-1/2) J^T (Bjorck 1987, corrected seminormal equations).
         missing = rows @ (target - mobility * (rows.T @ solution))
         out[time, order] = solution + dpbtrs(factor, missing, lower=1)[0]
     return out

@@ -1,4 +1,4 @@
-"""A scene: the numbers of one experiment, read by engines as a mechanism and by the textbook as a motion."""
+"""Scenes: the numbers of one experiment, from which follow a mechanism for engines and the reference motion."""
 
 from __future__ import annotations
 
@@ -33,17 +33,18 @@ from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validators import INVALID, Floats, of_shape, validator_of
 
-# Samples stand about this far apart [s]; every step of a sweep divides the distance: all steps meet the same instants.
+# Approximate time between samples [s]. Every step of a sweep is a fraction of it, so all steps share the sample times.
 SAMPLE_SPACING = 1e-2
-Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # of all bodies; NaN where an engine gave up
-TIMES = (("duration", Positive), ("horizon", Positive), ("samples", Count))  # what a scene's times may be
+Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # NaN after the end of an engine's run
+# The annotations of a scene's times.
+TIME_ANNOTATIONS = (("duration", Positive), ("horizon", Positive), ("samples", Count))
 
 
 Result = TypeVar("Result")
 
 
 def shared(function: Callable[..., Result], *arguments: Any) -> Result:
-    """function(*arguments), computed once for equal arguments: equal scenes share their integrated motion."""
+    """function(*arguments), cached for equal arguments, so that equal scenes share their integrated motion."""
     return _shared(function, *arguments)
 
 
@@ -53,54 +54,51 @@ def _shared(function: Callable[..., Any], *arguments: Any) -> Any:
 
 
 class NoMotion(InvalidMechanism):
-    """The numbers of a scene are valid each, and no finite motion can be computed from them."""
+    """Each number of a scene is valid, but no finite motion can be computed from them."""
 
 
 class Scene(Valid, ABC):
     """Subclasses are frozen dataclasses, and their fields are the only place where a number is written.
 
-    `name` is the scene's key, `source` where the chapter has it. `duration` [s] is how long it runs; until `horizon`
-    [s] an error grows no faster than about linearly, so that orders can be fitted.
+    `name` is the scene's key, `source` its place in the chapter, `duration` [s] the length of its runs. Until `horizon`
+    [s] errors grow at most about linearly, so that convergence orders can be fitted. `max_durations` limits `max_time`.
     """
 
     name: ClassVar[str]
     source: ClassVar[str]
-    max_durations: ClassVar[float] = 10.0  # durations, see `max_time`
+    max_durations: ClassVar[float] = 10.0
     duration: float
     horizon: float
 
     def __init_subclass__(cls, **named: Any) -> None:
-        """Failed arithmetic in the `mechanism` of any scene, ours or a user's, becomes a sentence with its name."""
+        """Make failed arithmetic in `mechanism`, also in a user's scene, raise NoMotion with the scene's name."""
         super().__init_subclass__(**named)
         if "mechanism" in vars(cls):
-            cls.mechanism = _in_words(vars(cls)["mechanism"])  # type: ignore[method-assign]
+            cls.mechanism = _raising_no_motion(vars(cls)["mechanism"])  # type: ignore[method-assign]
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        own = {field.name for field in fields(self)}  # type: ignore[arg-type]
-        for name, annotation in TIMES:
-            # What a class sets without a field; a property is worked out only when it is asked for.
+        field_names = {field.name for field in fields(self)}  # type: ignore[arg-type]
+        for name, annotation in TIME_ANNOTATIONS:
+            # A class attribute that is no field; a property is not evaluated here.
             value = inspect.getattr_static(self, name)
-            if name not in own and not hasattr(value, "__get__"):
+            if name not in field_names and not hasattr(value, "__get__"):
                 validate(self._owner(), name, value, annotation)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Its numbers alone, so that a scene travels to another process without what it has worked out.
-
-        A scene with other numbers may have a name of its own (`reference.scene`), which travels with them.
-        """
-        own = [field.name for field in fields(self)]  # type: ignore[arg-type]
-        return {name: getattr(self, name) for name in (*own, *(["name"] if "name" in vars(self) else []))}
+        """The fields, and the name if it was changed, so that pickling leaves cached results out."""
+        names = [field.name for field in fields(self)]  # type: ignore[arg-type]
+        return {name: getattr(self, name) for name in (*names, *(["name"] if "name" in vars(self) else []))}
 
     @abstractmethod
     def mechanism(self) -> Mechanism:
         """The bodies and joints at t = 0."""
 
     def motion(self, t: ArrayLike) -> Trajectory:
-        """The truth at times t (times,) [s], or at one: poses, twists, reactions.
+        """The reference motion at times t (times,) or one time [s]: poses, twists, reactions.
 
-        Raises InvalidMechanism unless all times are finite and lie from 0 to `max_time`, or where the motion itself
-        ends; NoMotion where it can't be computed, or is not finite.
+        Raises InvalidMechanism unless all times are finite, between 0 and `max_time`, and before the motion's end;
+        NoMotion if the motion can't be computed or is not finite.
         """
         times = self.times(t)
         until = f"no motion is known up to {times.max(initial=0.0):.9g} s"
@@ -113,12 +111,12 @@ class Scene(Valid, ABC):
 
     @abstractmethod
     def _motion(self, times: Floats) -> Trajectory:
-        """The truth at times (times,) [s] that `motion` has checked; at least one."""
+        """The reference motion at times (times,) [s], at least one, that `motion` has checked."""
 
     def _refuse_not_finite(self, motion: Trajectory) -> None:
-        """Raise OverflowError for a motion with which nothing can be compared; unknown reactions are NaN.
+        """Raise OverflowError for numbers that are not finite; unknown reactions are NaN.
 
-        Energies and accelerations are made of the squares of velocities.
+        The squares of velocities must be finite too, since energies and accelerations contain them.
         """
         for name, numbers, finite in (
             ("poses", motion.pose, np.isfinite),
@@ -130,7 +128,7 @@ class Scene(Valid, ABC):
                 raise OverflowError(f"its {name} are not finite numbers at {motion.t[np.argmin(at_instants)]:.6g} s")
 
     def times(self, t: ArrayLike) -> Floats:
-        """Times [s], or one, as an array (times,); InvalidMechanism unless each is finite and from 0 to `max_time`."""
+        """Times or one time [s] as an array (times,); InvalidMechanism unless finite and between 0 and `max_time`."""
         times = sample_times(self._owner(), t)
         if times.size and times.max() > self.max_time:
             raise InvalidMechanism(
@@ -141,34 +139,34 @@ class Scene(Valid, ABC):
 
     @property
     def max_time(self) -> float:
-        """The last time that `motion` answers [s], `max_durations` times the duration.
+        """The last time of `motion` [s], `max_durations` times the duration.
 
-        A truth by integration takes time and loses digits in proportion to the time asked for, a chaotic one loses all
-        of them, and even a closed form knows the angle after a time t only to about 1e-16 of what was turned since 0.
+        An integrated motion loses digits in proportion to the time, a chaotic one loses all of them, and a closed form
+        has an error of about 1e-16 of the angle that was turned since 0.
         """
-        return self.max_durations * self.duration * (1 + 1e-9)  # multiples of a step may be rounded upwards
+        return self.max_durations * self.duration * (1 + 1e-9)  # since multiples of a step may be rounded upwards
 
     def _owner(self) -> str:
         return f"scene {self.name!r}"
 
     @validated
     def branch_of(self, pose: Poses) -> NDArray[np.int_]:
-        """The branch (assembly mode) (...,) of poses (..., bodies, 3): +1, -1; 0 where a scene has only one.
+        """The branch (assembly mode) (...,) of poses (..., bodies, 3): +1 or -1; 0 for a scene with one branch.
 
-        Raises InvalidMechanism for poses of another number of bodies than its mechanism has.
+        Raises InvalidMechanism if the number of bodies is wrong.
         """
-        bodies, given = len(self.mechanism().bodies), np.shape(pose)[-2]
-        if given != bodies:
-            raise InvalidMechanism(f"{self._owner()}: pose is of {given} bodies; it must be of {bodies}")
+        bodies, actual = len(self.mechanism().bodies), np.shape(pose)[-2]
+        if actual != bodies:
+            raise InvalidMechanism(f"{self._owner()}: pose is of {actual} bodies; it must be of {bodies}")
         return self._branch_of(np.asarray(pose))
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """The same of poses that `branch_of` has checked."""
+        """See `branch_of`, which has checked the poses."""
         return np.zeros(pose.shape[:-2], dtype=int)
 
     @property
     def comparable_until(self) -> float:
-        """Up to when a body could do what the ideal motion asks of it [s]; beyond, no comparison with it is valid."""
+        """The time [s] until which real bodies can follow the ideal motion; later comparisons are not valid."""
         return math.inf
 
     @property
@@ -183,11 +181,11 @@ class Scene(Valid, ABC):
 
 
 class PlacedScene(Scene):
-    """A scene that knows where its bodies are: its reactions are those that their accelerations need."""
+    """A scene that defines the motion of its bodies; the reactions follow from the accelerations by Newton's law."""
 
     @abstractmethod
     def placement(self, times: Floats) -> tuple[Floats, Floats, Floats]:
-        """Poses, twists and accelerations (times, bodies, 3) at times (times,) [s] that are checked."""
+        """Poses, twists and accelerations (times, bodies, 3) at checked times (times,) [s]."""
 
     @cached_property
     def _mechanism(self) -> Mechanism:
@@ -203,7 +201,7 @@ class PlacedScene(Scene):
 
 @contextmanager
 def _named(owner: str, trouble: str) -> Iterator[None]:
-    """Failed arithmetic within becomes NoMotion, and every refusal begins with the owner's name."""
+    """Raise NoMotion for failed arithmetic in the context, and begin every message with the owner's name."""
     try:
         yield
     except InvalidMechanism as reason:
@@ -216,58 +214,58 @@ def _named(owner: str, trouble: str) -> Iterator[None]:
         raise NoMotion(f"{owner}: {trouble}: {reason.args[-1] if reason.args else type(reason).__name__}") from reason
 
 
-def _in_words(mechanism: Callable[[Any], Mechanism]) -> Callable[[Any], Mechanism]:
+def _raising_no_motion(mechanism: Callable[[Any], Mechanism]) -> Callable[[Any], Mechanism]:
     @wraps(mechanism)
-    def in_words(scene: Scene) -> Mechanism:
+    def raising_no_motion(scene: Scene) -> Mechanism:
         with np.errstate(all="ignore"), _named(scene._owner(), "its numbers make no mechanism"):
             return mechanism(scene)
 
-    return in_words
+    return raising_no_motion
 
 
 def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:
-    """The scene with fields set by their names, each value a text as it is typed: 0.5, (0, -9.81), True.
+    """The scene with fields set by name, each value a text as it is typed: 0.5, (0, -9.81), True.
 
-    Fields that get the value they have already are not set, and a scene with none is the scene itself. Raises
-    InvalidMechanism, in a sentence: for a name that is no field, with the nearest one; for a value that the field does
-    not take; for numbers that make no mechanism.
+    Returns the scene itself if no value changes. Raises InvalidMechanism for a name that is no field (with the nearest
+    one), for a value that is not valid for the field, and for numbers from which no mechanism can be made.
     """
-    known = [field.name for field in fields(scene)]  # type: ignore[arg-type]
+    names = [field.name for field in fields(scene)]  # type: ignore[arg-type]
     hints = typing.get_type_hints(type(scene), include_extras=True)
     values: dict[str, Any] = {}
     for name, text in settings.items():
-        if name not in known:
-            near = difflib.get_close_matches(name, known, 1, 0.0)
+        if name not in names:
+            near = difflib.get_close_matches(name, names, 1, 0.0)
             raise InvalidMechanism(
-                f"{scene.name} has no number called {name!r}; did you mean {near[0]!r}? There are {', '.join(known)}"
+                f"{scene.name} has no number called {name!r}; did you mean {near[0]!r}? There are {', '.join(names)}"
             )
-        kind = validator_of(hints[name])
-        taken = next((value for each in _readings(text) if (value := kind.validate(each)) is not INVALID), INVALID)
-        if taken is INVALID:
-            raise refusal(scene.name, name, _readings(text)[0], kind.words)
-        if taken != getattr(scene, name):
-            values[name] = taken
+        validator = validator_of(hints[name])
+        readings = [validator.validate(reading) for reading in _readings(text)]
+        value = next((reading for reading in readings if reading is not INVALID), INVALID)
+        if value is INVALID:
+            raise refusal(scene.name, name, _readings(text)[0], validator.words)
+        if value != getattr(scene, name):
+            values[name] = value
     if not values:
         return scene
-    name = _name(scene.name, {name: values[name] for name in known if name in values})
+    name = _name(scene.name, {name: values[name] for name in names if name in values})
     changed = named(_replaced(scene, values), name)
-    changed.mechanism()  # raises for numbers that are valid each and no mechanism together
+    changed.mechanism()  # raises if the values are not valid together
     return changed
 
 
-def told_apart(scenes: tuple[Scene, ...]) -> tuple[Scene, ...]:
-    """The scenes, those of one class and name called after the numbers in which they differ from its defaults."""
+def with_distinct_names(scenes: tuple[Scene, ...]) -> tuple[Scene, ...]:
+    """The scenes; those with the same name get names with the numbers that differ from the defaults."""
     names = [scene.name for scene in scenes]
     return tuple(
-        named(_replaced(scene, {}), _name(scene.name, _set(scene)))
-        if names.count(scene.name) > 1 and _set(scene)
+        named(_replaced(scene, {}), _name(scene.name, _changed_fields(scene)))
+        if names.count(scene.name) > 1 and _changed_fields(scene)
         else scene
         for scene in scenes
     )
 
 
 def named(scene: Scene, name: str) -> Scene:
-    """The same object, called so. Its numbers decide whether two scenes are equal, as with any dataclass."""
+    """Set the name of a scene and return it. The name does not count when scenes are compared."""
     object.__setattr__(scene, "name", name)
     return scene
 
@@ -277,15 +275,15 @@ def _replaced(scene: Scene, values: Mapping[str, Any]) -> Scene:
 
 
 def _readings(text: str) -> list[Any]:
-    """What a text may stand for: a value as Python writes it, or the text itself."""
+    """The possible values of a text: a Python literal, and the text itself."""
     try:
         return [ast.literal_eval(text.strip()), text]
     except (ValueError, SyntaxError, MemoryError, RecursionError):
         return [text]
 
 
-def _set(scene: Scene) -> dict[str, Any]:
-    """The fields whose values are not their class's defaults."""
+def _changed_fields(scene: Scene) -> dict[str, Any]:
+    """The fields whose values differ from their class's defaults."""
     defaults = {field.name: field.default for field in fields(scene)}  # type: ignore[arg-type]
     return {
         name: getattr(scene, name)
@@ -299,7 +297,7 @@ def _name(base: str, values: Mapping[str, Any]) -> str:
 
 
 def _short(value: Any) -> str:
-    """A value with all its digits, in few letters and without blanks."""
+    """A value with all its digits, without blanks."""
     if isinstance(value, tuple):
         return f"({','.join(map(_short, value))})"
     text = repr(value) if not isinstance(value, str) else value

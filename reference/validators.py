@@ -1,8 +1,9 @@
-"""Validators of annotations: what a value has to be, and the words that say it.
+"""Validators of annotations: whether a value is valid, and the words that describe valid values.
 
-`float` is a finite number, `int` a whole one (a bool is neither), `ArrayLike` numbers in any shape, `NDArray` the same
-made an array of floats; Literal, tuple, unions and classes mean what they say; `Annotated` adds a Rule, or allows
-NOT_FINITE or COMPLEX numbers; `Any` is not checked. `reference.checks` applies them to fields and arguments.
+`float` is a finite number, `int` an integer (a bool is neither). `ArrayLike` is numbers in any shape, `NDArray` is
+converted to an array of floats. Literal, tuple, unions and classes have their usual meaning. `Annotated` adds a Rule,
+or allows NOT_FINITE or COMPLEX numbers. `Any` is not checked. `reference.checks` applies validators to fields and
+arguments.
 """
 
 from __future__ import annotations
@@ -18,30 +19,32 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+# The result of a validator for a value that is not valid.
 INVALID: Any = object()
 # In Annotated: infinite numbers and NaN are valid, unless a rule refuses them.
 NOT_FINITE: Any = object()
+# In Annotated: numbers may be complex.
 COMPLEX: Any = object()
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Rule:
-    """One more condition on a value of the right kind, and the words that follow those of the kind."""
+    """A further condition on a value, and the words that follow those of the value's type in a message."""
 
     predicate: Callable[[Any], Any]
     words: str
 
 
 def of_shape(*shape: int | str) -> Rule:
-    """Arrays with these sizes of the last axes, names standing for any; a first name of '...' for any axes before."""
+    """Arrays with these sizes of the last axes. A name is any size; '...' first allows any axes before the others."""
     sizes = shape[1:] if shape[:1] == ("...",) else shape
 
     def predicate(value: Any) -> bool:
-        given = np.shape(value)
-        if len(given) < len(sizes) or (len(given) > len(sizes) and sizes is shape):
+        actual = np.shape(value)
+        if len(actual) < len(sizes) or (len(actual) > len(sizes) and sizes is shape):
             return False
-        return all(isinstance(b, str) or a == b for a, b in zip(given[len(given) - len(sizes) :], sizes, strict=True))
+        return all(isinstance(b, str) or a == b for a, b in zip(actual[len(actual) - len(sizes) :], sizes, strict=True))
 
     return Rule(predicate, f"of shape ({', '.join(map(str, shape))}{',' * (len(shape) == 1)})")
 
@@ -53,14 +56,14 @@ def from_to(low: float, high: float) -> Rule:
 
 @dataclass(frozen=True)
 class Validator:
-    """A validator: `validate` returns the value as a plain one, or NOT_TAKEN; `words` say which values are valid."""
+    """`validate` returns the value as a plain one, or INVALID; `words` describe valid values."""
 
     words: str
     validate: Callable[[Any], Any]
 
 
 def _scalar(value: Any) -> Any:
-    """The member of an array without dimensions; any other value as it is."""
+    """The element of an array without dimensions; any other value unchanged."""
     return value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
 
 
@@ -79,13 +82,13 @@ def _finite(value: Any) -> Any:
     return value if value is not INVALID and -math.inf < value < math.inf else INVALID
 
 
-def _whole(value: Any) -> Any:
+def _integer(value: Any) -> Any:
     value = _scalar(value)
-    whole = isinstance(value, numbers.Integral) and not isinstance(value, bool | np.timedelta64)
-    return int(value) if whole else INVALID
+    is_integer = isinstance(value, numbers.Integral) and not isinstance(value, bool | np.timedelta64)
+    return int(value) if is_integer else INVALID
 
 
-def _truth(value: Any) -> Any:
+def _boolean(value: Any) -> Any:
     value = _scalar(value)
     return bool(value) if isinstance(value, bool | np.bool_) else INVALID
 
@@ -110,12 +113,12 @@ def _finite_array(value: Any) -> Any:
 
 
 def _numbers(value: Any) -> Any:
-    """Functions of numbers and of arrays return numbers and arrays, so the value keeps its type."""
+    """The value with its type, since functions of numbers return numbers and functions of arrays return arrays."""
     return value if _finite_array(value) is not INVALID else INVALID
 
 
 def _any_analytic(value: Any) -> Any:
-    """Numbers, real or complex: a complex step passes through functions that take these."""
+    """Real or complex numbers, for functions that are differentiated by a complex step."""
     if isinstance(value, np.ndarray | np.number):
         return value if value.dtype.kind in "iufc" else INVALID
     return value if isinstance(value, complex) or _number(value) is not INVALID else _array(value)
@@ -126,10 +129,10 @@ def _analytic(value: Any) -> Any:
     return taken if taken is INVALID or np.isfinite(taken).all() else INVALID
 
 
-_PLAIN = {
+_BY_TYPE = {
     float: Validator("a finite number", _finite),
-    int: Validator("a whole number", _whole),
-    bool: Validator("True or False", _truth),
+    int: Validator("a whole number", _integer),
+    bool: Validator("True or False", _boolean),
     str: Validator("a string", _text),
     NoneType: Validator("None", lambda value: None if value is None else INVALID),
     Any: Validator("anything", lambda value: value),
@@ -149,13 +152,13 @@ def validator_of(annotation: Any) -> Validator:
     origin, arguments = get_origin(annotation), get_args(annotation)
     if annotation == ArrayLike:
         return Validator("finite numbers", _numbers)
-    if annotation in _PLAIN:
-        return _PLAIN[annotation]
+    if annotation in _BY_TYPE:
+        return _BY_TYPE[annotation]
     if origin is Annotated:
         plain, *notes = arguments
         rules = [note for note in notes if isinstance(note, Rule)]
         plain = COMPLEX if COMPLEX in notes else plain
-        return _ruled(_UNBOUNDED[plain] if NOT_FINITE in notes else validator_of(plain), rules)
+        return _with_rules(_UNBOUNDED[plain] if NOT_FINITE in notes else validator_of(plain), rules)
     if origin is Literal:
         return _choice(arguments)
     if origin is tuple:
@@ -169,12 +172,12 @@ def validator_of(annotation: Any) -> Validator:
     raise TypeError(f"no check is known for the annotation {annotation!r}")
 
 
-def _ruled(kind: Validator, rules: Sequence[Rule]) -> Validator:
+def _with_rules(validator: Validator, rules: Sequence[Rule]) -> Validator:
     def validate(value: Any) -> Any:
-        value = kind.validate(value)
+        value = validator.validate(value)
         return value if value is INVALID or all(rule.predicate(value) for rule in rules) else INVALID
 
-    return Validator(" ".join([kind.words, *(rule.words for rule in rules)]), validate)
+    return Validator(" ".join([validator.words, *(rule.words for rule in rules)]), validate)
 
 
 def _choice(choices: Sequence[Any]) -> Validator:
@@ -186,32 +189,33 @@ def _choice(choices: Sequence[Any]) -> Validator:
 
 
 def _sequence(arguments: Sequence[Any]) -> Validator:
-    """A tuple of one kind in any number, or of as many kinds as it has members."""
-    endless = arguments[-1] is Ellipsis
-    kinds = [validator_of(member) for member in arguments if member is not Ellipsis]
-    validates, count = [kind.validate for kind in kinds], len(kinds)
+    """A tuple of any length with members of one type, or a tuple with one type for each member."""
+    has_any_length = arguments[-1] is Ellipsis
+    validators = [validator_of(member) for member in arguments if member is not Ellipsis]
+    validates, count = [validator.validate for validator in validators], len(validators)
 
     def validate(value: Any) -> Any:
         value = value.tolist() if isinstance(value, np.ndarray) else value
-        if not isinstance(value, tuple | list) or (not endless and len(value) != count):
+        if not isinstance(value, tuple | list) or (not has_any_length and len(value) != count):
             return INVALID
-        wanted = validates * len(value) if endless else validates
+        wanted = validates * len(value) if has_any_length else validates
         members = tuple([validate_one(member) for validate_one, member in zip(wanted, value, strict=True)])
         return INVALID if any(member is INVALID for member in members) else members
 
-    words = kinds[0].words if len({kind.words for kind in kinds}) == 1 else " and ".join(kind.words for kind in kinds)
-    return Validator(f"a tuple of {'values' if endless else f'{count} values'}, each {words}", validate)
+    member_words = [validator.words for validator in validators]
+    words = member_words[0] if len(set(member_words)) == 1 else " and ".join(member_words)
+    return Validator(f"a tuple of {'values' if has_any_length else f'{count} values'}, each {words}", validate)
 
 
-def _either(kinds: Sequence[Validator]) -> Validator:
+def _either(validators: Sequence[Validator]) -> Validator:
     def validate(value: Any) -> Any:
-        return next((taken for kind in kinds if (taken := kind.validate(value)) is not INVALID), INVALID)
+        return next((taken for validator in validators if (taken := validator.validate(value)) is not INVALID), INVALID)
 
-    return Validator(" or ".join(kind.words for kind in kinds), validate)
+    return Validator(" or ".join(validator.words for validator in validators), validate)
 
 
 def _instance(annotation: type) -> Validator:
-    # Dataclasses of which one object fits: all do. To ask a protocol of twenty members takes 50 us.
+    # All objects of a dataclass fit if one does. The check of a protocol with twenty members takes 50 us.
     fitting: set[type] = set()
 
     def validate(value: Any) -> Any:

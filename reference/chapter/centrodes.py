@@ -1,4 +1,4 @@
-"""Body curve and space curve of any motion that rotates, rolled back, and written as shapes in CSV, SVG or DXF.
+"""Body curve and space curve of any motion with rotation, and their shapes as CSV, SVG or DXF.
 
 The body curve is the polhode (moving centrode), the space curve the herpolhode (fixed centrode).
 """
@@ -23,8 +23,8 @@ from reference.rolling.traced import FEWEST, STILL, Traced, spline
 from reference.trajectory import Trajectory
 from reference.validators import NOT_FINITE, from_to, of_shape
 
-# A rotation this much slower than its fastest has its instant centre a million times farther away than the motion is
-# large: for the shapes it is at infinity.
+# The slowest rotation rate, relative to the fastest, at which the instant centre counts as finite: its distance is then
+# a million times the size of the motion.
 SLOWEST = 1e-6
 
 Poses = Annotated[Array, of_shape("n", 3)]
@@ -34,9 +34,9 @@ States = Annotated[Numbers, of_shape("...", 3)]
 
 @validated
 def instant_centre(pose: States, twist: States) -> tuple[Array, Array]:
-    """The point that has no velocity, r_{C/O'} = k x v_{O'} / omega, in space and in the body (..., 2) [m].
+    """The point without velocity, r_{C/O'} = k x v_{O'} / omega, in space and in the body (..., 2) [m].
 
-    pose, twist (..., 3) of one body. NaN where the rotation rate is zero: the centre is at infinity.
+    pose, twist (..., 3) of one body. NaN if the rotation rate is zero, since the centre is then at infinity.
     """
     rate = np.where(twist[..., 2] == 0, np.nan, twist[..., 2])
     arm = perpendicular(twist[..., :2]) / rate[..., None]
@@ -45,9 +45,10 @@ def instant_centre(pose: States, twist: States) -> tuple[Array, Array]:
 
 @validated
 def centrode_error(truth: Trajectory, other: Trajectory, body: int = 0) -> Array:
-    """Distance (times,) [m] between the instant centres in space of one body: an engine's velocity error as a length.
+    """Distance (times,) [m] between the instant centres of one body in space: an engine's velocity error as a length.
 
-    Both trajectories at the same times. NaN where either rotation rate vanishes; it grows without bound towards there.
+    Both trajectories must have the same times. NaN if either rotation rate vanishes; near such a time the distance
+    grows without bound.
     """
     if truth.t.shape != other.t.shape or not np.allclose(truth.t, other.t, rtol=0, atol=1e-9):
         raise ValueError("centrode error: the two trajectories have different times; sample the truth at the engine's")
@@ -58,32 +59,36 @@ def centrode_error(truth: Trajectory, other: Trajectory, body: int = 0) -> Array
 
 @dataclass(frozen=True, eq=False)
 class Centrodes(Valid):
-    """Both curves of a motion, sampled in the order of growing rotation; make one with `centrodes` or `from_poses`."""
+    """Both curves of a motion, sampled in the order of increasing rotation; made by `centrodes` or `from_poses`.
 
-    pose: Poses  # (n, 3) m, m, rad
-    space: Places  # (n, 2) m, instant centre in the world
-    body: Places  # (n, 2) m, the same in the body's frame
-    # m, how far the curves move if every second sample is left out: a bound on interpolation
+    pose (n, 3) [m, m, rad]; space (n, 2) [m]: the instant centre in the world; body (n, 2) [m]: the instant centre in
+    the body's frame; error [m]: the change of the curves if every second sample is left out, a bound on the error of
+    interpolation.
+    """
+
+    pose: Poses
+    space: Places
+    body: Places
     error: Annotated[float, NOT_FINITE]
 
     @property
     def theta(self) -> Array:
-        """Rotation (n,) [rad], growing."""
+        """Rotation (n,) [rad], increasing."""
         return self.pose[:, 2]
 
     @cached_property
     def space_curve(self) -> Traced:
-        """The fixed curve A, traversed as the contact runs while theta grows: its material on the left."""
+        """The fixed curve A, traversed as the contact moves while theta grows, with its material on the left."""
         return Traced(self.theta, self.space)
 
     @cached_property
     def body_curve(self) -> Traced:
-        """The moving curve B, traversed against the contact, as rolling has it."""
+        """The moving curve B, traversed against the motion of the contact, as `Rolling` defines it."""
         return Traced(-self.theta[::-1], self.body[::-1])
 
     @property
     def space_curvature(self) -> Array:
-        """curvature_A (n,) [1/m], positive towards the left of the contact's way."""
+        """curvature_A (n,) [1/m], positive towards the left of the contact's path."""
         return self.space_curve.curvature_of(self.theta)
 
     @property
@@ -93,23 +98,23 @@ class Centrodes(Valid):
 
     @property
     def space_arc(self) -> Array:
-        """How far the contact has run on A (n,) [m]."""
+        """Arc length of the contact on A (n,) [m]."""
         return self.space_curve.arc_of(self.theta)
 
     @property
     def body_arc(self) -> Array:
-        """How far the contact has run on B (n,) [m], counted along its own way: equal to `space_arc`."""
+        """Arc length of the contact on B (n,) [m], in the direction of its motion: equal to `space_arc`."""
         return self.body_curve.limits[1] - self.body_curve.arc_of(-self.theta)
 
     @property
     def rate(self) -> Array:
-        """ds/dtheta (n,) [m/rad] from the way of the centre; 1 / (curvature_A + curvature_B) says the same."""
+        """ds/dtheta (n,) [m/rad] from the path of the centre; it equals 1 / (curvature_A + curvature_B)."""
         return self.space_curve.speed_of(self.theta)
 
     def rolling(self) -> Rolling:
-        """The body curve rolling on the space curve, started in the middle: it gives the motion back.
+        """The body curve rolling on the space curve, which reproduces the motion; it starts in the middle.
 
-        Its `limits` are the ends of the table up to the error of the tangents there, of the order of `error` per step.
+        Its `limits` are the ends of the table, up to the error of the tangents there, about `error` per step.
         """
         middle = len(self.theta) // 2
         start = float(self.theta[middle])
@@ -121,10 +126,10 @@ class Centrodes(Valid):
 
 @validated
 def centrodes(t: Annotated[Array, of_shape("n")], pose: Poses, twist: Poses) -> Centrodes:
-    """Both curves from times (n,) [s], poses and twists (n, 3) of one body, as a truth or an engine gives them.
+    """Both curves from times (n,) [s], poses and twists (n, 3) of one body.
 
-    Raises InvalidMechanism where the rotation rate vanishes or changes its sign (the centre is at infinity: cut the
-    motion there), where nothing rotates, for fewer than 16 samples, times that don't grow, or numbers not finite.
+    Raises InvalidMechanism if the rotation rate vanishes or changes its sign (the centre is at infinity; cut the motion
+    there), if the body does not rotate, for fewer than 16 samples, times that don't grow, or numbers not finite.
     """
     t, pose = _checked(t, pose)
     if twist.shape != pose.shape:
@@ -151,10 +156,10 @@ def centrodes(t: Annotated[Array, of_shape("n")], pose: Poses, twist: Poses) -> 
 
 @validated
 def from_poses(t: Annotated[Array, of_shape("n")], pose: Poses) -> Centrodes:
-    """Both curves from a table of poses (n, 3) at times (n,) [s] alone: twists by a spline of degree 7.
+    """Both curves from poses (n, 3) at times (n,) [s], with twists by a spline of degree 7.
 
-    Angles may be wrapped, if no two neighbours differ by half a turn. Raises as `centrodes`. Only the order of the
-    poses matters: the curves of a motion don't depend on how fast it is run through.
+    Angles may be wrapped if neighbours differ by less than half a turn. Raises the errors of `centrodes`. The curves
+    depend on the order of the poses, but not on the speed of the motion.
     """
     t, pose = _checked(t, pose)
     full = centrodes(t, pose, spline(t, pose).derivative()(t))
@@ -163,7 +168,7 @@ def from_poses(t: Annotated[Array, of_shape("n")], pose: Poses) -> Centrodes:
     half = spline(t[::2], pose[::2])
     space, _ = instant_centre(half(t), half.derivative()(t))
     order = slice(None) if pose[-1, 2] > pose[0, 2] else slice(None, None, -1)
-    # Not at the very ends: there the half table would extrapolate.
+    # Without the ends, where every second sample would be extrapolated.
     inner = slice(0, len(t) - 1 + len(t) % 2)
     moved = np.linalg.norm(space[inner] - full.space[order][inner], axis=-1)
     return Centrodes(full.pose, full.space, full.body, max(full.error, float(np.max(moved))))
@@ -203,7 +208,7 @@ def _assembled(pose: Array, space: Array, body: Array) -> Centrodes:
 
 
 def _halved(theta: Array, points: NDArray[np.float64]) -> float:
-    """How far the points left out lie from the curve through every second one [m]; NaN if too few are left."""
+    """The largest distance [m] of the other points from the curve through every second one; NaN for few points."""
     if len(theta) < 2 * FEWEST:
         return math.nan
     last = len(theta) - 1 + len(theta) % 2
@@ -211,18 +216,22 @@ def _halved(theta: Array, points: NDArray[np.float64]) -> float:
     return float(np.linalg.norm(spline(theta[::2], points[::2])(theta[left_out]) - points[left_out], axis=-1).max())
 
 
-COLUMNS = ("t", "x", "y", "angle")
+POSE_COLUMNS = ("t", "x", "y", "angle")
 Points = Annotated[int, from_to(2, LARGEST_COUNT)]
 
 
 @dataclass(frozen=True, eq=False)
 class Shapes(Valid):
-    """Points (n, 2) [m] equally far apart along two boundaries: point i of the one meets point i of the other."""
+    """Points at equal distances along two boundaries; point i of one touches point i of the other.
 
-    space: Places  # in the world's frame: the fixed part
-    body: Places  # in the body's frame: the moving part
-    pose: Poses  # (n, 3) m, m, rad: where the moving part is at each contact
-    error: Annotated[float, NOT_FINITE]  # m, see Centrodes.error
+    space (n, 2) [m]: the fixed part in the world's frame; body (n, 2) [m]: the moving part in the body's frame; pose
+    (n, 3) [m, m, rad]: the pose of the moving part at each contact; error [m]: see `Centrodes`.
+    """
+
+    space: Places
+    body: Places
+    pose: Poses
+    error: Annotated[float, NOT_FINITE]
 
 
 @validated
@@ -240,18 +249,18 @@ def shapes_of(motion: Centrodes, points: Points = 400) -> Shapes:
 def poses_from_csv(text: str) -> tuple[Array, Array]:
     """Times (n,) [s] and poses (n, 3) [m, m, rad] from CSV with the columns t, x, y, angle in any order.
 
-    Raises InvalidMechanism that names the missing column or the row that is no number.
+    Raises InvalidMechanism with the missing column, or with the line that has no finite numbers.
     """
     reader = csv.DictReader(io.StringIO(text), skipinitialspace=True)
     names = [name.strip() for name in reader.fieldnames or []]
-    missing = [name for name in COLUMNS if name not in names]
+    missing = [name for name in POSE_COLUMNS if name not in names]
     if missing:
         raise InvalidMechanism(f"poses: the first line has no column {missing[0]!r}; it must name t, x, y and angle")
     reader.fieldnames = names
     rows = []
     for number, row in enumerate(reader, start=2):
         try:
-            rows.append([float(row[name]) for name in COLUMNS])
+            rows.append([float(row[name]) for name in POSE_COLUMNS])
             if not np.isfinite(rows[-1]).all():
                 raise ValueError
         except (TypeError, ValueError):
@@ -264,7 +273,7 @@ def poses_from_csv(text: str) -> tuple[Array, Array]:
 
 @validated
 def as_csv(shapes: Shapes) -> str:
-    """Columns space_x, space_y, body_x, body_y [m] and the moving part's x, y [m] and angle [rad] at that contact."""
+    """CSV with space_x, space_y, body_x, body_y [m] and the moving part's x, y [m] and angle [rad] at each contact."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(["space_x", "space_y", "body_x", "body_y", "x", "y", "angle"])
@@ -274,7 +283,7 @@ def as_csv(shapes: Shapes) -> str:
 
 @validated
 def as_svg(shapes: Shapes, width: Positive = 200.0) -> str:
-    """Both curves to one scale, `width` [mm] wide; the moving part where it is at the first contact, y upwards."""
+    """SVG with both curves at one scale, `width` [mm] wide; the moving part in the pose of the first contact."""
     moved = placed_body(shapes, 0)
     corners = np.vstack([shapes.space, moved])
     low, size = corners.min(axis=0), np.ptp(corners, axis=0)
@@ -297,15 +306,15 @@ def as_svg(shapes: Shapes, width: Positive = 200.0) -> str:
 
 @validated
 def placed_body(shapes: Shapes, index: int) -> Array:
-    """The moving part's points (n, 2) [m] in the world, when contact `index` touches."""
+    """The moving part's points (n, 2) [m] in the world at contact `index`."""
     x, y, angle = shapes.pose[index_of("placed_body", "index", index, len(shapes.pose))]
     return rotated(angle, shapes.body) + np.array([x, y])
 
 
 @validated
 def as_dxf(shapes: Shapes) -> str:
-    """A drawing in metres with two polylines, on the layers SPACE (world's frame) and BODY (body's own frame)."""
-    from ezdxf.filemanagement import new  # only this writer needs it, and it takes longer to load than all else
+    """DXF in metres with two polylines, on the layers SPACE (world's frame) and BODY (body's own frame)."""
+    from ezdxf.filemanagement import new  # slow to import
 
     document = new("R2010", setup=False, units=6)  # 6: metres
     for layer, color, points in (("SPACE", 5, shapes.space), ("BODY", 1, shapes.body)):

@@ -1,7 +1,7 @@
-"""Formulas that the chapter's slips are about, for any state: as printed and as they must be, and the right answers.
+"""Formulas with errors in the chapter, as printed and as corrected, and computations that decide between them.
 
-The slips themselves stand in `reports/pages/errata/slips`, a document each with a script that decides. The formulas
-here are those that an engine's own motion decides.
+The list of errors is in `reports/pages/errata/slips`, one document with a deciding script for each. This module has the
+formulas that are decided by the motion of an engine.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Values:
-    """Three answers to one question, each (n,): as printed, as it must be, and by what decides."""
+    """Three results (n,): of the printed formula, of the corrected one, and of the computation that decides."""
 
     printed: Array
     right: Array
@@ -33,32 +33,32 @@ class Values:
 
     @property
     def miss(self) -> float:
-        """How far the printed formula is from what decides, the largest component, in the unit of the values."""
+        """The largest error of the printed formula, in the unit of the values."""
         return float(np.abs(self.printed - self.decides).max())
 
     @property
     def agreement(self) -> float:
-        """The same of the right formula: rounding."""
+        """The largest error of the corrected formula: rounding."""
         return float(np.abs(self.right - self.decides).max())
 
 
 # Sample 18.15: l1, l2, l3, l4 [m], and theta, beta, phi [rad] at the start.
-BARS = (0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), 1.2)
-START = (math.pi / 2, math.pi / 4, 3 * math.pi / 4)
+BAR_LENGTHS = (0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), 1.2)
+START_ANGLES = (math.pi / 2, math.pi / 4, 3 * math.pi / 4)
 
 
 @validated
 def rates(theta: float, beta: float, phi: float) -> tuple[float, float]:
-    """beta' and phi' (18.71), (18.70) for a unit rate of the crank, literally as printed; they are right."""
-    l1, l2, l3, _ = BARS
+    """beta' and phi' (18.71), (18.70) for a unit rate of the crank, as printed; these formulas are correct."""
+    l1, l2, l3, _ = BAR_LENGTHS
     common = math.sin(beta - phi)
     return l1 * math.sin(phi - theta) / (l2 * common), l1 * math.sin(beta - theta) / (l3 * common)
 
 
 @validated
 def closed_form(theta: float) -> tuple[float, float]:
-    """beta and phi [rad]: C is the intersection of the circle about B with the circle about D that lies left."""
-    l1, l2, l3, l4 = BARS
+    """beta and phi [rad]: C is the left one of the two intersections of the circles about B and D."""
+    l1, l2, l3, l4 = BAR_LENGTHS
     bx, by = l1 * math.cos(theta), l1 * math.sin(theta)
     dx, dy = l4 - bx, -by
     distance = math.hypot(dx, dy)
@@ -68,21 +68,22 @@ def closed_form(theta: float) -> tuple[float, float]:
 
 @validated
 def integrated(theta: float, tolerance: Positive = 1e-3) -> Array:
-    """beta and phi (2,) [rad] by integration of the printed rates; the chapter states no tolerance, and 1e-3 is that of
-    the usual packages.
+    """beta and phi (2,) [rad] by integration of the printed rates.
+
+    The chapter states no tolerance; 1e-3 is the default of common packages.
     """
-    span, atol = (START[0], theta), 1e-3 * tolerance
-    return solve_ivp(lambda at, state: rates(at, *state), span, START[1:], rtol=tolerance, atol=atol).y[:, -1]
+    span, atol = (START_ANGLES[0], theta), 1e-3 * tolerance
+    return solve_ivp(lambda at, state: rates(at, *state), span, START_ANGLES[1:], rtol=tolerance, atol=atol).y[:, -1]
 
 
 def acceleration_of_g(
     heading: float, speed: float, push: float, rate: float, angular_acceleration: float, arm: tuple[float, float]
 ) -> tuple[Array, Array]:
-    """a_G (2,) [m/s^2] of a body on a skate, as printed and as it must be, for a heading [rad], v_C, vdot_C, thetadot,
-    thetaddot and C -> G.
+    """a_G (2,) [m/s^2] of a body on a skate, as printed and corrected, for a heading [rad], v_C, vdot_C, thetadot,
+    thetaddot and the arm C -> G [m] in the body's frame.
 
-    The arm [m] is in the body's frame. d(j')/dt = -thetadot i', so the printed term points along the skate; the right
-    one, d(i')/dt = thetadot j', across it.
+    The printed term has d(j')/dt = -thetadot i', which is along the skate; the correct one has d(i')/dt = thetadot j',
+    which is across it.
     """
     along = np.array([math.cos(heading), math.sin(heading)])
     left = np.array([-along[1], along[0]])
@@ -92,10 +93,10 @@ def acceleration_of_g(
 
 
 def rolling_acceleration() -> Values:
-    """Not a slip: the printed acceleration of O' under the convention of the list, beside the same with -e_n.
+    """The acceleration of O' as printed, which is correct with the chapter's direction of e_n, and with -e_n.
 
-    A circle rolls on the outside of a fixed one; it has turned by theta(t), and the contact stands at an angle
-    psi = theta b / (a + b) of the fixed circle.
+    A circle of radius b rolls on the outside of a fixed one of radius a; it has turned by theta(t), and the contact is
+    at the angle psi = theta b / (a + b) of the fixed circle.
     """
     fixed, rolling, theta, omega, alpha = 0.8, 0.5, 0.7, 1.7, -0.6  # radii a, b [m]; rad, rad/s, rad/s^2
 
@@ -111,7 +112,7 @@ def rolling_acceleration() -> Values:
     return Values(pinned - term, pinned + term, derivative(centre, 0.0, order=2))
 
 
-# Problem 18.5.2. Length of a bar [m]; angles, rates and accelerations [rad, rad/s, rad/s^2] of the two.
+# Problem 18.5.2: the length of a bar [m]; angles [rad], rates [rad/s] and accelerations [rad/s^2] of both bars.
 BAR, PHI, PHI_RATE, PHI_ACCELERATION = 0.7, (0.4, -1.1), (2.0, 3.0), (-5.0, 0.6)
 
 
@@ -142,17 +143,17 @@ def omega_in_the_first_term(bar: BarState) -> Array:
 
 
 def dot_missing_in_i(bar: BarState) -> Array:
-    """Only the i component is wrong: phi2dot for phi2ddot."""
+    """The i component is wrong: phi2dot for phi2ddot."""
     return np.array([omega_in_the_first_term(bar)[0], right(bar)[1]])
 
 
 def exchanged_in_j(bar: BarState) -> Array:
-    """Only the j component is wrong: sine and cosine exchanged."""
+    """The j component is wrong: sine and cosine exchanged."""
     second = bar.rate**2 * math.sin(bar.angle) + bar.angular_acceleration * math.cos(bar.angle)
     return np.array([right(bar)[0], bar.length * second])
 
 
-# Which bar (0: OA, 1: AB) each slip is about, and what it makes of that bar's acceleration.
+# For each error of the chapter, the bar (0: OA, 1: AB) and the wrong formula of its acceleration.
 PENDULUM_SLIPS: dict[int, tuple[int, Callable[[BarState], Array]]] = {
     23: (0, omega_in_the_first_term),
     25: (1, omega_in_the_first_term),
@@ -164,7 +165,7 @@ PENDULUM_SLIPS: dict[int, tuple[int, Callable[[BarState], Array]]] = {
 
 @dataclass(frozen=True)
 class TwoPoints:
-    """What problems 18.5.1 and 18.5.2 ask for, each (2,) in m/s or m/s^2: of A, of B relative to A, and of B."""
+    """Results of problems 18.5.1 and 18.5.2, each (2,) in m/s or m/s^2: of A, of B relative to A, and of B."""
 
     a: Array
     b_relative_to_a: Array
@@ -190,8 +191,8 @@ def accelerations(
     rates: tuple[float, float],
     angular_accelerations: tuple[float, float],
 ) -> TwoPoints:
-    """Problem 18.5.2: a_A = l (phi1'' cos phi1 - phi1'^2 sin phi1, phi1'' sin phi1 + phi1'^2 cos phi1), B/A
-    likewise.
+    """Problem 18.5.2: a_A = l (phi1'' cos phi1 - phi1'^2 sin phi1, phi1'' sin phi1 + phi1'^2 cos phi1); a_B/A has the
+    same form with phi2.
     """
     first, second = (
         length * rotation_acceleration(rate, alpha, direction_of(np.asarray(phi)))

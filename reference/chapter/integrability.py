@@ -1,10 +1,11 @@
-"""Are velocity rows derivatives of positions? Frobenius' theorem on their one-forms, in numbers, for any mechanism.
+"""Integrability of velocity rows: Frobenius' theorem for their one-forms, computed for any mechanism.
 
 The rows J(q) dq - rate dt are one-forms w_i in q and t; the motions they allow are the null space D of the rows. By
-Frobenius the rows are integrable if and only if dw_i(X, Y) = 0 for all X, Y in D, that is, if brackets of allowed
-motions are allowed. Exactness, dw = 0, is sufficient and not necessary, so box 18.3's 'no F exists' alone proves
-nothing: a row may be integrable after division by a factor, or only together with the others. When brackets leave D,
-adding them until nothing new appears gives the configurations that can be reached (Chow): dim D counts the freedoms.
+Frobenius' theorem the rows are integrable if and only if dw_i(X, Y) = 0 for all X, Y in D, that is, if the brackets of
+allowed motions are allowed. Exactness, dw = 0, is sufficient but not necessary. So the argument of box 18.3, that no F
+exists, is no proof: a row may be integrable after division by a factor, or only together with the other rows. If
+brackets are not in D, they are added to it until the dimension no longer grows. That dimension is the number of
+configuration freedoms (Chow's theorem); dim D is the number of velocity freedoms.
 """
 
 from __future__ import annotations
@@ -27,14 +28,15 @@ Place = Annotated[Array, of_shape("coordinates")]
 Pose = Annotated[Array, of_shape("bodies", 3)]
 Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., rows, coordinates), analytic
 
-# Derivatives of brackets by Cauchy's formula on a circle: the error is about (radius / distance to a
-# singularity)^POINTS, and nesting works because everything stays analytic.
-RADIUS = 0.03
-POINTS = 8
+# Derivatives of brackets by Cauchy's formula on a circle. The error is about
+# (CIRCLE_RADIUS / distance to a singularity)^CIRCLE_SAMPLES. Derivatives can be nested, since all functions are
+# analytic.
+CIRCLE_RADIUS = 0.03
+CIRCLE_SAMPLES = 8
 GROWTH_TOLERANCE = 1e-6
-# A rank must hold in a neighbourhood; these fixed, irrational-looking directions away from the pose test it there.
-SPREAD = 0.1
-PLACES = 4
+# A rank must be constant in a neighbourhood: it is computed at the pose and at NEIGHBOURS - 1 others this far from it.
+NEIGHBOUR_DISTANCE = 0.1
+NEIGHBOURS = 4
 
 
 @validated
@@ -49,9 +51,8 @@ def null_space(rows: Annotated[Array, of_shape("rows", "coordinates")]) -> Array
 def exterior_derivatives(rows: Rows, place: Place) -> Array:
     """dw_i (rows, coordinates, coordinates) of the one-forms w_i at a place: d_j w_ik - d_k w_ij, by complex step."""
     shifted = place + 1j * COMPLEX_STEP * np.eye(len(place))
-    slope = np.stack(
-        [np.imag(rows(each)) / COMPLEX_STEP for each in shifted], axis=1
-    )  # (rows, by coordinate j, component k)
+    # slope (rows, coordinate j, component k)
+    slope = np.stack([np.imag(rows(shifted_place)) / COMPLEX_STEP for shifted_place in shifted], axis=1)
     return slope - np.swapaxes(slope, 1, 2)
 
 
@@ -62,52 +63,53 @@ def obstruction(rows: Rows, place: Place) -> Array:
     return np.einsum("ijk,ja,kb->iab", exterior_derivatives(rows, place), basis, basis)
 
 
-def _around(place: Place) -> list[Array]:
-    angles = np.outer(np.arange(1, PLACES), np.arange(1, len(place) + 1)) * np.sqrt(2.0) + np.arange(1, PLACES)[:, None]
-    return [place, *(place + SPREAD * np.sin(angles))]
+def _neighbours(place: Place) -> list[Array]:
+    number = np.arange(1, NEIGHBOURS)
+    angles = np.outer(number, np.arange(1, len(place) + 1)) * np.sqrt(2.0) + number[:, None]
+    return [place, *(place + NEIGHBOUR_DISTANCE * np.sin(angles))]
 
 
 @validated
 def is_integrable(rows: Rows, place: Place) -> bool:
-    """Whether the obstruction vanishes at a place and around it. Raises InvalidMechanism where the rank changes."""
-    places = _around(place)
-    ranks = {null_space(rows(each)).shape[1] for each in places}
+    """Whether the obstruction vanishes at a place and near it. Raises InvalidMechanism if the rank changes there."""
+    places = _neighbours(place)
+    ranks = {null_space(rows(near)).shape[1] for near in places}
     if len(ranks) > 1:
         raise InvalidMechanism(
             "integrability: the rows' rank changes near this pose (a singular position); choose a pose away from it"
         )
-    return all(np.abs(obstruction(rows, each)).max(initial=0.0) < GROWTH_TOLERANCE for each in places)
+    return all(np.abs(obstruction(rows, near)).max(initial=0.0) < GROWTH_TOLERANCE for near in places)
 
 
 def _along(field: Rows, place: NDArray[Any], direction: NDArray[Any]) -> NDArray[Any]:
-    """The derivative of an analytic field along a direction, both at places (..., coordinates), on a circle around."""
-    turns = np.exp(2j * np.pi * np.arange(POINTS) / POINTS)
-    circle = place[..., None, :] + RADIUS * turns[:, None] * direction[..., None, :]
-    return np.einsum("...pi,p->...i", field(circle), 1 / turns) / (POINTS * RADIUS)
+    """The derivative of an analytic field along a direction, both at places (..., coordinates)."""
+    turns = np.exp(2j * np.pi * np.arange(CIRCLE_SAMPLES) / CIRCLE_SAMPLES)
+    circle = place[..., None, :] + CIRCLE_RADIUS * turns[:, None] * direction[..., None, :]
+    return np.einsum("...pi,p->...i", field(circle), 1 / turns) / (CIRCLE_SAMPLES * CIRCLE_RADIUS)
 
 
-def _bracket(one: Rows, two: Rows) -> Rows:
-    return lambda place: _along(two, place, one(place)) - _along(one, place, two(place))
+def _bracket(first: Rows, second: Rows) -> Rows:
+    return lambda place: _along(second, place, first(place)) - _along(first, place, second(place))
 
 
 def _fields(rows: Rows, place: Place) -> list[Rows]:
-    """Analytic fields that span the allowed motions near the place: its null space, projected along the motion."""
-    here = rows(place)
-    _, upper, pivot = qr(here.T, mode="economic", pivoting=True)  # pyright: ignore[reportAssignmentType]
+    """Analytic fields that span the allowed motions near a place: projections of the null space at that place."""
+    at_place = rows(place)
+    _, upper, pivot = qr(at_place.T, mode="economic", pivoting=True)  # pyright: ignore[reportAssignmentType]
     diagonal = np.abs(np.diag(upper))
     rank = int(np.sum(diagonal > RANK_TOLERANCE * max(float(diagonal.max(initial=0.0)), 1.0)))
-    kept = np.sort(pivot[:rank])
+    independent = np.sort(pivot[:rank])
 
     def projected(motion: Array) -> Rows:
         def field(at: NDArray[Any]) -> NDArray[Any]:
-            forms = rows(at)[..., kept, :]
-            square = forms @ np.swapaxes(forms, -1, -2)  # transposed, not conjugated: it must stay analytic
+            forms = rows(at)[..., independent, :]
+            square = forms @ np.swapaxes(forms, -1, -2)  # not conjugated, since it must be analytic
             correction = np.swapaxes(forms, -1, -2) @ np.linalg.solve(square, (forms @ motion)[..., None])
             return motion - correction[..., 0]
 
         return field
 
-    return [projected(motion) for motion in null_space(here).T]
+    return [projected(motion) for motion in null_space(at_place).T]
 
 
 @validated
@@ -115,42 +117,42 @@ def growth(rows: Rows, place: Place) -> tuple[int, ...]:
     """The dimensions of D, D + [D, D], D + [D, D] + [D, [D, D]], ... at a place, until nothing is added.
 
     The first is the number of velocity freedoms, the last that of configuration freedoms: (1,) for a pinned body,
-    (2, 3) for a skate, (2, 3, 4) for a car with a steered wheel. The place must be regular: where a bracket vanishes at
-    this place only (a trailer square to its car) its own brackets are not followed.
+    (2, 3) for a skate, (2, 3, 4) for a car with a steered wheel. The place must be regular: if a bracket vanishes at
+    this place only (a trailer at a right angle to its car), brackets with it are left out.
     """
     generators = _fields(rows, np.asarray(place, dtype=float))
-    known = _rank_basis(np.zeros((len(place), 0)), [np.real(field(place)) for field in generators])
-    dimensions, latest = [known.shape[1]], generators
+    basis = _extended_basis(np.zeros((len(place), 0)), [np.real(field(place)) for field in generators])
+    dimensions, latest = [basis.shape[1]], generators
     while dimensions[-1] < len(place):
-        found: list[Rows] = []
+        added: list[Rows] = []
         for index, field in enumerate(generators):
             for other in latest[index + 1 :] if latest is generators else latest:
                 candidate = _bracket(field, other)
-                wider = _rank_basis(known, [np.real(candidate(place))])
-                if wider.shape[1] > known.shape[1]:
-                    known = wider
-                    found.append(candidate)
-        if not found:
+                wider = _extended_basis(basis, [np.real(candidate(place))])
+                if wider.shape[1] > basis.shape[1]:
+                    basis = wider
+                    added.append(candidate)
+        if not added:
             break
-        dimensions.append(known.shape[1])
-        latest = found
+        dimensions.append(basis.shape[1])
+        latest = added
     return tuple(dimensions)
 
 
-def _rank_basis(known: Array, vectors: list[Array]) -> Array:
-    """An orthonormal basis (coordinates, dimension) of what is known and of the vectors that are new to it."""
+def _extended_basis(basis: Array, vectors: list[Array]) -> Array:
+    """An orthonormal basis (coordinates, dimension), extended by the vectors that it does not span."""
     for vector in vectors:
-        rest = vector - known @ (known.T @ vector)
-        rest -= known @ (known.T @ rest)
+        rest = vector - basis @ (basis.T @ vector)
+        rest -= basis @ (basis.T @ rest)
         size = float(np.linalg.norm(rest))
         if size > GROWTH_TOLERANCE * (1 + float(np.linalg.norm(vector))):
-            known = np.column_stack([known, rest / size])
-    return known
+            basis = np.column_stack([basis, rest / size])
+    return basis
 
 
 @validated
 def mechanism_rows(mechanism: Mechanism) -> Rows:
-    """The one-forms of a mechanism's rows in (q, t), lengths and time in units of its own scales."""
+    """The one-forms of a mechanism's rows in (q, t), in units of the mechanism's own length and time."""
     scale = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     rate = -mechanism.rate * mechanism.time_scale
 
@@ -167,24 +169,24 @@ def mechanism_rows(mechanism: Mechanism) -> Rows:
 
 @validated
 def mechanism_place(mechanism: Mechanism, pose: Pose | None = None) -> Array:
-    """The coordinates of `mechanism_rows` for a pose (bodies, 3), the start unless given."""
+    """The coordinates of `mechanism_rows` for a pose (bodies, 3), by default the start."""
     pose = mechanism.pose if pose is None else pose
     return np.append((pose / mechanism.pose_unit).ravel(), 0.0)
 
 
 @validated
 def mechanism_is_integrable(mechanism: Mechanism, pose: Pose | None = None) -> bool:
-    """Whether all rows together are derivatives of positions (and time), near a pose, the start unless given."""
+    """Whether all rows together are derivatives of positions (and time), near a pose, by default the start."""
     return is_integrable(mechanism_rows(mechanism), mechanism_place(mechanism, pose))
 
 
 @validated
 def freedoms_by_brackets(mechanism: Mechanism, pose: Pose | None = None) -> tuple[int, ...]:
-    """The growth of a mechanism's freedoms, time left out: first of velocity, last of configuration.
+    """The growth of a mechanism's freedoms without time: the first number is of velocity, the last of configuration.
 
-    Nothing here reads a joint's own `holonomic`, so it checks `Mechanism.degrees_of_freedom`. With one freedom of
-    velocity there is nothing to bracket: a car with its steering held can only follow one curve, and its skates are
-    then integrable together, although `degrees_of_freedom` counts four configurations by the kinds of its joints.
+    This is a check of `Mechanism.degrees_of_freedom`, since it does not use `holonomic`. With one freedom of velocity
+    there are no brackets: a car with locked steering follows one curve, so its skates are integrable together, although
+    `degrees_of_freedom` counts four freedoms of configuration by the classes of its joints.
     """
     dimensions = growth(mechanism_rows(mechanism), mechanism_place(mechanism, pose))
     return tuple(dimension - 1 for dimension in dimensions)

@@ -1,10 +1,10 @@
-"""Section 18.5 on skates, computed: the only row of its kind, its Coriolis-like term, and parallel parking (box 18.3).
+"""Section 18.5 on skates: uniqueness of the skate's row, its Coriolis-like term, and parallel parking (box 18.3).
 
-A linear condition on the velocity of one body that is the same everywhere in the plane, in every direction, is written
-in the body's own axes with constant factors: a u + b v + c theta' = 0, u and v [m/s] the velocity of the centre of
-mass along them. With (a, b) = 0 it is theta' = 0, which is integrable. Otherwise divide by |(a, b)|: it is the velocity
-of the point P across a blade, where the line along the blade's left normal n = (a, b) / |(a, b)| is the set of all
-points with n . (k x P) = c / |(a, b)|. So it is a skate, and w . curl w = -(a^2 + b^2) < 0: never integrable.
+A linear condition on the velocity of one body that is the same at every position and direction has constant factors in
+the body's own axes: a u + b v + c theta' = 0, with the velocity u, v [m/s] of the centre of mass along them. With
+(a, b) = 0 it is theta' = 0, which is integrable. Otherwise it is a skate: divided by |(a, b)|, it is the velocity of a
+point P across a blade with the left normal n = (a, b) / |(a, b)|; the points P are those of the line
+n . (k x P) = c / |(a, b)|. Then w . curl w = -(a^2 + b^2) < 0, so it is not integrable.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ BodyRow = tuple[float, float, float]  # (a, b, c) [1, 1, m]
 
 @validated
 def skate_of(row: BodyRow, body: str = "body") -> Skate | None:
-    """The skate that holds a row (a, b, c) in the body's axes; None where it only stops the turning (a = b = 0).
+    """The skate with the row (a, b, c) in the body's axes; None for a row that constrains only rotation (a = b = 0).
 
-    Raises InvalidMechanism for a row of zeros, which holds nothing.
+    Raises InvalidMechanism for a row of zeros.
     """
     a, b, c = row
     size = math.hypot(a, b)
@@ -62,11 +62,11 @@ def frobenius(row: BodyRow, place: Place) -> float:
 
 @validated
 def coriolis_factors(speed: float, rate: float, angular_acceleration: float = 0.0) -> tuple[float, float]:
-    """How often v theta' stands in the acceleration across the direction of v: (of a skate's point, of a slider).
+    """The factor of v theta' in the acceleration across v: (for a skate's point, for a slider).
 
     speed v [m/s], rate theta' [rad/s], neither zero. The skate's point moves at v along i' of its own body, and only i'
-    turns. A slider at the same place moves at v along i' of a turning body: i' turns, and so does its growing arm.
-    Both are derivatives of a velocity or of a position, taken without either formula.
+    rotates. A slider at the same position moves at v along i' of a rotating body: both i' and the arm rotate, and the
+    arm grows. Both factors are numerical derivatives of a velocity or a position, so that no formula is assumed.
     """
     if speed == 0 or rate == 0:
         raise InvalidMechanism(f"coriolis_factors: speed is {speed}, rate is {rate}; neither may be zero")
@@ -75,7 +75,8 @@ def coriolis_factors(speed: float, rate: float, angular_acceleration: float = 0.
         angle = rate * t + angular_acceleration * t * t / 2
         return np.stack([np.cos(angle), np.sin(angle)])
 
-    # At t = 0 the body's axis i' is the world's x: what lies across is y. A radius [s] in which nothing turns far.
+    # At t = 0 the body's axis i' is the world's x axis, so the component across is y. In `near` [s] the angles are
+    # small.
     near = 0.25 / max(abs(rate), math.sqrt(abs(angular_acceleration)))
     skate = derivative(lambda t: speed * along(t), 0.0, radius=near)
     slider = derivative(lambda t: speed * t * along(t), 0.0, order=2, radius=near)
@@ -87,7 +88,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Move(Valid):
-    """First turn about C [rad], then slide along the skate [m]; either may be zero or negative."""
+    """A turn about C [rad], then a slide along the skate [m]; each may be zero or negative."""
 
     turn: float = 0.0
     slide: float = 0.0
@@ -95,9 +96,9 @@ class Move(Valid):
 
 @validated
 def park(start: Triple, goal: Triple, backwards: bool = True) -> tuple[Move, Move]:
-    """Turn, slide, turn from one pose of the skate (x, y, theta) to any other, theta's whole turns included.
+    """Turn, slide and turn from one pose of the skate (x, y, theta) to another; theta may have whole turns.
 
-    With `backwards` the skate may slide the other way, so that the first turn is never beyond a quarter.
+    With `backwards` the skate may slide backwards, so that the first turn is at most a quarter turn.
     """
     distance = math.hypot(goal[0] - start[0], goal[1] - start[1])
     turn = 0.0
@@ -124,14 +125,14 @@ def stops(start: Triple, moves: tuple[Move, ...]) -> Array:
 
 @validated
 def trace(start: Triple, moves: tuple[Move, ...], samples: Count = 16) -> Array:
-    """The poses along the way (points, 3), every turn and slide in `samples` parts, to be drawn; no part skids."""
+    """The poses along the path (points, 3), with every turn and slide in `samples` parts, for drawings."""
     parts = [np.array([start], dtype=float)]
     along = np.linspace(0.0, 1.0, samples + 1)[1:, None]
-    for before, move in zip(stops(start, moves), moves, strict=False):
-        turned = before + np.array([0.0, 0.0, move.turn])
+    for pose, move in zip(stops(start, moves), moves, strict=False):
+        turned = pose + np.array([0.0, 0.0, move.turn])
         ahead = np.array([math.cos(turned[2]), math.sin(turned[2]), 0.0])
         if move.turn:
-            parts.append(before + along * (turned - before))
+            parts.append(pose + along * (turned - pose))
         if move.slide:
             parts.append(turned + along * move.slide * ahead)
     return np.concatenate(parts)
@@ -139,7 +140,7 @@ def trace(start: Triple, moves: tuple[Move, ...], samples: Count = 16) -> Array:
 
 @validated
 def commutator(turn: float, slide: float) -> tuple[Move, ...]:
-    """Turn, slide, turn back, slide back: what is undone one by one does not undo the whole."""
+    """Turn, slide, turn back, slide back: the skate does not return to its start."""
     return Move(turn, slide), Move(-turn, -slide)
 
 
@@ -147,8 +148,8 @@ def commutator(turn: float, slide: float) -> tuple[Move, ...]:
 def commutator_displacement(turn: ArrayLike, slide: ArrayLike) -> Array:
     """The commutator's exact net displacement of C (..., 2) in the start's frame [m]: slide (cos turn - 1, sin turn).
 
-    Divided by turn * slide it tends to (0, 1) as the turn shrinks, with an error of (-turn/2, -turn^2/6): straight
-    sideways, the bracket of turning and sliding, which is just the velocity that the skate forbids.
+    Divided by turn * slide it tends to (0, 1) as the turn tends to zero, with an error of (-turn/2, -turn^2/6). This
+    sideways direction is the bracket of turning and sliding, and the velocity that the skate forbids.
     """
     turn, slide = np.asarray(turn, dtype=float), np.asarray(slide, dtype=float)
     return np.stack([-2 * slide * np.sin(turn / 2) ** 2, slide * np.sin(turn)], axis=-1)
@@ -156,11 +157,11 @@ def commutator_displacement(turn: ArrayLike, slide: ArrayLike) -> Array:
 
 @validated
 def sidestep(distance: float, room: Positive, most_turn: Positive) -> tuple[Move, ...]:
-    """Straight sideways by `distance` [m] (left, or right if negative), never turned more than `most_turn` [rad] nor
-    further along than `room` [m], and no net turn or advance.
+    """Moves straight sideways by `distance` [m] (left, or right if negative), without net turn or advance.
 
-    The symmetric manoeuvre turn, slide, twice the turn back, slide back, turn moves C by exactly (0, 2 slide sin turn);
-    it is repeated as often as the room asks, and the turn fits the distance. Raises InvalidMechanism for no room.
+    No turn is larger than `most_turn` [rad] and no slide longer than `room` [m]. The symmetric manoeuvre turn, slide,
+    twice the turn back, slide back, turn moves C by exactly (0, 2 slide sin turn). It is repeated until the turn is
+    small enough for the distance. Raises InvalidMechanism for a `most_turn` above a quarter turn.
     """
     if most_turn > math.pi / 2:
         raise InvalidMechanism(f"sidestep: most_turn is {most_turn!r} rad; it must be at most a quarter turn, pi/2")

@@ -1,4 +1,4 @@
-"""The integral of a known function of time to rounding, and the derivative of an analytic one.
+"""The integral of a known function of time to rounding, and the derivative of an analytic function.
 
 Integrals: adaptive panels of Chebyshev series. Derivatives: Cauchy's integral over a circle in the complex plane.
 """
@@ -13,40 +13,46 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-# Twenty-four points resolve a panel of about one radian to rounding; the tail of the series tells when they have not.
-DEGREE = 24
+# Points of a panel: they resolve a panel of about one radian to rounding.
+PANEL_POINTS = 24
+# Last coefficients of a series that must be zero to rounding; else the panel is halved.
 TAIL = 4
-# A jump of the integrand can't be resolved, only boxed in: 46 halvings make the box smaller than rounding.
+# Halvings of a panel around a jump of the integrand, after which the panel is shorter than rounding.
 MOST_HALVINGS = 46
 
-_NODES = np.cos(np.pi * (np.arange(DEGREE) + 0.5) / DEGREE)
-_TO_SERIES = (2.0 / DEGREE) * np.cos(np.outer(np.arange(DEGREE), np.pi * (np.arange(DEGREE) + 0.5) / DEGREE))
-_TO_SERIES[0] /= 2
-_INTEGRATE = np.polynomial.chebyshev.chebint(np.eye(DEGREE), lbnd=-1)  # (DEGREE + 1, DEGREE)
+# Chebyshev points of the first kind, and the matrix from values at these points to the series (coefficients, points).
+_GAUSS_POINTS = np.cos(np.pi * (np.arange(PANEL_POINTS) + 0.5) / PANEL_POINTS)
+_TO_COEFFICIENTS = (2.0 / PANEL_POINTS) * np.cos(
+    np.outer(np.arange(PANEL_POINTS), np.pi * (np.arange(PANEL_POINTS) + 0.5) / PANEL_POINTS)
+)
+_TO_COEFFICIENTS[0] /= 2
+_INTEGRATE = np.polynomial.chebyshev.chebint(np.eye(PANEL_POINTS), lbnd=-1)  # (PANEL_POINTS + 1, PANEL_POINTS)
 
 
 def _series_at(series: NDArray[Any], place: NDArray[np.float64]) -> NDArray[Any]:
-    """Clenshaw's sum of one series (times, terms) per place (times,)."""
+    """The value (times,) of a series (times, terms) at each place (times,) by Clenshaw's recurrence."""
     later, latest = np.zeros_like(series[:, 0]), np.zeros_like(series[:, 0])
     for term in range(series.shape[1] - 1, 0, -1):
         later, latest = series[:, term] + 2 * place * later - latest, later
     return series[:, 0] + place * later - latest
 
 
-MOST_PANELS = 100_000  # 40 MB of nodes; a scene of this suite has at most a few hundred
+# 40 MB of points; a scene of this suite has at most a few hundred panels.
+MOST_PANELS = 100_000
 
 
 class Antiderivative:
-    """int_0^t f, for a real or complex f that takes an array of times; grows as far as it is asked, never shrinks.
+    """int_0^t f, for a real or complex f of an array of times; panels are added when a later time is needed.
 
-    `panel` [s] is the longest panel, on the order of the fastest time in f, so that nothing hides between the points.
+    `panel` [s] is the length of the longest panel. It must be about the shortest time scale of f, so that the points
+    resolve f.
     """
 
     def __init__(self, function: Callable[[NDArray[np.float64]], NDArray[Any]], panel: float) -> None:
         self._function = function
         self._panel = panel
         self._edges = np.zeros(1)
-        self._series = np.zeros((0, DEGREE + 1), dtype=complex)
+        self._series = np.zeros((0, PANEL_POINTS + 1), dtype=complex)
         self._starts = np.zeros(1, dtype=complex)
 
     @cached_property
@@ -54,7 +60,7 @@ class Antiderivative:
         return not np.iscomplexobj(self._function(np.zeros(1)))
 
     def _extend(self, end: float) -> None:
-        """Add panels up to `end`, halving those whose series has not come to its end."""
+        """Add panels up to `end`; halve those whose series has not converged."""
         wanted = np.ceil((end - self._edges[-1]) / self._panel)
         if not wanted <= MOST_PANELS:
             raise OverflowError(f"an integral to {end:.3g} in panels of {self._panel:.3g} has too many of them")
@@ -62,26 +68,26 @@ class Antiderivative:
         edges = np.linspace(self._edges[-1], self._edges[-1] + count * self._panel, count + 1)
         left, width = edges[:-1], np.full(count, self._panel)
         rights: list[NDArray[np.float64]] = []
-        found: list[NDArray[Any]] = []
+        integrals: list[NDArray[Any]] = []
         scale = 0.0
         for halving in range(MOST_HALVINGS + 1):
-            places = left[:, None] + 0.5 * width[:, None] * (1 + _NODES)
+            places = left[:, None] + 0.5 * width[:, None] * (1 + _GAUSS_POINTS)
             values = self._function(places.ravel()).reshape(places.shape)
-            series = values @ _TO_SERIES.T
+            series = values @ _TO_COEFFICIENTS.T
             scale = max(scale, float(np.abs(values).max(initial=0.0)))
-            # Rounding of the arguments makes noise of eps * time * slope: don't chase it when panels lie far from zero.
+            # Rounding of the times causes noise of eps * time * slope, which halving does not reduce.
             noise = 4e-15 * scale * max(1.0, (places.max() / self._panel) * 0.02)
             done = np.abs(series[:, -TAIL:]).max(axis=1) <= noise
             done |= np.abs(series[:, -TAIL:]).max(axis=1) * width <= 1e-17 * scale * self._panel
             if halving == MOST_HALVINGS:
                 done[:] = True
-            found.append(0.5 * width[done, None] * (series[done] @ _INTEGRATE.T))
+            integrals.append(0.5 * width[done, None] * (series[done] @ _INTEGRATE.T))
             rights.append(np.stack([left[done], left[done] + width[done]], axis=1))
             if done.all():
                 break
             half = width[~done] / 2
             left, width = np.concatenate([left[~done], left[~done] + half]), np.concatenate([half, half])
-        bounds, panels = np.concatenate(rights), np.concatenate(found)
+        bounds, panels = np.concatenate(rights), np.concatenate(integrals)
         order = np.argsort(bounds[:, 0], kind="stable")
         panels = panels[order]
         self._edges = np.concatenate([self._edges, bounds[order, 1]])
@@ -103,11 +109,12 @@ class Antiderivative:
         return np.real(out) if self._real else out
 
 
-CIRCLE_POINTS = 64  # errors fall like (radius / distance to the next singularity)^points
+# The error is (radius / distance to the nearest singularity)^CIRCLE_POINTS.
+CIRCLE_POINTS = 64
 
 
 def derivative(position: Callable[[Any], Any], t: float, order: int = 1, radius: float = 0.25) -> NDArray[np.float64]:
     """The derivative (...) of an analytic position at time t [s], from its values on a circle of `radius` [s]."""
     circle = radius * np.exp(2j * math.pi * np.arange(CIRCLE_POINTS) / CIRCLE_POINTS)
-    terms = [np.asarray(position(t + z)) / z**order for z in circle]
-    return math.factorial(order) * np.mean(terms, axis=0).real
+    integrand = [np.asarray(position(t + z)) / z**order for z in circle]
+    return math.factorial(order) * np.mean(integrand, axis=0).real

@@ -1,14 +1,15 @@
 """Motions q'' = f(q, q') of a few angles by Gauss-Legendre collocation, all nodes of a step at once.
 
-A step, here a window, has so many stages that their polynomial holds the acceleration to rounding: it gives the motion
-at every time within, and no error of a method is left that would have to be estimated. The accelerations are found by
-repetition: from them follow rates, from these angles, from both new accelerations. A repetition is one call of f with
-all nodes, which for a few angles costs hardly more than a call with one state. That is why it pays: seven times as fast
-as an explicit method of order 8 at the same tolerance, measured with a fast oscillation beside a slow one.
+A step, here called a window, has 24 stages, so that their polynomial represents the acceleration to rounding. The
+polynomial gives the motion at every time within the window, and there is no discretisation error to be estimated. The
+collocation equations are solved by fixed-point (Picard) iteration: rates follow from accelerations, angles from rates,
+new accelerations from both. An iteration is one call of f with all nodes, which for a few angles costs little more than
+a call with one state. The method is seven times as fast as an explicit method of order 8 at the same tolerance,
+measured with a fast and a slow oscillation.
 
-States are carried in extended precision (where numpy.longdouble is more than a double): next to a fast oscillation the
-rounding of an angle, times the square of its frequency, would otherwise be taken for a change of the acceleration, and
-windows would become as short as the steps of an explicit method.
+States are in extended precision if numpy.longdouble has more digits than a double. With a fast oscillation, the
+rounding error of an angle times the square of the frequency is an error of the acceleration; in double precision it
+would limit the windows to the length of the steps of an explicit method.
 """
 
 from __future__ import annotations
@@ -29,29 +30,39 @@ Array = NDArray[np.float64]
 Extended = NDArray[np.longdouble]
 Accelerations = Callable[[Extended, Extended], Extended]  # angles and rates (..., n) to (..., n)
 
+# Stages of a window.
 STAGES = 24
-# Ten times the rounding of a double, for what the polynomial leaves: the order at a window's end is twice as high, so
-# that its error there is far below rounding.
-TOLERANCE = 3e-15
-# The first window is short for any motion; the others grow until this many repetitions are needed: longer ones need
-# more, and save nothing.
+# Stages of the coarser rule, whose difference shows the error.
+COARSE_STAGES = 16
+# Allowed error of the polynomial within a window, ten times the rounding of a double. The order at the window's end is
+# twice as high, so the error there is far below rounding.
+WINDOW_TOLERANCE = 3e-15
+# The first window in units of the start's time scale [rad]: short for any motion.
 FIRST_WINDOW = 0.3
-FEW_REPETITIONS, MANY_REPETITIONS, MOST_REPETITIONS = 9, 12, 30
+# Iterations at which a window is followed by a longer one, by a shorter one, and by a second attempt of half its
+# length.
+FEW_ITERATIONS, MANY_ITERATIONS, MOST_ITERATIONS = 9, 12, 30
+# Factors on the length of a window in these three cases.
 LONGER, SHORTER, HALVED = 1.2, 1 / 1.15, 0.5
-GUESSED = 8  # Legendre coefficients of a window from which the accelerations of the next are guessed
-MOST_WINDOWS = 20_000  # a motion that needs more is creeping up to a singularity
-# Accelerations in double are too rough for windows next to a fast oscillation: from so many on an explicit method is
-# cheaper, a tenth of a second lost.
+# Legendre coefficients of a window from which the accelerations of the next are extrapolated as a first guess.
+GUESS_COEFFICIENTS = 8
+# A motion that needs more windows approaches a singularity.
+MOST_WINDOWS = 20_000
+# Windows after which `motion` changes to the explicit method: with a fast oscillation, accelerations in double
+# precision allow only short windows. The attempt costs a tenth of a second.
 FEW_WINDOWS = 200
-COARSE_STAGES = 16  # of the rule that shows the error of the other
 
 
 class CollocationRule(NamedTuple):
-    """Gauss's rule on a step of length 1."""
+    """Gauss's rule on a step of length 1.
 
-    weights: Extended  # (stages,)
-    matrix: Extended  # (stages, stages) from slopes to increments at the stages
-    coefficients: Extended  # (stages, stages) from slopes to their Legendre coefficients
+    weights (stages,); matrix (stages, stages) from slopes to increments at the stages; coefficients (stages, stages)
+    from slopes to their Legendre coefficients.
+    """
+
+    weights: Extended
+    matrix: Extended
+    coefficients: Extended
 
 
 def legendre(degree: int, x: Extended) -> Extended:
@@ -64,9 +75,9 @@ def legendre(degree: int, x: Extended) -> Extended:
 
 @lru_cache
 def rule_of(stages: int) -> CollocationRule:
-    """The rule with so many stages, to the rounding of numpy.longdouble."""
+    """The rule with this number of stages, to the rounding of numpy.longdouble."""
     nodes = np.polynomial.legendre.leggauss(stages)[0].astype(np.longdouble)
-    for _ in range(3):  # Newton: the table is in double
+    for _ in range(3):  # Newton iterations, since numpy's nodes are doubles
         values = legendre(stages, nodes)
         slope = stages * (nodes * values[stages] - values[stages - 1]) / (nodes**2 - 1)
         nodes = nodes - values[stages] / slope
@@ -81,34 +92,39 @@ def rule_of(stages: int) -> CollocationRule:
 
 
 @dataclass(frozen=True)
-class Windows:
-    """A motion: call it with times (times,) [s] for its angles and rates (times, 2 n), rounded to double."""
+class CollocationMotion:
+    """A function from times (times,) [s] to angles and rates (times, 2 n), rounded to double.
+
+    times (windows + 1,); states (windows + 1, 2 n); slopes: the Legendre coefficients of the accelerations (stages, n)
+    of each window.
+    """
 
     stages: int
-    times: Array  # (windows + 1,)
-    states: Extended  # (windows + 1, 2 n)
-    slopes: list[Extended]  # of each window, the Legendre coefficients of the accelerations (stages, n)
+    times: Array
+    states: Extended
+    slopes: list[Extended]
 
     def __call__(self, t: ArrayLike) -> Array:
         return self.extended(t).astype(float)
 
     def extended(self, t: ArrayLike) -> Extended:
-        """Angles and rates (times, 2 n) with all digits that were carried."""
+        """Angles and rates (times, 2 n) in extended precision."""
         t = np.atleast_1d(np.asarray(t, dtype=float))
         if t.size and not (t.min() >= 0 and t.max() <= self.times[-1]):
             raise ValueError(f"times must lie in [0, {self.times[-1]}] s: the motion integrated")
         out = np.empty((len(t), self.states.shape[1]), dtype=np.longdouble)
         window = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.slopes) - 1)
-        for one in np.unique(window):
-            own = window == one
-            begin, end = self.times[one], self.times[one + 1]
-            angle, rate = np.split(self.states[one], 2)
-            since: Extended = (t[own].astype(np.longdouble) - begin)[:, None]
+        for index in np.unique(window):
+            inside = window == index
+            begin, end = self.times[index], self.times[index + 1]
+            angle, rate = np.split(self.states[index], 2)
+            since: Extended = (t[inside].astype(np.longdouble) - begin)[:, None]
             length = np.longdouble(end) - begin
             part: Extended = since[:, 0] / length
             once, twice = _integrals(self.stages, part)
-            rates = rate + length * (once @ self.slopes[one])
-            out[own] = np.concatenate([angle + since * rate + length**2 * (twice @ self.slopes[one]), rates], axis=1)
+            rates = rate + length * (once @ self.slopes[index])
+            angles = angle + since * rate + length**2 * (twice @ self.slopes[index])
+            out[inside] = np.concatenate([angles, rates], axis=1)
         return out
 
 
@@ -119,22 +135,22 @@ def integrate(
     until: float,
     rate_unit: float,
     stages: int = STAGES,
-    tolerance: float = TOLERANCE,
+    tolerance: float = WINDOW_TOLERANCE,
     most: int = MOST_WINDOWS,
-) -> Windows:
+) -> CollocationMotion:
     """Integrate from angles and rates (n,) at t = 0 to `until` [s]; `rate_unit` [rad/s] is the motion's own rate.
 
-    A window is as short as it takes for its last Legendre coefficient, and for the last repetition, to change rates by
-    less than `tolerance`, in parts of the largest rate. Raises IntegrationFailed if windows vanish or exceed `most`.
+    A window is accepted if its last Legendre coefficient and its last iteration change the rates by less than
+    `tolerance`, relative to the largest rate. Raises IntegrationFailed if windows vanish or exceed `most`.
     """
     rule = rule_of(stages)
-    place, speed = (np.asarray(state, dtype=np.longdouble) for state in (angle, rate))
-    lost = np.zeros((2, len(place)), dtype=np.longdouble)  # what the additions to the state have rounded away
-    start = accelerations(place[None], speed[None])
+    position, speed = (np.asarray(state, dtype=np.longdouble) for state in (angle, rate))
+    compensation = np.zeros((2, len(position)), dtype=np.longdouble)  # rounding of the sums (Kahan)
+    start = accelerations(position[None], speed[None])
     pace = max(float(np.abs(speed).max()), math.sqrt(float(np.abs(start).max())))  # rad/s
     now, length = 0.0, min(until, FIRST_WINDOW / pace) if pace > 0 else until
-    times, states, slopes = [now], [np.concatenate([place, speed])], []
-    guess, tries, longest = np.broadcast_to(start, (stages, len(place))), 0, 0.0
+    times, states, slopes = [now], [np.concatenate([position, speed])], []
+    guess, tries, longest = np.broadcast_to(start, (stages, len(position))), 0, 0.0
     while now < until:
         tries += 1
         if tries > most or not now + length > now or hopeless(now, until, longest, tries, most):
@@ -142,73 +158,72 @@ def integrate(
         length = min(length, until - now)
         then = until if length == until - now else now + length
         exact = np.longdouble(then) - now
-        found, repetitions = _found(accelerations, rule, place, speed, exact, guess, rate_unit, tolerance)
-        if found is None:
+        nodal, iterations = _solve_window(accelerations, rule, position, speed, exact, guess, rate_unit, tolerance)
+        if nodal is None:
             length *= HALVED
-            guess = np.broadcast_to(accelerations(place[None], speed[None]), guess.shape)
+            guess = np.broadcast_to(accelerations(position[None], speed[None]), guess.shape)
             continue
         steps = [
-            exact * speed + exact**2 * (rule.weights @ rule.matrix @ found),
-            exact * (rule.weights @ found),
+            exact * speed + exact**2 * (rule.weights @ rule.matrix @ nodal),
+            exact * (rule.weights @ nodal),
         ]
         moved = []
-        for part, (old, step) in enumerate(zip((place, speed), steps, strict=True)):
-            new = old + (step + lost[part])
-            lost[part] = step + lost[part] - (new - old)
+        for part, (old, step) in enumerate(zip((position, speed), steps, strict=True)):
+            new = old + (step + compensation[part])
+            compensation[part] = step + compensation[part] - (new - old)
             moved.append(new)
-        place, speed = moved
+        position, speed = moved
         longest = max(longest, then - now)
         now = then
         times.append(now)
         states.append(np.concatenate(moved))
-        slopes.append(rule.coefficients @ found)
-        factor = LONGER if repetitions <= FEW_REPETITIONS else SHORTER if repetitions > MANY_REPETITIONS else 1.0
+        slopes.append(rule.coefficients @ nodal)
+        factor = LONGER if iterations <= FEW_ITERATIONS else SHORTER if iterations > MANY_ITERATIONS else 1.0
         length *= factor
-        ahead = legendre(GUESSED - 1, 1 + 2 * (length / float(exact)) * rule.matrix.sum(axis=1))
-        guess = ahead.T @ slopes[-1][:GUESSED]
-    return Windows(stages, np.array(times), np.array(states), slopes)
+        ahead = legendre(GUESS_COEFFICIENTS - 1, 1 + 2 * (length / float(exact)) * rule.matrix.sum(axis=1))
+        guess = ahead.T @ slopes[-1][:GUESS_COEFFICIENTS]
+    return CollocationMotion(stages, np.array(times), np.array(states), slopes)
 
 
-Motion = Windows | integration.Integrated
+Motion = CollocationMotion | integration.Integrated
 
 
 def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarser: float = 1.0) -> Motion:
-    """The motion up to `until` [s] of angles and then, as many, their rates (2 n,), whose `rates` are known in double:
-    times (times,) to states (times, 2 n). By few windows, else by the explicit method of `integration`.
+    """The motion up to `until` [s] of angles and their rates (2 n,), whose `rates` are computed in double precision.
 
-    unit (2 n,): as for `integration.integrate`. `coarser`: by another rule, and letting so many times as much pass.
-    Raises IntegrationFailed.
+    Returns a function from times (times,) to states (times, 2 n). The method is collocation, or the explicit method of
+    `integration` if collocation needs many windows. unit (2 n,): see `integration.integrate`. If `coarser` is not 1, it
+    is a factor on the tolerance, and the rule has COARSE_STAGES. Raises IntegrationFailed.
     """
     state = np.asarray(start, dtype=float)
     half = len(state) // 2
 
     def accelerations(angle: Extended, rate: Extended) -> Extended:
-        found = rates(np.concatenate([angle, rate], axis=-1).astype(float))[..., half:]
-        return found.astype(np.longdouble)
+        return rates(np.concatenate([angle, rate], axis=-1).astype(float))[..., half:].astype(np.longdouble)
 
     stages, pace = STAGES if coarser == 1 else COARSE_STAGES, float(np.asarray(unit)[-1])
     try:
-        with np.errstate(all="ignore"):  # a first guess may lead to where no number is finite
+        with np.errstate(all="ignore"):  # numbers may be not finite for a first guess
             return integrate(
-                accelerations, state[:half], state[half:], until, pace, stages, coarser * TOLERANCE, FEW_WINDOWS
+                accelerations, state[:half], state[half:], until, pace, stages, coarser * WINDOW_TOLERANCE, FEW_WINDOWS
             )
     except IntegrationFailed:
-        return integration.integrate(rates, state, until, coarser * integration.TOLERANCE, unit)
+        return integration.integrate(rates, state, until, coarser * integration.STEP_TOLERANCE, unit)
 
 
 def error_of(rates: Rates, start: ArrayLike, t: ArrayLike, unit: ArrayLike) -> Array:
-    """A bound on the error of `motion` (times,): COARSER times how far it moves by a coarser rule, and rounding."""
+    """A bound (times,) on the error of `motion`: COARSER times its change by a coarser rule, and rounding."""
     times = np.atleast_1d(np.asarray(t, dtype=float))
     until = max(float(times.max()), math.ulp(1.0))
     return bound(*(motion(rates, start, until, unit, factor)(times) for factor in (1.0, COARSER)))
 
 
 def bound(fine: NDArray[Any], coarse: NDArray[Any]) -> Array:
-    """A bound (times,) on the error of states (times, n) from those by a coarser rule; not below rounding."""
+    """A bound (times,), at least rounding, on the error of states (times, n) from the states by a coarser rule."""
     return (COARSER * (np.abs(fine - coarse) + np.finfo(float).eps * np.abs(fine))).max(axis=-1).astype(float)
 
 
-def _found(
+def _solve_window(
     accelerations: Accelerations,
     rule: CollocationRule,
     angle: Extended,
@@ -218,25 +233,25 @@ def _found(
     unit: float,
     tolerance: float,
 ) -> tuple[Extended | None, int]:
-    """The accelerations at the nodes of a window (stages, n), None if it is too long, and the repetitions it took."""
+    """The accelerations at the nodes of a window (stages, n), None if it is too long, and the number of iterations."""
     straight = angle + length * rule.matrix.sum(axis=1)[:, None] * rate
-    found, before = guess, math.inf
-    for repetition in range(1, MOST_REPETITIONS + 1):
-        gained = length * (rule.matrix @ found)
+    nodal, smallest = guess, math.inf
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        gained = length * (rule.matrix @ nodal)
         try:
             new = accelerations(straight + length * (rule.matrix @ gained), rate + gained)
-        except (ArithmeticError, ValueError):  # a first guess may lead to where no number is finite
-            return None, repetition
+        except (ArithmeticError, ValueError):  # numbers may be not finite for a first guess
+            return None, iteration
         largest = unit + float(np.abs(rate + gained).max())
-        change = float(length * np.abs(new - found).max()) / largest
-        found = new
+        change = float(length * np.abs(new - nodal).max()) / largest
+        nodal = new
         if change <= tolerance:
-            last = float(length * np.abs(rule.coefficients[-1] @ found).max()) / largest
-            return (found if last <= tolerance else None), repetition
-        if not change < 2 * before:
-            return None, repetition
-        before = min(before, change)
-    return None, MOST_REPETITIONS
+            last = float(length * np.abs(rule.coefficients[-1] @ nodal).max()) / largest
+            return (nodal if last <= tolerance else None), iteration
+        if not change < 2 * smallest:
+            return None, iteration
+        smallest = min(smallest, change)
+    return None, MOST_ITERATIONS
 
 
 def _integrals(stages: int, part: Extended) -> tuple[Extended, Extended]:
@@ -247,7 +262,7 @@ def _integrals(stages: int, part: Extended) -> tuple[Extended, Extended]:
 
 
 def _integrated(values: Extended) -> Extended:
-    """From polynomials (n + 1, times) of degrees 0 to n, or integrals of them, to those of all but the last.
+    """The integrals (n, times) of all but the last of polynomials (n + 1, times) of degrees 0 to n, or their integrals.
 
     On a step of length 1 the integral of P_n is (P_(n+1) - P_(n-1)) / (4 n + 2), and that of P_0 is (P_1 + P_0) / 2.
     """

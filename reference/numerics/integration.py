@@ -1,8 +1,8 @@
-"""A motion that no formula gives: integrated at tight tolerance, evaluated between the steps without loss, error shown.
+"""Integration of motions without a closed form, at tight tolerance, with dense output of full order and a known error.
 
 The method is the explicit Runge-Kutta pair of order 8 by Dormand and Prince (Hairer, Norsett, Wanner, Solving Ordinary
-Differential Equations I, II.10). Between its steps the usual interpolant has order 7 only; here every time asked for is
-reached by one more step of order 8 from the knot before it, shorter than a step that was accepted, all times at once.
+Differential Equations I, II.10). Its usual interpolant has order 7 only. Here the state at a time between two steps is
+the result of one more step of order 8, from the step before it; this is done for all times at once.
 """
 
 from __future__ import annotations
@@ -21,26 +21,27 @@ from reference.checks import InvalidMechanism
 Array = NDArray[np.float64]
 Rates = Callable[[Array], Array]  # (..., states) -> (..., states), autonomous
 
-# Near the smallest that double precision can tell apart over a step; the coarser one shows the error.
-TOLERANCE = 3e-14
+# Relative error of a step: about the smallest that double precision allows.
+STEP_TOLERANCE = 3e-14
+# Factor on the tolerance of the second integration, whose difference to the first shows the error.
 COARSER = 10.0
-MOST_STEPS = 20_000  # a motion that needs more is creeping up to a singularity
-# Of the time in which the start changes by itself and its unit: short for any motion, and a step may grow tenfold in
-# one. What scipy would choose has seconds in it.
+# A motion that needs more steps approaches a singularity.
+MAX_STEPS = 20_000
+# The first step, relative to the time in which the start state changes by itself and its unit. It is short for any
+# motion, since a step may grow tenfold. The choice of scipy depends on the unit of time.
 FIRST_STEP = 1e-3
-
-
-# After so many steps, a motion that would take too many even if all others were so much longer is given up.
-ENOUGH, LENGTHENED = 200, 100.0
+# After this number of steps, the integration stops if it would need too many even with steps LENGTHENED times as long.
+ENOUGH_STEPS = 200
+LENGTHENED = 100.0
 
 
 class IntegrationFailed(ArithmeticError, InvalidMechanism):
-    """The motion could not be carried on: it meets a singularity, or the numbers overflow."""
+    """The motion could not be continued: it meets a singularity, or the numbers overflow."""
 
 
 def hopeless(now: float, until: float, longest: float, taken: int, most: int) -> bool:
-    """Whether a motion can't come from `now` to `until` [s] in `most` steps, `longest` [s] of those `taken`."""
-    return taken > ENOUGH and until - now > LENGTHENED * longest * (most - taken)
+    """Whether an integration at `now` can't reach `until` [s] in `most` steps; `longest` [s] of the steps `taken`."""
+    return taken > ENOUGH_STEPS and until - now > LENGTHENED * longest * (most - taken)
 
 
 @dataclass(frozen=True)
@@ -65,25 +66,25 @@ class Integrated:
 
 
 def integrate(
-    rates: Rates, start: ArrayLike, until: float, tolerance: float = TOLERANCE, unit: ArrayLike = 1.0
+    rates: Rates, start: ArrayLike, until: float, tolerance: float = STEP_TOLERANCE, unit: ArrayLike = 1.0
 ) -> Integrated:
-    """Integrate from `start` (states,) at t = 0 to `until` [s]. The error let pass in a step is `tolerance` of
-    |y| + `unit` (states,), in which each state is counted: 1 for radians, `units_of_motion` for rates too.
+    """Integrate from `start` (states,) at t = 0 to `until` [s].
 
-    Raises IntegrationFailed when the step vanishes or a number is no longer finite.
+    The error of a step may be `tolerance` times |y| + `unit`, where `unit` (states,) is the unit of each state: 1 for
+    radians; see `units_of_motion` for rates. Raises IntegrationFailed if the step vanishes or a number is not finite.
     """
     state = np.asarray(start, dtype=float)
     units = np.broadcast_to(np.asarray(unit, dtype=float), state.shape)
     with np.errstate(invalid="ignore", over="ignore"):
         pace = float(np.max(np.abs(rates(state)) / (np.abs(state) + units), initial=0.0))  # 1/s
     first = min(until, FIRST_STEP / pace) if math.isfinite(pace) and pace > 0 else until
-    passed: Any = tolerance * units  # scipy's types have a number only
-    solver = DOP853(lambda _, y: rates(y), 0.0, state, until, first_step=first, rtol=tolerance, atol=passed)
+    absolute: Any = tolerance * units  # scipy's types allow only a number here
+    solver = DOP853(lambda _, y: rates(y), 0.0, state, until, first_step=first, rtol=tolerance, atol=absolute)
     times, states, longest = [0.0], [state], 0.0
     while solver.status == "running":
         longest = max(longest, times[-1] - times[-2]) if len(times) > 1 else 0.0
-        many = hopeless(times[-1], until, longest, len(times), MOST_STEPS)
-        message = f"it takes more than {MOST_STEPS} steps" if many else solver.step()
+        too_many = hopeless(times[-1], until, longest, len(times), MAX_STEPS)
+        message = f"it takes more than {MAX_STEPS} steps" if too_many else solver.step()
         if message or not np.all(np.isfinite(solver.y)):
             raise IntegrationFailed(f"the motion stops at t = {solver.t:.6g} s: {message or 'a number is not finite'}")
         times.append(float(solver.t))
@@ -92,23 +93,24 @@ def integrate(
 
 
 def units_of_motion(rates: Rates, start: ArrayLike, coordinate: float = 1.0) -> Array:
-    """The unit of each state (states,) of a motion whose states are coordinates and then, as many, their rates.
+    """The unit of each state (states,): coordinates, followed by their rates.
 
-    A coordinate's is given: 1 rad, or its start where that is near a rest that it will leave. The rates' is the fastest
-    of the start, or of an oscillation of one unit that has the start's largest acceleration, once round in a period. It
-    scales with the second: an error let pass in rad/s would be none in nanoseconds, and all of them in years.
+    The unit of coordinates is the argument: 1 rad, or the start value of a coordinate that begins near an equilibrium.
+    The unit of rates is the fastest rate of the start, or the rate of an oscillation with an amplitude of one unit and
+    the largest acceleration of the start, divided by 2 pi. It scales with the unit of time, so that the allowed error
+    does not depend on that unit.
     """
     state = np.asarray(start, dtype=float)
     half = len(state) // 2
     fastest, hardest = np.abs(state[half:]).max(), np.abs(rates(state)[half:]).max()
     turning = float(max(fastest, math.sqrt(hardest * coordinate))) / (2 * math.pi)
-    return np.repeat([coordinate, turning or 1.0], half)  # at rest for ever, any unit will do
+    return np.repeat([coordinate, turning or 1.0], half)  # any unit for a motion that stays at rest
 
 
 def error_of(
-    rates: Rates, start: ArrayLike, t: ArrayLike, tolerance: float = TOLERANCE, unit: ArrayLike = 1.0
+    rates: Rates, start: ArrayLike, t: ArrayLike, tolerance: float = STEP_TOLERANCE, unit: ArrayLike = 1.0
 ) -> Array:
-    """How far the motion moves (times,) when its tolerance is made 10 times coarser: a bound on its own error."""
+    """The change (times,) of the motion when its tolerance is 10 times coarser: a bound on its own error."""
     t = np.atleast_1d(np.asarray(t, dtype=float))
     until = max(float(t.max()), math.ulp(1.0))
     fine, coarse = (integrate(rates, start, until, factor * tolerance, unit)(t) for factor in (1.0, COARSER))

@@ -31,7 +31,7 @@ Seven = tuple[Positive, Positive, Positive, Positive, Positive, Positive, Positi
 
 BODIES = ("K1", "K2", "K3", "K4", "K5", "K6", "K7")
 QUARTER = math.pi / 2
-TOLERANCE = gauss.TOLERANCE / 10  # the last of the printed digits, which other methods confirm
+TOLERANCE = gauss.WINDOW_TOLERANCE / 10  # the last of the printed digits, which other methods confirm
 SIDES = (-1, 1, -1)  # of the joints of the three pairs: bar and rod, upper, lower
 
 
@@ -178,7 +178,7 @@ class Andrews(PlacedScene):
         until = max(self.duration, float(times.max()))
         return shared(Andrews._solved, self, until)(times * self.rate_unit) * [1.0, self.rate_unit]
 
-    def _solved(self, until: float) -> gauss.Windows:
+    def _solved(self, until: float) -> gauss.CollocationMotion:
         """The motion of time in units of 1 / `rate_unit`."""
 
         def accelerations(phi: Array, rate: Array) -> Array:

@@ -14,7 +14,7 @@ import numpy as np
 
 from engines import Engine, method_name, registry
 from engines.loading import is_reference, load
-from reference.scene import Scene, told_apart, with_settings
+from reference.scene import Scene, with_distinct_names, with_settings
 from reports.cli.selection import choose_engines, choose_scenes, known_engines
 from reports.cli.streams import said
 from reports.model import catalogue
@@ -60,7 +60,7 @@ class Reference:
             scenes = tuple(scene for scene in catalogue.SCENES if scene.name == self.word)
         if not scenes:
             raise ValueError(f"no scene is called {self.word!r}")
-        return told_apart(tuple(with_settings(scene, dict(self.settings)) for scene in scenes))
+        return with_distinct_names(tuple(with_settings(scene, dict(self.settings)) for scene in scenes))
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from typing import Any
 from engines import Engine, method_name, registry
 from engines.loading import Kind, registered
 from reference.checks import InvalidMechanism, validate
-from reference.scene import TIMES, Scene
+from reference.scene import TIME_ANNOTATIONS, Scene
 from reports.model.page import Page
 
 # Letters of a page's name, which becomes the name of files; what can stand in a file's name and in a link.
@@ -40,7 +40,7 @@ def _no_scene(value: Any) -> str:
     if type(value).__module__.startswith("reference."):  # held by tests; some integrate a motion for their horizon
         return ""
     try:  # a scene has looked at these when it was made, but not at those that a property works out
-        for name, annotation in TIMES:
+        for name, annotation in TIME_ANNOTATIONS:
             validate(f"scene {value.name!r}", name, getattr(value, name, None), annotation)
     except InvalidMechanism as reason:
         return str(reason)

@@ -23,7 +23,7 @@ from reference.scenes.four_bar.linkage import FourBar
 Array = NDArray[np.float64]
 
 States = Callable[[Array], Any]
-TOLERANCE = gauss.TOLERANCE / 10  # a thousand roundings of numpy.longdouble, or one of a double
+TOLERANCE = gauss.WINDOW_TOLERANCE / 10  # a thousand roundings of numpy.longdouble, or one of a double
 # Of the longest bar's square: what t comes down to where bars lie in line but for the rounding of their lengths.
 PASSED = 1e-7
 

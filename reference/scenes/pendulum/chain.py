@@ -196,12 +196,14 @@ class Chain(Valid):
             return integrate(self.rates, start, until, unit=units_of_motion(self.rates, start))
         return self._by_windows(start, until)
 
-    def _by_windows(self, start: Array, until: float, coarse: bool = False) -> gauss.Windows:
+    def _by_windows(self, start: Array, until: float, coarse: bool = False) -> gauss.CollocationMotion:
         """The same for a few links; `coarse`: by another rule that lets ten times as much pass."""
         angle, rate = np.split(start, 2)
         unit = float(units_of_motion(self.rates, start)[-1])
         stages, tolerance = (gauss.COARSE_STAGES, gauss.COARSER) if coarse else (gauss.STAGES, 1.0)
-        return gauss.integrate(self._accelerations, angle, rate, until, unit, stages, tolerance * gauss.TOLERANCE)
+        return gauss.integrate(
+            self._accelerations, angle, rate, until, unit, stages, tolerance * gauss.WINDOW_TOLERANCE
+        )
 
     @validated
     def motion(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> tuple[Array, Array, Array]:
@@ -218,7 +220,7 @@ class Chain(Valid):
     def inertia_matrix(self) -> Array:
         """The constants M_ij of the kinetic energy sum M_ij cos(angle_i - angle_j) rate_i rate_j / 2 (links, links).
 
-        Raises InvalidMechanism where that would take more than checks.LARGEST.
+        Raises InvalidMechanism where that would take more than checks.LARGEST_ARRAY.
         """
         require_room("chain: the dense inertia matrix", (self.links, self.links))
         below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])  # mass hanging from each link

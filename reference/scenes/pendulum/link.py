@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import elliprf
 
-from reference.checks import LARGEST, NonNegative, Positive, Valid, require_room, validated
+from reference.checks import LARGEST_ARRAY, NonNegative, Positive, Valid, require_room, validated
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.plane import rotation_acceleration, rotation_velocity
@@ -201,7 +201,7 @@ class Pendulum(Valid):
             cycle = speed * self.period
             bases = [first] if self.excess > 0 else [first, cycle / 2 - first]
             turns = until / self.period + 4
-            require_room("Pendulum.passages: the times", (len(bases), math.ceil(min(turns, LARGEST))))
+            require_room("Pendulum.passages: the times", (len(bases), math.ceil(min(turns, LARGEST_ARRAY))))
             arguments = np.add.outer(bases, cycle * np.arange(-2, math.ceil(turns) - 2)).ravel()
         times = np.sort((arguments - start) / speed)
         return times[(times >= 0) & (times <= until)]

@@ -90,7 +90,7 @@ class RollingBody(Valid):
     @cached_readonly
     def _units(self) -> Array:
         """Next to a rest, a start that hardly moves is known no better than the rounding of its angle lets it go."""
-        unknown = np.finfo(float).eps * self._pace_of_rest / gauss.TOLERANCE
+        unknown = np.finfo(float).eps * self._pace_of_rest / gauss.WINDOW_TOLERANCE
         return np.maximum(units_of_motion(self._rates, self.start), [0.0, unknown])
 
     @cached_property
