@@ -54,9 +54,9 @@ from engines.mujoco import declared
 from engines.mujoco.engine import MuJoCo
 from engines.mujoco.methods import DEFAULT as C_DEFAULT
 from engines.mujoco.methods import TUNED as C_TUNED
-from engines.mujoco.model import Model
+from engines.mujoco.model import MuJoCoModel
 from engines.mujoco.releases import full_inertia
-from engines.mujoco.running import UNSOLVED
+from engines.mujoco.running import MAX_RESIDUAL
 from engines.sampling import sampled
 from engines.single_run import ExtraEngine, Recorded, quiet
 from engines.tree import Tree, spanning_tree
@@ -128,13 +128,13 @@ class Mjx(ExtraEngine):
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
     ) -> tuple[Instant, ...] | NotDeclared:
         """Accelerations in the states that MuJoCo steps to; those of loops and rods lack their velocity terms."""
-        settings = replace(self.settings, tolerance=min(self.settings.tolerance, declared.SOLVED))
+        settings = replace(self.settings, tolerance=min(self.settings.tolerance, declared.ROUNDING_TOLERANCE))
         self.capability.require(built or mechanism)
         self.require()
         solved = replace(self, settings=settings).model(built or mechanism, dt)
-        check = declared.WITHOUT if lacks_velocity_terms(spanning_tree(mechanism)) else "acceleration"
+        check = declared.NO_VELOCITY_TERMS if lacks_velocity_terms(spanning_tree(mechanism)) else "acceleration"
 
-        def accelerations(model: Model, data: Any) -> Array:
+        def accelerations(model: MuJoCoModel, data: Any) -> Array:
             return solved.accelerations(model, data)
 
         return declared.instants(settings, mechanism, dt, steps, built or mechanism, accelerations, check)
@@ -149,7 +149,7 @@ class Mjx(ExtraEngine):
         model = self.settings.model(mechanism, dt)
         if unit := _smallest_unit(model):
             model = self.settings.model(mechanism, dt, unit=unit)
-        if model.hooks.control or model.hooks.before:
+        if model.hooks:
             raise Unsupported("some rows are written by callbacks of MuJoCo's C code, which MJX does not run")
         try:
             return DeviceModel(model)
@@ -160,7 +160,7 @@ class Mjx(ExtraEngine):
             raise Unsupported(f"JAX finds no device to run on here: JAX_PLATFORMS is {platforms!r}") from None
 
 
-def _smallest_unit(model: Model) -> float | None:
+def _smallest_unit(model: MuJoCoModel) -> float | None:
     """The unit of mass [kg] in which the hardest row's compliance R, an inverse mass, is LEAST_COMPLIANCE mjMINVAL.
 
     None where there are no rows, and so nothing to solve. A force of 1e-8 of it is then 4e-23 / R [N, R in 1/kg]: with
@@ -205,13 +205,13 @@ def _programs() -> tuple[Any, Any, Any]:
 class DeviceModel:
     """MuJoCo's model, and the same on the device."""
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: MuJoCoModel) -> None:
         self.mujoco, (self.mjx, self._steps, self._forward) = model, _programs()
         self._held, self._data = self.mjx.put_model(model.compiled), model.start()
         rows = model.rows + len(model.driven)
         self.size = Size(model.compiled.nbody - 1, model.compiled.nq, rows, self._data.nefc)
 
-    def accelerations(self, model: Model, data: Any) -> Array:
+    def accelerations(self, model: MuJoCoModel, data: Any) -> Array:
         """The accelerations (nv,) that MJX gives the state of a mujoco.MjData of `model`.
 
         It compiles a program for each structure of a model, about 10 s, and keeps it.
@@ -240,12 +240,12 @@ class DeviceModel:
                 residual = max(residual, _solver_residual(model, data, answer))
         motion = model.tree.motion(*(values[:, model.address] for values in (position, velocity, acceleration)))
         warnings = (NO_VELOCITY_TERM,) if lacks_velocity_terms(model.tree) else ()
-        if not residual <= UNSOLVED:
+        if not residual <= MAX_RESIDUAL:
             warnings += (f"ours: the solver missed the accelerations by {residual:.1g} of themselves",)
-        return Recorded(*motion, stepping, *model.loads(), warnings)
+        return Recorded(*motion, stepping, *model.inertias_and_gravity(), warnings)
 
 
-def _solver_residual(model: Model, data: Any, answer: Any) -> float:
+def _solver_residual(model: MuJoCoModel, data: Any, answer: Any) -> float:
     """The residual of MJX's `answer` in the equations that it solves, relative to the accelerations in them.
 
     Its cost is a parabola, whose least is one step of Newton's away: H^-1 g, H = M + J^T R^-1 J, and g the residual of

@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from engines.contract import Unsupported
 from engines.remembered import by_identity
-from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Weld
+from reference.joints import Drive, Joint, Pin, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.plane import components
+from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
 Holding = Pin | Slot | Weld  # the joints that may hold a link
@@ -77,12 +78,28 @@ class Tree:
         return sum(len(link.columns) for link in self.links)
 
     @cached_property
+    def _held(self) -> frozenset[str]:
+        closing = {joint.name for joint in self.loops}
+        holding = (joint.name for joint in self.mechanism.joints if isinstance(joint, Holding))
+        return frozenset((*(name for name in holding if name not in closing), *(drive.name for drive in self.kept)))
+
+    def holds(self, joint: Joint) -> bool:
+        """Whether the tree's coordinates satisfy the joint by themselves."""
+        return joint.name in self._held
+
+    @cached_property
     def _looping(self) -> frozenset[str]:
-        rows = (joint for joint in self.mechanism.joints if isinstance(joint, Rod | Gear))
-        return frozenset(joint.name for joint in (*self.loops, *self.geared, *rows))
+        geared = {drive.name for drive in self.geared}
+        return frozenset(
+            joint.name
+            for joint in self.mechanism.joints
+            if not (self.holds(joint) or isinstance(joint, Skate | Roll))
+            and (not isinstance(joint, Drive) or joint.name in geared)
+        )
 
     def closes_by(self, joint: Joint) -> bool:
-        """Whether the joint is one of the loops, or a drive, rod or gear, which are held like one."""
+        """Whether rows of a solver hold the joint like one that closes a loop: neither the tree, nor a driven
+        coordinate, skates and rolls not counted."""
         return joint.name in self._looping
 
     @property
@@ -94,13 +111,18 @@ class Tree:
         """The tree coordinates whose sum, with these signs, is the rotation of the second body against the first."""
         signs: dict[int, float] = {}
         for name, sign in ((second, 1.0), (first, -1.0)):
-            at = None if name is None else self.mechanism.body_index(name)
-            while at is not None:
-                link = self._link_of[at]
+            for link in self.path_to_ground(name):
                 if link.rotation is not None:
                     signs[link.rotation] = signs.get(link.rotation, 0.0) + sign
-                at = link.parent
         return {column: sign for column, sign in sorted(signs.items()) if sign}
+
+    def path_to_ground(self, name: str | None) -> Iterator[Link]:
+        """The links from a body to the ground, the body's own first; none for the ground."""
+        body = None if name is None else self.mechanism.body_index(name)
+        while body is not None:
+            link = self._link_of[body]
+            yield link
+            body = link.parent
 
     @cached_property
     def _link_of(self) -> dict[int, Link]:

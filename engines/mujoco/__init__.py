@@ -1,4 +1,4 @@
-"""MuJoCo as an engine under test: planar joints as a tree, loops as soft equality constraints."""
+"""MuJoCo as an engine under test: planar joints as a tree, and loops as soft equality constraints."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
 
 def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Any:
     """A mujoco.MjModel as a mechanism of the plane: see `engines.mujoco.reading.read`."""
-    # By its name: what only reads a user's models is no part of what an engine's rows depend on.
+    # Imported by name: the reading of models is not a dependency of the rows of an engine.
     return import_module("engines.mujoco.reading").read(model, data, without)
 
 

@@ -1,11 +1,10 @@
-"""The law of one instant that MuJoCo's own model declares, beside the accelerations and reactions that it gives.
+"""The accelerations and reactions at one instant that MuJoCo computes, beside those by the law that its model declares.
 
-The law has the mechanism's own rows J and their change, and of MuJoCo only what it says of its constraints: how stiff
-a row is (`efc_KBIP`), how far it gives way (`efc_R`), and the armature of driven coordinates. Each of MuJoCo's rows has
-to be one of the mechanism's, seen in the coordinates of its tree.
+The law has the rows J of the mechanism and their rate of change. From MuJoCo it takes the stiffness (`efc_KBIP`) and
+compliance (`efc_R`) of each constraint row, and the armature of driven coordinates. Each of MuJoCo's rows must be a
+combination of the mechanism's rows of one joint, in the coordinates of the tree.
 
-MJX runs the same compiled model, so how far a row gives way is what MuJoCo says of it. MJX leaves out the velocity
-terms of loops and rods, so the law of these is that without them.
+MJX runs the same compiled model. It leaves out the velocity terms of loops and rods, and so does its law.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -24,8 +23,8 @@ from numpy.typing import NDArray
 from engines import Instant, NotDeclared, Regularisation
 from engines.constrained import Constrained, constrained
 from engines.mujoco.joints.skate import STEPWISE, slip_damping
-from engines.mujoco.model import Model
-from reference.joints import Drive, Skate
+from engines.mujoco.model import MuJoCoModel
+from reference.joints import Drive, Joint, Skate
 from reference.mechanism import Mechanism
 
 if TYPE_CHECKING:
@@ -33,9 +32,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-SAME_ROW = 1e-9  # of a row's length: what the sums of a chain of ten bodies leave
-SOLVED = 1e-28  # the square of a rounding: with this tolerance the solver leaves nothing else
-WITHOUT = "without velocity terms"  # the law that MJX obeys for loops and rods
+SAME_ROW = 1e-9  # relative to a row's length: the rounding of sums along a chain of ten bodies
+ROUNDING_TOLERANCE = 1e-28  # about the square of a rounding: with this tolerance the solver's error is rounding
+NO_VELOCITY_TERMS = "without velocity terms"  # the name of the law that MJX obeys for loops and rods
 
 
 def instants(
@@ -44,87 +43,95 @@ def instants(
     dt: float,
     steps: int,
     built: Mechanism,
-    accelerations: Callable[[Model, Any], Array] | None = None,
+    accelerations: Callable[[MuJoCoModel, Any], Array] | None = None,
     check: str = "acceleration",
 ) -> tuple[Instant, ...] | NotDeclared:
-    """Accelerations and reactions at the start and, with `steps`, after so many steps; see `engines.Engine.instants`.
+    """Accelerations and reactions at the start and, with `steps`, after that many; see `engines.Engine.instants`.
 
-    `accelerations(model, data)` replaces those of MuJoCo, without reactions; `check` may be WITHOUT.
+    `accelerations(model, data)` replaces those of MuJoCo, without reactions; `check` may be NO_VELOCITY_TERMS.
     """
     if reason := why_no_law(engine, mechanism, dt):
         return NotDeclared(reason)
-    engine = replace(engine, tolerance=min(engine.tolerance, SOLVED), estimates=False)
+    engine = replace(engine, tolerance=min(engine.tolerance, ROUNDING_TOLERANCE), estimates=False)
     run = engine.build(built, dt)
     model = run.model
-    if model.halves:
+    if model.split_bodies:
         return NotDeclared("a body that is cut into halves is another mechanism at one instant")
-    start, told = model.start(), run(1, max(steps, 1))
-    if any("the solver missed" in warning for warning in told.warnings):
+    start, motion = model.start(), run(1, max(steps, 1))
+    if any("the solver missed" in warning for warning in motion.warnings):
         return NotDeclared("it says itself that its solver ended too early")
-    softness, model = engine.regularisation(mechanism, dt), replace(model, mechanism=mechanism)
-    later = steps and told.reset_at is None and np.isfinite(told.pose).all()
+    regularisation, model = engine.regularisation(mechanism, dt), replace(model, mechanism=mechanism)
+    has_end = steps and motion.reset_at is None and np.isfinite(motion.pose).all()
     out: list[Instant] = []
-    with model.hooked():
-        for sample, data in enumerate((start, run.data) if later else (start,)):
+    with model.callback_installed():
+        for sample, data in enumerate((start, run.data) if has_end else (start,)):
             mujoco.mj_forward(model.compiled, data)
-            here = State.of(mechanism, model, data, softness)
-            law = here.law(velocity_term=check != WITHOUT)
-            found = here.motion(data.qacc if accelerations is None else accelerations(model, data))
-            state = here.pose, here.twist
-            out.append(Instant(check, state, found, law.motion, (here.free, here.twist / mechanism.time_scale)))
+            state = DeclaredState.of(mechanism, model, data, regularisation)
+            law = state.law(velocity_term=check != NO_VELOCITY_TERMS)
+            computed = state.motion(data.qacc if accelerations is None else accelerations(model, data))
+            at, scales = (state.pose, state.twist), (state.free, state.twist / mechanism.time_scale)
+            out.append(Instant(check, at, computed, law.motion, scales))
             if accelerations is None:
-                out.append(Instant("reaction", state, told.reaction[sample], law.force))
+                out.append(Instant("reaction", at, motion.reaction[sample], law.force))
     return tuple(out)
 
 
 def why_no_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> str:
-    """The reason why constructions of a mechanism obey no law of an instant; empty if they do."""
+    """The reason why a construction of the mechanism obeys no law of an instant; empty if each obeys one."""
     if engine.drive != "inertia" and any(all(joint.is_angular) for joint in mechanism.joints):
         return f"a drive by {engine.drive!r} obeys no law of an instant"
     if engine.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints):
         return "a blade whose row is that of another pose obeys no law of an instant"
-    softness = engine.regularisation(mechanism, dt)
-    if softness is not None and not softness.complete:
+    regularisation = engine.regularisation(mechanism, dt)
+    if regularisation is not None and not regularisation.complete:
         return "contacts, and rows that are held over a step, obey no law of an instant"
     return ""
 
 
 @dataclass(frozen=True, eq=False)
-class State:
-    """A state of a model and the rows of its law there."""
+class DeclaredState:
+    """A state of a model and the rows of its declared law there.
+
+    `free` (bodies, 3): accelerations without joints. `aimed` (rows,): J a less its velocity term. `compliance` (rows,
+    rows): a matrix C with C C^T the compliance of the rows. `by_solver` (rows,): whether MuJoCo's solver holds the row,
+    and not the tree.
+    """
 
     mechanism: Mechanism
-    model: Model
+    model: MuJoCoModel
     data: Any
     pose: Array  # (bodies, 3)
     twist: Array
     free: Array
-    aimed: Array  # (rows,): what J a is to be, beside the velocity term
-    give: Array  # (rows, rows)
-    solved: Array  # (rows,): which rows are the solver's, the others being held by the tree
+    aimed: Array
+    compliance: Array
+    by_solver: Array
 
     @classmethod
-    def of(cls, mechanism: Mechanism, model: Model, data: Any, softness: Regularisation | None) -> State:
-        """What `data` holds after mj_forward. Raises RuntimeError where rows are lacking."""
+    def of(
+        cls, mechanism: Mechanism, model: MuJoCoModel, data: Any, regularisation: Regularisation | None
+    ) -> DeclaredState:
+        """The state of `data` after mj_forward. Raises RuntimeError where MuJoCo's rows are not the mechanism's."""
         pose, twist, _ = _motion(model, data, data.qacc)
-        give, aimed, solved = _declared(mechanism, model, data, softness, pose, twist)
-        return cls(mechanism, model, data, pose, twist, mechanism.unconstrained(pose, twist), aimed, give, solved)
+        rows = _declared_rows(mechanism, model, data, regularisation, pose, twist)
+        return cls(mechanism, model, data, pose, twist, mechanism.unconstrained(pose, twist), *rows)
 
     def motion(self, accelerations: Array) -> Array:
         """Accelerations (bodies, 3) of the bodies for those (nv,) of the coordinates."""
         return _motion(self.model, self.data, accelerations)[2]
 
     def law(self, velocity_term: bool = True) -> Constrained:
-        """Accelerations (bodies, 3) and forces (rows,); without it, the solver's rows lack their `velocity_term`.
+        """Accelerations (bodies, 3) and forces (rows,) by the law.
 
-        A row of the tree's coordinates is J D with D their directions, and its velocity term (J D)' is what then lacks.
-        So J a is what it is where no coordinate accelerates.
+        Without `velocity_term`, the solver's rows lack it. In the coordinates of the tree a row is J D, with D the
+        directions of the coordinates, and the term is that of (J D)'. J a is then the value with zero accelerations of
+        the coordinates.
         """
         rows, right = self.mechanism.rows(self.pose), self.mechanism.bias(self.pose, self.twist)
         if not velocity_term:
             coasting = self.motion(np.zeros(self.model.compiled.nv))
-            right = np.where(self.solved, rows @ coasting.reshape(-1), right)
-        return constrained(rows, right + self.aimed, self.mechanism.inertias, self.free, self.give)
+            right = np.where(self.by_solver, rows @ coasting.reshape(-1), right)
+        return constrained(rows, right + self.aimed, self.mechanism.inertias, self.free, self.compliance)
 
     def coordinates(self, velocity_term: bool = True) -> Array:
         """The accelerations (tree coordinates,) of the law."""
@@ -135,7 +142,7 @@ class State:
 
 
 def jacobian(compiled: Any, data: Any) -> Array:
-    """MuJoCo's rows (rows, nv), whichever way it stores them."""
+    """MuJoCo's constraint rows (rows, nv), which it stores dense or sparse."""
     if not mujoco.mj_isSparse(compiled):
         return data.efc_J[: data.nefc * compiled.nv].reshape(data.nefc, compiled.nv)
     dense = np.zeros((data.nefc, compiled.nv))
@@ -143,84 +150,121 @@ def jacobian(compiled: Any, data: Any) -> Array:
     return dense
 
 
-def _declared(
-    mechanism: Mechanism, model: Model, data: Any, softness: Regularisation | None, pose: Array, twist: Array
+def _declared_rows(
+    mechanism: Mechanism,
+    model: MuJoCoModel,
+    data: Any,
+    regularisation: Regularisation | None,
+    pose: Array,
+    twist: Array,
 ) -> tuple[Array, Array, Array]:
-    """How the rows give way (rows, rows), what they aim at beside their velocity term, and which the solver has."""
+    """`aimed`, `compliance` and `by_solver` of a DeclaredState. Raises RuntimeError for rows that do not match."""
     rows, compiled = mechanism.rows(pose), model.compiled
-    give, aimed, solved = np.zeros((len(rows), len(rows))), np.zeros(len(rows)), np.zeros(len(rows), dtype=bool)
+    compliance, aimed, by_solver = np.zeros((len(rows), len(rows))), np.zeros(len(rows)), np.zeros(len(rows), bool)
     in_tree = rows @ _directions(model, data)
     gap, slip = np.nan_to_num(mechanism.gap(pose, data.time)), mechanism.slip(pose, twist)
-    # What the coordinates of the tree can't move, but by rounding of arms, is held by them.
+    # The tree holds a row that its coordinates can't change, except by the rounding of arms.
     rounding = 10 * np.finfo(float).eps * float(np.abs(pose[:, :2]).max())
     length = np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
-    loose = np.abs(in_tree).max(axis=1, initial=0.0) > SAME_ROW * length + rounding
-    lines = jacobian(compiled, data)
-    seen, beside = model.address, [column for column in range(compiled.nv) if column not in model.address]
-    waiting = [number for number, line in enumerate(lines) if np.linalg.norm(line) > SAME_ROW]  # one lies across
+    is_loose = np.abs(in_tree).max(axis=1, initial=0.0) > SAME_ROW * length + rounding
+    solver_rows = jacobian(compiled, data)
+    unused = [number for number, row in enumerate(solver_rows) if np.linalg.norm(row) > SAME_ROW]  # some are empty
     begin = 0
     for joint in mechanism.joints:
         part = slice(begin, begin + joint.size)
         begin = part.stop
-        if not loose[part].any():
+        if not is_loose[part].any():
             continue
-        turned = np.flatnonzero(in_tree[part.start])
-        if isinstance(joint, Drive) and len(turned) == 1 and compiled.dof_armature[turned[0]] > 0:
-            # Its armature is a further inertia of this rotation alone: as a row, it gives way by the inverse.
-            give[part, part] = 1 / np.sqrt(compiled.dof_armature[turned[0]] * model.unit)
+        columns = np.flatnonzero(in_tree[part.start])
+        if isinstance(joint, Drive) and len(columns) == 1 and compiled.dof_armature[columns[0]] > 0:
+            # The armature adds inertia to this rotation alone: as a row, its compliance is the inverse.
+            compliance[part, part] = 1 / np.sqrt(compiled.dof_armature[columns[0]] * model.unit)
             continue
-        matching = _within(lines, waiting, in_tree[part], seen)[: joint.size]
-        if len(matching) < joint.size:
-            raise RuntimeError(f"MuJoCo has {len(matching)} constraints for {joint.name!r}, not {joint.size}")
-        waiting, solved[part] = [number for number in waiting if number not in matching], True
-        # MuJoCo's rows are these times ours.
-        factors = np.linalg.lstsq(in_tree[part][:, seen].T, lines[matching][:, seen].T, rcond=None)[0].T
-        # A clock beside the tree, by which a drive is geared, gives way by the inverse of its own inertia.
-        clock = np.sum(lines[matching][:, beside] ** 2 / compiled.dof_M0[beside], axis=1)
-        give[part, part] = np.linalg.solve(factors, np.diag(np.sqrt((data.efc_R[matching] + clock) / model.unit)))
-        if softness is not None and _is_written(compiled, data.efc_id[matching[0]]):
-            # A row that callbacks write; a skate's brings a damping of its own.
-            damping = slip_damping(mechanism) if isinstance(joint, Skate) else softness.damping
-            aimed[part] = -softness.stiffness * gap[part] - damping * slip[part]
-            continue
-        # Each of MuJoCo's rows has a stiffness of its own. A clock begins at zero, and is not quite where the rate
-        # would have it: forces accelerate even so large an inertia a little.
-        rate = joint.turning_rate if isinstance(joint, Drive) else 0.0
+        numbers = _rows_in_span(solver_rows, unused, in_tree[part], model.address)[: joint.size]
+        if len(numbers) < joint.size:
+            raise RuntimeError(f"MuJoCo has {len(numbers)} constraints for {joint.name!r}, not {joint.size}")
+        unused, by_solver[part] = [number for number in unused if number not in numbers], True
+        joint_rows = _JointRows(model, data, joint, numbers, solver_rows[numbers], in_tree[part])
+        compliance[part, part] = joint_rows.compliance
+        if regularisation is not None and _is_user_row(compiled, data.efc_id[numbers[0]]):
+            # A user row; that of a skate has a damping of its own.
+            damping = slip_damping(mechanism) if isinstance(joint, Skate) else regularisation.damping
+            aimed[part] = -regularisation.stiffness * gap[part] - damping * slip[part]
+        else:
+            aimed[part] = joint_rows.aimed(gap[part], slip[part])
+    if unused:
+        raise RuntimeError(f"constraint {unused[0]} of MuJoCo's is none of the mechanism's rows")
+    return aimed, compliance, by_solver
+
+
+@dataclass(frozen=True, eq=False)
+class _JointRows:
+    """MuJoCo's rows of one joint: their indices, the rows (size, nv), and the joint's rows in the tree (size, nv)."""
+
+    model: MuJoCoModel
+    data: Any
+    joint: Joint
+    numbers: list[int]
+    rows: Array
+    in_tree: Array
+
+    @property
+    def beside(self) -> list[int]:
+        """The coordinates that are not of the tree: clocks, against which a sum of coordinates is driven."""
+        return [column for column in range(self.model.compiled.nv) if column not in self.model.address]
+
+    @property
+    def factors(self) -> Array:
+        """The matrix (size, size) that takes the joint's rows to MuJoCo's."""
+        seen = self.model.address
+        return np.linalg.lstsq(self.in_tree[:, seen].T, self.rows[:, seen].T, rcond=None)[0].T
+
+    @property
+    def compliance(self) -> Array:
+        """The matrix (size, size) of which C C^T is the compliance; a clock adds the inverse of its inertia."""
+        clock = np.sum(self.rows[:, self.beside] ** 2 / self.model.compiled.dof_M0[self.beside], axis=1)
+        roots = np.sqrt((self.data.efc_R[self.numbers] + clock) / self.model.unit)
+        return np.asarray(np.linalg.solve(self.factors, np.diag(roots)), dtype=np.float64)
+
+    def aimed(self, gap: Array, slip: Array) -> Array:
+        """J a (size,) beside its velocity term, from the stiffness and damping of each of MuJoCo's rows.
+
+        A clock begins at zero, and is not exactly at its prescribed angle: forces accelerate even its inertia a little.
+        """
+        data, beside, factors = self.data, self.beside, self.factors
+        rate = self.joint.turning_rate if isinstance(self.joint, Drive) else 0.0
         clocks = data.qpos[beside] - rate * data.time, data.qvel[beside] - rate
-        ahead, faster = (lines[matching][:, beside] @ late for late in clocks)
-        stiffness, damping, impedance, _ = data.efc_KBIP[matching].T
-        pull = -stiffness * impedance * (factors @ gap[part] + ahead) - damping * (factors @ slip[part] + faster)
-        aimed[part] = np.linalg.solve(factors, pull)
-    if waiting:
-        raise RuntimeError(f"constraint {waiting[0]} of MuJoCo's is none of the mechanism's rows")
-    return give, aimed, solved
+        ahead, faster = (self.rows[:, beside] @ late for late in clocks)
+        stiffness, damping, impedance, _ = data.efc_KBIP[self.numbers].T
+        pull = -stiffness * impedance * (factors @ gap + ahead) - damping * (factors @ slip + faster)
+        return np.asarray(np.linalg.solve(factors, pull), dtype=np.float64)
 
 
-def _is_written(compiled: Any, equality: int) -> bool:
-    """Whether callbacks write the row of an equality, and not MuJoCo."""
-    tendon = compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_TENDON
-    return bool(tendon and compiled.tendon(compiled.eq_obj1id[equality]).name.startswith("written row"))
+def _is_user_row(compiled: Any, equality: int) -> bool:
+    """Whether callbacks write the row of an equality."""
+    is_tendon = compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_TENDON
+    return bool(is_tendon and compiled.tendon(compiled.eq_obj1id[equality]).name.startswith("written row"))
 
 
-def _within(lines: Array, waiting: list[int], rows: Array, columns: list[int]) -> list[int]:
-    """Which of the waiting lines are sums of the rows."""
-    these, span = lines[waiting][:, columns], rows[:, columns].T
-    left = these.T - span @ np.linalg.lstsq(span, these.T, rcond=None)[0]
-    inside = np.linalg.norm(left, axis=0) <= SAME_ROW * np.linalg.norm(these, axis=1)
-    return [number for number, ok in zip(waiting, inside, strict=True) if ok]
+def _rows_in_span(solver_rows: Array, candidates: list[int], rows: Array, columns: list[int]) -> list[int]:
+    """The candidates among the solver's rows that are combinations of `rows` in these columns."""
+    these, span = solver_rows[candidates][:, columns], rows[:, columns].T
+    residual = these.T - span @ np.linalg.lstsq(span, these.T, rcond=None)[0]
+    is_inside = np.linalg.norm(residual, axis=0) <= SAME_ROW * np.linalg.norm(these, axis=1)
+    return [number for number, inside in zip(candidates, is_inside, strict=True) if inside]
 
 
-def _directions(model: Model, data: Any) -> Array:
-    """The twists (3 bodies, nv) that the coordinates' unit velocities are, in the pose of `data`."""
+def _directions(model: MuJoCoModel, data: Any) -> Array:
+    """The twists (3 bodies, nv) of unit velocities of the coordinates, in the pose of `data`."""
     count = model.tree.coordinates
-    where = np.broadcast_to(data.qpos[model.address], (count, count))
-    _, twists, _ = model.tree.motion(where, np.eye(count), np.zeros((count, count)))
+    position = np.broadcast_to(data.qpos[model.address], (count, count))
+    _, twists, _ = model.tree.motion(position, np.eye(count), np.zeros((count, count)))
     out = np.zeros((3 * len(model.mechanism.bodies), model.compiled.nv))
     out[:, model.address] = twists.reshape(count, -1).T
     return out
 
 
-def _motion(model: Model, data: Any, accelerations: Array) -> tuple[Array, Array, Array]:
+def _motion(model: MuJoCoModel, data: Any, accelerations: Array) -> tuple[Array, Array, Array]:
     """Poses, twists and accelerations (bodies, 3) of a state with these accelerations (nv,)."""
     columns = (values[model.address][None] for values in (data.qpos, data.qvel, accelerations))
     (pose,), (twist,), (change,) = model.tree.motion(*columns)

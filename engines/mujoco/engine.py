@@ -1,11 +1,11 @@
-"""The MuJoCo engine as a value: its settings, what they may be, and the variants and methods that the report shows."""
+"""The MuJoCo engine as a value: its settings, and what they declare of order, enforcement and regularisation."""
 
 from __future__ import annotations
 
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any, Literal, assert_never
 
 import mujoco
 import numpy as np
@@ -26,26 +26,23 @@ from engines.mujoco import declared
 from engines.mujoco.joints.links import DriveBy, RodBy
 from engines.mujoco.joints.roll import RollBy, RollContact
 from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
-from engines.mujoco.joints.slot import SlotBy, resting_line
-from engines.mujoco.model import Coordinates, Model, build_model
-from engines.mujoco.running import ORDER, MuJoCoRun
-from engines.mujoco.solver_check import choose_solver, ease
+from engines.mujoco.joints.slot import SlotBy, free_link_on_fixed_line
+from engines.mujoco.model import MUJOCO_CAPABILITY, Coordinates, MuJoCoModel, build_model
+from engines.mujoco.running import MuJoCoRun
+from engines.mujoco.solver_check import choose_solver, soften_until_solvable
+from engines.mujoco.step_doubling import ORDER
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
 from engines.mujoco.writers import mjcf
 from engines.tree import Tree, spanning_tree
 from reference.checks import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
-from reference.joints import Drive, Joint, Rod, Skate, Slot
+from reference.couplings import Coupling
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast", "discrete"]
 Solver = Literal["Newton", "CG", "PGS"]
 Factorisation = Literal["auto", "dense", "sparse"]
-
-# A loop closed by a spring of some steps: its gap falls as the square of the step, whatever integrates it.
-SPRUNG = ConvergenceOrder(1, gap=2)
-# The same in a motion that is prescribed, where a pose is wrong by its gap alone.
-SPRUNG_PRESCRIBED = ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1)
 
 
 @dataclass(frozen=True)
@@ -54,14 +51,14 @@ class MuJoCo(Engine, Valid):
 
     `coordinates`: "tree" hinges bodies on one another and closes only the loops, "free" gives every body three
     coordinates and makes every pin a constraint. `drive`: see `engines.mujoco.joints.links`; with "inertia" the
-    armature of a driven joint is `armature` times the mechanism's own inertia (the rate is missed by about 0.1 /
-    armature). `solvers` are tried at the start in this order, and the first that solves it is taken. `tolerance`:
-    MuJoCo's, relative to the inertia of what is not driven. `slots`, `skates`, `rolls`, `rods`: the constructions that
-    hold them, see `engines.mujoco.joints`; skates whose rows change once a step are stepped by Euler, since four stages
-    of the same stale row cost more and gain nothing. `estimates`: error estimate by step doubling, with half steps
-    where double ones are inconclusive, if the error falls with the fourth power of the step; see
-    `engines.mujoco.running`. Where the estimate is above `engines.CLAIM` the motion is unresolved.
-    Raises ValueError for a setting that MuJoCo would not understand.
+    armature of a driven joint is `armature` times the mechanism's own inertia (the relative error of the rate is about
+    0.1 / armature). `solvers` are tried at the start in this order, and the first that solves it is taken. `tolerance`:
+    MuJoCo's, relative to the inertia of the coordinates that are not driven. `slots`, `skates`, `rolls`, `rods`: the
+    constructions of these joints, see `engines.mujoco.joints`; skates whose rows change once a step are stepped by
+    Euler, since four stages with the same outdated row cost more and gain nothing. `estimates`: error estimate by step
+    doubling, with half steps where double ones are inconclusive, if the error falls with the fourth power of the step;
+    see `engines.mujoco.step_doubling`. Where the estimate is above `engines.CLAIM` the motion is unresolved.
+    Raises ValueError for a setting that MuJoCo does not know.
     """
 
     name = "mujoco"
@@ -97,28 +94,30 @@ class MuJoCo(Engine, Valid):
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """The integrator's order, reduced where a constraint row is of lower order."""
         tree = self._tree(mechanism)
-        skating, rolling = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Skate, Roll))
-        driven = any(isinstance(joint, Drive) and joint not in tree.kept for joint in mechanism.joints)
-        tied = tree.closed and isinstance(self.stiffness, TiedToStep)
-        order, gap = ORDER if self.integrator == "RK4" else 1, None if tree.closed or rolling else EXACT
-        # The slip of a row that is held at the ends of steps is of first order, at the predicted pose of second.
+        has_skates, has_rolls = _has(mechanism, Skate), _has(mechanism, Roll)
+        is_driven = any(isinstance(joint, Drive) and not tree.holds(joint) for joint in mechanism.joints)
+        is_tied = tree.closed and isinstance(self.stiffness, TiedToStep)
+        order, gap = ORDER if self.integrator == "RK4" else 1, None if tree.closed or has_rolls else EXACT
+        # The slip of a row that holds at the ends of steps is of first order, at the predicted pose of second.
         slip = 2 if self.skates == "predicted tendon" else None
         overwritten = "a state that is overwritten between steps obeys no equation of which an order is known"
-        # The first row whose condition holds.
+        # The first line whose condition holds.
         table: tuple[tuple[bool, ConvergenceOrder | NotDeclared], ...] = (
-            (driven and self.drive == "overwrite", NotDeclared(overwritten)),
+            (is_driven and self.drive == "overwrite", NotDeclared(overwritten)),
             # A contact's row has the velocity and not its change.
-            (rolling and isinstance(self.rolls, RollContact), ConvergenceOrder(1)),
-            (skating and self.skates != "rows", ConvergenceOrder(1, gap=gap, slip=slip)),
-            (tied and order > 1, ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1, integrator=order)),
-            (tied and is_prescribed(mechanism), SPRUNG_PRESCRIBED),
-            (tied, SPRUNG),
-            (tree.closed or rolling or skating, ConvergenceOrder(order, gap=gap)),
-            # Coordinates that turn at a constant rate, which any integrator adds up.
+            (has_rolls and self.uses_contacts, ConvergenceOrder(1)),
+            (has_skates and self.skates != "rows", ConvergenceOrder(1, gap=gap, slip=slip)),
+            # The gap of a loop that a spring of some steps closes falls as the square of the step.
+            (is_tied and order > 1, ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1, integrator=order)),
+            # A pose of a prescribed motion is wrong by the gap alone.
+            (is_tied and is_prescribed(mechanism), ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1)),
+            (is_tied, ConvergenceOrder(1, gap=2)),
+            (tree.closed or has_rolls or has_skates, ConvergenceOrder(order, gap=gap)),
+            # Every integrator is exact for coordinates that turn at a constant rate.
             (turns_steadily(mechanism), ConvergenceOrder(EXACT)),
             (True, ConvergenceOrder(order, gap=EXACT, slip=EXACT)),
         )
-        return next(promise for holds, promise in table if holds)
+        return next(convergence for applies, convergence in table if applies)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
@@ -127,54 +126,59 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
-        """Coordinates of the tree, connects, fixed tendons and contacts are MuJoCo's; rows that callbacks or
-        hooks write are shared; a state that is worked out beside MuJoCo is ours.
+        """MuJoCo holds a joint by coordinates of the tree, connects, fixed tendons and contacts.
+
+        Rows that callbacks write are "engine, our rows", and a state that is overwritten is "ours".
         """
+        MUJOCO_CAPABILITY.require(mechanism)
         tree = self._tree(mechanism)
         match joint:
-            case Drive() if joint not in tree.kept and self.drive == "overwrite":
-                return "ours"
-            case Slot() if tree.closes_by(joint) and self.slots == "rows" and resting_line(joint, tree) is None:
-                return "engine, our rows"
-            case Rod() if self.rods == "rows":
-                return "engine, our rows"
-            case Skate() if self.skates != "blade":
-                return "engine, our rows"
-            case Roll() if self.rolls == "rows":
-                return "engine, our rows"
-        return "engine"
+            case Drive():
+                return "ours" if self.drive == "overwrite" and not tree.holds(joint) else "engine"
+            case Slot():
+                by_row = tree.closes_by(joint) and free_link_on_fixed_line(joint, tree) is None
+                uses_our_rows = self.slots == "rows" and by_row
+            case Rod():
+                uses_our_rows = self.rods == "rows"
+            case Skate():
+                uses_our_rows = self.skates != "blade"
+            case Roll():
+                uses_our_rows = self.rolls == "rows"
+            case Pin() | Weld() | Gear() | Coupling():
+                uses_our_rows = False
+            case _:
+                assert_never(joint)
+        return "engine, our rows" if uses_our_rows else "engine"
 
     def _tree(self, mechanism: Mechanism) -> Tree:
         return spanning_tree(mechanism, hanging=self.coordinates == "tree")
 
     def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
-        """An estimate takes a second run, by double steps."""
+        """An estimate needs a second run, with double steps."""
         return (2.0, 1.0) if self.estimates else (1.0,)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """How loops, skates and rolls give way with steps of dt [s]; None where the tree holds every joint."""
-        tree = self._tree(mechanism)
+        """The regularisation of loops, skates and rolls at steps of dt [s]; None where the tree holds every joint."""
+        tree, stiffness = self._tree(mechanism), self.stiffness
         soft = [joint for joint in mechanism.joints if tree.closes_by(joint) or isinstance(joint, Skate | Roll)]
         if not soft:
             return None
-        rods, skates, rolls = (
-            any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Rod, Skate, Roll)
-        )
-        stiffness = self.stiffness
-        lacking = (rods and self.rods == "tendon") or (skates and self.skates == "blade")
-        if rolls and isinstance(self.rolls, RollContact):
-            stiffness, lacking = Shipped() if self.rolls.steps is None else TiedToStep(self.rolls.steps), True
+        # Rows that lack the velocity term, or hold at the ends of steps.
+        is_incomplete = _has(mechanism, Rod) and self.rods == "tendon"
+        is_incomplete |= _has(mechanism, Skate) and self.skates == "blade"
+        if _has(mechanism, Roll) and isinstance(self.rolls, RollContact):
+            stiffness, is_incomplete = Shipped() if self.rolls.steps is None else TiedToStep(self.rolls.steps), True
         gain, damping = stiffness.gains(mechanism, dt)
         if self.skates == "rows" and all(isinstance(joint, Skate) for joint in soft):
-            damping = slip_damping(mechanism)  # which such a row brings along, whatever the springs of loops have
+            damping = slip_damping(mechanism)  # a property of such rows, whatever the springs of loops are
         softening = stiffness.softening
         if stiffness is self.stiffness and isinstance(stiffness, Hardened) and stiffness.eased:
-            with suppress(Unsupported):  # only a model has the softening of rows that are eased
+            with suppress(Unsupported):  # the softening of eased rows is a property of the model
                 softening = self.model(mechanism, dt).softening or softening
-        # The impedance of a gap of a millimetre and more; as shipped a closed gap is about twice as soft.
+        # The impedance at a gap of a millimetre and more; with MuJoCo's defaults a closed gap is about twice as soft.
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * softening
         rows = tuple(joint in soft for joint in mechanism.joints for _ in range(joint.size))
-        return Regularisation(gain, damping, compliance, rows, complete=not lacking)
+        return Regularisation(gain, damping, compliance, rows, complete=not is_incomplete)
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
@@ -183,18 +187,19 @@ class MuJoCo(Engine, Valid):
         return declared.instants(self, mechanism, dt, steps, built or mechanism)
 
     def stricter(self, mechanism: Mechanism) -> MuJoCo | None:
-        """With a tolerance at which its solver leaves nothing but rounding."""
-        return None if self.tolerance <= declared.SOLVED else replace(self, tolerance=declared.SOLVED)
+        """The same settings with a tolerance at which the solver's error is rounding."""
+        tolerance = declared.ROUNDING_TOLERANCE
+        return None if self.tolerance <= tolerance else replace(self, tolerance=tolerance)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> MuJoCoRun:
         """See the contract of `engines`. Raises Unsupported, or ValueError for a bad step."""
         model = self.model(mechanism, dt)
         data = model.start()
-        _refuse_what_is_huge(data)
+        _refuse_huge_rates(data)
         if self.estimates:
-            # From nothing, Newton's method ends where it sees the cost no longer fall: accelerations of light bodies
-            # then miss 1e-5 of themselves. From there it goes on, as from step to step.
+            # Newton's method ends where the cost no longer falls. If it starts at zero, accelerations of light bodies
+            # then have a relative error of 1e-5. It continues from these, as it does from step to step.
             data.qacc_warmstart[:] = data.qacc
         size = Size(
             bodies=model.compiled.nbody - 1,
@@ -208,21 +213,21 @@ class MuJoCo(Engine, Valid):
         return MuJoCoRun(model, data, size)
 
     @validated
-    def model(self, mechanism: Mechanism, dt: Positive, unit: Positive | None = None) -> Model:
-        """The compiled model alone; `unit`: that of mass [kg], if not `engines.mujoco.model.unit_of_mass`."""
+    def model(self, mechanism: Mechanism, dt: Positive, unit: Positive | None = None) -> MuJoCoModel:
+        """The compiled model; `unit`: that of mass [kg], `engines.mujoco.model.unit_of_mass` if not given."""
         return self._model(mechanism, dt, unit)
 
     @validated
     def text(self, mechanism: Mechanism, dt: Positive) -> str:
         """MJCF that runs without this suite, in kg, with the start as its keyframe.
 
-        Raises Unsupported where rows are written, or compliances changed, while or before it is stepped.
+        Raises Unsupported where our code writes rows or changes compliances.
         """
         return mjcf(self._model(mechanism, dt, 1.0), self.stiffness.softening)
 
-    def _model(self, mechanism: Mechanism, dt: float, unit: float | None = None) -> Model:
-        stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
-        integrator = "Euler" if stepwise else self.integrator
+    def _model(self, mechanism: Mechanism, dt: float, unit: float | None = None) -> MuJoCoModel:
+        is_stepwise = self.skates in STEPWISE and _has(mechanism, Skate)
+        integrator = "Euler" if is_stepwise else self.integrator
         options = {
             "integrator": getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}"),
             "jacobian": getattr(mujoco.mjtJacobian, f"mjJAC_{self.jacobian.upper()}"),
@@ -232,12 +237,16 @@ class MuJoCo(Engine, Valid):
         model = build_model(mechanism, dt, self, options, unit)
         start = choose_solver(model, self.solvers)
         if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
-            return replace(model, softening=ease(model, self.stiffness.softening, start))
+            return replace(model, softening=soften_until_solvable(model, self.stiffness.softening, start))
         return model
 
 
-def _refuse_what_is_huge(data: Any) -> None:
-    """Raise Unsupported for a start that MuJoCo's first step would take for an instability, and reset."""
+def _has(mechanism: Mechanism, kind: type[Joint]) -> bool:
+    return any(isinstance(joint, kind) for joint in mechanism.joints)
+
+
+def _refuse_huge_rates(data: Any) -> None:
+    """Raise Unsupported for a start that MuJoCo takes for an instability, so that it resets at the first step."""
     largest = max(float(np.abs(values).max(initial=0.0)) for values in (data.qvel, data.qacc))
     if largest > mujoco.mjMAXVAL:
         raise Unsupported(
@@ -248,7 +257,7 @@ def _refuse_what_is_huge(data: Any) -> None:
 
 @validated
 def bare_loop(engine: MuJoCo, mechanism: Mechanism, dt: Positive, steps: Count) -> float:
-    """CPU seconds of the plainest loop over `mj_step`: what any user pays, to hold a run's cost against."""
+    """CPU time [s] of a loop over `mj_step` and nothing else, with which the cost of a run is compared."""
     model = engine.model(mechanism, dt)
     compiled, data, advance = model.compiled, model.start(), mujoco.mj_step
     begin = time.process_time()

@@ -1,90 +1,105 @@
-"""Force elements in MuJoCo, all of them in the compiled model: no callback, and smooth in every stage.
+"""Force elements as parts of MuJoCo's model: tendons with stiffness or damping, and actuators of constant force.
 
-Springs and dampers are tendons: spatial between two sites, or, where they turn, fixed, a sum of tree coordinates. A
-constant torque is an actuator on such a sum, a constant force one at a site, measured from a site of the world, so that
-its direction stays; both push by their bias alone, whatever the control.
+A tendon is spatial, between two sites, or fixed, a sum of tree coordinates, where the element turns bodies. An actuator
+pushes by its bias alone, whatever its control: along a fixed tendon for a torque, and at a site for a force. The force
+is measured from a site of the world, so that its direction does not turn.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from engines.mujoco.construction import Building
+from engines.mujoco.builder import ModelBuilder
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
 AUTOMATIC = -1.0  # a springlength that MuJoCo replaces by the length at the start
-
-
-def add_forces(building: Building) -> None:
-    """Add all force elements of the mechanism."""
-    for force in building.mechanism.forces:
-        match force:
-            case Spring():
-                tendon = building.add_between(_name(force), force)
-                tendon.springlength = [force.rest_length] * 2
-                _set(tendon, "stiffness", force.stiffness)
-            case Damper():
-                _set(building.add_between(_name(force), force), "damping", force.damping)
-            case TorsionSpring():
-                _add_torsion_spring(building, force)
-            case TorsionDamper():
-                tendon = _turning(building, force)
-                if tendon is not None:
-                    _set(tendon, "damping", force.damping)
-            case Torque():
-                if force.torque and _turning(building, force) is not None:
-                    _push(building, force, mujoco.mjtTrn.mjTRN_TENDON, [force.torque, *[0.0] * 5])
-            case Force():
-                if any(force.force):
-                    _add_force(building, force)
 
 
 def _name(force: ForceElement) -> str:
     return f"force {force.name}"
 
 
-def _set(tendon: Any, name: str, value: float) -> None:
-    """A stiffness or damping: newer releases have a polynomial there, of which this is the linear part."""
-    size = np.size(getattr(tendon, name, 0.0))
-    setattr(tendon, name, value if size == 1 else [value, *[0.0] * (size - 1)])
+def _set_linear(tendon: Any, field: str, value: float) -> None:
+    """Set the linear part of a stiffness or damping, which is a polynomial in newer releases."""
+    size = np.size(getattr(tendon, field, 0.0))
+    setattr(tendon, field, value if size == 1 else [value, *[0.0] * (size - 1)])
 
 
-def _turning(building: Building, force: TorsionSpring | TorsionDamper | Torque, sense: float = 1.0) -> Any:
-    """A fixed tendon as long as the second body has turned against the first; None if it can't turn against it."""
-    signs = building.tree.turning(force.first, force.second)
-    return building.add_sum(_name(force), {column: sense * sign for column, sign in signs.items()}) if signs else None
+def _add_spring(builder: ModelBuilder, force: Spring) -> None:
+    tendon = builder.add_spatial_tendon(_name(force), force)
+    tendon.springlength = [force.rest_length] * 2
+    _set_linear(tendon, "stiffness", force.stiffness)
 
 
-def _add_torsion_spring(building: Building, force: TorsionSpring) -> None:
-    mechanism = building.mechanism
+def _add_damper(builder: ModelBuilder, force: Damper) -> None:
+    _set_linear(builder.add_spatial_tendon(_name(force), force), "damping", force.damping)
+
+
+def _add_angle_tendon(
+    builder: ModelBuilder, force: TorsionSpring | TorsionDamper | Torque, sign: float = 1.0
+) -> Any | None:
+    """Add a fixed tendon whose length is `sign` times the relative angle; returns None if no coordinate changes it."""
+    factors = builder.tree.turning(force.first, force.second)
+    scaled = {column: sign * factor for column, factor in factors.items()}
+    return builder.add_fixed_tendon(_name(force), scaled) if factors else None
+
+
+def _add_torsion_spring(builder: ModelBuilder, force: TorsionSpring) -> None:
+    mechanism = builder.mechanism
     second, first = (
         0.0 if name is None else mechanism.pose[mechanism.body_index(name), 2] for name in (force.second, force.first)
     )
     rest = float(force.rest_angle - (second - first))  # tree coordinates are zero at the start
-    sense = -1.0 if rest == AUTOMATIC else 1.0
-    tendon = _turning(building, force, sense)
+    sign = -1.0 if rest == AUTOMATIC else 1.0
+    tendon = _add_angle_tendon(builder, force, sign)
     if tendon is not None:
-        tendon.springlength = [sense * rest] * 2
-        _set(tendon, "stiffness", force.stiffness)
+        tendon.springlength = [sign * rest] * 2
+        _set_linear(tendon, "stiffness", force.stiffness)
 
 
-def _add_force(building: Building, force: Force) -> None:
-    site = building.add_site(f"{_name(force)} at", force.second, force.second_point)
-    origin = building.add_site(f"{_name(force)} from", None, (0.0, 0.0))
-    _push(building, force, mujoco.mjtTrn.mjTRN_SITE, [*force.force, *[0.0] * 4], target=site, refsite=origin)
+def _add_torsion_damper(builder: ModelBuilder, force: TorsionDamper) -> None:
+    tendon = _add_angle_tendon(builder, force)
+    if tendon is not None:
+        _set_linear(tendon, "damping", force.damping)
 
 
-def _push(building: Building, force: ForceElement, kind: Any, gear: list[float], **what: str) -> None:
-    """An actuator whose scalar force is one."""
-    building.spec.add_actuator(
+def _add_torque(builder: ModelBuilder, force: Torque) -> None:
+    if force.torque and _add_angle_tendon(builder, force) is not None:
+        _add_actuator(builder, force, mujoco.mjtTrn.mjTRN_TENDON, [force.torque, *[0.0] * 5])
+
+
+def _add_force(builder: ModelBuilder, force: Force) -> None:
+    if not any(force.force):
+        return
+    site = builder.add_site(f"{_name(force)} at", force.second, force.second_point)
+    origin = builder.add_site(f"{_name(force)} from", None, (0.0, 0.0))
+    gear = [*force.force, *[0.0] * 4]
+    _add_actuator(builder, force, mujoco.mjtTrn.mjTRN_SITE, gear, target=site, refsite=origin)
+
+
+def _add_actuator(builder: ModelBuilder, force: ForceElement, kind: Any, gear: list[float], **fields: str) -> None:
+    """Add an actuator of the scalar force 1, which `gear` multiplies."""
+    builder.spec.add_actuator(
         name=_name(force),
         trntype=kind,
         biastype=mujoco.mjtBias.mjBIAS_AFFINE,
         biasprm=[1.0, *[0.0] * 9],
         gainprm=[0.0] * 10,
         gear=gear,
-        **{"target": _name(force), **what},
+        **{"target": _name(force), **fields},
     )
+
+
+# The construction of each kind of force element; every other kind is refused.
+FORCE_CONSTRUCTIONS: Mapping[type, Callable[[ModelBuilder, Any], None]] = {
+    Spring: _add_spring,
+    Damper: _add_damper,
+    TorsionSpring: _add_torsion_spring,
+    TorsionDamper: _add_torsion_damper,
+    Torque: _add_torque,
+    Force: _add_force,
+}

@@ -1,7 +1,7 @@
-"""Every method of MuJoCo as a value: the three variants, what lies between them, and each construction of a joint.
+"""The methods of MuJoCo as values: three variants, methods between them, and methods for single kinds of joints.
 
-METHODS are for every scene. SKATES, ROLLS and SLOTS hold one kind of joint in one way each, for a page that compares
-them; what each way is stands in `engines.mujoco.joints`.
+METHODS are for every scene. SKATES, ROLLS and SLOTS each hold one kind of joint by another construction (see
+`engines.mujoco.joints`), for a page that compares these.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ TUNED = MuJoCo(
     "tuned",
     "RK4",
     TiedToStep(),
-    # As shipped (1e-8) accelerations may miss by about 1e-4 m/s^2: in a slow motion that is all of them.
+    # With MuJoCo's default, 1e-8, accelerations may be wrong by about 1e-4 m/s^2, which is 100 % in a slow motion.
     tolerance=1e-15,
     jacobian="dense",
     islands=False,
@@ -52,11 +52,11 @@ METHODS = (
     replace(TUNED, variant="RK4 alone", stiffness=Shipped(), rolls=RollContact()),
     replace(EXTENDED, variant="extended, free coordinates", coordinates="free"),
 )
-# Another way to prescribe a rate; where nothing is driven it is no method of its own.
+# For mechanisms with drives: another way to prescribe a rate.
 DRIVES = (replace(DEFAULT, variant="default, overwritten crank", drive="overwrite"),)
 
-# A skate beside the variants': the blade of DEFAULT as fast as the step allows, and by the integrator that suits it.
+# The blade of DEFAULT with friction that acts as fast as the step allows, and with Euler, which suits it.
 SKATES = (replace(TUNED, variant="friction blade", skates="blade", integrator="Euler"),)
 ROLLS = (replace(TUNED, variant="contact, stiff Euler", integrator="Euler"),)
-# A slot whose line moves as a row of ours. It is no setting of MuJoCo's, so it is not what `TUNED` itself takes.
+# A slot with a moving line as a user row, which is no setting of MuJoCo's, and so not in `TUNED`.
 SLOTS = (replace(TUNED, variant="tuned, slots as rows", slots="rows"),)

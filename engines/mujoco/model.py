@@ -1,8 +1,8 @@
-"""MuJoCo's model of a mechanism: a tree of planar joints, and for every other joint what its own file makes of it."""
+"""MuJoCo's model of a mechanism: a tree of planar joints, and a construction for every joint that the tree lacks."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -14,26 +14,15 @@ from numpy.typing import NDArray
 
 from engines import Unsupported
 from engines.capability import Capability
-from engines.mujoco.construction import Building, Hooks
-from engines.mujoco.forces import add_forces
-from engines.mujoco.joints.links import (
-    DriveBy,
-    DrivenCoordinate,
-    add_geared_drives,
-    add_gears,
-    add_pins,
-    add_rods,
-    add_welds,
-    driven_coordinates,
-    inertia_scale,
-)
+from engines.mujoco.builder import DrivenCoordinate, Hooks, ModelBuilder, add_body, add_hinge, add_slide
+from engines.mujoco.forces import FORCE_CONSTRUCTIONS
+from engines.mujoco.joints.links import DriveBy, add_drives, add_gears, add_pins, add_rods, add_welds
 from engines.mujoco.joints.roll import add_rolls
 from engines.mujoco.joints.skate import add_skates
 from engines.mujoco.joints.slot import add_slots
 from engines.mujoco.releases import NO_ISLANDS
 from engines.tree import Tree, spanning_tree
 from engines.units import counted_in, power_of_two
-from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -42,131 +31,134 @@ if TYPE_CHECKING:
     from engines.mujoco.engine import MuJoCo
 
 Coordinates = Literal["tree", "free"]
-CAPABILITY = Capability(
-    "mujoco",
-    frozenset({Pin, Weld, Gear, Rod, Slot, Drive, Skate, Roll}),
-    frozenset({Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}),
-)
-LIGHTEST = 1e13  # units of mass in which a body's own mass and inertia are still far above mjMINVAL
+# The construction of each kind of joint, where the tree does not hold it; every other kind is refused. MuJoCo's solver
+# has the rows in the order of this table.
+JOINT_CONSTRUCTIONS: Mapping[type, Callable[[ModelBuilder, Sequence[Any]], None]] = {
+    Pin: add_pins,
+    Slot: add_slots,
+    Weld: add_welds,
+    Rod: add_rods,
+    Gear: add_gears,
+    Drive: add_drives,
+    Skate: add_skates,
+    Roll: add_rolls,
+}
+MUJOCO_CAPABILITY = Capability("mujoco", frozenset(JOINT_CONSTRUCTIONS), frozenset(FORCE_CONSTRUCTIONS))
+# The largest unit of mass, relative to the smallest mass or inertia: that is then far above mjMINVAL.
+MAX_MASS_RATIO = 1e13
 
 
 @dataclass(frozen=True)
-class Model:
-    """A compiled model and what our columns are in it."""
+class MuJoCoModel:
+    """A compiled model, and the meaning of its coordinates, bodies and units.
+
+    `address`: the index of each tree coordinate in qpos and qvel. `rows`: scalar constraints that forces hold, drives
+    not counted; `has_user_rows`: some of them are written by a callback. `start_rates`: the rates at t = 0 of
+    coordinates of no body of the mechanism, by index in qvel. `unit` [kg]: masses, forces and torques of the compiled
+    model are in this unit. `split_bodies`: auxiliary bodies, and the body from which each was split. `softening`: the
+    factor on the compliances where it differs from that of the settings.
+    """
 
     mechanism: Mechanism
     tree: Tree
     compiled: Any  # mujoco.MjModel
-    address: list[int]  # where each tree coordinate stands in qpos, and in qvel
+    address: list[int]
     driven: tuple[DrivenCoordinate, ...]
     drive: DriveBy
     hooks: Hooks = field(default_factory=Hooks)
-    rows: int = 0  # scalar constraints held by forces, drives not counted
-    written: bool = False  # some of them by callback: the dual solver can't serve them
-    start_rates: Mapping[int, float] = field(default_factory=dict)  # of coordinates of no body of the mechanism
-    unit: float = 1.0  # kg: masses, forces and torques in the compiled model are in this
-    halves: tuple[tuple[str, int], ...] = ()  # bodies of the model alone, and the one that each is a part of
+    rows: int = 0
+    has_user_rows: bool = False
+    start_rates: Mapping[int, float] = field(default_factory=dict)
+    unit: float = 1.0
+    split_bodies: tuple[tuple[str, int], ...] = ()
     spec: Any = None  # mujoco.MjSpec
-    softening: float | None = None  # of its rows, where that is not what was asked for
+    softening: float | None = None
 
     @contextmanager
-    def hooked(self) -> Iterator[None]:
-        """The callback in place while this is entered: every step and every reading needs it.
+    def callback_installed(self) -> Iterator[None]:
+        """Install the model's callback, which every step and every evaluation of the model needs.
 
-        MuJoCo's, which is global, is as it was afterwards, whatever happens.
+        MuJoCo's callback is global; the previous one is restored at the end, also after an exception.
         """
-        before = mujoco.get_mjcb_control()
+        previous = mujoco.get_mjcb_control()
         mujoco.set_mjcb_control(self.hooks.control)
         try:
             yield
         finally:
-            mujoco.set_mjcb_control(before)
+            mujoco.set_mjcb_control(previous)
 
-    def loads(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity (2,) [m/s^2], as the compiled model has them."""
+    def inertias_and_gravity(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity (2,) [m/s^2] of the compiled model."""
         compiled = self.compiled
-        places = [compiled.body(f"body {index}").id for index in range(len(self.mechanism.bodies))]
-        mass, inertia = compiled.body_mass[places].copy(), compiled.body_inertia[places, 2].copy()
-        for name, body in self.halves:
+        ids = [compiled.body(f"body {index}").id for index in range(len(self.mechanism.bodies))]
+        mass, inertia = compiled.body_mass[ids].copy(), compiled.body_inertia[ids, 2].copy()
+        for name, body in self.split_bodies:
             half = compiled.body(name).id
             mass[body] += compiled.body_mass[half]
             inertia[body] += compiled.body_inertia[half, 2]
         return self.unit * np.stack([mass, mass, inertia], axis=-1), compiled.opt.gravity[:2].copy()
 
     def start(self) -> Any:
-        """A fresh mujoco.MjData at the mechanism's start, its derived quantities computed."""
+        """A new mujoco.MjData at the mechanism's start, its derived quantities computed."""
         data = mujoco.MjData(self.compiled)
         data.qvel[self.address] = self.tree.start_rates()
         for driven in self.driven:
             data.qvel[self.address[driven.column]] = driven.rate
-        for place, rate in self.start_rates.items():
-            data.qvel[place] = rate
-        with self.hooked():
-            if self.hooks.before:
-                self.hooks.before(self.compiled, data)
+        for index, rate in self.start_rates.items():
+            data.qvel[index] = rate
+        with self.callback_installed():
+            if self.hooks.before_step:
+                self.hooks.before_step(self.compiled, data)
             mujoco.mj_forward(self.compiled, data)
         return data
 
 
 def build_model(
     mechanism: Mechanism, dt: float, settings: MuJoCo, options: Mapping[str, Any], unit: float | None = None
-) -> Model:
+) -> MuJoCoModel:
     """Compile a mechanism for steps of dt [s].
 
-    `options`: fields of MuJoCo's own options, by name; `unit`: that of mass [kg], if not `unit_of_mass`. Raises
-    Unsupported for a joint with no counterpart here.
+    `options`: fields of MuJoCo's own options, by name; `unit`: that of mass [kg], `unit_of_mass` if not given. Raises
+    Unsupported for a joint or force element without a construction.
     """
-    CAPABILITY.require(mechanism)
-    whole, unit = mechanism, unit or unit_of_mass(mechanism)
-    mechanism = counted_in(mechanism, unit)
-    tree = spanning_tree(mechanism, hanging=settings.coordinates == "tree")
-
-    def of(kind: type[Any], joints: Sequence[Any] = mechanism.joints) -> list[Any]:
-        return [joint for joint in joints if isinstance(joint, kind)]
-
-    single = [joint for joint in of(Drive) if joint not in (*tree.kept, *tree.geared)]
-    driven = driven_coordinates(tree, single)
-    spec = _spec(tree, dt, settings.islands, options)
-    if settings.drive == "inertia":
-        for coordinate in driven:
-            spec.joint(f"coordinate {coordinate.column}").armature = settings.armature * inertia_scale(mechanism)
-    building = Building(spec, mechanism, tree, dt, settings.stiffness)
-    add_pins(building, of(Pin, tree.loops))
-    add_slots(building, of(Slot, tree.loops), settings.slots)
-    add_welds(building, of(Weld, tree.loops))
-    add_rods(building, of(Rod), settings.rods)
-    add_gears(building, of(Gear))
-    add_forces(building)
-    clocks = add_geared_drives(building, tree.geared, settings.drive, settings.armature)
-    add_skates(building, of(Skate), settings.skates)
-    add_rolls(building, of(Roll), settings.rolls)
-    written = building.written
-    if written:
-        # The placeholders come last: what stands before them in the solver is then known.
-        user_rows().add_placeholders(building)
-    compiled = _compiled(building)
-    places = [int(compiled.joint(f"coordinate {column}").qposadr[0]) for column in range(tree.coordinates)]
-    rates = {int(compiled.joint(name).dofadr[0]): rate for name, rate in building.start_rates.items()}
-    steady = [*(places[one.column] for one in driven), *(int(compiled.joint(clock).dofadr[0]) for clock in clocks)]
+    MUJOCO_CAPABILITY.require(mechanism)
+    unit = unit or unit_of_mass(mechanism)
+    scaled = counted_in(mechanism, unit)
+    tree = spanning_tree(scaled, hanging=settings.coordinates == "tree")
+    builder = ModelBuilder(_spec(tree, dt, settings.islands, options), scaled, tree, dt, settings)
+    for kind, add_joints in JOINT_CONSTRUCTIONS.items():
+        joints = [joint for joint in scaled.joints if type(joint) is kind and not tree.holds(joint)]
+        if joints:
+            add_joints(builder, joints)
+    for force in scaled.forces:
+        FORCE_CONSTRUCTIONS[type(force)](builder, force)
+    if builder.user_rows:
+        # The placeholders come last: the number of rows before them in the solver is then known.
+        user_rows().add_placeholders(builder)
+    compiled = _compiled(builder)
+    address = [int(compiled.joint(f"coordinate {column}").qposadr[0]) for column in range(tree.coordinates)]
+    steady = [address[driven.column] for driven in builder.driven]
+    steady += [int(compiled.joint(clock).dofadr[0]) for clock in builder.clocks]
     _scale_tolerance_by_free_inertia(compiled, steady)
     multiply_compliances(compiled, settings.stiffness.softening)
-    hooks = sum((bind(compiled, places) for bind in building.binders), Hooks())
-    if written:
-        hooks += Hooks(user_rows().row_callback(compiled, tree, places, written, settings.stiffness.softening))
-    return Model(
-        whole,
+    hooks = sum((make_hooks(compiled, address) for make_hooks in builder.hook_makers), Hooks())
+    if builder.user_rows:
+        callback = user_rows().row_callback(compiled, tree, address, builder.user_rows, settings.stiffness.softening)
+        hooks += Hooks(callback)
+    return MuJoCoModel(
+        mechanism,
         tree,
         compiled,
-        places,
-        driven,
+        address,
+        tuple(builder.driven),
         settings.drive,
         hooks,
-        rows=building.size + sum(joint.size for joint in written),
-        written=bool(written),
-        start_rates=rates,
+        rows=builder.row_count + sum(joint.size for joint in builder.user_rows),
+        has_user_rows=bool(builder.user_rows),
+        start_rates={int(compiled.joint(name).dofadr[0]): rate for name, rate in builder.start_rates.items()},
         unit=unit,
-        halves=tuple(building.halves),
-        spec=spec,
+        split_bodies=tuple(builder.split_bodies),
+        spec=builder.spec,
     )
 
 
@@ -189,19 +181,19 @@ def _spec(tree: Tree, dt: float, islands: bool, options: Mapping[str, Any]) -> A
     return spec
 
 
-def _compiled(building: Building) -> Any:
-    """The mujoco.MjModel. Raises Unsupported where MuJoCo refuses it, or would not read what callbacks write."""
-    option = building.spec.option
-    if building.contact:
+def _compiled(builder: ModelBuilder) -> Any:
+    """The mujoco.MjModel. Raises Unsupported where MuJoCo refuses it, or would not read the rows of a callback."""
+    option = builder.spec.option
+    if builder.needs_contacts:
         option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-    dense = option.jacobian == mujoco.mjtJacobian.mjJAC_DENSE
-    whole = option.disableflags & NO_ISLANDS == NO_ISLANDS
-    if building.written and not (dense and whole):
+    is_dense = option.jacobian == mujoco.mjtJacobian.mjJAC_DENSE
+    has_no_islands = option.disableflags & NO_ISLANDS == NO_ISLANDS
+    if builder.user_rows and not (is_dense and has_no_islands):
         raise Unsupported(
             "rows written in a callback need jacobian='dense' and islands=False: others are read elsewhere"
         )
     try:
-        compiled = building.spec.compile()
+        compiled = builder.spec.compile()
     except ValueError as error:
         raise Unsupported(f"MuJoCo refuses this mechanism: {' '.join(str(error).split())}") from error
     _keep_small_offsets(compiled)
@@ -209,48 +201,39 @@ def _compiled(building: Building) -> Any:
 
 
 def _keep_small_offsets(compiled: Any) -> None:
-    """Let MuJoCo read where sites and shapes are: it puts those within 1e-6 m of their body's origin there.
+    """Make MuJoCo read the positions of sites and shapes that are within 1e-6 m of their body's origin.
 
-    It marks them as in their body's frame when it compiles, and never reads `site_pos`: a spring at an arm of a tenth
-    of a micrometre then turns nothing (4.0.1, asked by a test in `tests/engines/test_mujoco_joints.py`).
+    The compiler marks these as in their body's frame, so that `site_pos` is never read: a spring at an arm of 1e-7 m
+    then turns nothing (4.0.1, checked by a test in `tests/engines/test_mujoco_joints.py`).
     """
     kinds = mujoco.mjtSameFrame
     tables = (compiled.site_pos, compiled.site_sameframe), (compiled.geom_pos, compiled.geom_sameframe)
-    for place, same in tables:
-        whole = np.isin(same, (int(kinds.mjSAMEFRAME_BODY), int(kinds.mjSAMEFRAME_INERTIA)))
-        same[whole & place.any(axis=1)] = int(kinds.mjSAMEFRAME_NONE)
+    for positions, frames in tables:
+        is_at_origin = np.isin(frames, (int(kinds.mjSAMEFRAME_BODY), int(kinds.mjSAMEFRAME_INERTIA)))
+        frames[is_at_origin & positions.any(axis=1)] = int(kinds.mjSAMEFRAME_NONE)
 
 
 def _add_bodies(spec: Any, tree: Tree) -> None:
-    mechanism, placed = tree.mechanism, {}
+    mechanism, added = tree.mechanism, {}
     for link in tree.links:
         body = mechanism.bodies[link.body]
         base = (0.0, 0.0) if link.parent is None else mechanism.bodies[link.parent].pose[:2]
-        parent = spec.worldbody if link.parent is None else placed[link.parent]
-        added = parent.add_body(
-            name=f"body {link.body}",
-            pos=[body.pose[0] - base[0], body.pose[1] - base[1], 0.0],
-            ipos=[0.0, 0.0, 0.0],  # left alone, MuJoCo puts the centre of mass at `pos` once more
-            mass=body.mass,
-            inertia=[body.inertia] * 3,  # only the last is felt in the plane; equal ones satisfy MuJoCo's checks
-            explicitinertial=True,
-        )
-        placed[link.body] = added
+        parent = spec.worldbody if link.parent is None else added[link.parent]
+        position = [body.pose[0] - base[0], body.pose[1] - base[1]]
+        added[link.body] = add_body(parent, f"body {link.body}", body.mass, body.inertia, position)
         axes = {"free": [(1.0, 0.0), (0.0, 1.0)], "slot": [link.direction], "hinge": []}[link.kind]
         for column, axis in zip(link.columns, axes, strict=False):
-            slide = mujoco.mjtJoint.mjJNT_SLIDE
-            added.add_joint(name=f"coordinate {column}", type=slide, axis=[*axis, 0.0])
+            add_slide(added[link.body], f"coordinate {column}", axis)
         if link.rotation is not None:
-            hinge, anchor = mujoco.mjtJoint.mjJNT_HINGE, [*link.anchor, 0.0]
-            added.add_joint(name=f"coordinate {link.rotation}", type=hinge, axis=[0.0, 0.0, 1.0], pos=anchor)
+            add_hinge(added[link.body], f"coordinate {link.rotation}", link.anchor)
 
 
 def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
-    """Ask of the solver what its tolerance asks where nothing is driven; `steady`: what nothing can accelerate.
+    """Scale the solver's tolerance as if the coordinates that nothing can accelerate, `steady`, were not there.
 
-    MuJoCo measures its tolerance by the sum of the inertias on the diagonal of M: that of the start up to 3.12, that of
-    the step in 4.0.1 (`mj_solPrimal` in MuJoCo's engine_solver.c), which heeds no `stat.meaninertia`. An armature of
-    1e8 in it would let a solver that is wrong by all of an acceleration end at once.
+    MuJoCo's tolerance is relative to the sum of the diagonal of M: at the start up to 3.12, and in the present state
+    in 4.0.1 (`mj_solPrimal` in engine_solver.c), which does not read `stat.meaninertia`. With an armature of 1e8 in
+    that sum, a solver would stop at once although its accelerations are wrong by 100 %.
     """
     free = np.delete(compiled.dof_M0, steady)
     if steady and len(free):
@@ -258,15 +241,15 @@ def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
 
 
 def user_rows() -> Any:
-    """The module that writes rows, imported where one is written: it imports numba."""
+    """The module `engines.mujoco.user_rows`, imported only where rows are written: it imports numba."""
     return import_module("engines.mujoco.user_rows")
 
 
 def unit_of_mass(mechanism: Mechanism) -> float:
-    """About the mechanism's mass [kg], or its inertia [kg m^2] where that is the larger number.
+    """A power of two near the mechanism's mass [kg], or its inertia [kg m^2] where that is the larger number.
 
-    A regularisation below mjMINVAL (1e-15) is not taken, and it has a unit: that of an inverse mass, or inertia. Nor is
-    a body lighter than that.
+    MuJoCo takes no regularisation, which is an inverse mass or inertia, below mjMINVAL (1e-15), and no lighter body.
     """
-    mass, least = sum(body.mass for body in mechanism.bodies), min(min(b.mass, b.inertia) for b in mechanism.bodies)
-    return power_of_two(max(mass, min(mass * mechanism.length_scale**2, least * LIGHTEST)))
+    mass = sum(body.mass for body in mechanism.bodies)
+    smallest = min(min(body.mass, body.inertia) for body in mechanism.bodies)
+    return power_of_two(max(mass, min(mass * mechanism.length_scale**2, smallest * MAX_MASS_RATIO)))

@@ -1,4 +1,4 @@
-"""Whether MuJoCo's iterative solver has solved what it was given, and which of its solvers does."""
+"""The residual of MuJoCo's iterative solver, and the choice of a solver by it."""
 
 from __future__ import annotations
 
@@ -11,39 +11,39 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from engines import Unsupported
-from engines.mujoco.model import Model, multiply_compliances
+from engines.mujoco.model import MuJoCoModel, multiply_compliances
 from engines.mujoco.releases import full_inertia
 
-# At the start a solver must find the accelerations to this part of them. Measured: a solver that suits a mechanism
-# leaves 1e-7 or less, one that doesn't leaves 1e-2 or more, and nothing stands between.
-SOLVED = 1e-6
-# The part of an error that an iteration of Newton's may leave: three of them then refine a solution to rounding. Of 850
-# scenes and random mechanisms all but three leave 0.08 or less; those, with 0.13, 0.48 and 2, are softened.
-LOST = 0.1
+# Relative residual up to which a solver has solved the start. Measured: a solver that suits a mechanism has 1e-7 or
+# less, another one 1e-2 or more.
+MAX_START_RESIDUAL = 1e-6
+# Share of an error that may remain after an iteration of Newton's method: three of them then refine a solution to
+# rounding. In 850 scenes and random mechanisms it is at most 0.08, except for three with 0.13, 0.48 and 2.
+MAX_REMAINING_ERROR = 0.1
 
 _factorise, _inverse_condition = get_lapack_funcs(("potrf", "pocon"), dtype=np.float64)
 
 
-def unsolved(compiled: Any, data: Any) -> float:
-    """How far the solver's answer is from the equations that it should solve, relative to the accelerations in them.
+def solver_residual(compiled: Any, data: Any) -> float:
+    """The residual of the solver's answer in its equations, relative to the accelerations in them.
 
-    Newton's law M a = f + J^T F holds exactly in the dual solver, and the constraint law J a + R F = a_ref in the
-    primal ones; what is left of the other is the error. A contact row that opens or slides has another law: only rows
-    that hold are asked. Where R is so small that forces are mostly rounding, the accelerations are held against an
-    exact solution instead.
+    The dual solver satisfies Newton's law M a = f + J^T F exactly, and the primal ones satisfy the constraint law
+    J a + R F = a_ref, so the error is the residual of the other law. A contact row that opens or slides has another
+    law, so only rows that hold are counted. Where R is so small that forces are mostly rounding, the accelerations are
+    compared with an exact solution instead.
     """
     if not data.nefc:
         return 0.0
     momentum, rows = np.empty(compiled.nv), np.empty(data.nefc)
     mujoco.mj_mulM(compiled, data, momentum, data.qacc)
-    left = (momentum - data.qfrc_smooth - data.qfrc_constraint)[None]
-    mujoco.mj_solveM(compiled, data, left, left.copy())
+    newton = (momentum - data.qfrc_smooth - data.qfrc_constraint)[None]
+    mujoco.mj_solveM(compiled, data, newton, newton.copy())
     mujoco.mj_mulJacVec(compiled, data, rows, data.qacc)
     holding = data.efc_state == mujoco.mjtConstraintState.mjCNSTRSTATE_QUADRATIC
     law = (rows - data.efc_aref + data.efc_R * data.efc_force)[holding]
     scale = max(np.abs(data.qacc).max(), np.abs(data.qacc_smooth).max(), np.abs(data.efc_aref).max(), 1e-300)
-    error = max(np.abs(left).max(), np.abs(law).max(initial=0.0)) / scale
-    if not error < SOLVED and not mujoco.mj_isSparse(compiled):
+    error = max(np.abs(newton).max(), np.abs(law).max(initial=0.0)) / scale
+    if not error < MAX_START_RESIDUAL and not mujoco.mj_isSparse(compiled):
         exact = _exact_accelerations(compiled, data, holding)
         if exact is not None:
             error = np.abs(data.qacc - exact).max() / scale
@@ -51,9 +51,12 @@ def unsolved(compiled: Any, data: Any) -> float:
 
 
 def _exact_accelerations(compiled: Any, data: Any, holding: Any) -> Any:
-    """The accelerations with these rows holding and the others idle, by elimination; None if some row slides."""
-    idle = data.efc_state == mujoco.mjtConstraintState.mjCNSTRSTATE_SATISFIED
-    if not np.all(holding | idle):
+    """The accelerations (nv,) where the `holding` rows hold and the others are inactive, by elimination.
+
+    None if a row slides or the matrix is singular.
+    """
+    is_inactive = data.efc_state == mujoco.mjtConstraintState.mjCNSTRSTATE_SATISFIED
+    if not np.all(holding | is_inactive):
         return None
     inertia = full_inertia(compiled, data)
     rows = data.efc_J.reshape(data.nefc, compiled.nv)[holding]
@@ -64,10 +67,11 @@ def _exact_accelerations(compiled: Any, data: Any, holding: Any) -> Any:
         return None
 
 
-def _lost(compiled: Any, data: Any) -> float:
-    """What rounding leaves of an error after one iteration of Newton's: the condition of its Hessian, times that.
+def _remaining_error(compiled: Any, data: Any) -> float:
+    """The share of an error that remains after an iteration of Newton's method, by rounding.
 
-    M + J^T R^-1 J, scaled to a unit diagonal as its Cholesky factor is by nature.
+    It is the condition of the Hessian M + J^T R^-1 J, times the rounding of a double. The Hessian is scaled to a unit
+    diagonal, since the rounding of its Cholesky factor does not depend on such a scale.
     """
     if not data.nefc:
         return 0.0
@@ -82,42 +86,46 @@ def _lost(compiled: Any, data: Any) -> float:
     return np.inf if failed or not inverse > 0 else float(np.finfo(float).eps / inverse)
 
 
-def ease(model: Model, softening: float, start: Any) -> float:
-    """Multiply compliances by 10, at most to MuJoCo's default, until Newton's iterations lose at most LOST in rounding.
+def soften_until_solvable(model: MuJoCoModel, softening: float, start: Any) -> float:
+    """Multiply the compliances by 10, at most to MuJoCo's default, until the Newton matrix is well conditioned.
 
-    Returns the softening that this leads to. `start`: a mujoco.MjData at the start, solved by the model's solver;
-    `softening`: the compliances as a part of MuJoCo's default. 1e-12 is too little where a light body carries a heavy
-    one. Other solvers than Newton's build no such matrix, and keep the compliances.
+    Returns the new softening. `softening`: the compliances relative to MuJoCo's default; `start`: a mujoco.MjData at
+    the start, solved by the model's solver. 1e-12 is too small where a light body carries a heavy one. Solvers other
+    than Newton's build no such matrix, so the compliances do not change.
     """
     compiled = model.compiled
-    if compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON or not unsolved(compiled, start) < SOLVED:
+    if (
+        compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON
+        or not solver_residual(compiled, start) < MAX_START_RESIDUAL
+    ):
         return softening
-    while softening < 1 and not mujoco.mj_isSparse(compiled) and _lost(compiled, start) > LOST:
+    can_check = not mujoco.mj_isSparse(compiled)
+    while softening < 1 and can_check and _remaining_error(compiled, start) > MAX_REMAINING_ERROR:
         softening *= 10
         multiply_compliances(compiled, 10)
         start = model.start()
     return softening
 
 
-def choose_solver(model: Model, solvers: Sequence[str]) -> Any:
-    """Set the first of the solvers that solves the start; the one that comes nearest if none does.
+def choose_solver(model: MuJoCoModel, solvers: Sequence[str]) -> Any:
+    """Set the first of the solvers that solves the start; the one with the smallest residual if none does.
 
-    Returns the mujoco.MjData of the start as that solver solves it. Newton is the fastest and as exact as any on a few
-    loops and on many short ones, and loses the compliance in rounding on long chains; there the dual solver (PGS) is
-    better, which fails for bodies of very different mass and takes hundreds of sweeps for many loops. CG is slower than
-    either, and stands in for both.
-    Raises Unsupported if none of the solvers can serve.
+    Returns the mujoco.MjData of the start as that solver solves it. Newton is the fastest, and as exact as any for a
+    few loops and for many short ones. In long chains rounding exceeds its compliance; there the dual solver (PGS) is
+    better, which fails for bodies of very different mass and takes hundreds of iterations for many loops. CG is slower
+    than either, and is there for both cases. Raises Unsupported if none of the solvers can read user rows.
     """
-    missed = {}
+    residuals = {}
     for solver in solvers:
-        if solver == "PGS" and model.written:
-            continue  # it has built its matrix before the rows are written
+        if solver == "PGS" and model.has_user_rows:
+            continue  # its matrix is built before the rows are written
         model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{solver.upper()}")
         start = model.start()
-        missed[solver] = unsolved(model.compiled, start)
-        if missed[solver] < SOLVED:
+        residuals[solver] = solver_residual(model.compiled, start)
+        if residuals[solver] < MAX_START_RESIDUAL:
             return start
-    if not missed:
+    if not residuals:
         raise Unsupported("rows are written in a callback, and PGS has built its matrix by then; add Newton or CG")
-    model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{min(missed, key=missed.__getitem__).upper()}")
+    best = min(residuals, key=residuals.__getitem__)
+    model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{best.upper()}")
     return model.start()

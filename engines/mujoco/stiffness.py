@@ -1,9 +1,9 @@
-"""How stiff MuJoCo makes its equality constraints: every one is a spring and damper with a compliance of its own.
+"""Settings of the stiffness of MuJoCo's equality constraints, each of which is a spring and damper with a compliance.
 
-A row obeys a + b v + k r = -R f: the reference acceleration that the solver aims at, missed by the regularisation R
-times the row's force. R is (1 - d) / d of a diagonal estimate of the row's inverse inertia, and d can't exceed 0.9999
-(mjMAXIMP in mjmodel.h). Documentation: mujoco.readthedocs.io, "Computation: Constraint model" for the law, "Modeling:
-Solver parameters" for solref and solimp.
+A row obeys a + b v + k r = -R f: its reference acceleration, less the regularisation R times its force. R is (1 - d) /
+d times a diagonal estimate of the row's inverse inertia, and the impedance d is at most 0.9999 (mjMAXIMP in mjmodel.h).
+Documentation: mujoco.readthedocs.io, "Computation: Constraint model" for the law, "Modeling: Solver parameters" for
+solref and solimp.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from typing import ClassVar
 from reference.checks import Positive, Valid, validated
 from reference.mechanism import Mechanism
 
-# MuJoCo clamps its impedance d here (mjMAXIMP); both ends of its range are this, so that d is constant.
+# solimp with a constant impedance d: both ends of its range are the largest value that MuJoCo takes, mjMAXIMP.
 STIFFEST = (0.9999, 0.9999, 0.001, 0.5, 1.0)
 
 
 @dataclass(frozen=True)
 class _Spring(Valid, ABC):
-    """Critically damped springs; `impedance` is solimp, `softening` multiplies the compliance that belongs to it."""
+    """Critically damped springs; `impedance` is solimp, and `softening` a factor on the compliance that follows."""
 
     softening: ClassVar[float] = 1.0
     impedance: ClassVar[tuple[float, float, float, float, float]] = STIFFEST
@@ -37,7 +37,7 @@ class _Spring(Valid, ABC):
 
     @validated
     def gains(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
+        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia, which this solref means."""
         constant = self.time_constant(mechanism, dt)
         return 1 / constant**2, 2 / constant
 
@@ -46,8 +46,8 @@ class _Spring(Valid, ABC):
 class Shipped(_Spring):
     """MuJoCo's defaults: a time constant of 0.02 s whatever the step, and an impedance that grows with the gap.
 
-    It is 0.9 with the gap closed, and 0.95 where it is open by a millimetre and more: R is 0.11 of the inverse inertia
-    and falls to 0.053 (checked against `efc_KBIP` by a test in `tests/engines/test_mujoco_upstream.py`).
+    The impedance is 0.9 at a gap of zero and 0.95 from a millimetre on: R is 0.11 of the inverse inertia and falls to
+    0.053 (compared with `efc_KBIP` by a test in `tests/engines/test_mujoco_upstream.py`).
     """
 
     impedance: ClassVar[tuple[float, float, float, float, float]] = (0.9, 0.95, 0.001, 0.5, 2.0)
@@ -60,11 +60,10 @@ class Shipped(_Spring):
 class TiedToStep(_Spring):
     """Critically damped with a time constant of some steps, impedance at its limit: documented settings only.
 
-    The gap is R f / k, so it falls as the square of the step: the only way to let it vanish without touching the model.
-    With its flag `refsafe`, which is on unless it is disabled, MuJoCo clamps a shorter time constant at two steps
-    (mjDSBL_REFSAFE in mjtype.h). Its integrator "discrete" is another matter: there an equality is not clamped, and a
-    contact at about one step (4.0.1; a test in `tests/engines/test_mujoco_upstream.py` asks it for both). The time
-    constant here is that of all other integrators.
+    The gap is R f / k, so it falls as the square of the step. No other documented setting lets it vanish. Unless the
+    flag `refsafe` is disabled, MuJoCo clamps a shorter time constant at two steps (mjDSBL_REFSAFE in mjtype.h). With
+    its integrator "discrete" an equality is not clamped, and a contact at about one step (4.0.1; checked by a test in
+    `tests/engines/test_mujoco_upstream.py`). The time constant here is that of all other integrators.
     """
 
     steps: Positive = 5.0
@@ -74,18 +73,18 @@ class TiedToStep(_Spring):
 
     @validated
     def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """solref as it is asked for, which MuJoCo clamps."""
+        """solref before MuJoCo clamps it."""
         return self.steps * dt, 1.0
 
 
 @dataclass(frozen=True)
 class Hardened(_Spring):
-    """The compliance itself multiplied by `softening`; springs as slow as the motion allows, whatever the step.
+    """Compliances multiplied by `softening`, and springs as slow as the motion allows, whatever the step.
 
     The estimate in R comes from fields of the model that can be written after it is compiled. With R near zero the loop
     needs no stiff spring, so its time constant can be `share` of the mechanism's time scale, and at least `steps`
-    steps: the Runge-Kutta integrator then keeps its order 4. `eased`: where Newton's solver would lose so small a
-    compliance in rounding it is made larger again (`engines.mujoco.solver_check`); otherwise it is what was asked for.
+    steps: the Runge-Kutta integrator then has its full order 4. `eased`: where so small a compliance is below the
+    rounding of Newton's solver, it is increased (`engines.mujoco.solver_check`).
     """
 
     softening: Positive = 1e-8  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -98,7 +97,7 @@ class Hardened(_Spring):
 
     @validated
     def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """solref in its direct form, -stiffness and -damping of a unit mass: this one MuJoCo doesn't clamp."""
+        """solref in its direct form, -stiffness and -damping of a unit mass, which MuJoCo does not clamp."""
         constant = self.time_constant(mechanism, dt)
         return -1 / constant**2, -2 / constant
 

@@ -28,7 +28,7 @@ from reference.mechanism import Mechanism
 from reference.plane import rotated
 
 if TYPE_CHECKING:
-    from engines.mujoco.model import Model
+    from engines.mujoco.model import MuJoCoModel
 
 FLAGS = ("contact", "island")
 TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -141,10 +141,9 @@ def _upright(x: float, y: float) -> str:
     return _row((x, 0.0, y))
 
 
-def mjcf(model: Model, softening: float) -> str:
+def mjcf(model: MuJoCoModel, softening: float) -> str:
     """The text of a model in kg. Raises Unsupported for a model that our code helps while it is stepped."""
-    hooks = model.hooks
-    if hooks.control or hooks.before:
+    if model.hooks:
         raise Unsupported("this variant writes rows while it steps: a file would not run without this suite")
     if softening != 1:
         raise Unsupported("this variant changes compliances that no file can state; take default or tuned")
@@ -226,7 +225,7 @@ def _set(element: xml.Element | None, **numbers: Any) -> None:
             element.set(name, _row(values))
 
 
-def _rename(root: xml.Element, model: Model) -> None:
+def _rename(root: xml.Element, model: MuJoCoModel) -> None:
     """Bodies under the mechanism's names, with a number where something else in the file has that name."""
     written = [f"body {number}" for number in range(len(model.mechanism.bodies))]
     names = Names()

@@ -16,7 +16,7 @@ import numpy as np
 
 from engines import Engine, Unsupported
 from engines.lagrange import TRUTH
-from engines.mujoco.declared import SOLVED, WITHOUT, State
+from engines.mujoco.declared import NO_VELOCITY_TERMS, ROUNDING_TOLERANCE, DeclaredState
 from engines.pymunk.declared import MOST_SWEEPS, first_law
 from engines.pymunk.written_script import object_lines
 from reference.forces import Force, Torque
@@ -78,7 +78,7 @@ def script(subject: Subject, case: Any, check: str, number: int) -> str:
     try:
         if check == "velocity":
             return _of_velocities(engine, mechanism)
-        if check in ("acceleration", "reaction", WITHOUT):
+        if check in ("acceleration", "reaction", NO_VELOCITY_TERMS):
             return _of_accelerations(engine, mechanism, check)
         blocks = [_motion(engine, *run) for run in _runs(case, mechanism, check, number)]
     except Unsupported:
@@ -131,8 +131,8 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
 
     by_mjx = engine.name == "mjx"
     method = engine.settings if by_mjx else engine
-    method = replace(method, tolerance=min(method.tolerance, SOLVED), estimates=False)
-    dt, term = STEP * mechanism.time_scale, check != WITHOUT
+    method = replace(method, tolerance=min(method.tolerance, ROUNDING_TOLERANCE), estimates=False)
+    dt, term = STEP * mechanism.time_scale, check != NO_VELOCITY_TERMS
     text, model = method.text(mechanism, dt), method.model(mechanism, dt, unit=1.0)
     run = method.build(mechanism, dt)
     finite = np.isfinite(run(1, STEPS).pose).all()
@@ -144,7 +144,7 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
         data = model.start()
         data.time, data.qpos[:], data.qvel[:] = state.time, state.qpos, state.qvel
         mujoco.mj_forward(model.compiled, data)
-        expected = State.of(mechanism, model, data, method.regularisation(mechanism, dt)).coordinates(term)
+        expected = DeclaredState.of(mechanism, model, data, method.regularisation(mechanism, dt)).coordinates(term)
         numbers = f"{data.time!r}, {data.qpos.tolist()!r}, {data.qvel.tolist()!r}"
         lines = [f"data.time, data.qpos[:], data.qvel[:] = {numbers}", "mujoco.mj_forward(model, data)"]
         blocks.append(Block(f"accelerations {title}", [*begin, *lines], read, expected))

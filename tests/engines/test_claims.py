@@ -16,7 +16,7 @@ import pytest
 from engines import CLAIM, Engine, NotDeclared, Unsupported, bullet, exudyn, method_name, mujoco, pymunk
 from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts
 from engines.lagrange import TRUTH
-from engines.mujoco.solver_check import _lost
+from engines.mujoco.solver_check import _remaining_error
 from engines.mujoco.stiffness import Hardened
 from reference.forces import Spring
 from reference.joints import Pin, Rod
@@ -230,7 +230,7 @@ def test_the_sampling_changes_neither_motion_nor_estimate_nor_outcome(number: in
 def test_rows_that_rounding_would_spoil_are_softer_and_a_softness_that_is_asked_for_is_kept() -> None:
     own = mechanism(1, 130, HELD)
     model = mujoco.EXTENDED.model(own, STEP)
-    assert _lost(model.compiled, model.start()) < 0.1
+    assert _remaining_error(model.compiled, model.start()) < 0.1
     asked, eased = (
         replace(mujoco.EXTENDED, stiffness=Hardened(eased=eased)).model(own, STEP).compiled for eased in (False, True)
     )

@@ -14,8 +14,8 @@ import pytest
 
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, Hardened, MuJoCo, Shipped, TiedToStep
 from engines.mujoco.methods import SLOTS
-from engines.mujoco.releases import MARK, known_wrong
-from engines.mujoco.solver_check import unsolved
+from engines.mujoco.releases import KNOWN_WRONG, known_fault
+from engines.mujoco.solver_check import solver_residual
 from reference.forces import Torque
 from reference.joints import Drive, Pin, Rod, Slot
 from reference.mechanism import Body, Mechanism
@@ -218,7 +218,7 @@ def test_a_hundred_links_closed_by_one_loop_are_solved_by_the_first_solver_and_n
     assert [warning for warning in motion.warnings if "unresolved" not in warning] == []
     assert np.abs(chain.gap(motion.pose, motion.t)).max() < 1e-8
     newton = replace(EXTENDED, solvers=("Newton",)).build(chain, 1e-3)
-    assert unsolved(newton.model.compiled, newton.data) > 1e-3
+    assert solver_residual(newton.model.compiled, newton.data) > 1e-3
 
 
 def test_a_reset_is_noticed_and_the_samples_after_it_are_not_numbers(tmp_path, monkeypatch) -> None:
@@ -243,8 +243,8 @@ def test_motions_of_a_version_that_moves_wrongly_say_so(
     monkeypatch.setattr(mujoco, "__version__", version)
     scene = FreeFourBar()
     motion = DEFAULT.build(scene.mechanism(), scene.spacing)(1, 1)
-    [told] = [warning for warning in motion.warnings if MARK in warning]
+    [told] = [warning for warning in motion.warnings if KNOWN_WRONG in warning]
     assert told.startswith("ours: ")
     assert reason in told
     assert version in told
-    assert [known_wrong(right) for right in ("3.7.0", "3.10.0", "4.0.1")] == [""] * 3
+    assert [known_fault(right) for right in ("3.7.0", "3.10.0", "4.0.1")] == [""] * 3

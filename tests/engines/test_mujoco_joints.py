@@ -172,11 +172,11 @@ def test_extended_begins_with_accelerations_of_light_bodies_that_are_solved() ->
     dt = 0.01 * mechanism.time_scale
     run, once = EXTENDED.build(mechanism, dt), EXTENDED.model(mechanism, dt)
     first = once.start().qacc.copy()
-    with run.model.hooked():
+    with run.model.callback_installed():
         mujoco.mj_forward(run.model.compiled, run.data)
     solved = run.data.qacc.copy()
     run.data.qacc_warmstart[:] = solved
-    with run.model.hooked():
+    with run.model.callback_installed():
         mujoco.mj_forward(run.model.compiled, run.data)
     assert np.abs(first - run.data.qacc).max() > 1e-7 * np.abs(first).max()
     assert np.abs(solved - run.data.qacc).max() < 1e-12 * np.abs(first).max()

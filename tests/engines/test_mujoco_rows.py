@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from engines.mujoco import EXTENDED
-from engines.mujoco.construction import WrittenJoint
+from engines.mujoco.builder import UserRowJoint
 from engines.mujoco.user_rows import RowWriter
 from engines.rolling_table import rolled
 from engines.tree import spanning_tree
@@ -60,17 +60,17 @@ RODS = (
 )
 
 
-def written(joint: Any) -> WrittenJoint:
+def written(joint: Any) -> UserRowJoint:
     ends = joint.first, joint.second
     match joint:
         case Skate():
-            return WrittenJoint("skate", *ends, (*joint.second_point, joint.angle, DAMPING))
+            return UserRowJoint("skate", *ends, (*joint.second_point, joint.angle, DAMPING))
         case Slot():
             numbers = (*joint.first_point, *joint.second_point, joint.line_angle, STIFFNESS, DAMPING)
-            return WrittenJoint("slot", *ends, numbers)
+            return UserRowJoint("slot", *ends, numbers)
         case _:
             numbers = (*joint.first_point, *joint.second_point, joint.length, STIFFNESS, DAMPING)
-            return WrittenJoint("rod", *ends, numbers)
+            return UserRowJoint("rod", *ends, numbers)
 
 
 def test_written_rows_are_the_mechanisms_rows_in_the_trees_coordinates() -> None:
@@ -111,7 +111,7 @@ def test_written_rows_of_rolling_are_those_of_the_joint_and_its_velocity_term() 
     gears = EllipticGears()
     roll = next(joint for joint in gears.mechanism().joints if isinstance(joint, Roll))
     mechanism = Mechanism(gears.mechanism().bodies, (roll,))
-    joint = WrittenJoint("roll", roll.first, roll.second, (100.0, 20.0), rolled(roll.rolling))
+    joint = UserRowJoint("roll", roll.first, roll.second, (100.0, 20.0), rolled(roll.rolling))
     writer = RowWriter(spanning_tree(mechanism), range(6), [joint])
     pose, twist, _ = gears.kinematics(np.linspace(0.0, 1.7, 12))
     # The joint's rows are along e_t and e_n, ours along x and y: the same two conditions, turned.
@@ -156,7 +156,7 @@ def test_without_numba_python_writes_the_same_rows() -> None:
 
 def test_the_callback_is_as_it_was_even_after_a_failure() -> None:
     run = EXTENDED.build(SLEIGH.mechanism(), 1e-2)
-    with pytest.raises(RuntimeError, match="on purpose"), run.model.hooked():  # noqa: PT012
+    with pytest.raises(RuntimeError, match="on purpose"), run.model.callback_installed():  # noqa: PT012
         assert mujoco.get_mjcb_control() is not None
         raise RuntimeError("on purpose")
     assert mujoco.get_mjcb_control() is None

@@ -200,7 +200,7 @@ def test_an_exported_model_moves_as_the_engines_and_its_bars_go_through_the_join
     # The engine counts masses in a power of two of its own; a tolerance of the solver is told apart from rounding. A
     # blade's shape is pressed into the plane after the model is compiled, and one that is not is 3e-7 m and more off.
     np.testing.assert_allclose(data.qpos, start.qpos, rtol=0, atol=1e-8)
-    assert bool(own.halves) == (name == "in halves")
+    assert bool(own.split_bodies) == (name == "in halves")
     if name in BY_CONTACT:
         return
     assert own.compiled.ngeom == 0  # bars are in the file alone

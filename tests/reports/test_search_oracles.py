@@ -20,7 +20,7 @@ from engines.constrained import constrained
 from engines.lagrange import Judge, Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED
 from engines.mujoco import engine as mujoco_engine
-from engines.mujoco.model import Model
+from engines.mujoco.model import MuJoCoModel
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.user_rows import RowWriter
 from engines.pymunk import LEAPFROG
@@ -202,15 +202,15 @@ def test_a_mistake_in_an_adapter_is_found(
     assert check in faults(engine, kinds, 12)
 
 
-def _heavier(model: Model) -> None:
+def _heavier(model: MuJoCoModel) -> None:
     model.compiled.body_inertia[:] *= 1 + 1e-3
 
 
-def _pulled_by_place(model: Model) -> None:
+def _pulled_by_place(model: MuJoCoModel) -> None:
     model.compiled.opt.gravity[:2] *= 1 + 3e-6 * model.mechanism.pose[0, 0]
 
 
-def _softer(model: Model) -> None:
+def _softer(model: MuJoCoModel) -> None:
     model.compiled.tendon_invweight0[:] *= 10
 
 
@@ -229,7 +229,7 @@ def test_in_cases_with_much_noise_a_change_of_mujocos_model_is_found(
     number: int,
     decades: int,
     oracle: str,
-    change: Callable[[Model], None],
+    change: Callable[[MuJoCoModel], None],
     check: str,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -237,7 +237,7 @@ def test_in_cases_with_much_noise_a_change_of_mujocos_model_is_found(
     case = subject.draw(seed, number, EVERY, decades)
     assert subject.ask(case, number, (oracle,)).faults == ()
 
-    def built(*arguments: Any) -> Model:
+    def built(*arguments: Any) -> MuJoCoModel:
         model = right(*arguments)
         change(model)
         return model

@@ -1,1 +1,1 @@
-"""What MuJoCo holds each joint by: one file, or one folder, a joint."""
+"""The construction of each kind of joint in MuJoCo."""

@@ -1,37 +1,35 @@
 """A Pin, a Weld, a Rod, a Gear and a Drive in MuJoCo, where no coordinate of the tree stands for them.
 
-A pin or a weld that closes a loop is a `connect`. It has three rows; out of the plane nothing can move, so the third
-row is empty and harmless. The angles of a weld, and of a gear, are sums of tree coordinates with constant coefficients:
-a fixed tendon, held by an equality that has no velocity term and needs none.
+A pin or a weld that closes a loop is a `connect`. The third of its rows is across the plane, where nothing can move, so
+it is empty and harmless. The angle of a weld, and of a gear, is a fixed tendon: a sum of tree coordinates with constant
+factors. The equality that holds its length has no velocity term and needs none.
 
-`RodBy` names what holds a rod:
+`RodBy` is the construction of a rod:
 
-- "tendon": MuJoCo's own parts alone, an equality of a spatial tendon between two sites. Up to 4.0.1 it leaves out the
-  velocity term -(dJ/dt) v, which its spring has to make up for by a gap.
+- "tendon": an equality of a spatial tendon between two sites, of MuJoCo's own parts alone. Up to 4.0.1 it leaves out
+  the velocity term -(dJ/dt) v, so that its spring has to supply this force by a gap.
 - "rows": the rod's own row, written by a callback in every stage.
 
-A driven rotation is a tree coordinate that turns at a given rate. `DriveBy` names what keeps it:
+A driven rotation is a tree coordinate that turns at a given rate. `DriveBy` is the construction of a drive:
 
-- "inertia": nothing can accelerate the coordinate, because its armature is many times the mechanism's own inertia.
-- "overwrite": its position and velocity are overwritten after every step (`engines.mujoco.running`). The solver still
-  takes the coordinate as one that forces accelerate, so it misjudges the forces in the loop.
+- "inertia": nothing can accelerate the coordinate, since its armature is many times the mechanism's own inertia.
+- "overwrite": position and velocity are overwritten after every step (`engines.mujoco.running`). MuJoCo's solver does
+  not know that the coordinate is driven, so its forces in the loop are wrong.
 
-Where a driven rotation is a sum of several coordinates, a fixed tendon adds them up, less the angle of a clock: a wheel
-of its own that turns at the rate and that nothing can accelerate. An equality holds the tendon at its length, so the
-drive is as soft as a loop is.
+Where the driven rotation is a sum of several coordinates, a fixed tendon is that sum less the angle of a clock: a wheel
+that turns at the rate and that nothing can accelerate. An equality holds the length, so the drive is as soft as a loop.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 import mujoco
 
 from engines import Unsupported
-from engines.mujoco.construction import Building
-from engines.tree import Tree, world_offset
+from engines.mujoco.builder import DrivenCoordinate, ModelBuilder, add_body, add_hinge
+from engines.tree import world_offset
 from reference.joints import Drive, Gear, Pin, Rod, Weld
 from reference.mechanism import Mechanism
 
@@ -39,98 +37,93 @@ RodBy = Literal["tendon", "rows"]
 DriveBy = Literal["inertia", "overwrite"]
 
 
-def add_pins(building: Building, pins: Sequence[Pin | Weld]) -> None:
-    """Add a `connect` each, bound by MuJoCo in the assembled start pose; its force acts on `name1`: the second body."""
+def add_pins(builder: ModelBuilder, pins: Sequence[Pin | Weld]) -> None:
+    """Add a `connect` for each; its force acts on the body `name1`, which is the second body of the pin."""
     for pin in pins:
-        names = ["world" if name is None else f"body {building.index(name)}" for name in (pin.first, pin.second)]
+        names = [builder.spec_name(name) for name in (pin.first, pin.second)]
         name, point = (pin.second, pin.second_point) if pin.second is not None else (pin.first, pin.first_point)
         if pin.second is None:
             # The anchor is given in the frame of name1; on a body it stays as exact as the body's frame.
             names.reverse()
-        loop = building.hold(mujoco.mjtEq.mjEQ_CONNECT, names[1], names[0], rows=2)
-        loop.data[:3] = [*world_offset(building.mechanism, name, point), 0.0]
+        connect = builder.add_equality(mujoco.mjtEq.mjEQ_CONNECT, names[1], names[0], rows=2)
+        connect.data[:3] = [*world_offset(builder.mechanism, name, point), 0.0]
 
 
-def add_welds(building: Building, welds: Sequence[Weld]) -> None:
-    """Add the welds that close loops."""
-    add_pins(building, welds)
+def add_welds(builder: ModelBuilder, welds: Sequence[Weld]) -> None:
+    """Add a `connect` and an equality of the angle for each."""
+    add_pins(builder, welds)
     for weld in welds:
-        _hold_angles(building, f"weld {weld.name}", building.tree.turning(weld.first, weld.second))
+        _hold_angles(builder, f"weld {weld.name}", builder.tree.turning(weld.first, weld.second))
 
 
-def add_gears(building: Building, gears: Sequence[Gear]) -> None:
-    """Add the gears: the second body's angle less `ratio` times the first's stays as it is at the start."""
+def add_gears(builder: ModelBuilder, gears: Sequence[Gear]) -> None:
+    """Hold the second body's angle less `ratio` times the first's at its value of the start."""
     for gear in gears:
-        signs = dict(building.tree.turning(None, gear.second))
-        for column, sign in building.tree.turning(None, gear.first).items():
-            signs[column] = signs.get(column, 0.0) - gear.ratio * sign
-        _hold_angles(building, f"gear {gear.name}", signs)
+        factors = dict(builder.tree.turning(None, gear.second))
+        for column, sign in builder.tree.turning(None, gear.first).items():
+            factors[column] = factors.get(column, 0.0) - gear.ratio * sign
+        _hold_angles(builder, f"gear {gear.name}", factors)
 
 
-def _hold_angles(building: Building, name: str, signs: Mapping[int, float]) -> None:
-    """An equality of the sum of coordinates; none where no coordinate can change it."""
-    turning = {column: sign for column, sign in signs.items() if sign}
-    if turning:
-        building.add_sum(name, turning)
-        building.hold_tendon(name)
+def _hold_angles(builder: ModelBuilder, name: str, factors: Mapping[int, float]) -> None:
+    """Add an equality of a sum of coordinates; none where no coordinate can change it."""
+    changing = {column: factor for column, factor in factors.items() if factor}
+    if changing:
+        builder.add_fixed_tendon(name, changing)
+        builder.hold_length(name)
 
 
-def add_rods(building: Building, rods: Sequence[Rod], by: RodBy) -> None:
-    """Add the rods by this construction."""
+def add_rods(builder: ModelBuilder, rods: Sequence[Rod]) -> None:
+    """Add the rods by the construction of the settings."""
     for rod in rods:
-        if by == "rows":
-            building.write("rod", rod, (*rod.first_point, *rod.second_point, rod.length, *building.gains))
+        if builder.settings.rods == "rows":
+            numbers = (*rod.first_point, *rod.second_point, rod.length, *builder.gains)
+            builder.add_user_rows("rod", rod, numbers)
         else:
-            building.add_between(f"rod {rod.name}", rod)
-            building.hold_tendon(f"rod {rod.name}")
+            builder.add_spatial_tendon(f"rod {rod.name}", rod)
+            builder.hold_length(f"rod {rod.name}")
 
 
-@dataclass(frozen=True)
-class DrivenCoordinate:
-    """A tree coordinate that turns at a prescribed rate [rad/s]."""
-
-    column: int
-    rate: float
-
-
-def driven_coordinates(tree: Tree, drives: Sequence[Drive]) -> tuple[DrivenCoordinate, ...]:
-    """What each drive turns, of those that turn one coordinate. Raises Unsupported where two turn the same one."""
-    driven: list[DrivenCoordinate] = []
+def add_drives(builder: ModelBuilder, drives: Sequence[Drive]) -> None:
+    """Drive one coordinate each, or a sum of coordinates. Raises Unsupported where two drive the same coordinate."""
     for drive in drives:
-        ((column, sign),) = tree.turning(drive.first, drive.second).items()
-        if column in [other.column for other in driven]:
+        factors = builder.tree.turning(drive.first, drive.second)
+        if len(factors) != 1:
+            _add_geared_drive(builder, drive, factors)
+            continue
+        ((column, sign),) = factors.items()
+        if column in [other.column for other in builder.driven]:
             raise Unsupported(f"drive {drive.name!r} turns a joint that another drive turns already")
-        driven.append(DrivenCoordinate(column, sign * drive.turning_rate))
-    return tuple(driven)
+        builder.driven.append(DrivenCoordinate(column, sign * drive.turning_rate))
+        if builder.settings.drive == "inertia":
+            builder.spec.joint(f"coordinate {column}").armature = _driving_inertia(builder)
 
 
-def add_geared_drives(building: Building, drives: Sequence[Drive], by: DriveBy, armature: float) -> tuple[str, ...]:
-    """A tendon for each drive over several coordinates; the names of the clocks' joints. Raises Unsupported."""
-    clocks = []
-    for drive in drives:
-        signs = building.tree.turning(drive.first, drive.second)
-        if by != "inertia" or not signs:
-            first, second = (repr(name) if name else "the ground" for name in (drive.first, drive.second))
-            what = "a sum of coordinates" if signs else "no coordinate"
-            raise Unsupported(
-                f"drive {drive.name!r}: the rotation of {second} against {first} is {what} of MuJoCo's tree here; "
-                + (f"{by!r} drives single ones, take 'inertia'" if signs else "nothing can drive it")
-            )
-        name = f"drive {drive.name}"
-        tendon = building.add_sum(name, signs)
-        if drive.turning_rate:
-            mass = sum(body.mass for body in building.mechanism.bodies)
-            inertia = inertia_scale(building.mechanism)
-            clock = building.spec.worldbody.add_body(
-                name=name, ipos=[0.0, 0.0, 0.0], mass=mass, inertia=[inertia] * 3, explicitinertial=True
-            )
-            hinge = mujoco.mjtJoint.mjJNT_HINGE
-            clock.add_joint(name=name, type=hinge, axis=[0.0, 0.0, 1.0], armature=armature * inertia)
-            tendon.wrap_joint(name, -1.0)
-            building.start_rates[name] = drive.turning_rate
-            clocks.append(name)
-        building.hold_tendon(name)
-    return tuple(clocks)
+def _add_geared_drive(builder: ModelBuilder, drive: Drive, factors: Mapping[int, float]) -> None:
+    """Hold a sum of coordinates less the angle of a clock. Raises Unsupported where that can't drive it."""
+    by = builder.settings.drive
+    if by != "inertia" or not factors:
+        first, second = (repr(name) if name else "the ground" for name in (drive.first, drive.second))
+        rotation = "a sum of coordinates" if factors else "no coordinate"
+        raise Unsupported(
+            f"drive {drive.name!r}: the rotation of {second} against {first} is {rotation} of MuJoCo's tree here; "
+            + (f"{by!r} drives single ones, take 'inertia'" if factors else "nothing can drive it")
+        )
+    name = f"drive {drive.name}"
+    tendon = builder.add_fixed_tendon(name, factors)
+    if drive.turning_rate:
+        mass = sum(body.mass for body in builder.mechanism.bodies)
+        clock = add_body(builder.spec.worldbody, name, mass, inertia_scale(builder.mechanism))
+        add_hinge(clock, name, armature=_driving_inertia(builder))
+        tendon.wrap_joint(name, -1.0)
+        builder.start_rates[name] = drive.turning_rate
+        builder.clocks.append(name)
+    builder.hold_length(name)
+
+
+def _driving_inertia(builder: ModelBuilder) -> float:
+    """The armature of a coordinate that nothing can accelerate [kg m^2]."""
+    return builder.settings.armature * inertia_scale(builder.mechanism)
 
 
 def inertia_scale(mechanism: Mechanism) -> float:

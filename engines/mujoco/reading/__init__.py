@@ -27,7 +27,7 @@ from engines.mujoco.reading.frame import (
 )
 from engines.mujoco.reading.own_model import OwnMuJoCo, in_state, limited_forces, positions
 from engines.mujoco.reading.settings import rewritten, switch_off
-from engines.mujoco.running import listening
+from engines.mujoco.running import logged_warnings
 from engines.reading import Note, Reading, Source, left_out, refuse, refuse_at_start
 from reference.checks import InvalidMechanism
 from reference.forces import Force
@@ -184,7 +184,7 @@ class Reader:
             raise ValueError(f"{word}: it is a folder")
         if not path.is_file():
             raise ValueError(f"{word}: there is no such file")
-        with listening() as complaints:
+        with logged_warnings() as log:
             try:
                 if path.suffix.lower() == ".mjb":
                     model = mujoco.MjModel.from_binary_path(str(path))
@@ -200,7 +200,7 @@ class Reader:
             elif key not in ("", "none"):
                 raise ValueError(f"--key is {key!r}; {word} has no keyframes")
             reading = read(model, data, without)
-        notes = (*reading.notes, *(Note("a warning of MuJoCo's", words) for words in complaints.said))
+        notes = (*reading.notes, *(Note("a warning of MuJoCo's", words) for words in log.messages))
         source = Source(
             path,
             lambda change: rewritten(path.read_bytes(), change),

@@ -19,8 +19,8 @@ from engines.mujoco.reading.elements import EQUALITY, TENDON
 from engines.mujoco.reading.forces import ACTUATOR, limited_servos
 from engines.mujoco.reading.frame import JOINT, PlanarModel, angles_of, name_of
 from engines.mujoco.reading.settings import TIED_STEPS, changes, declared, switch_off
-from engines.mujoco.releases import marks, spelled
-from engines.mujoco.running import listening
+from engines.mujoco.releases import release_warnings, spelled
+from engines.mujoco.running import logged_warnings
 from engines.mujoco.stiffness import STIFFEST
 from engines.reading import Change, Give, Note, Obstacle, left_out
 from engines.sampling import sampled
@@ -171,7 +171,7 @@ class OwnMuJoCo:
         model = copy.copy(model)
         model.opt.tolerance, model.opt.iterations = 0.0, max(100, model.opt.iterations)
         data = self._started(model)
-        with listening(data):
+        with logged_warnings(data):
             mujoco.mj_forward(model, data)
         return self._motion(model, data)[1]
 
@@ -265,15 +265,15 @@ class OwnMuJoCo:
                 qpos[sample], qvel[sample] = now_qpos, now_qvel
             return has_restarted
 
-        with listening(data) as complaints:
+        with logged_warnings(data) as log:
             stepping = sampled([steps] * samples, lambda count: mujoco.mj_step(model, data, nstep=count), record)
-            reset = complaints.reset_at
+            reset = log.reset_at
             sound = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
             if reset is not None:
                 sound &= t < reset - model.opt.timestep / 2  # a sum of steps is rounded
             sound = np.logical_and.accumulate(sound)
             pose, twist, acceleration = self._read(model, qpos[sound], qvel[sound], len(t))
-            warnings = (*complaints.said, *marks())
+            warnings = (*log.messages, *release_warnings())
         reaction = np.full((samples + 1, self.mechanism.row_count), np.nan)
         if self.mechanism.row_count and sound.any():
             reaction[sound] = self.mechanism.reaction(pose[sound], acceleration[sound], twist=twist[sound])

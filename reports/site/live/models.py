@@ -13,7 +13,7 @@ from pymunk.constraints import GrooveJoint, PivotJoint
 
 from engines import Unsupported
 from engines.mujoco import MuJoCo
-from engines.mujoco.model import Model as TreeModel
+from engines.mujoco.model import MuJoCoModel
 from engines.mujoco.writers import mjcf
 from engines.pymunk import Pymunk
 from engines.pymunk.joints.slide import AimedGroove, Zeroed
@@ -50,7 +50,7 @@ def mujoco_text(engine: MuJoCo, mechanism: Mechanism, step: float) -> MujocoText
     )
 
 
-def links(model: TreeModel) -> tuple[tuple[float, ...], ...]:
+def links(model: MuJoCoModel) -> tuple[tuple[float, ...], ...]:
     """Return the records `MujocoText.links`, parents first: how the pose of each body follows from qpos."""
     records = []
     for link in model.tree.links:
