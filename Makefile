@@ -2,8 +2,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check
-# A worker of pytest for each processor, with one thread each. A file stays in one worker, so that what its tests share
-# is made once; tests/conftest.py says which files begin. The grid has a pool of its own, and runs after the others.
+# One worker of pytest a processor, with one thread each. The tests of a file run in one worker, so that they share
+# fixtures; tests/conftest.py lists the files that start first. The grid has its own pool, and runs after the tests.
 WORKERS := -n auto --dist loadfile --no-loadscope-reorder
 export OMP_NUM_THREADS ?= 1
 # The tests start many programs, each of which would compile every module again.
@@ -34,16 +34,16 @@ check: .venv/installed-develop   ## style, types, layers
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 
-bench: .venv/installed-bench     ## what stepping costs beside the bare loops, and the site
+bench: .venv/installed-bench     ## stepping compared with bare loops, and the site in a browser
 	$(BIN)/crosscheck site
 	$(BIN)/crosscheck bench
 	$(BIN)/crosscheck bench site
 
-mutants: .venv/installed         ## deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
+mutants: .venv/installed         ## deliberate mistakes, and those that no test detects; ONLY=engines/pymunk selects by path
 	$(BIN)/python -m tests.tools.mutants $(ONLY)
 
 SECONDS ?= 600
-search: .venv/installed          ## mechanisms that were never asked about, in all engines, for SECONDS; each finding with its seed
+search: .venv/installed          ## random mechanisms from new seeds in all engines, for SECONDS; each finding has its seed
 	$(BIN)/crosscheck search --fresh --seconds $(SECONDS)
 
 lower: .venv-lower/installed     ## the tests, without the grid, with the oldest versions of everything that pyproject.toml allows
@@ -64,7 +64,7 @@ lower: .venv-lower/installed     ## the tests, without the grid, with the oldest
 	$(PIP) --prefer-binary --editable ".[test,$*]"
 	touch $@
 
-# All engines: a part of MJX has to be installed by itself (engines/mjx.py).
+# All engines; mujoco-mjx is installed without its dependencies (engines/mjx.py).
 .venv/installed-mjx: .venv/installed-engines
 	$(PIP) --no-deps mujoco-mjx
 	touch $@
