@@ -177,6 +177,22 @@ class Reading:
         return bool(np.any(self.model.own_twist != self.mechanism.twist))
 
 
+@dataclass(frozen=True)
+class ReadingTerms:
+    """The terms on which a user's model is read.
+
+    `without`: kinds of elements to switch off, in the user's model too; `key`: the name or number of a stored state;
+    `step` [s]: the user's, instead of the model's own.
+    """
+
+    without: tuple[str, ...] = ()
+    key: str = ""
+    step: float | None = None
+
+
+AS_IT_IS = ReadingTerms()
+
+
 class Reader(Protocol):
     """Under `crosscheck.readers`: it says what it reads, and reads it."""
 
@@ -194,12 +210,8 @@ class Reader(Protocol):
         """Whether a word on the command line is a model for this reader."""
         ...
 
-    def read(self, word: str, folder: Path, without: Sequence[str], key: str, step: float | None) -> Reading:
-        """The model. Raises Unsupported, or ValueError where the file is no model.
-
-        `without`: elements to switch off in the user's model too; `key`: the name or number of a stored state; `step`
-        [s]: the user's, instead of the model's own.
-        """
+    def read(self, word: str, folder: Path, terms: ReadingTerms) -> Reading:
+        """The model. Raises Unsupported, or ValueError where the file is no model."""
         ...
 
 

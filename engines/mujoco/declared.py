@@ -217,7 +217,8 @@ class _JointRows:
     def factors(self) -> Array:
         """The matrix (size, size) that takes the joint's rows to MuJoCo's."""
         seen = self.model.address
-        return np.linalg.lstsq(self.in_tree[:, seen].T, self.rows[:, seen].T, rcond=None)[0].T
+        factors = np.linalg.lstsq(self.in_tree[:, seen].T, self.rows[:, seen].T, rcond=None)[0].T
+        return np.asarray(factors, dtype=np.float64)
 
     @property
     def compliance(self) -> Array:

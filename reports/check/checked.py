@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from scipy.interpolate import CubicHermiteSpline
 from engines import Unsupported
 from engines.lagrange.loading import is_cold
 from engines.loading import Kind, registered_by_key
-from engines.reading import Reader, Reading
+from engines.reading import AS_IT_IS, Reader, Reading, ReadingTerms
 from reference.checks import InvalidMechanism
 from reference.trajectory import Trajectory
 from reports.check.facts import Facts, facts_of
@@ -52,12 +52,12 @@ def readers() -> dict[str, Reader]:
     return registered_by_key("crosscheck.readers", kind)
 
 
-def read(word: str, folder: Path, without: Sequence[str] = (), key: str = "", step: float | None = None) -> Reading:
+def read(word: str, folder: Path, terms: ReadingTerms = AS_IT_IS) -> Reading:
     """A user's model by the first reader that knows its kind. Raises ValueError and Unsupported."""
     known = readers().values()
     for reader in known:
         if reader.reads(word):
-            return reader.read(word, folder, without, key, step)
+            return reader.read(word, folder, terms)
     raise ValueError(f"{word or repr(word)} is no model; give {' or '.join(reader.words for reader in known)}")
 
 

@@ -107,6 +107,7 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
     # Imported here: a command that only makes requests starts sooner.
     from engines import Unsupported
     from engines.importers import read_object
+    from engines.reading import ReadingTerms
     from engines.registry import mislabelled
     from reports.check.checked import applied, check, read
     from reports.check.document import data
@@ -126,10 +127,8 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
     trouble, drawn = "", {}
     try:
         note("reading")
-        if model is None:
-            reading = read(request.word, Path(request.folder), request.without, request.key, request.step)
-        else:
-            reading = read_object(model, request.without, request.step)
+        terms = ReadingTerms(tuple(request.without), request.key, request.step)
+        reading = read(request.word, Path(request.folder), terms) if model is None else read_object(model, terms)
         name = reading.title or Path(request.word).name
         result = check(reading, name, request.duration, tolerance, note, request.plan, request.tolerance is not None)
     except (Unsupported, ValueError) as reason:  # InvalidMechanism is a ValueError

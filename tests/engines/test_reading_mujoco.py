@@ -13,7 +13,7 @@ from engines.mujoco.declared import jacobian
 from engines.mujoco.reading import READER, read
 from engines.mujoco.reading.own_model import in_state, positions
 from engines.mujoco.reading.settings import switch_off
-from engines.reading import Reading
+from engines.reading import Reading, ReadingTerms
 from reports.check.judging import apart, refuse_disagreement, soft_motion
 
 # Both sides solve small systems of equations whose numbers differ by a factor of a thousand at most.
@@ -136,13 +136,14 @@ def test_the_first_keyframe_counts_and_any_can_be_named(tmp_path):
     keys = '<keyframe><key name="low" qpos=".3 0"/><key name="high" qpos="2 0"/></keyframe>'
     file.write_text(f"<mujoco><worldbody>{PENDULUM}</worldbody>{keys}</mujoco>")
     first, high, none = (
-        READER.read("two_keys.xml", tmp_path, (), key, None).mechanism.bodies[0].pose[2] for key in ("", "high", "none")
+        READER.read("two_keys.xml", tmp_path, ReadingTerms(key=key)).mechanism.bodies[0].pose[2]
+        for key in ("", "high", "none")
     )
     assert abs(first) == pytest.approx(0.3)
     assert abs(high) == pytest.approx(2.0)
     assert none == 0
     with pytest.raises(ValueError, match="there are low, high, and none"):
-        READER.read("two_keys.xml", tmp_path, (), "middle", None)
+        READER.read("two_keys.xml", tmp_path, ReadingTerms(key="middle"))
 
 
 def test_a_wrong_reading_is_stopped_at_the_start():

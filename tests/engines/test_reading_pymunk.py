@@ -29,6 +29,7 @@ from pymunk.constraints import (
 from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.pymunk.reading import READER, read
+from engines.reading import AS_IT_IS
 from reports.check.judging import errors, judged, refuse_disagreement
 
 # Two small steps, extrapolated: what is left is of the order of the step squared, a hundred-millionth.
@@ -308,7 +309,7 @@ PASTED = {
 @pytest.mark.parametrize(("pasted", "word"), [(name, ("x.py", "x.py:space")[i % 2]) for i, name in enumerate(PASTED)])
 def test_a_script_with_the_lines_that_start_ahead_is_read_as_it_was_before_them(pasted, word, tmp_path):
     (tmp_path / "x.py").write_text(SCRIPT.replace("SPIN", "0") + PASTED[pasted], encoding="utf-8")
-    reading = READER.read(word, tmp_path, (), "", None)
+    reading = READER.read(word, tmp_path, AS_IT_IS)
     assert (reading.model.dt, reading.model.ahead) == (1e-3, True)
     mechanism = reading.mechanism
     assert mechanism.pose[0] == pytest.approx([0, 25, 0], abs=1e-12)
@@ -322,12 +323,12 @@ def test_a_start_ahead_of_a_space_in_motion_is_undone_and_another_first_step_is_
     moving = SCRIPT.replace("SPIN", "3")
     for lines, ahead in ((f"{CLOSE}\nclose(space, 1e-3, 16){LOOP}", True), (f"{EARLIER}{LOOP}", True), (LOOP, False)):
         (tmp_path / "x.py").write_text(moving + lines, encoding="utf-8")
-        reading = READER.read("x.py", tmp_path, (), "", None)
+        reading = READER.read("x.py", tmp_path, AS_IT_IS)
         assert (reading.model.dt, reading.model.ahead) == (1e-3, ahead)
         assert next(iter(reading.model.described.space.bodies)).angular_velocity == 3.0
     uneven = "\nfor joint in space.constraints:\n    joint.error_bias = 0\nspace.step(5e-4)\nspace.step(3e-3)\n"
     (tmp_path / "x.py").write_text(moving + uneven, encoding="utf-8")
-    reading = READER.read("x.py", tmp_path, (), "", None)
+    reading = READER.read("x.py", tmp_path, AS_IT_IS)
     assert (reading.model.dt, reading.model.ahead) == (5e-4, False)
 
 

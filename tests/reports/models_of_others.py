@@ -24,6 +24,7 @@ import pymunk
 
 from engines import Unsupported
 from engines.mujoco.reading import READER
+from engines.reading import ReadingTerms
 from reference.checks import InvalidMechanism
 from reports.check.judging import refuse_disagreement
 from reports.pages.your_model.page import TABLE
@@ -135,7 +136,7 @@ def models(folder: Path) -> Iterator[Found]:
     }
     for source, place in places.items():
         for path in sorted(place.glob("*.xml")):
-            answer = tried(lambda without, path=path: READER.read(path.name, path.parent, without, "", None))
+            answer = tried(lambda without, path=path: READER.read(path.name, path.parent, ReadingTerms(without)))
             yield Found(source, path.stem, *answer)
 
 

@@ -16,7 +16,7 @@ from engines.mujoco.reading import read as read_model
 from engines.mujoco.writers import urdf
 from engines.pymunk import DEFAULT as PYMUNK
 from engines.pymunk.written_script import script
-from engines.reading import Give
+from engines.reading import Give, ReadingTerms
 from reference.checks import InvalidMechanism
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
@@ -58,7 +58,7 @@ def make():
 
 def found_in(folder, text, name="model.xml", word="model.xml", duration=0.4, tolerance=1e-4, step=None):
     (folder / name).write_text(text)
-    return check(read(word, folder, (), "", step), name, duration, tolerance)
+    return check(read(word, folder, ReadingTerms(step=step)), name, duration, tolerance)
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.pymunk import DEFAULT
 from engines.pymunk.reading import read as read_space
-from engines.reading import Reading
+from engines.reading import Reading, ReadingTerms
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
@@ -254,7 +254,7 @@ def test_the_error_of_the_energy_is_relative_to_the_largest_kinetic_energy(soft)
 
 
 def test_a_torque_that_is_zero_by_symmetry_is_no_measure_of_an_error_and_one_that_is_invented_is_wrong():
-    reading = read("b04_gripper.xml", INPUTS, ("actuation", "limit"))
+    reading = read("b04_gripper.xml", INPUTS, ReadingTerms(("actuation", "limit")))
     found = check(reading, "gripper", 0.3, 1e-4, plan=Plan(5.0, quick=True))
     mechanism, truth = found.reading.mechanism, found.judge.trajectory
     forces, torques = (np.abs(truth.reaction[:, rows]) for rows in (~mechanism.is_angular, mechanism.is_angular))

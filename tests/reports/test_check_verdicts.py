@@ -26,6 +26,7 @@ from scipy.integrate import solve_ivp
 
 from engines.mujoco.reading import read as read_model
 from engines.pymunk.reading import read as read_space
+from engines.reading import ReadingTerms
 from reference.forces import Damper, Spring
 from reference.joints import Drive, Pin, Slot, bodies_of
 from reference.mechanism import Body, Mechanism
@@ -102,7 +103,7 @@ def of_pymunk(path: Path, t: NDArray[Any]) -> tuple[float, float]:
 def checked(path: Path, duration: float) -> Checked:
     """Of the settings as they are; nothing else is tried."""
     step = STEP if path.suffix == ".py" else None
-    return check(read(path.name, path.parent, step=step), path.name, duration, 1e-4, plan=Plan(0.0))
+    return check(read(path.name, path.parent, ReadingTerms(step=step)), path.name, duration, 1e-4, plan=Plan(0.0))
 
 
 # (name, duration [s], freedoms, length [m] of the mechanism where a far end of a spring could enter it).

@@ -28,7 +28,7 @@ from engines.mujoco.reading.frame import (
 from engines.mujoco.reading.own_model import OwnMuJoCo, in_state, limited_forces, positions
 from engines.mujoco.reading.settings import rewritten, switch_off
 from engines.mujoco.running import logged_warnings
-from engines.reading import Note, Reading, Source, left_out, refuse, refuse_at_start
+from engines.reading import AS_IT_IS, Note, Reading, ReadingTerms, Source, left_out, refuse, refuse_at_start
 from reference.checks import InvalidMechanism
 from reference.forces import Force
 
@@ -92,12 +92,12 @@ def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarMod
     return PlanarModel(model, started, frame, groups, bodies), users, tilt
 
 
-def read_object(model: Any, without: Sequence[str] = (), step: float | None = None) -> Reading:
-    """The reading of a mujoco.MjModel in its first state; step [s]: instead of its own."""
-    if step is not None:
+def read_object(model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:
+    """The reading of a mujoco.MjModel in its first state."""
+    if terms.step is not None:
         model = copy.copy(model)
-        model.opt.timestep = step
-    return read(model, None, without)
+        model.opt.timestep = terms.step
+    return read(model, None, terms.without)
 
 
 def _refuse_not_finite(model: Any, data: Any) -> None:
@@ -177,7 +177,7 @@ class Reader:
     def reads(self, word: str) -> bool:
         return Path(word).suffix.lower() in SUFFIXES
 
-    def read(self, word: str, folder: Path, without: Sequence[str], key: str, step: float | None) -> Reading:
+    def read(self, word: str, folder: Path, terms: ReadingTerms) -> Reading:
         """Raises ValueError for a file that is no model, Unsupported for a model that is no planar mechanism."""
         path = folder / word
         if path.is_dir():
@@ -192,19 +192,19 @@ class Reader:
                     model = mujoco.MjModel.from_xml_path(str(path))
             except ValueError as error:
                 raise ValueError(f"{word}: MuJoCo can't compile it: {' '.join(str(error).split())}") from None
-            if step is not None:
-                model.opt.timestep = step
+            if terms.step is not None:
+                model.opt.timestep = terms.step
             data = mujoco.MjData(model)
-            if model.nkey and key != "none":
-                mujoco.mj_resetDataKeyframe(model, data, _key(model, key))
-            elif key not in ("", "none"):
-                raise ValueError(f"--key is {key!r}; {word} has no keyframes")
-            reading = read(model, data, without)
+            if model.nkey and terms.key != "none":
+                mujoco.mj_resetDataKeyframe(model, data, _key(model, terms.key))
+            elif terms.key not in ("", "none"):
+                raise ValueError(f"--key is {terms.key!r}; {word} has no keyframes")
+            reading = read(model, data, terms.without)
         notes = (*reading.notes, *(Note("a warning of MuJoCo's", words) for words in log.messages))
         source = Source(
             path,
             lambda change: rewritten(path.read_bytes(), change),
-            lambda other: self.read(other.name, other.parent, without, key, None),
+            lambda other: self.read(other.name, other.parent, replace(terms, step=None)),
         )
         reading = replace(reading, notes=notes, source=None if path.suffix.lower() == ".mjb" else source)
         assert isinstance(reading.model, OwnMuJoCo)

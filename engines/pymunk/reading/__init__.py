@@ -14,7 +14,7 @@ from engines.consistent_start import closed_positions, with_consistent_start
 from engines.pymunk.reading.joints import BODIES, CONSTRAINTS, described, moved_to
 from engines.pymunk.reading.own_model import OwnPymunk, switch_off
 from engines.pymunk.reading.script import made, rewritten
-from engines.reading import Note, Reading, Source, refuse_at_start
+from engines.reading import AS_IT_IS, Note, Reading, ReadingTerms, Source, refuse_at_start
 from reference.checks import InvalidMechanism
 
 USUAL_STEP = 1 / 60  # s: pymunk's own examples'
@@ -62,9 +62,9 @@ def read(
     return Reading(mechanism, own, tuple(notes))
 
 
-def read_object(space: pymunk.Space, without: Sequence[str] = (), step: float | None = None) -> Reading:
+def read_object(space: pymunk.Space, terms: ReadingTerms = AS_IT_IS) -> Reading:
     """`read`, with the terms of every engine's."""
-    return read(space, step, without)
+    return read(space, terms.step, terms.without)
 
 
 class Reader:
@@ -80,10 +80,10 @@ class Reader:
         file, _, _ = word.rpartition(":")
         return (file or word).lower().endswith(".py")
 
-    def read(self, word: str, folder: Path, without: Sequence[str], key: str, step: float | None) -> Reading:
+    def read(self, word: str, folder: Path, terms: ReadingTerms) -> Reading:
         """Raises ValueError for a script that gives no space, Unsupported for a space that is no mechanism."""
-        if key:
-            raise ValueError(f"--key is {key!r}; a space has no stored states")
+        if terms.key:
+            raise ValueError(f"--key is {terms.key!r}; a space has no stored states")
         file, _, name = word.rpartition(":")
         file, name = (file, name) if file else (word, "")
         if name and not name.isidentifier():
@@ -94,9 +94,9 @@ class Reader:
         if not path.is_file():
             raise ValueError(f"{file}: there is no such file")
         found = made(path, file, name)
-        own = step or (found.dt and found.dt * found.parts)
+        own = terms.step or (found.dt and found.dt * found.parts)
         try:
-            reading = read(found.space, own and own / found.parts, without, found.parts, found.ahead)
+            reading = read(found.space, own and own / found.parts, terms.without, found.parts, found.ahead)
         finally:
             for body in found.space.bodies:
                 if body.is_sleeping:
@@ -112,7 +112,7 @@ class Reader:
         source = Source(
             path,
             partial(rewritten, path, found, reading.model.dt),
-            lambda other: self.read(f"{other.name}:{name}" if name else other.name, other.parent, without, "", step),
+            lambda other: self.read(f"{other.name}:{name}" if name else other.name, other.parent, terms),
         )
         return replace(reading, notes=tuple(notes), source=source)
 

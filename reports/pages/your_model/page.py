@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from engines.reading import ReadingTerms
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.check.checked import Checked, Plan, Tried, check, read, readers
 from reports.check.document import data
@@ -43,7 +44,7 @@ class Walk(Task):
         """All that `crosscheck check --json` tells but CPU times, others on every machine; and what is drawn."""
         with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
             (Path(folder) / self.file).write_text(self.text, encoding="utf-8")
-            reading = read(self.word, Path(folder), step=self.step)
+            reading = read(self.word, Path(folder), ReadingTerms(step=self.step))
             found = check(reading, self.file, self.duration, self.tolerance, plan=Plan(float("inf")))
         told = data(found)
         for setting in (told, *told["tried"]):
