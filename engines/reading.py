@@ -1,7 +1,7 @@
-"""A user's own model, read: the mechanism that it describes, what was left out, and the model itself, ready to be run.
+"""The contract of readers: a user's own model as a mechanism, the elements that were left out, and the model itself.
 
-What `crosscheck check` asks of a reader, and nothing of one engine. A reader stands under the entry point group
-`crosscheck.readers`. What it can't read it refuses by `Unsupported`, in a sentence that names the element.
+`crosscheck check` uses nothing else of an engine's reader. A reader is an entry point of the group
+`crosscheck.readers`. It raises `Unsupported`, in a sentence that names the element, for a model that it can't read.
 """
 
 from __future__ import annotations
@@ -34,7 +34,10 @@ class Note:
 
 @dataclass(frozen=True)
 class Obstacle:
-    """What a motion meets at `t` [s] that the mechanism lacks, in `words`; `remedy`: what helps but a shorter one."""
+    """An event of the user's model at `t` [s] of a motion that the mechanism lacks, such as a contact.
+
+    `words`: the event; `remedy`: an alternative to a shorter motion.
+    """
 
     t: float
     words: str
@@ -43,31 +46,34 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Change:
-    """Documented settings of an engine: what they are in `words`, the `lines` to copy, the step `dt` [s]."""
+    """Documented settings of an engine: a description (`words`), the `lines` to copy, and the step `dt` [s].
+
+    `options`: the settings by name, for the model's own use.
+    """
 
     words: str
     dt: float
     lines: tuple[str, ...]
-    options: tuple[tuple[str, Any], ...] = ()  # for the model's own use
+    options: tuple[tuple[str, Any], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
-class Give:
-    """How rows give way by the engine's own declaration: J a = bias - damping slip - stiffness gap - compliance F.
+class RowRegularisation:
+    """Regularisation of the rows as the engine declares it: J a = bias - damping slip - stiffness gap - compliance F.
 
-    `instead`: at the start, what stands in the place of the bias where the engine leaves it out; NaN elsewhere.
-    Of the mechanism's rows; zero where a row holds exactly. stiffness (rows,) [1/s^2]; damping (rows,) [1/s];
-    compliance (rows, rows) [1/kg, 1/(kg m^2)].
+    stiffness (rows,) [1/s^2]; damping (rows,) [1/s]; compliance (rows, rows) [1/kg, 1/(kg m^2)]; all are zero for a row
+    that holds exactly. `initial_bias` (rows,): the value at the start in place of `bias`, for an engine that leaves the
+    bias out; NaN elsewhere.
     """
 
     stiffness: Array
     damping: Array
     compliance: Array
-    instead: Array
+    initial_bias: Array
 
 
 class OwnModel(Protocol):
-    """A user's model as it is: it can be run from its start as often as one likes."""
+    """A user's model with its own settings, which can be run from its start any number of times."""
 
     @property
     def engine(self) -> str: ...
@@ -78,78 +84,80 @@ class OwnModel(Protocol):
 
     @property
     def assumed(self) -> str:
-        """What the model doesn't say and the reader took instead, in words; empty if nothing."""
+        """The values that the reader assumed since the model does not state them, in words; empty if none."""
         ...
 
     @property
     def settings(self) -> Mapping[str, str]:
-        """The engine's own settings in the model, in words."""
+        """The engine's settings in the model, in words."""
         ...
 
     @property
     def declares(self) -> bool:
-        """Whether the engine declares a law of its joints that no step takes part in."""
+        """Whether the engine declares a law of its joints that does not depend on the step."""
         ...
 
     @property
-    def softly_held(self) -> bool:
-        """Whether that law lets some joints give way."""
+    def has_soft_joints(self) -> bool:
+        """Whether that law has joints with a regularisation."""
         ...
 
     @property
-    def own_twist(self) -> Array:
-        """The user's velocities at t = 0 (bodies, 3) [m/s, rad/s], which the mechanism's joints may not allow."""
+    def start_twist(self) -> Array:
+        """The user's velocities at t = 0 (bodies, 3) [m/s, rad/s], which need not satisfy the mechanism's joints."""
         ...
 
     def start(self) -> Array:
         """The engine's accelerations at t = 0 (bodies, 3) [m/s^2, rad/s^2], at the mechanism's velocities."""
         ...
 
-    def give(self, gap: Array, pose: Array) -> Give:
-        """How the joints give way where they are open by `gap` (rows,) [m, rad], at a pose (bodies, 3)."""
+    def regularisation(self, gap: Array, pose: Array) -> RowRegularisation:
+        """The regularisation of the joints at gaps (rows,) [m, rad] and a pose (bodies, 3)."""
         ...
 
     def without(self, element: str) -> Array:
-        """`start`, with one of `elements` switched off."""
+        """The accelerations of `start` with one of `elements` switched off."""
         ...
 
     @property
     def elements(self) -> Sequence[str]:
-        """What can be switched off, to find out what explains a difference."""
+        """The kinds of elements that can be switched off, to find the cause of a difference."""
         ...
 
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
-        """The first of each kind that a motion of poses and twists (times, bodies, 3) meets, in the order of time.
+        """The first event of each kind in a motion of poses and twists (times, bodies, 3), in the order of time.
 
-        All that the reading took for granted is asked for here: contacts, limits of motions and of forces, sleep.
+        These are all that the reading excludes: contacts, limits of motions and of forces, sleep.
         """
         ...
 
     @property
     def suspects(self) -> Mapping[str, str]:
-        """Elements that the engine holds by another law than an ideal joint's at any step, each with why."""
+        """Elements whose law in the engine is not that of an ideal joint at any step, with the reason."""
         ...
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
         """Settings that the engine documents, with steps down to `smallest` [s]; the first is the user's own.
 
-        `further`: all that may help if the usual ones do not.
+        `further`: also settings that may help where the usual ones do not.
         """
         ...
 
     def remarks(self, run: Trajectory) -> Sequence[Note]:
-        """What the reading has taken for something else, with its effect on a run of the user's own settings."""
+        """The approximations of the reading, with their effect on a run with the user's own settings."""
         ...
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
-        """The user's model in motion: samples + 1 states, `every` of the user's steps apart."""
+        """A run of the user's model: samples + 1 states, `every` of the user's steps apart."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """The file of a user's model: `changed` gives its bytes with other settings, and `read` reads such a file in the
-    way in which this one was read. Either raises Unsupported.
+    """The file of a user's model.
+
+    `changed`: the bytes of the file with other settings; `read`: reads such a file on the same terms. Both raise
+    Unsupported.
     """
 
     path: Path
@@ -159,9 +167,9 @@ class Source:
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """What a user's model describes: a mechanism, what was left out of it, and the model, as it is.
+    """The mechanism that a user's model describes, notes on elements that were left out, and the model itself.
 
-    `source`: the file that it was read from; None where it has no text.
+    `source`: the file of the model; None where it has no text.
     """
 
     mechanism: Mechanism
@@ -172,9 +180,8 @@ class Reading:
 
     @property
     def jumps(self) -> bool:
-        """Whether the model starts with velocities that its joints do not allow, so that the ideal motion begins after
-        an impulse."""
-        return bool(np.any(self.model.own_twist != self.mechanism.twist))
+        """Whether the model's own velocities violate its joints, so that the ideal motion begins after an impulse."""
+        return bool(np.any(self.model.start_twist != self.mechanism.twist))
 
 
 @dataclass(frozen=True)
@@ -194,20 +201,20 @@ AS_IT_IS = ReadingTerms()
 
 
 class Reader(Protocol):
-    """Under `crosscheck.readers`: it says what it reads, and reads it."""
+    """A reader of the models of one engine, as an entry point of `crosscheck.readers`."""
 
     @property
     def words(self) -> str:
-        """What it reads, for a message."""
+        """The kind of model that it reads, for a message."""
         ...
 
     @property
     def elements(self) -> Mapping[str, str]:
-        """What it reads, by the engine's own name, and as what: one table, from which the page is made."""
+        """The ideal counterpart of each element that it reads, by the engine's own name; for messages and the page."""
         ...
 
     def reads(self, word: str) -> bool:
-        """Whether a word on the command line is a model for this reader."""
+        """Whether a word of the command line is a model for this reader."""
         ...
 
     def read(self, word: str, folder: Path, terms: ReadingTerms) -> Reading:
@@ -221,25 +228,25 @@ def refuse(element: str, reason: str) -> Unsupported:
 
 
 def left_out(element: str) -> str:
-    """The consequence of leaving out an element that acts in the motion: an option, and no advice."""
+    """The consequence of leaving out an element that acts in the motion, for a message."""
     return f"--without {element} judges your model without it, which moves otherwise"
 
 
 def refuse_at_start(model: OwnModel, mechanism: Mechanism) -> None:
-    """Raises Unsupported if the start itself meets what the mechanism lacks."""
-    for each in model.obstacles(np.zeros(1), mechanism.pose[None], mechanism.twist[None]):
-        reason = f"so it does at the start, and an ideal mechanism doesn't know it; {each.remedy}"
-        raise refuse(each.words, reason)
+    """Raises Unsupported for an obstacle at the start."""
+    for obstacle in model.obstacles(np.zeros(1), mechanism.pose[None], mechanism.twist[None]):
+        reason = f"so it does at the start, and an ideal mechanism doesn't know it; {obstacle.remedy}"
+        raise refuse(obstacle.words, reason)
 
 
 class Names:
-    """Names that differ: a model may call a joint and an equality alike, or nothing at all."""
+    """Unique names: elements of a model may share a name, or have none."""
 
     def __init__(self) -> None:
         self._taken: set[str] = set()
 
     def new(self, wanted: str) -> str:
-        """The name wanted, or the same with a number."""
+        """The wanted name, with a number if it is taken."""
         name, number = wanted, 2
         while name in self._taken:
             name, number = f"{wanted} ({number})", number + 1

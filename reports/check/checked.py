@@ -93,8 +93,8 @@ def parts_of(
     mechanism, model = reading.mechanism, reading.model
     declared, softness = truth.pose, 0.0 if model.declares else float("nan")
     early = truth.t <= horizon
-    if model.declares and model.softly_held:
-        declared = soft_motion(mechanism, model.give, truth.t, tolerance, model.own_twist)
+    if model.declares and model.has_soft_joints:
+        declared = soft_motion(mechanism, model.regularisation, truth.t, tolerance, model.start_twist)
         softness = _largest(apart(mechanism, declared, truth.pose)[early])
     left = [_largest(apart(mechanism, run.pose, declared)[early]) for run in (own, *(each.run for each in smaller))]
     if not smaller:

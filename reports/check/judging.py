@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from engines import Unsupported
 from engines.lagrange import TRUTH, Lagrange
 from engines.lagrange.dynamics import Dynamics, constrained_acceleration
-from engines.reading import Give, Reading, left_out
+from engines.reading import Reading, RowRegularisation, left_out
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.rows import undetermined
@@ -26,23 +26,25 @@ FAR = 1e12  # m, rad, and those in a second: nothing in a motion that is worth a
 TOLERANCE = 1e-10  # far below what an engine's own step leaves, far above rounding
 
 
-def accelerations(mechanism: Mechanism, pose: Array, twist: Array, t: float, give: Give | None = None) -> Array:
+def accelerations(
+    mechanism: Mechanism, pose: Array, twist: Array, t: float, give: RowRegularisation | None = None
+) -> Array:
     """(bodies, 3) [m/s^2, rad/s^2] at pose and twist (bodies, 3), with joints that are ideal or as soft as `give`.
 
-    Soft rows: J a = bias - damping slip - stiffness gap - compliance F, with `give.instead` in place of the bias.
+    Soft rows: J a = bias - damping slip - stiffness gap - compliance F, with `give.initial_bias` in place of the bias.
     """
     if give is None or not mechanism.row_count:
         return constrained_acceleration(mechanism, pose, twist)[0]
     bias = mechanism.bias(pose, twist)
     slip = mechanism.rows(pose) @ twist.reshape(-1) - mechanism.rate
     gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(t)))
-    target = np.where(np.isnan(give.instead), bias, give.instead) - give.damping * slip - give.stiffness * gap
+    target = np.where(np.isnan(give.initial_bias), bias, give.initial_bias) - give.damping * slip - give.stiffness * gap
     return constrained_acceleration(mechanism, pose, twist, target, give.compliance)[0]
 
 
 def soft_motion(
     mechanism: Mechanism,
-    give: Callable[[Array, Array], Give],
+    give: Callable[[Array, Array], RowRegularisation],
     t: Array,
     tolerance: float = TOLERANCE,
     twist: Array | None = None,
@@ -322,7 +324,7 @@ def refuse_disagreement(reading: Reading) -> float:
     disagreement if one does.
     """
     mechanism, model = reading.mechanism, reading.model
-    give = model.give(np.zeros(mechanism.row_count), mechanism.pose) if model.softly_held else None
+    give = model.regularisation(np.zeros(mechanism.row_count), mechanism.pose) if model.has_soft_joints else None
     expected = accelerations(mechanism, mechanism.pose, mechanism.twist, 0.0, give)
     found = model.start()
     off = _apart(mechanism, found, expected)

@@ -93,7 +93,7 @@ def _why(result: Checked) -> str:
         sentences.append(f"how soft a joint is depends on the step in {model.engine}, so the two can't be told apart")
         return "; ".join(sentences)
     softness = "no softness (the joints are coordinates, which can't part)"
-    if model.softly_held:
+    if model.has_soft_joints:
         softness = f"joints as soft as {model.engine} declares them make {number(parts.softness)}"
         softness += ", which only stiffer ones mend"
     sentences.insert(0, softness)
@@ -204,7 +204,7 @@ def _read(result: Checked) -> Section:
         f"elements; {velocity} freedom{'' if velocity == 1 else 's'} by the rank of the rows"
         + (f" ({configuration} of configuration)." if configuration != velocity else "."),
         f"At t = 0 the accelerations of {model.engine} and of the judge agree to {result.agreement:.1g} of themselves"
-        + (", with the softness that the engine declares." if model.softly_held else "."),
+        + (", with the softness that the engine declares." if model.has_soft_joints else "."),
     ]
     if facts.redundant:
         names = ", ".join(facts.undetermined[:MOST_NAMED])

@@ -173,7 +173,7 @@ def test_an_equality_of_which_mujoco_makes_no_row_is_left_out_with_a_note():
         assert [joint.name for joint in reading.mechanism.joints] == ["j"]
         assert ("equality 0", True) in [(note.element, "makes no row" in note.reason) for note in reading.notes]
         assert refuse_disagreement(reading) < 1e-9
-        assert not reading.model.give(np.zeros(2), reading.mechanism.pose).stiffness.any()
+        assert not reading.model.regularisation(np.zeros(2), reading.mechanism.pose).stiffness.any()
 
 
 def test_a_fluid_that_is_switched_off_moves_nothing():
@@ -190,10 +190,10 @@ def test_a_fluid_that_is_switched_off_moves_nothing():
 def test_softness_as_declared_is_what_mujoco_does():
     reading = read(model_of(*MODELS["a connect"], 'timestep="0.0002" integrator="RK4" tolerance="1e-15"'))
     run = reading.model.run(40, 50)
-    soft = soft_motion(reading.mechanism, reading.model.give, run.t)
+    soft = soft_motion(reading.mechanism, reading.model.regularisation, run.t)
     # RK4 at 0.2 ms: the step's own error is far below; the ideal motion is 1e-3 off.
     assert apart(reading.mechanism, soft, run.pose).max() < 1e-6
-    stiffer = [replace(reading.model.give(np.zeros(8), reading.mechanism.pose), compliance=np.zeros((8, 8)))]
+    stiffer = [replace(reading.model.regularisation(np.zeros(8), reading.mechanism.pose), compliance=np.zeros((8, 8)))]
     wrong = soft_motion(reading.mechanism, lambda gap, pose: stiffer[0], run.t)
     assert apart(reading.mechanism, wrong, run.pose).max() > 1e-5
 

@@ -16,7 +16,7 @@ from engines.mujoco.reading import read as read_model
 from engines.mujoco.writers import urdf
 from engines.pymunk import DEFAULT as PYMUNK
 from engines.pymunk.written_script import script
-from engines.reading import Give, ReadingTerms
+from engines.reading import ReadingTerms, RowRegularisation
 from reference.checks import InvalidMechanism
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
@@ -176,7 +176,7 @@ def test_a_drive_that_gives_way_is_damped_against_its_own_rate():
     joints = (Pin("hinge", None, "wheel", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "wheel", 3.0, 0.0))
     at_rate = Mechanism((Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 3.0)),), joints)
     none = np.zeros(3)
-    give = Give(none, np.full(3, 10.0), np.diag(none), np.full(3, np.nan))
+    give = RowRegularisation(none, np.full(3, 10.0), np.diag(none), np.full(3, np.nan))
     for rate in (3.0, 2.0):
         twist = np.array([[0.0, 0.0, rate]])
         found = accelerations(at_rate, at_rate.pose, twist, 0.0, give)

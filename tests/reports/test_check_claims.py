@@ -189,7 +189,7 @@ def test_accelerations_that_should_be_zero_are_compared_with_those_of_the_mechan
     wheel = Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, rate))
     mechanism = Mechanism((wheel,), (Pin("axle", None, "wheel", (0.0, 0.0), (0.0, 0.0)),), (0.0, 0.0))
     off = np.array([[0.0, 0.0, 1e-3 * mechanism.time_scale**-2]])
-    model = SimpleNamespace(engine="toy", softly_held=False, elements=(), suspects={}, start=lambda: off)
+    model = SimpleNamespace(engine="toy", has_soft_joints=False, elements=(), suspects={}, start=lambda: off)
     with pytest.raises(Unsupported, match=r"differ from those of the ideal mechanism by 0\.001 of"):
         refuse_disagreement(Reading(mechanism, cast(Any, model), ()))
 

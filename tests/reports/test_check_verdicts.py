@@ -345,7 +345,7 @@ def test_the_declared_softness_of_a_loop_follows_the_diagonal_that_the_flag_sele
         reading = read_model(mujoco.MjModel.from_xml_string(text))
         assert refuse_disagreement(reading) < 1e-7
         run[flag] = reading.model.run(5, 200)
-        soft[flag] = soft_motion(reading.mechanism, reading.model.give, run[flag].t)
+        soft[flag] = soft_motion(reading.mechanism, reading.model.regularisation, run[flag].t)
         assert apart(reading.mechanism, soft[flag], run[flag].pose).max() < (1e-8 if "connect" in loop else 1e-7)
     if "connect" in loop:
         assert apart(reading.mechanism, soft["enable"], run["disable"].pose).max() > 1e-7  # the flag matters

@@ -22,7 +22,7 @@ from engines.mujoco.reading.settings import TIED_STEPS, changes, declared, switc
 from engines.mujoco.releases import release_warnings, spelled
 from engines.mujoco.running import logged_warnings
 from engines.mujoco.stiffness import STIFFEST
-from engines.reading import Change, Give, Note, Obstacle, left_out
+from engines.reading import Change, Note, Obstacle, RowRegularisation, left_out
 from engines.sampling import sampled
 from reference.joints import Rod
 from reference.mechanism import Mechanism
@@ -130,11 +130,11 @@ class OwnMuJoCo:
         return not any(isinstance(joint, Rod) for joint in self.mechanism.joints)
 
     @property
-    def softly_held(self) -> bool:
+    def has_soft_joints(self) -> bool:
         return any(self.scene.held.values())
 
     @property
-    def own_twist(self) -> Array:
+    def start_twist(self) -> Array:
         return np.array([body.twist for body in self.scene.bodies])
 
     @property
@@ -175,7 +175,7 @@ class OwnMuJoCo:
             mujoco.mj_forward(model, data)
         return self._motion(model, data)[1]
 
-    def give(self, gap: Array, pose: Array) -> Give:
+    def regularisation(self, gap: Array, pose: Array) -> RowRegularisation:
         return self._give(gap, pose)
 
     @cached_property
@@ -223,7 +223,7 @@ class OwnMuJoCo:
         return sorted(first.values(), key=lambda obstacle: obstacle.t)
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
-        return changes(self.scene.model, self.softly_held, smallest, self.urdf, self.classes, further)
+        return changes(self.scene.model, self.has_soft_joints, smallest, self.urdf, self.classes, further)
 
     def remarks(self, run: Trajectory) -> Sequence[Note]:
         if not self.tilt:
@@ -239,7 +239,7 @@ class OwnMuJoCo:
             f"they are up to {self.tilt:.2g} rad off, as rounding of a file makes them, and taken as exact; with exact "
             f"ones your model moves differently by {moved(run, None)} in {run.t[-1]:.3g} s"
         )
-        if self.softly_held:
+        if self.has_soft_joints:
             stiff = self.changes(self.dt)[-1]
             words += f", with stiff loops by {moved(self.run(samples, every, stiff), stiff)}"
         return (Note("the directions of joints", words),)
@@ -301,7 +301,7 @@ class OwnMuJoCo:
         """The same at the velocities of the mechanism, which satisfy all joints."""
         data = self._fresh(model)
         mujoco.mj_fwdPosition(model, data)
-        if np.any(self.own_twist != self.mechanism.twist):
+        if np.any(self.start_twist != self.mechanism.twist):
             self._set_rates(data, self.mechanism.twist)
         return data
 

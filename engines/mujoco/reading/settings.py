@@ -21,7 +21,7 @@ from engines.mujoco.reading.elements import equality_rows
 from engines.mujoco.reading.frame import PlanarModel
 from engines.mujoco.releases import spelled
 from engines.mujoco.stiffness import STIFFEST
-from engines.reading import Change, Give, refuse
+from engines.reading import Change, RowRegularisation, refuse
 from reference.joints import Rod
 from reference.mechanism import Mechanism
 
@@ -46,7 +46,7 @@ class _Held:
 
 def declared(
     scene: PlanarModel, mechanism: Mechanism, directions: Array, drift: Array, moved: Callable[[Array], Any]
-) -> Callable[[Array, Array], Give]:
+) -> Callable[[Array, Array], RowRegularisation]:
     """How each row gives way at a gap (rows,) [m, rad] and a pose (bodies, 3).
 
     directions (3 bodies, nv): how MuJoCo's coordinates move the bodies at the start, where its rows are compared with
@@ -70,7 +70,7 @@ def declared(
     ]
     is_exact = bool(scene.model.opt.enableflags & int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT))
 
-    def give(gap: Array, pose: Array) -> Give:
+    def give(gap: Array, pose: Array) -> RowRegularisation:
         stiffness, damping = np.zeros((2, mechanism.row_count))
         compliance = np.zeros((mechanism.row_count, mechanism.row_count))
         data = moved(pose) if is_exact else scene.data
@@ -82,7 +82,7 @@ def declared(
                 # R f = a_ref - a in MuJoCo's rows, which are these multiples of ours.
                 stiff = multiples.T @ (multiples / diagonal[of_mujoco, None])
                 compliance[np.ix_(one.places[which], one.places[which])] = (1 - d) / d * np.linalg.inv(stiff)
-        return Give(stiffness, damping, compliance, instead)
+        return RowRegularisation(stiffness, damping, compliance, instead)
 
     return give
 

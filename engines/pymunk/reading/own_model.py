@@ -21,7 +21,7 @@ from engines.pymunk.contraction import gain, sweeps
 from engines.pymunk.expected import worst_contraction
 from engines.pymunk.methods import WORK
 from engines.pymunk.reading.joints import LIMITS, Described, both_sided, copied, is_equality, place
-from engines.reading import Change, Give, Note, Obstacle, left_out, refuse
+from engines.reading import Change, Note, Obstacle, RowRegularisation, left_out, refuse
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
@@ -60,7 +60,7 @@ class OwnPymunk:
     unknown_step: bool  # the space has not been stepped, and no step was named
     ahead: bool = False  # the user's own lines bring velocities half a step ahead before the first step
     engine: str = "pymunk"
-    softly_held: bool = False
+    has_soft_joints: bool = False
     # How far joints give way follows from steps and sweeps: pymunk declares no law without them.
     declares: bool = False
     elements: Sequence[str] = ("contact", "limit")
@@ -72,7 +72,7 @@ class OwnPymunk:
         return f"a step of {self.dt:.4g} s, since the space has not been stepped (give yours with --step)"
 
     @property
-    def own_twist(self) -> Array:
+    def start_twist(self) -> Array:
         return np.array([body.twist for body in self.described.bodies])
 
     @property
@@ -112,9 +112,9 @@ class OwnPymunk:
         self._stepper(space, bodies)(step)
         return (_twists(bodies) - self.mechanism.twist) / step
 
-    def give(self, gap: Array, pose: Array) -> Give:
+    def regularisation(self, gap: Array, pose: Array) -> RowRegularisation:
         none = np.zeros(self.mechanism.row_count)
-        return Give(none, none, np.diag(none), np.full_like(none, np.nan))
+        return RowRegularisation(none, none, np.diag(none), np.full_like(none, np.nan))
 
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
         met = [*sleepers(self.described, self.dt, t, twist), *obstacles(self.described, t, pose)]
