@@ -1,7 +1,7 @@
 """Closed boundaries that are not round, by arc length: the ellipse, and smooth convex cams.
 
-The ellipse has elliptic integrals, continuous over any number of turns; a cam has a Fourier series as its support
-function, and everything but the arc's inverse in closed form.
+The arc of an ellipse is an elliptic integral, continued over any number of turns. A cam has a Fourier series as its
+support function; all its functions but the inverse of the arc are in closed form.
 """
 
 from __future__ import annotations
@@ -18,15 +18,16 @@ from reference.checks import InvalidMechanism, Positive, cached_readonly
 from reference.numerics.roots import solve_increasing
 from reference.rolling.curves import Array, Curve, along
 
-GUESSES = 257  # known places in half a turn: between them a cubic is right to 1e-9 and better unless it is very flat
+# Tabulated points in half a turn. Cubics between them have an error of at most 1e-9, unless the ellipse is very flat.
+GUESSES = 257
 
 
 @dataclass(frozen=True)
 class Ellipse(Curve):
-    """(a cos u, b sin u) [m] for semi-axes `along_x` = a and `along_y` = b, u its natural parameter, counter-clockwise.
+    """(a cos u, b sin u) [m] with the natural parameter u, counter-clockwise; semi-axes `along_x` = a, `along_y` = b.
 
-    Arc 0 is the point (a, 0), where the tangent angle is pi/2. Arc = b E(u | 1 - a^2/b^2), with the incomplete integral
-    used within half a turn only, so that rounding doesn't grow with the turns by more than the arc itself.
+    Arc 0 is the point (a, 0), where the tangent angle is pi/2. Arc = b E(u | 1 - a^2/b^2); the incomplete integral is
+    evaluated within half a turn only, so that the relative error does not grow with the number of turns.
     """
 
     along_x: Positive
@@ -38,7 +39,7 @@ class Ellipse(Curve):
         if ratio > 1e3:
             raise InvalidMechanism(
                 f"ellipse: its axes differ by a factor {ratio:.3g}, so its ends are nearly of infinite curvature; "
-                "a factor up to 1e3 is kept to full accuracy"
+                "the factor must be at most 1e3"
             )
 
     @cached_property
@@ -62,12 +63,12 @@ class Ellipse(Curve):
         a, b = self.along_x, self.along_y
         if a <= b:
             part = b * ellipeinc(rest, 1 - (a / b) ** 2)
-        else:  # Carlson's form: its terms are both positive, so that short arcs at a sharp end keep their digits
+        else:  # Carlson's form, whose terms are both positive: there is no cancellation for short arcs at a sharp end
             sine, cosine = np.sin(rest), np.cos(rest)
             square, excess = (a / b) ** 2, (a - b) * (a + b) / b**2
             slope = cosine**2 + square * sine**2
-            one = np.ones_like(slope)
-            part = b * sine * (elliprf(cosine**2, slope, one) + excess / 3 * sine**2 * elliprd(cosine**2, slope, one))
+            ones = np.ones_like(slope)
+            part = b * sine * (elliprf(cosine**2, slope, ones) + excess / 3 * sine**2 * elliprd(cosine**2, slope, ones))
         return half_turns * (self.length / 2) + part
 
     @property
@@ -76,7 +77,7 @@ class Ellipse(Curve):
 
     def parameter(self, arc: ArrayLike) -> Array:
         arc = along(arc)
-        # Reduced to half a turn, so that the root is found to the rounding of the fraction, not of the turns.
+        # Within half a turn, so that the error of the root does not grow with the number of turns.
         half_turns = np.round(arc / (self.length / 2))
         rest = arc - half_turns * (self.length / 2)
         root = solve_increasing(lambda u: (self.arc_of(u), self.speed_of(u)), rest, self._guess(rest), 1e-3)
@@ -89,14 +90,14 @@ class Ellipse(Curve):
         return u, self.arc_of(u), self.speed_of(u)
 
     def _guess(self, rest: Array) -> Array:
-        """Parameters (...) of arcs [m] within half a turn, by cubics between known ones: a beginning of a search."""
+        """Approximate parameters (...) of arcs [m] within half a turn, by cubic interpolation of a table."""
         u, arcs, speeds = self._half_turn
-        before = np.clip(np.searchsorted(arcs, rest) - 1, 0, GUESSES - 2)
-        width, part = arcs[before + 1] - arcs[before], rest - arcs[before]
+        index = np.clip(np.searchsorted(arcs, rest) - 1, 0, GUESSES - 2)
+        width, part = arcs[index + 1] - arcs[index], rest - arcs[index]
         x = np.clip(part / width, 0.0, 1.0)
-        first, second = width / speeds[before], width / speeds[before + 1]  # slopes of the inverse at both ends
+        first, second = width / speeds[index], width / speeds[index + 1]  # slopes of the inverse at both ends
         step = u[1] - u[0]
-        return u[before] + x * (first + x * (3 * step - 2 * first - second + x * (first + second - 2 * step)))
+        return u[index] + x * (first + x * (3 * step - 2 * first - second + x * (first + second - 2 * step)))
 
     def parameter_at(self, angle: ArrayLike) -> Array:
         normal = along(angle) - math.pi / 2
@@ -116,22 +117,21 @@ class Ellipse(Curve):
 
 
 def _unwrapped(angle: Array, about: Array) -> Array:
-    """The angle (...) [rad] with as many turns as bring it within a quarter turn of `about`, as that of a circle is."""
+    """The angle (...) [rad] plus whole turns, so that it is within half a turn of `about`."""
     return angle + 2 * math.pi * np.round((about - angle) / (2 * math.pi))
 
 
 @dataclass(frozen=True)
 class Cam(Curve):
-    """The convex curve whose tangent with outward normal at the angle nu is at the distance h(nu) from the origin [m]:
+    """The convex curve whose tangent with the outward normal nu has the distance h(nu) [m] from the origin:
 
     h = radius + sum over k = 1.. of cosines[k-1] cos(k nu) + sines[k-1] sin(k nu),
 
     with nu its natural parameter.
 
-    The first terms shift the cam (cosines=(e,) is a disc eccentric by e), the second make it oval, the third
-    three-lobed; a second and a third make an egg. The radius of curvature is h + h'', the arc its integral; arc 0 is
-    where the normal points to +x. Raises InvalidMechanism, with the place, where the radius of curvature isn't
-    positive.
+    The first terms shift the cam (cosines=(e,) is a disc with eccentricity e), the second make it oval, the third
+    three-lobed; a second and a third make an egg. The radius of curvature is h + h'', the arc its integral; at arc 0
+    the normal points to +x. Raises InvalidMechanism if the radius of curvature is not positive everywhere.
     """
 
     radius: Positive
@@ -175,7 +175,7 @@ class Cam(Curve):
         normals = np.zeros(1)
         if np.any(np.abs(polynomial) > 0):
             roots = np.roots(polynomial)
-            # Every root on the unit circle is an extremum; others do no harm as candidates.
+            # Roots on the unit circle are extrema; the others are harmless candidates.
             normals = np.concatenate([normals, np.angle(roots[np.abs(roots) > 0])])
         bends = self.speed_of(normals)
         low, high = int(np.argmin(bends)), int(np.argmax(bends))
@@ -191,11 +191,11 @@ class Cam(Curve):
         return (1 / high[0], 1 / low[0])
 
     def arc_of(self, p: ArrayLike) -> Array:
-        # The integral of h + h'', in terms that vanish at the start one by one: a short arc keeps its digits.
+        # The integral of h + h'', with terms that are each zero at the start, to avoid cancellation for short arcs.
         normal, (k, cosines, sines) = along(p), self._harmonics
         phase = normal[..., None] * k
-        terms = (1 / k - k) * (cosines * np.sin(phase) + 2 * sines * np.sin(0.5 * phase) ** 2)
-        return self.radius * normal + np.sum(terms, axis=-1)
+        harmonics = (1 / k - k) * (cosines * np.sin(phase) + 2 * sines * np.sin(0.5 * phase) ** 2)
+        return self.radius * normal + np.sum(harmonics, axis=-1)
 
     def parameter(self, arc: ArrayLike) -> Array:
         arc = along(arc)

@@ -1,13 +1,13 @@
-"""What a boundary is: point, tangent angle and curvature by arc length; and the simplest, lines and circles.
+"""Boundaries: point, tangent angle and curvature by arc length; lines and circles.
 
-The one convention (it replaces the chapter's "counter-clockwise", which fails for holes and straight ground):
+The convention (it replaces the chapter's "counter-clockwise", which fails for holes and straight ground):
 
 * every boundary is traversed with its OWN MATERIAL ON THE LEFT: counter-clockwise round a disc, clockwise round a hole;
-* the tangent angle is the direction of traversal, unwrapped: it goes on beyond a turn;
-* curvature = d angle / d arc is positive where the boundary bends towards its material, so that of a ring is negative;
+* the tangent angle is the direction of traversal, unwrapped;
+* curvature = d angle / d arc is positive if the boundary bends towards its material, so it is negative for a ring;
 * flat ground with its material below is therefore traversed towards -x.
 
-When B rolls on A the two tangents are opposite, angle_A + pi = theta + angle_B, and the contact runs forward on A and
+When B rolls on A the tangents are opposite, angle_A + pi = theta + angle_B, and the contact moves forward on A and
 backward on B: arc_A + arc_B is constant, and d arc_A / d theta = 1 / (curvature_A + curvature_B).
 """
 
@@ -31,10 +31,9 @@ Vector = tuple[float, float]
 class Curve(Valid, ABC):
     """A boundary by arc length [m], in the frame of the body that owns it; subclasses are frozen dataclasses.
 
-    `length` [m] once round, infinite if it doesn't close; `limits` [m] the arcs that exist; `curvature_range` [1/m] the
-    infimum and supremum of the curvature. All functions take arrays of any shape and are continuous over many turns.
-
-    Each curve has its own natural parameter p, in which it is written; the functions of arc follow from those of p.
+    `length` [m]: once round, infinite if the curve is not closed; `limits` [m]: the first and last arc;
+    `curvature_range` [1/m]: infimum and supremum of the curvature. All functions take arrays of any shape and are
+    continuous over many turns. Each curve is defined by functions of its natural parameter p.
     """
 
     @property
@@ -55,9 +54,9 @@ class Curve(Valid, ABC):
 
     @abstractmethod
     def parameter_at(self, angle: ArrayLike) -> Array:
-        """The natural parameter (...) where the unwrapped tangent angle is `angle` (...) [rad].
+        """The natural parameter (...) at which the unwrapped tangent angle is `angle` (...) [rad].
 
-        Raises InvalidMechanism where the curve has no such tangent, or where it is straight and has it everywhere.
+        Raises InvalidMechanism if the curve has no such tangent, or if it is straight.
         """
 
     @abstractmethod
@@ -115,8 +114,8 @@ class ByArc(Curve):
 
 
 def along(arc: ArrayLike) -> Array:
-    """Arcs or angles as an array of floats, refused if they are no numbers; NaN stays NaN, a search may pass there."""
-    if type(arc) is np.ndarray and arc.dtype == np.float64:  # at every step of a search
+    """Arcs or angles as an array of floats; InvalidMechanism for other types. NaN is allowed for root searches."""
+    if type(arc) is np.ndarray and arc.dtype == np.float64:  # the fast path of root searches
         return arc
     return validate("curve", "the place", arc, Numbers)
 
@@ -136,7 +135,7 @@ def within(owner: str, arc: ArrayLike, limits: tuple[float, float], why: str) ->
 
 @dataclass(frozen=True)
 class Placed(Curve):
-    """A curve turned by `turn` [rad] about its origin and then shifted by `shift` [m]."""
+    """A curve that is rotated by `turn` [rad] about its origin and then shifted by `shift` [m]."""
 
     curve: Curve
     shift: Vector = (0.0, 0.0)
@@ -177,8 +176,10 @@ class Placed(Curve):
 
 
 def straight_has_no_inverse(owner: str) -> InvalidMechanism:
-    """The error for asking a straight boundary where it has a given direction."""
-    return InvalidMechanism(f"{owner}: it is straight, so its direction doesn't tell the place; ask a curved boundary")
+    """The error for a search of a direction on a straight boundary."""
+    return InvalidMechanism(
+        f"{owner}: it is straight, so its direction does not determine a point; use a curved boundary"
+    )
 
 
 @dataclass(frozen=True)
@@ -212,7 +213,7 @@ class Line(ByArc):
 class Side(ByArc):
     """The lower side of a square of side `side` [m] about the origin: arcs from -side/2 to side/2, traversed to +x.
 
-    Beyond its ends are corners, where the curvature is infinite: any arc there is refused.
+    Its ends are corners of infinite curvature; arcs beyond them are refused.
     """
 
     side: Positive
@@ -244,7 +245,7 @@ class Side(ByArc):
 
 @dataclass(frozen=True)
 class _Round(ByArc):
-    """What a disc and a hole share: a circle of `radius` [m] about `centre` [m], traversed to the left or the right."""
+    """Base of disc and hole: a circle of `radius` [m] about `centre` [m], traversed to the left or the right."""
 
     radius: Positive
     centre: Vector = (0.0, 0.0)

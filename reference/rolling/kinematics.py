@@ -1,6 +1,6 @@
 """One rigid curve rolling on another: contact, pose, velocity (18.66) and acceleration as functions of the rotation.
 
-Where one curve touches another that it rolls on, and where two can't roll: they cut, fit, or one leaves a ring.
+Contacts at which rolling is not possible are refused: the curves cut, they fit each other, or one is outside a ring.
 """
 
 from __future__ import annotations
@@ -22,16 +22,21 @@ from reference.validators import of_shape
 
 @dataclass(frozen=True)
 class Contact:
-    """The contact at rotations (...) [rad] of the body, everything in the ground's frame unless it says otherwise."""
+    """The contact at rotations theta (...) [rad] of the body, in the ground's frame.
+
+    ground_arc, body_arc (...) [m], whose sum is constant; point (..., 2) [m] of contact; arm (..., 2) [m]: r_{O'/C},
+    from the contact to the body's origin; tangent_angle (...) [rad] of e_t, the direction in which the ground is
+    traversed; ground_curvature, body_curvature (...) [1/m].
+    """
 
     theta: Array
-    ground_arc: Array  # (...) m
-    body_arc: Array  # (...) m; ground_arc + body_arc is constant
-    point: Array  # (..., 2) m, where the curves touch
-    arm: Array  # (..., 2) m, r_{O'/C}: the body's origin seen from the contact
-    tangent_angle: Array  # (...) rad, of e_t: the direction in which the ground is traversed
-    ground_curvature: Array  # (...) 1/m
-    body_curvature: Array  # (...) 1/m
+    ground_arc: Array
+    body_arc: Array
+    point: Array
+    arm: Array
+    tangent_angle: Array
+    ground_curvature: Array
+    body_curvature: Array
 
     @property
     def rate(self) -> Array:
@@ -45,43 +50,44 @@ class Contact:
 
     @property
     def normal(self) -> Array:
-        """e_n (..., 2), towards the interior of the body: -k x e_t whatever the curves are."""
+        """e_n = -k x e_t (..., 2), towards the interior of the body."""
         return np.stack([np.sin(self.tangent_angle), -np.cos(self.tangent_angle)], axis=-1)
 
     @property
     def conformality(self) -> Array:
-        """(curvature_A + curvature_B) / max(|curvature|) (...): 1 on flat ground, 0 when the curves fit each other."""
+        """(curvature_A + curvature_B) / max(|curvature|) (...): 1 on flat ground, 0 for curves that fit each other."""
         largest = np.maximum(np.abs(self.ground_curvature), np.abs(self.body_curvature))
         return (self.ground_curvature + self.body_curvature) / largest
 
 
-# The contact is lost as the inverse of (curvature_A + curvature_B) / max(|curvature|): at this fraction about seven
-# of a double's sixteen digits are left in it, and a truth of fewer would be none.
+# Smallest conformality that is allowed. The error of the contact is proportional to the inverse of the conformality; at
+# this value about seven of a double's sixteen digits remain.
 NEAR_CONFORMAL = 1e-9
-SCAN = 721  # places at which a pair that might be conformal somewhere is examined, once round
+# Points of a curve, once round, at which conformality and overlap are examined.
+SCAN = 721
 
 
 def first_fit(body: Curve, ground: Curve, body_arc: float, ground_arc: float, end: float, side: int) -> float:
-    """The first arc of the body [m] on one side (+1, -1) of its start where the curvatures cancel, or the `end` [m].
+    """The first arc of the body [m] on one side (+1, -1) of its start at which the curvatures cancel, or the `end` [m].
 
-    At the start `body_arc` touches the ground at `ground_arc` [m]. `end`: the last arc there is, maybe infinite.
+    At the start `body_arc` touches the ground at `ground_arc` [m]. `end`: the last arc of the curves, or infinity.
     """
     total = ground_arc + body_arc
     period = body.length if not math.isfinite(ground.length) else body.length + ground.length
     if not math.isfinite(end):
         if not math.isfinite(period):
             return end
-        reach = body_arc + side * period
+        last = body_arc + side * period
     else:
-        reach = end
+        last = end
 
     def free(arc: ArrayLike) -> Array:
         on_body = body.curvature_of(body.parameter(arc))
         on_ground = ground.curvature_of(ground.parameter(total - np.asarray(arc)))
-        with np.errstate(invalid="ignore"):  # at a pole, where rolling never ends
+        with np.errstate(invalid="ignore"):  # at the pole of a spiral
             return on_ground + on_body - NEAR_CONFORMAL * np.maximum(np.abs(on_ground), np.abs(on_body))
 
-    arcs = np.linspace(body_arc, reach, SCAN)
+    arcs = np.linspace(body_arc, last, SCAN)
     blocked = np.flatnonzero(free(arcs) <= 0)
     if blocked.size == 0:
         return end
@@ -93,7 +99,7 @@ def first_fit(body: Curve, ground: Curve, body_arc: float, ground_arc: float, en
 
 
 def refuse_conformal(contact: Contact) -> None:
-    """Raises InvalidMechanism where curvature_A + curvature_B isn't positive, or below NEAR_CONFORMAL of the larger."""
+    """Raise InvalidMechanism if curvature_A + curvature_B is below NEAR_CONFORMAL of the larger curvature."""
     with np.errstate(divide="ignore", invalid="ignore"):
         near = ~(contact.conformality >= NEAR_CONFORMAL)
     if np.any(near):
@@ -104,12 +110,12 @@ def refuse_conformal(contact: Contact) -> None:
             f"rolling: at theta = {theta:.9g} rad (arc {arc:.9g} m of the ground, {on_body:.9g} m of the body) the "
             f"curvatures are {a:.9g} and {b:.9g} 1/m; their sum must be positive, and above "
             f"{NEAR_CONFORMAL:g} of the larger, else the curves cut into each other or fit so closely "
-            "that the contact has no place"
+            "that the contact is not determined"
         )
 
 
 def refuse_overlap(body: Curve, ground: Curve, contact: Contact) -> None:
-    """A closed curve inside a ring must lie inside it all round, not only at the contact; else InvalidMechanism."""
+    """Raise InvalidMechanism unless a closed curve in a ring is entirely inside the ring."""
     rings = [(hole[0], -hole[1]) if (hole := _circle(curve)) and hole[1] < 0 else None for curve in (ground, body)]
     if rings[0] is not None and rings[1] is None and math.isfinite(body.length):
         (centre, radius), other = rings[0], body
@@ -134,7 +140,7 @@ def refuse_overlap(body: Curve, ground: Curve, contact: Contact) -> None:
 
 
 def _circle(curve: Curve) -> tuple[Array, float] | None:
-    """Centre (2,) [m], and radius [m], negative of a hole, of a round curve, placed or not; None for any other."""
+    """Centre (2,) [m] and radius [m] of a round curve, placed or not, negative for a hole; None for any other curve."""
     if isinstance(curve, Circle | Ring):
         return np.asarray(curve.centre, dtype=float), curve.sense * curve.radius
     if isinstance(curve, Placed) and (inner := _circle(curve.curve)):
@@ -149,13 +155,13 @@ Place = Annotated[ArrayLike, of_shape("...", 2)]
 class Rolling(Valid):
     """The curve `body` rolls without slip on the fixed curve `ground`; convention: `reference.rolling.curves`.
 
-    At the rotation `theta` [rad] the contact is at `ground_arc` and `body_arc` [m]; make one with `Rolling.at_angle` or
-    `Rolling.at_arcs`, which find the third of these from two. Rotations are unwrapped, any number of turns.
+    At the rotation `theta` [rad] the contact is at `ground_arc` and `body_arc` [m]. `Rolling.at_angle` and
+    `Rolling.at_arcs` compute one of these numbers from the other two. Rotations are not wrapped.
 
-    Raises InvalidMechanism, saying where, if the tangents don't match at the start, if curvature_A + curvature_B isn't
-    positive (the curves would cut into each other) or falls below `NEAR_CONFORMAL` of the larger curvature, if
-    a place doesn't exist on a curve, and if a hole is too small for what is in it. Not checked: whether curves that are
-    neither convex nor a ring meet at a second place.
+    Raises InvalidMechanism, with the position, if the tangents don't match at the start, if curvature_A + curvature_B
+    is below `NEAR_CONFORMAL` of the larger curvature (negative: the curves would cut into each other), if an arc is not
+    on a curve, or if a hole is too small for the curve in it. A second contact of curves that are neither convex nor a
+    ring is not noticed.
     """
 
     body: Curve
@@ -188,7 +194,7 @@ class Rolling(Valid):
     @classmethod
     @validated
     def at_arcs(cls, body: Curve, ground: Curve, ground_arc: float = 0.0, body_arc: float = 0.0) -> Rolling:
-        """Start with these arcs [m] touching; the rotation is then known up to turns, and taken within half a turn."""
+        """Start with a contact at these arcs [m]; of the possible rotations the one within half a turn is used."""
         theta = math.remainder(float(ground.angle(ground_arc) + math.pi - body.angle(body_arc)), 2 * math.pi)
         return cls(body, ground, theta, ground_arc, body_arc)
 
@@ -203,13 +209,13 @@ class Rolling(Valid):
 
     @cached_property
     def _apart_everywhere(self) -> bool:
-        """Whether no two places of the curves could fit or cut: a property of the ranges of curvature alone."""
+        """Whether the ranges of curvature exclude that the curves fit or cut anywhere."""
         return self.ground.curvature_range[0] + self.body.curvature_range[0] >= 0
 
     def _ground_arc(self, body_arc: Array) -> Array:
-        """Where on the ground the body stands when it touches at `body_arc` (...) [m].
+        """The arc of the ground (...) [m] that touches the body at `body_arc` (...) [m].
 
-        A place that misses an end of the ground by the rounding of the difference is that end.
+        An arc within rounding of an end of the ground is set to that end.
         """
         arc = self.ground_arc + (self.body_arc - body_arc)
         rounding = 4 * np.finfo(float).eps * (abs(self.ground_arc) + abs(self.body_arc))
@@ -218,7 +224,7 @@ class Rolling(Valid):
         return arc
 
     def _rotation(self, body_parameter: Array) -> tuple[Array, Array]:
-        """-(theta - start) (...) and its slope, as a function of the body's parameter: increasing where it can roll."""
+        """-(theta - start) (...) and its slope, by the body's parameter; it increases wherever rolling is possible."""
         ground = self.ground.parameter(self._ground_arc(self.body.arc_of(body_parameter)))
         ground_start, body_start = self._start_angles
         turned = (self.ground.angle_of(ground) - ground_start) - (self.body.angle_of(body_parameter) - body_start)
@@ -227,7 +233,7 @@ class Rolling(Valid):
 
     @cached_property
     def _parameter_limits(self) -> tuple[float, float]:
-        """The body's parameters between which rolling is possible; raises nothing."""
+        """The body's parameters between which rolling is possible."""
         low, high = self.body.limits
         ground_low, ground_high = self.ground.limits
         total = self.ground_arc + self.body_arc
@@ -240,7 +246,7 @@ class Rolling(Valid):
 
     @cached_property
     def limits(self) -> tuple[float, float]:
-        """Rotations [rad] between which the body can roll: infinite, or where the curves fit or a curve ends."""
+        """Rotations [rad] between which the body can roll: infinite, or those at which curves fit or a curve ends."""
         low, high = self._parameter_limits
         with np.errstate(invalid="ignore"):
             later = self.theta - float(self._rotation(np.asarray(low))[0]) if math.isfinite(low) else math.inf
@@ -254,7 +260,7 @@ class Rolling(Valid):
         circles = _circle(self.ground), _circle(self.body)
         if circles[0] is not None and circles[1] is not None:
             ground, body = circles[0][1], circles[1][1]
-            # The angles of a disc in a hole of nearly its size cancel; the difference of the radii keeps its digits.
+            # From the sum of the signed radii, since angles cancel for a disc in a hole of nearly its size.
             return self._body_start - rotation * (body * (ground / (ground + body)))
         low, high = self.limits
         slack = 1e-12 * (1 + abs(self.theta))
@@ -271,7 +277,7 @@ class Rolling(Valid):
 
     @cached_property
     def _mean_slope(self) -> float:
-        """About how far the body's parameter goes back in a radian of rotation: the first guess of the search."""
+        """Mean decrease of the body's parameter per radian of rotation, for the first guess of the search."""
 
         def mean(curve: Curve) -> float:
             low, high = curve.curvature_range
@@ -340,7 +346,7 @@ class Rolling(Valid):
 
     @validated
     def rolling_acceleration(self, theta: ArrayLike, rate: ArrayLike) -> Array:
-        """omega^2 / (curvature_A + curvature_B) e_n (..., 2) [m/s^2]: what rolling adds, the same for every point."""
+        """omega^2 / (curvature_A + curvature_B) e_n (..., 2) [m/s^2]: the additional acceleration of all points."""
         contact = self.contact(theta)
         return (np.asarray(rate) ** 2 * contact.rate)[..., None] * contact.normal
 

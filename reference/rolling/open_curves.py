@@ -1,4 +1,4 @@
-"""Curved boundaries that don't close: Parabola, Catenary, LogSpiral, for the classical roulettes."""
+"""Curved boundaries that are not closed: Parabola, Catenary, LogSpiral, for the classical roulettes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from reference.rolling.curves import Array, ByArc, Curve, along, within
 
 
 def _slope(owner: str, angle: ArrayLike) -> Array:
-    """tan(angle), refused at a quarter turn and beyond: these curves never get so steep."""
+    """tan(angle); InvalidMechanism for angles of a quarter turn or more, which these curves don't have."""
     angle = along(angle)
     if not np.all(np.abs(angle) < math.pi / 2):
         worst = float(angle.flat[int(np.argmax(np.abs(angle)))])
@@ -33,9 +33,9 @@ class Parabola(Curve):
         return (0.0, 1 / (2 * self.focal))
 
     def parameter(self, arc: ArrayLike) -> Array:
-        """asinh(slope), in which arc = focal (p + sinh(2p)/2)."""
+        """p = asinh(slope), with arc = focal (p + sinh(2p)/2)."""
         scaled = along(arc) / self.focal
-        # Exact at both ends: the arc is 2p for small p and exp(2p)/4 for large.
+        # The limits are exact: arc / focal is 2p for small p and exp(2p)/4 for large p.
         guess = np.sign(scaled) * np.minimum(np.abs(scaled) / 2, np.log1p(2 * np.abs(scaled)))
         return solve_increasing(lambda q: (q + 0.5 * np.sinh(2 * q), 1 + np.cosh(2 * q)), scaled, guess, 1e-3)
 
@@ -88,8 +88,8 @@ class Catenary(ByArc):
 class LogSpiral(Curve):
     """r = radius exp(growth p) [m] about its pole, the origin, traversed outwards; arc is measured from the pole.
 
-    The natural parameter p is the polar angle [rad]: it goes to -infinity at the pole, which the curve winds round for
-    ever on a finite arc. The pole itself, arc 0, is refused: the curvature 1 / (growth arc) is infinite there.
+    The natural parameter p is the polar angle [rad]; it tends to -infinity at the pole, although the arc to the pole is
+    finite. The pole, arc 0, is refused, since the curvature 1 / (growth arc) is infinite there.
     """
 
     radius: Positive
@@ -139,7 +139,7 @@ class LogSpiral(Curve):
     def point_of(self, p: ArrayLike) -> Array:
         p = along(p)
         radius = self.radius * np.exp(self.growth * p)
-        turn = np.where(np.isfinite(p), p, 0.0)  # the pole has no direction, and needs none
+        turn = np.where(np.isfinite(p), p, 0.0)  # at the pole, where the radius is zero, any angle
         return np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=-1)
 
     def angle_of(self, p: ArrayLike) -> Array:

@@ -17,12 +17,11 @@ from reference.rolling.kinematics import Contact, Rolling
 
 @dataclass(frozen=True)
 class Roll(BetweenTwo, JointElement):
-    """Ideal rolling of two bodies (18.66): at the contact, the material of the second has the velocity of the first's.
+    """Ideal rolling of two bodies (18.66): at the contact, the materials of both bodies have the same velocity.
 
-    `rolling` holds both curves, `ground` in the frame of the first body (None: the world) and `body` in that of the
-    second, each from its centre of mass, and where they touch at the start. The contact is a function of the relative
-    rotation alone, so the joint is holonomic: the pose of the second body is the one that rolling gives at its
-    rotation.
+    `rolling` has both curves, `ground` in the frame of the first body (None: the world) and `body` in that of the
+    second, each from its centre of mass, and the contact at the start. The contact is a function of the relative
+    rotation alone, so the joint is holonomic.
 
     Rows: relative velocity at the contact along e_t, in which the first's curve is traversed, then along e_n towards
     the interior of the second (see `reference.rolling.curves`). They are the derivatives of the gap where it is zero.
@@ -45,20 +44,20 @@ class Roll(BetweenTwo, JointElement):
 
     @cached_property
     def first_point(self) -> Vector:
-        """Where they touch at the start, in the first body's frame [m]."""
+        """The contact at the start, in the first body's frame [m]."""
         x, y = self.rolling.ground.point(self.rolling.ground_arc)
         return (float(x), float(y))
 
     @cached_property
     def second_point(self) -> Vector:
-        """Where they touch at the start, in the second body's frame [m]."""
+        """The contact at the start, in the second body's frame [m]."""
         x, y = self.rolling.body.point(self.rolling.body_arc)
         return (float(x), float(y))
 
     def _contact(self, theta: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
         """Contact point, arm r_{O'/C} (..., 2) and tangent angle (...), in the first body's frame.
 
-        A complex rotation is continued by the first derivative: a complex step asks for no more, and it is exact.
+        A complex rotation is continued by the first derivative, which is exact for a complex step.
         """
         contact = self._contact_at(np.real(theta))
         if not np.iscomplexobj(theta):
@@ -69,17 +68,17 @@ class Roll(BetweenTwo, JointElement):
         return contact.point + advance, contact.arm + rotation_velocity(step, contact.arm) - advance, angle
 
     def _contact_at(self, theta: NDArray[Any]) -> Contact:
-        """The contact at rotations (...), those of the last ones kept: gap and rows ask for the same."""
-        if not (self._kept and np.array_equal(self._kept[0][0], theta)):
-            self._kept[:] = [(theta.copy(), self.rolling.contact(theta))]
-        return self._kept[0][1]
+        """The contact at rotations (...). The last one is cached, since gap and rows need the same."""
+        if not (self._last and np.array_equal(self._last[0][0], theta)):
+            self._last[:] = [(theta.copy(), self.rolling.contact(theta))]
+        return self._last[0][1]
 
     @cached_property
-    def _kept(self) -> list[tuple[NDArray[Any], Contact]]:
+    def _last(self) -> list[tuple[NDArray[Any], Contact]]:
         return []
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Second body minus where rolling would put it at its rotation, along e_t and e_n (..., 2) [m]."""
+        """Position of the second body minus that of ideal rolling at its rotation, along e_t and e_n (..., 2) [m]."""
         point, arm, angle = self._contact(np.asarray(second[..., 2] - first[..., 2]))
         x, y = components(first[..., 2], point[..., 0] + arm[..., 0], point[..., 1] + arm[..., 1])
         open_x, open_y = second[..., 0] - first[..., 0] - x, second[..., 1] - first[..., 1] - y
@@ -91,12 +90,12 @@ class Roll(BetweenTwo, JointElement):
         point, arm, angle = self._contact(np.asarray(second[..., 2] - first[..., 2]))
         world = angle + first[..., 2]
         rows = np.zeros((*world.shape, 2, 6), dtype=np.result_type(world, point))
-        for row, x, y, own_x, own_y in (
+        for row, x, y, local_x, local_y in (
             (0, np.cos(world), np.sin(world), np.cos(angle), np.sin(angle)),
             (1, np.sin(world), -np.cos(world), np.sin(angle), -np.cos(angle)),
         ):
             rows[..., row, 0], rows[..., row, 1] = -x, -y
-            rows[..., row, 2] = own_x * point[..., 1] - own_y * point[..., 0]
+            rows[..., row, 2] = local_x * point[..., 1] - local_y * point[..., 0]
             rows[..., row, 3], rows[..., row, 4] = x, y
-            rows[..., row, 5] = own_x * arm[..., 1] - own_y * arm[..., 0]
+            rows[..., row, 5] = local_x * arm[..., 1] - local_y * arm[..., 0]
         return rows

@@ -16,24 +16,25 @@ from reference.numerics.roots import solve_increasing
 from reference.rolling.curves import Array, Curve, along, within
 from reference.validators import of_shape
 
-DEGREE = 7
-FEWEST = 16  # points: twice the degree and more, so that half of them can still show the error
+SPLINE_DEGREE = 7
+# Points of a curve, at least: more than twice the degree, so that a spline through half of the points shows the error.
+FEWEST = 16
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
-# Slower than this fraction of its mean speed, the point stands still for this purpose and the tangent is lost.
+# Smallest speed along the curve, relative to the mean speed, at which the tangent is determined.
 STILL = 1e-6
 
 
 def spline(parameters: Array, values: Array) -> BSpline:
     """The interpolating spline of degree 7 through values (n, ...) at increasing parameters (n,)."""
-    return make_interp_spline(parameters, values, k=DEGREE)
+    return make_interp_spline(parameters, values, k=SPLINE_DEGREE)
 
 
 @dataclass(frozen=True, eq=False)
 class Traced(Curve):
     """The smooth curve through `points` (n, 2) [m] at increasing `parameters` (n,), traversed in their order.
 
-    Arc 0 is the first point, and nothing exists beyond the last. Raises InvalidMechanism for fewer than 16 points,
-    numbers not finite, parameters that don't increase, and a place where the curve stands still or reverses (a cusp).
+    Arc 0 is the first point; the curve ends at the last one. Raises InvalidMechanism for fewer than 16 points, numbers
+    not finite, parameters that don't increase, and a point at which the speed is zero or the curve has a cusp.
     """
 
     parameters: Annotated[Array, of_shape("n")]
@@ -51,19 +52,20 @@ class Traced(Curve):
             where = int(np.argmax(np.diff(self.parameters) <= 0))
             raise InvalidMechanism(f"traced curve: parameter {where + 1} is not greater than the one before it")
         middles = 0.5 * (self.parameters[1:] + self.parameters[:-1])
-        looked = np.concatenate([self.parameters, middles])
-        speed = self.speed_of(looked)
-        reach = float(np.ptp(self.points, axis=0).max())
+        examined = np.concatenate([self.parameters, middles])
+        speed = self.speed_of(examined)
+        extent = float(np.ptp(self.points, axis=0).max())
         mean = float(np.sum(np.linalg.norm(np.diff(self.points, axis=0), axis=-1)) / np.ptp(self.parameters))
-        if reach <= 1e-9 * float(np.abs(self.points).max()) or np.min(speed) <= STILL * mean:
-            x, y = self.point_of(looked[int(np.argmin(speed))])
+        if extent <= 1e-9 * float(np.abs(self.points).max()) or np.min(speed) <= STILL * mean:
+            x, y = self.point_of(examined[int(np.argmin(speed))])
             raise InvalidMechanism(
                 f"traced curve: it stands still or has a cusp near ({x:.6g}, {y:.6g}) m, at parameter "
-                f"{looked[int(np.argmin(speed))]:.6g}; a boundary must have a tangent everywhere, so cut it there"
+                f"{examined[int(np.argmin(speed))]:.6g}; a boundary must have a tangent everywhere, so cut it there"
             )
-        before, after = self._tangents(self.parameters[:-1]), self._tangents(self.parameters[1:])
-        if np.any(np.sum(before * after, axis=-1) <= 0):
-            where = int(np.argmax(np.sum(before * after, axis=-1) <= 0))
+        tangents = self._tangents(self.parameters)
+        cosine = np.sum(tangents[:-1] * tangents[1:], axis=-1)
+        if np.any(cosine <= 0):
+            where = int(np.argmax(cosine <= 0))
             raise InvalidMechanism(
                 f"traced curve: between points {where} and {where + 1} it turns by a quarter or more: a cusp or "
                 "a corner, or too few points; cut it there or give more"
@@ -95,18 +97,19 @@ class Traced(Curve):
 
     @cached_property
     def _bends(self) -> tuple[float, float]:
-        """As found at the points and between them."""
+        """The extrema of the curvature at the points and in the middle between them."""
         curvature = self.curvature_of(
             np.concatenate([self.parameters, 0.5 * (self.parameters[1:] + self.parameters[:-1])])
         )
         return (float(curvature.min()), float(curvature.max()))
 
-    def _before(self, p: Array) -> Any:
+    def _interval(self, p: Array) -> Any:
+        """The indices (...) of the intervals that contain parameters (...)."""
         return np.clip(np.searchsorted(self.parameters, p, side="right") - 1, 0, len(self.parameters) - 2)
 
     def arc_of(self, p: ArrayLike) -> Array:
         p = along(p)
-        knot = self._before(p)
+        knot = self._interval(p)
         start = self.parameters[knot]
         width = p - start
         places = start[..., None] + 0.5 * width[..., None] * (NODES + 1)
@@ -128,7 +131,7 @@ class Traced(Curve):
         angle = along(angle)
         low, high = self.curvature_range
         if low * high <= 0:
-            raise InvalidMechanism("traced curve: it bends both ways, so its direction doesn't tell the place")
+            raise InvalidMechanism("traced curve: it bends both ways, so its direction does not determine a point")
         sense, angles = math.copysign(1.0, low + high), self._knots[1]
         if np.any((sense * angle < sense * angles[0]) | (sense * angle > sense * angles[-1])):
             raise InvalidMechanism(
@@ -148,10 +151,10 @@ class Traced(Curve):
 
     def angle_of(self, p: ArrayLike) -> Array:
         p = along(p)
-        knot = self._before(p)
-        before, here = self._tangents(self.parameters[knot]), self._tangents(p)
-        crossed = before[..., 0] * here[..., 1] - before[..., 1] * here[..., 0]
-        return self._knots[1][knot] + np.arctan2(crossed, np.sum(before * here, axis=-1))
+        knot = self._interval(p)
+        at_knot, tangent = self._tangents(self.parameters[knot]), self._tangents(p)
+        crossed = at_knot[..., 0] * tangent[..., 1] - at_knot[..., 1] * tangent[..., 0]
+        return self._knots[1][knot] + np.arctan2(crossed, np.sum(at_knot * tangent, axis=-1))
 
     def curvature_of(self, p: ArrayLike) -> Array:
         p = along(p)

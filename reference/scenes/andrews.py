@@ -1,8 +1,7 @@
 """Andrews' squeezing mechanism as a scene, with the numbers and the names of the test set for initial value problems.
 
-Three pairs of bars are functions of the crank's angle phi in closed form, and so are the reduced inertia and the
-potential of the one freedom: see "Andrews' squeezing mechanism" in `reference/scenes/derivations.md`. Vectors of the
-plane are complex.
+The three pairs of bars, the reduced inertia and the potential are closed functions of the crank's angle phi: see
+"Andrews' squeezing mechanism" in `reference/scenes/derivations.md`. Vectors of the plane are complex numbers.
 """
 
 from __future__ import annotations
@@ -29,10 +28,12 @@ Pair = tuple[Positive, float]
 Triple = tuple[Positive, float, float]
 Seven = tuple[Positive, Positive, Positive, Positive, Positive, Positive, Positive]
 
-BODIES = ("K1", "K2", "K3", "K4", "K5", "K6", "K7")
+BODY_NAMES = ("K1", "K2", "K3", "K4", "K5", "K6", "K7")
 QUARTER = math.pi / 2
-TOLERANCE = gauss.WINDOW_TOLERANCE / 10  # the last of the printed digits, which other methods confirm
-SIDES = (-1, 1, -1)  # of the joints of the three pairs: bar and rod, upper, lower
+# Small enough for the last of the published digits, which other methods confirm.
+ANDREWS_TOLERANCE = gauss.WINDOW_TOLERANCE / 10
+# Sides (`Dyad.side`) of the joints of the three pairs: bar and rod, upper, lower.
+SIDES = (-1, 1, -1)
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,8 @@ class Andrews(PlacedScene):
 
     Lengths [m], by the test set's letters: `crank` rr, ra; `rod` d, da; `bar` ss, sa, sb, and `spring_point` sc, sd;
     `upper` zt, ta, tb and `upper_end` e, ea; `lower` u, ua, ub and `lower_end` zf, fa: a length between joints, and
-    where the centre of mass is. The spring has `stiffness` [N/m] and `rest_length` [m], the crank a constant `torque`
-    [N m]; no gravity. Raises InvalidMechanism for numbers that don't assemble at the start.
+    the position of the centre of mass. The spring has `stiffness` [N/m] and `rest_length` [m], the crank a constant
+    `torque` [N m]; no gravity. Raises InvalidMechanism for numbers that don't assemble at the start.
     """
 
     name: ClassVar[str] = "andrews"
@@ -65,7 +66,7 @@ class Andrews(PlacedScene):
     torque: float = 0.033
     angle: float = -0.0617138900142764496358948458001
     duration: Positive = 0.05
-    horizon: Positive = 0.05  # one freedom, and energy is kept: an error grows as the crank's, about linearly
+    horizon: Positive = 0.05  # one freedom and constant energy: errors grow about linearly
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -76,7 +77,7 @@ class Andrews(PlacedScene):
 
     @property
     def samples(self) -> int:
-        """Of half a millisecond as shipped, in which the crank turns by up to half a radian."""
+        """A hundred: half a millisecond by default, in which the crank turns by up to half a radian."""
         return 100
 
     @property
@@ -90,9 +91,10 @@ class Andrews(PlacedScene):
 
     @validated
     def angles(self, phi: ArrayLike) -> tuple[Moving, ...]:
-        """Of the seven bodies [rad], with derivatives by the crank's angle phi (...) [rad]; frames as in the test set.
+        """Angles of the seven bodies [rad] and their derivatives by the crank's angle phi (...) [rad].
 
-        The crank's is phi; the others stay between -pi and pi, as they swing. NaN where the bars don't reach.
+        Frames are those of the test set. The first angle is phi; the others are between -pi and pi, since these bodies
+        swing. NaN for angles at which the bars can't be assembled.
         """
         return self._angles(np.asarray(phi, dtype=float))
 
@@ -110,7 +112,7 @@ class Andrews(PlacedScene):
 
     @cached_property
     def _points(self) -> tuple[dict[str, complex], ...]:
-        """Of each body the joints' points from its centre of mass, in its own frame [m]."""
+        """The joints' points [m] of each body by name, from its centre of mass, in its own frame."""
         (rr, ra), (d, da), (ss, sa, sb), (sc, sd) = self.crank, self.rod, self.bar, self.spring_point
         (zt, ta, tb), (e, ea), (u, ua, ub), (zf, fa) = self.upper, self.upper_end, self.lower, self.lower_end
         return (
@@ -126,12 +128,12 @@ class Andrews(PlacedScene):
     def _placed(self, phi: Array) -> tuple[tuple[Moving, ...], list[Moving], Moving]:
         """Angles and centres of mass of the bodies, and the spring's vector, by the crank's angle."""
         angles = self._angles(phi)
-        frames, own = [direction(angle) for angle in angles], self._points
+        frames = [direction(angle) for angle in angles]
         ends = {"O": Moving(*(0j * frames[0].value,) * 3)}
         ends["A"], ends["B"] = (ends["O"].shifted(complex(*pivot)) for pivot in (self.pivot_a, self.pivot_b))
         centres: dict[int, Moving] = {}
-        # Each body from a point that is known to its centre, and on to its other joint.
-        for body, known, other in (
+        # From a known point of each body to its centre, and from there to its other joint.
+        for body, start, other in (
             (0, "O", "R"),
             (1, "R", "P"),
             (2, "B", "D"),
@@ -140,29 +142,29 @@ class Andrews(PlacedScene):
             (6, "A", "H"),
             (5, "H", "P"),
         ):
-            frame, points = frames[body], own[body]
-            centres[body] = ends[known].plus(frame.times(-points[known]))
+            frame, points = frames[body], self._points[body]
+            centres[body] = ends[start].plus(frame.times(-points[start]))
             ends[other] = centres[body].plus(frame.times(points[other]))
         return angles, [centres[body] for body in range(7)], ends["D"].shifted(-complex(*self.pivot_c))
 
     def _reduced(self, phi: Array) -> tuple[Array, Array, Array]:
         """m [kg m^2], m' and V' [N m] (...) by the crank's angle."""
-        angles, centres, apart = self._placed(phi)
-        inertia, change = 0.0 * phi, 0.0 * phi
-        for mass, own, angle, centre in zip(self.masses, self.inertias, angles, centres, strict=True):
-            inertia = inertia + mass * np.abs(centre.first) ** 2 + own * angle.first**2
+        angles, centres, spring = self._placed(phi)
+        reduced, change = 0.0 * phi, 0.0 * phi
+        for mass, inertia, angle, centre in zip(self.masses, self.inertias, angles, centres, strict=True):
+            reduced = reduced + mass * np.abs(centre.first) ** 2 + inertia * angle.first**2
             change = (
                 change
                 + 2 * mass * np.real(np.conj(centre.first) * centre.second)
-                + 2 * own * angle.first * angle.second
+                + 2 * inertia * angle.first * angle.second
             )
-        length = np.abs(apart.value)
+        length = np.abs(spring.value)
         pull = self.stiffness * (length - self.rest_length) / length
-        return inertia, change, pull * np.real(np.conj(apart.value) * apart.first) - self.torque
+        return reduced, change, pull * np.real(np.conj(spring.value) * spring.first) - self.torque
 
     @cached_property
     def rate_unit(self) -> float:
-        """About the crank's rate after one radian [rad/s]: in its time the motion has no unit."""
+        """Approximate rate of the crank after one radian [rad/s]; its inverse is the integration's unit of time."""
         strength = abs(self.torque) + self.stiffness * self.crank[0] ** 2
         return math.sqrt(strength / float(self._reduced(np.array(self.angle))[0]))
 
@@ -173,19 +175,19 @@ class Andrews(PlacedScene):
 
     def _states(self, times: Array) -> Array:
         """phi and phi' (times, 2) [rad, rad/s]."""
-        if not times.any():  # a mechanism needs no more than the start
+        if not times.any():  # only the start, as for a mechanism
             return np.full((len(times), 2), (self.angle, 0.0), dtype=float)
         until = max(self.duration, float(times.max()))
         return shared(Andrews._solved, self, until)(times * self.rate_unit) * [1.0, self.rate_unit]
 
     def _solved(self, until: float) -> gauss.CollocationMotion:
-        """The motion of time in units of 1 / `rate_unit`."""
+        """The motion, with time in units of 1 / `rate_unit`."""
 
         def accelerations(phi: Array, rate: Array) -> Array:
             return self._rates(np.concatenate([phi, rate], axis=-1))[..., 1:]
 
         end = until * self.rate_unit * (1 + 1e-15)
-        return gauss.integrate(accelerations, [self.angle], [0.0], end, 1.0, tolerance=TOLERANCE)
+        return gauss.integrate(accelerations, [self.angle], [0.0], end, 1.0, tolerance=ANDREWS_TOLERANCE)
 
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
         state = self._states(times)
@@ -206,36 +208,36 @@ class Andrews(PlacedScene):
 
     def mechanism(self) -> Mechanism:
         pose, twist, _ = self.placement(np.zeros(1))
-        bodies = bodies_of(BODIES, self.masses, self.inertias, pose[0], twist[0])
-        own = [{name: (point.real, point.imag) for name, point in points.items()} for points in self._points]
+        bodies = bodies_of(BODY_NAMES, self.masses, self.inertias, pose[0], twist[0])
+        local = [{name: (point.real, point.imag) for name, point in points.items()} for points in self._points]
         joints = (
-            Pin("O", None, "K1", (0.0, 0.0), own[0]["O"]),
-            Pin("R", "K1", "K2", own[0]["R"], own[1]["R"]),
-            Pin("B", None, "K3", self.pivot_b, own[2]["B"]),
-            Pin("A5", None, "K5", self.pivot_a, own[4]["A"]),
-            Pin("E", "K5", "K4", own[4]["E"], own[3]["E"]),
-            Pin("A7", None, "K7", self.pivot_a, own[6]["A"]),
-            Pin("H", "K7", "K6", own[6]["H"], own[5]["H"]),
-            Pin("P3", "K3", "K2", own[2]["P"], own[1]["P"]),
-            Pin("P4", "K4", "K2", own[3]["P"], own[1]["P"]),
-            Pin("P6", "K6", "K2", own[5]["P"], own[1]["P"]),
+            Pin("O", None, "K1", (0.0, 0.0), local[0]["O"]),
+            Pin("R", "K1", "K2", local[0]["R"], local[1]["R"]),
+            Pin("B", None, "K3", self.pivot_b, local[2]["B"]),
+            Pin("A5", None, "K5", self.pivot_a, local[4]["A"]),
+            Pin("E", "K5", "K4", local[4]["E"], local[3]["E"]),
+            Pin("A7", None, "K7", self.pivot_a, local[6]["A"]),
+            Pin("H", "K7", "K6", local[6]["H"], local[5]["H"]),
+            Pin("P3", "K3", "K2", local[2]["P"], local[1]["P"]),
+            Pin("P4", "K4", "K2", local[3]["P"], local[1]["P"]),
+            Pin("P6", "K6", "K2", local[5]["P"], local[1]["P"]),
         )
         forces = (
-            Spring("spring", None, "K3", self.pivot_c, own[2]["D"], self.stiffness, self.rest_length),
+            Spring("spring", None, "K3", self.pivot_c, local[2]["D"], self.stiffness, self.rest_length),
             Torque("torque", None, "K1", self.torque),
         )
         return Mechanism(bodies, joints, (0.0, 0.0), forces)
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """1 while the joints of all three pairs are on the sides where they started (...,), -1 after one has folded."""
+        """1 if the joints of all three pairs are on the sides of the start (...,), -1 if a pair has folded."""
         angle = pose[..., 2]
         folds = (
             (angle[..., 2] - QUARTER, angle[..., 1]),
             (angle[..., 4], angle[..., 3] - QUARTER),
             (angle[..., 6] - QUARTER, angle[..., 5]),
         )
-        held = [side * np.sin(first - second) for (first, second), side in zip(folds, SIDES, strict=True)]
-        return np.where(np.min(held, axis=0) > 0, 1, -1)
+        sines = [side * np.sin(first - second) for (first, second), side in zip(folds, SIDES, strict=True)]
+        return np.where(np.min(sines, axis=0) > 0, 1, -1)
 
 
 class Moving(NamedTuple):
@@ -266,9 +268,9 @@ def direction(angle: Moving) -> Moving:
 
 @dataclass(frozen=True)
 class Dyad(Valid):
-    """Bars of `first` and `second` [m], one after the other, from a pivot to a point.
+    """Two bars of lengths `first` and `second` [m] from a pivot to a point.
 
-    `side` is 1 where the joint between them is to the left of the line from the pivot to the point, -1 to the right.
+    `side` is 1 if the joint between them is to the left of the line from the pivot to the point, -1 if to the right.
     """
 
     first: Positive
@@ -278,8 +280,8 @@ class Dyad(Valid):
     def angles(self, reach: Moving) -> tuple[Moving, Moving]:
         """Directions of both bars [rad], from -pi to pi, for the complex vector `reach` [m] from pivot to point.
 
-        NaN where the bars don't reach. reach = a e^(i mu) + b e^(i nu), so the part of a derivative along one bar is
-        the turning of the other alone.
+        NaN for points out of reach. reach = a e^(i mu) + b e^(i nu), so the component of its derivative along one bar
+        depends only on the rotation of the other.
         """
         a, b = self.first, self.second
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -287,13 +289,13 @@ class Dyad(Valid):
             along = (distance**2 + a**2 - b**2) / (2 * distance)
             across = self.side * np.sqrt(a**2 - along**2)
             unit = reach.value / distance
-            one, other = unit * (along + 1j * across) / a, unit * (distance - along - 1j * across) / b
-            folded = np.imag(one * np.conj(other))  # sin(mu - nu): zero where the bars are in line
+            bar_a, bar_b = unit * (along + 1j * across) / a, unit * (distance - along - 1j * across) / b
+            folded = np.imag(bar_a * np.conj(bar_b))  # sin(mu - nu), zero if the bars are in line
 
             def rates(change: Array) -> tuple[Array, Array]:
-                along_b, along_a = np.real(change * np.conj(other)), np.real(change * np.conj(one))
+                along_b, along_a = np.real(change * np.conj(bar_b)), np.real(change * np.conj(bar_a))
                 return -along_b / (a * folded), along_a / (b * folded)
 
             mu, nu = rates(reach.first)
-            mu_second, nu_second = rates(reach.second + a * one * mu**2 + b * other * nu**2)
-            return Moving(np.angle(one), mu, mu_second), Moving(np.angle(other), nu, nu_second)
+            mu_second, nu_second = rates(reach.second + a * bar_a * mu**2 + b * bar_b * nu**2)
+            return Moving(np.angle(bar_a), mu, mu_second), Moving(np.angle(bar_b), nu, nu_second)

@@ -1,4 +1,4 @@
-"""The one list of scenes, each with its default numbers."""
+"""The list of scenes, each with its default numbers."""
 
 from __future__ import annotations
 
@@ -62,8 +62,8 @@ SCENES: tuple[Scene, ...] = (
 @validated
 def scene(name: Name) -> Scene:
     """The scene of that name; raises ValueError that suggests the nearest name."""
-    known = {each.name: each for each in SCENES}
-    if name in known:
-        return known[name]
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
-    raise ValueError(f"no scene is called {name!r}; did you mean {near[0]!r}? There are {', '.join(known)}")
+    by_name = {member.name: member for member in SCENES}
+    if name in by_name:
+        return by_name[name]
+    near = difflib.get_close_matches(name, by_name, n=1, cutoff=0.0)
+    raise ValueError(f"no scene is called {name!r}; did you mean {near[0]!r}? There are {', '.join(by_name)}")

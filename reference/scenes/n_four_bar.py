@@ -1,7 +1,8 @@
 """N four-bars side by side, the benchmark whose one freedom becomes N + 1 twice a turn: an exact motion by symmetry.
 
-The whole chain is one pendulum, and `Pendulum` has it exactly; where the cranks lie along the couplers N rows depend on
-the others, and forces have no limit for N > 1: see "N four-bars side by side" in `reference/scenes/derivations.md`.
+The whole chain moves as one pendulum, whose exact motion is that of `Pendulum`. If the cranks are parallel to the
+couplers, N rows depend on the others, and forces grow without limit for N > 1: see "N four-bars side by side" in
+`reference/scenes/derivations.md`.
 """
 
 from __future__ import annotations
@@ -43,25 +44,23 @@ class NFourBar(Scene):
     gravity: Positive = 9.81
     speed: float = 1.0
     duration: Positive = 10.0
-    horizon: Positive = (
-        10.0  # of the symmetric motion, a pendulum; what an engine does at a singular position is another matter
-    )
+    horizon: Positive = 10.0  # of the symmetric motion, a pendulum; engines may leave it at singular positions
 
     @cached_property
     def pendulum(self) -> Pendulum:
-        """Of the cranks' common angle, upright at the start: moving to +x at the top is clockwise."""
+        """The motion of the cranks' common angle, from upright; a motion to +x at the top is clockwise."""
         n = self.loops
         frequency = math.sqrt(3 * (3 * n + 1) * self.gravity / (2 * (4 * n + 1) * self.length))
         return Pendulum(frequency, math.pi, -self.speed / self.length)
 
     @property
     def period(self) -> float:
-        """A whole turn of the cranks [s]; infinite when they never leave the top."""
+        """The time of a whole turn of the cranks [s]; infinite if they stay at the top."""
         return self.pendulum.period if self.speed else math.inf
 
     @validated
     def singular_times(self, until: NonNegative) -> Array:
-        """When, in [0, until] s, the cranks lie along the couplers: one freedom becomes N + 1."""
+        """The times in [0, until] s at which the cranks are parallel to the couplers, with N + 1 freedoms."""
         if not self.speed:
             return np.zeros(0)
         sides = [self.pendulum.passages(side * math.pi / 2, until) for side in (1, -1)]
@@ -103,51 +102,51 @@ class NFourBar(Scene):
 
     def _motion(self, times: Array) -> Trajectory:
         require_room(f"scene {self.name!r}: a trajectory", (len(times), 2 * self.loops + 1, 3))
-        # The double nearest to pi is not quite the top, from which a chain at rest must not fall.
-        still = np.zeros(len(times))
-        angle, rate, acceleration = self.pendulum.motion(times) if self.speed else (still + math.pi, still, still)
+        # A chain at rest stays at the top. The double nearest to pi is not exactly the top, so `Pendulum` would fall.
+        zero = np.zeros(len(times))
+        angle, rate, acceleration = self.pendulum.motion(times) if self.speed else (zero + math.pi, zero, zero)
         pose, twist, _ = self._placement(angle, rate, acceleration)
         return Trajectory(times, pose, twist, self.forces(angle, rate, acceleration))
 
     @validated
     def forces(self, angle: Array, rate: Array, acceleration: Array) -> Array:
-        """The reactions (times, rows) [N] in closed form: near a singular position they are large, not inaccurate.
+        """The reactions (times, rows) [N] in closed form, accurate also near a singular position, where they are large.
 
-        A coupler that doesn't turn has equal vertical forces at its ends. A crank's balance about its pivot then gives
-        the horizontal force on its top, and going along the chain each coupler's balance gives the next.
+        A coupler that doesn't rotate has equal vertical forces at its ends. The balance of moments of a crank about its
+        pivot gives the horizontal force on its top; the balance of each coupler gives the force on the next crank.
         """
         n, m, size = self.loops, self.mass, self.length
         _, _, moving = self._placement(angle, rate, acceleration)
-        coupler = m * (moving[:, -1, :2] + np.array([0.0, self.gravity]))  # what its two pins must give together
+        coupler = m * (moving[:, -1, :2] + np.array([0.0, self.gravity]))  # the sum of its two pin forces
         crank = m * (moving[:, 0, :2] + np.array([0.0, self.gravity]))
         down = direction_of(angle)
-        top = np.zeros((len(angle), n + 1, 2))  # what the couplers do to each crank's top
+        top = np.zeros((len(angle), n + 1, 2))  # forces of the couplers on each crank's top
         top[:, :, 1] = -coupler[:, None, 1] * np.where(np.arange(n + 1) % n == 0, 0.5, 1.0)
-        # I phi'' = l down x top + (l/2) down x (m g): solved for the horizontal part, whose lever is -l down_y.
+        # I phi'' = l down x top + (l/2) down x (m g), solved for the horizontal part, whose lever arm is -l down_y.
         moment = m * size**2 / 3 * acceleration + 0.5 * m * self.gravity * size * down[:, 0]
         top[:, :, 0] = (size * down[:, 0, None] * top[:, :, 1] - moment[:, None]) / (size * down[:, 1, None])
         out = np.zeros((len(angle), 2 * (3 * n + 1)))
         out[:, : 2 * (n + 1)] = (crank[:, None] - top).reshape(len(angle), -1)
-        left = np.zeros(len(angle))  # along x, the force of coupler i - 1 on the top of crank i
+        of_last_coupler = np.zeros(len(angle))  # force along x of coupler i - 1 on the top of crank i
         for i in range(n):
             first = 2 * (n + 1) + 4 * i
-            on_coupler = -(top[:, i, 0] - left)
+            on_coupler = -(top[:, i, 0] - of_last_coupler)
             out[:, first], out[:, first + 1] = on_coupler, 0.5 * coupler[:, 1]
             out[:, first + 2], out[:, first + 3] = coupler[:, 0] - on_coupler, 0.5 * coupler[:, 1]
-            left = -(coupler[:, 0] - on_coupler)
+            of_last_coupler = -(coupler[:, 0] - on_coupler)
         return out
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """+1 while every loop is a parallelogram, -1 once one has folded: its coupler then lies on one of its cranks.
+        """+1 if every loop is a parallelogram, -1 if one is folded, with its coupler along one of its cranks.
 
-        Equal bars fold in two ways: one crank lies along the ground and the other under the coupler. The way whose
-        angles fit best is taken; at a singular position all fit, and it is +1.
+        Equal bars can fold in two ways: one crank is along the ground and the other along the coupler. The result is
+        that of the best fitting angles; at a singular position all fit, and it is +1.
         """
         cranks, couplers = pose[..., : self.loops + 1, 2], pose[..., self.loops + 1 :, 2]
-        left, right = cranks[..., :-1], cranks[..., 1:]
-        parallel = 2 - np.cos(couplers) - np.cos(left - right)
-        folded_left = 2 - np.cos(left) - np.cos(couplers - right)  # the first crank's top on the second pivot
-        folded_right = 2 + np.cos(right) + np.cos(couplers - left)  # the second crank's top on the first pivot
+        first, second = cranks[..., :-1], cranks[..., 1:]
+        parallel = 2 - np.cos(couplers) - np.cos(first - second)
+        folded_left = 2 - np.cos(first) - np.cos(couplers - second)  # the first crank's top on the second pivot
+        folded_right = 2 + np.cos(second) + np.cos(couplers - first)  # the second crank's top on the first pivot
         return np.where(np.all(parallel <= np.minimum(folded_left, folded_right), axis=-1), 1, -1)
 
 
@@ -160,7 +159,7 @@ class TenFourBars(NFourBar):
 
     @property
     def samples(self) -> int:
-        """Twenty a second, as in the benchmark."""
+        """Twenty per second, as in the benchmark."""
         return max(1, round(20 * self.duration))
 
 
@@ -175,5 +174,5 @@ class FortyFourBars(NFourBar):
 
     @property
     def samples(self) -> int:
-        """Five a second, a quarter of the benchmark's: telling 242 reactions costs more than the motion."""
+        """Five per second, a quarter of the benchmark's, since 242 reactions cost more than the motion."""
         return max(1, round(5 * self.duration))

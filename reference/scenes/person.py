@@ -1,4 +1,4 @@
-"""A person on one foot, as trunk, thighs and shanks: an open chain of five links that falls without a muscle.
+"""A person on one foot or two, as trunk, thighs and shanks: five links that fall without muscles.
 
 Coordinates, modes and the sources of the segments: "A person on one foot" in `reference/scenes/derivations.md`. The
 ankles are pins in the ground, at y = 0.
@@ -22,16 +22,16 @@ from reference.validators import Floats
 
 Array = NDArray[np.float64]
 
-NAMES = ("left shank", "left thigh", "trunk", "right thigh", "right shank")
+SEGMENT_NAMES = ("left shank", "left thigh", "trunk", "right thigh", "right shank")
 UPRIGHT = (math.pi / 2, math.pi / 2, math.pi / 2, -math.pi / 2, -math.pi / 2)
 
 
 @dataclass(frozen=True)
 class Segment(Valid):
-    """Fractions: of the body's mass; of its height, the length; of the length, centre from the upper end, and gyration.
+    """Mass as a fraction of the body's mass, length as a fraction of its height, and fractions of that length.
 
-    `centre` is measured from the upper joint (for the trunk, whose joint is the hip, from the hip up); `gyration` is
-    the radius of gyration about the centre of mass.
+    `centre` is the distance of the centre of mass from the upper joint (for the trunk: from the hip upwards);
+    `gyration` is the radius of gyration about the centre of mass.
     """
 
     mass: Fraction
@@ -57,7 +57,7 @@ class OneFoot(EmbeddedScene):
 
     name: ClassVar[str] = "person_one_foot"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a model of the human body, one foot on the ground"
-    max_durations: ClassVar[float] = 1.0  # the duration ends where the ground, which is no joint, would be met
+    max_durations: ClassVar[float] = 1.0  # later, the person would meet the ground, which is no joint
     mass: Positive = 75.0
     height: Positive = 1.75
     gravity: float = 9.81
@@ -66,12 +66,12 @@ class OneFoot(EmbeddedScene):
     trunk: float = 0.0
     right_thigh: float = 1.2
     right_shank: float = -0.6
-    duration: Positive = 0.25  # then the lifted foot meets the ground, which is no joint
+    duration: Positive = 0.25  # until the lifted foot meets the ground
     horizon: Positive = 0.25
 
     @property
     def segments(self) -> tuple[Segment, ...]:
-        """In the order of the bodies; the lifted foot goes with its shank."""
+        """The segments in the order of the bodies; the lifted foot is part of its shank."""
         return (SHANK, THIGH, HEAD_ARMS_TRUNK, THIGH, SHANK_AND_FOOT)
 
     @property
@@ -81,7 +81,7 @@ class OneFoot(EmbeddedScene):
 
     @property
     def start(self) -> Array:
-        """At rest: the bodies' angles, of the x axis along the segment away from the left ankle, and their rates."""
+        """At rest: the bodies' angles and their rates. The x axis is along the segment, away from the left ankle."""
         aside = [self.left_shank, self.left_thigh, self.trunk, self.right_thigh, self.right_shank]
         return np.concatenate([np.array(aside) + UPRIGHT, np.zeros(5)])
 
@@ -94,7 +94,7 @@ class OneFoot(EmbeddedScene):
     def _behind(self) -> Array:
         """(5,) [m] from each body's joint nearer to the left ankle to its centre of mass, along its x axis."""
         centres = np.array([segment.centre for segment in self.segments])
-        centres[:2] = 1 - centres[:2]  # the left leg is walked upwards, from its lower ends
+        centres[:2] = 1 - centres[:2]  # the joint nearer to the left ankle is the lower one in the left leg
         return centres * self.lengths
 
     @cached_readonly
@@ -114,12 +114,10 @@ class OneFoot(EmbeddedScene):
         return coordinates, np.broadcast_to(identity, (*coordinates.shape[:-1], 5, 5))
 
     def tangent(self, coordinates: Any) -> tuple[Any, Any]:
-        """Poses (..., 5, 3) and T (..., 15, freedoms), the velocities of all bodies per unit of each coordinate's
-        rate.
-        """
+        """Poses (..., 5, 3), and velocities T (..., 15, freedoms) of all bodies for a unit rate of each coordinate."""
         angle, turning = self.angle_rates(coordinates)
         cosine, sine = np.cos(angle), np.sin(angle)
-        # Which segments lead, from the left ankle, to each centre of mass, and how far along them it is.
+        # along[i, j]: the length on segment j of the path from the left ankle to the centre of mass of body i.
         along = np.zeros((5, 5))
         along[1, 0] = along[2, 0] = along[3, 0] = along[4, 0] = self.lengths[0]
         along[2, 1] = along[3, 1] = along[4, 1] = self.lengths[1]
@@ -138,17 +136,17 @@ class OneFoot(EmbeddedScene):
 
     def mechanism(self) -> Mechanism:
         pose, _ = self.tangent(self.start[: self.freedoms])
-        bodies = bodies_of(NAMES, self.masses, self.inertias, pose, np.zeros((5, 3)))
+        bodies = bodies_of(SEGMENT_NAMES, self.masses, self.inertias, pose, np.zeros((5, 3)))
         behind, ahead = -self._behind, self.lengths - self._behind
         joints: list[Joint] = [
-            Pin("left ankle", None, NAMES[0], (0.0, 0.0), (behind[0], 0.0)),
-            Pin("left knee", NAMES[0], NAMES[1], (ahead[0], 0.0), (behind[1], 0.0)),
-            Pin("hip of trunk", NAMES[1], NAMES[2], (ahead[1], 0.0), (behind[2], 0.0)),
-            Pin("right hip", NAMES[1], NAMES[3], (ahead[1], 0.0), (behind[3], 0.0)),
-            Pin("right knee", NAMES[3], NAMES[4], (ahead[3], 0.0), (behind[4], 0.0)),
+            Pin("left ankle", None, SEGMENT_NAMES[0], (0.0, 0.0), (behind[0], 0.0)),
+            Pin("left knee", SEGMENT_NAMES[0], SEGMENT_NAMES[1], (ahead[0], 0.0), (behind[1], 0.0)),
+            Pin("hip of trunk", SEGMENT_NAMES[1], SEGMENT_NAMES[2], (ahead[1], 0.0), (behind[2], 0.0)),
+            Pin("right hip", SEGMENT_NAMES[1], SEGMENT_NAMES[3], (ahead[1], 0.0), (behind[3], 0.0)),
+            Pin("right knee", SEGMENT_NAMES[3], SEGMENT_NAMES[4], (ahead[3], 0.0), (behind[4], 0.0)),
         ]
         if self.feet is not None:
-            joints.append(Pin("right ankle", None, NAMES[4], (self.feet, 0.0), (ahead[4], 0.0)))
+            joints.append(Pin("right ankle", None, SEGMENT_NAMES[4], (self.feet, 0.0), (ahead[4], 0.0)))
         return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
 
 
@@ -157,7 +155,7 @@ class TwoFeet(OneFoot):
     """Standing on both feet, `stance` [m] between the ankles: a loop through the ground, with three freedoms.
 
     The start is given by the hip, at `hip_x` [m] from the left ankle and `hip_y` above it, and the trunk's angle; both
-    knees bend to the left (`knees` = +1) or to the right (-1). Raises InvalidMechanism when a leg can't reach.
+    knees bend to the left (`knees` = +1) or to the right (-1). Raises InvalidMechanism if the hip is out of reach.
     """
 
     name: ClassVar[str] = "person_two_feet"
@@ -167,7 +165,7 @@ class TwoFeet(OneFoot):
     hip_y: float = 0.8
     knees: Sign = 1
     trunk: float = -0.1
-    duration: Positive = 0.3  # then a knee meets the ground
+    duration: Positive = 0.3  # until a knee meets the ground
     horizon: Positive = 0.3
 
     def __post_init__(self) -> None:
@@ -202,17 +200,17 @@ class TwoFeet(OneFoot):
         return np.array([self.hip_x, self.hip_y, self.trunk + math.pi / 2, 0.0, 0.0, 0.0])
 
     def angle_rates(self, coordinates: Any) -> tuple[Any, Any]:
-        """Each leg is two circles, about its ankle and about the hip; its rates solve l1 n1 w1 + l2 n2 w2 = v_hip."""
+        """See the base class. The rates w of a leg solve l1 n1 w1 + l2 n2 w2 = v_hip, with the segments' normals n."""
         x, y, trunk = (coordinates[..., i] for i in range(3))
         lower, upper = self._leg(x, y)
         far_lower, far_upper = self._leg(x - self.stance, y)
-        # The right leg is walked downwards: its bodies' x axes point from the hip away, against the leg's.
+        # The x axes of the right leg's bodies are directed away from the hip.
         angle = np.stack([lower, upper, trunk, far_upper - math.pi, far_lower - math.pi], axis=-1)
         turning = np.zeros((*angle.shape, 3), dtype=angle.dtype)
         turning[..., 2, 2] = 1
         shank, thigh = self.lengths[0], self.lengths[1]
         for first, second, a, b in ((0, 1, lower, upper), (4, 3, far_lower, far_upper)):
-            between = np.sin(b - a)  # zero when the knee is straight: then the hip can't be a coordinate
+            between = np.sin(b - a)  # zero for a straight knee, at which the hip can't be a coordinate
             turning[..., first, 0] = np.cos(b) / (shank * between)
             turning[..., first, 1] = np.sin(b) / (shank * between)
             turning[..., second, 0] = -np.cos(a) / (thigh * between)
@@ -222,8 +220,8 @@ class TwoFeet(OneFoot):
     def _leg(self, x: Any, y: Any) -> tuple[Any, Any]:
         """Angles of ankle-knee and knee-hip for a hip at (x, y) from the ankle, the knee to the left of it (+1)."""
         shank, thigh = self.lengths[0], self.lengths[1]
-        # sqrt, not hypot: a complex step passes through it. The angle of (x, y) is measured from the vertical, where
-        # a hip above the ground has no jump.
+        # sqrt, not hypot, since the function must be analytic. The angle of (x, y) is measured from the vertical, so
+        # that it is continuous for a hip above the ground.
         square = x * x + y * y
         reach = np.sqrt(square)
         bearing = math.pi / 2 - np.arctan(x / y)
@@ -232,17 +230,17 @@ class TwoFeet(OneFoot):
         return bearing + self.knees * ankle, bearing - self.knees * hip
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """+1 where both knees bend to the left of their legs, -1 where both bend to the right, 0 otherwise."""
-        left = np.sign(np.sin(pose[..., 0, 2] - pose[..., 1, 2]))
-        right = np.sign(np.sin(pose[..., 4, 2] - pose[..., 3, 2]))
-        return np.where(left == right, left, 0).astype(int)
+        """+1 if both knees bend to the left of their legs, -1 if both bend to the right, 0 otherwise."""
+        left_knee = np.sign(np.sin(pose[..., 0, 2] - pose[..., 1, 2]))
+        right_knee = np.sign(np.sin(pose[..., 4, 2] - pose[..., 3, 2]))
+        return np.where(left_knee == right_knee, left_knee, 0).astype(int)
 
 
 @dataclass(frozen=True)
 class SwayingOnOneFoot(OneFoot):
     """Upright on one foot, the lifted leg a tenth of a radian aside; angles [rad] on the mode that swings at 9.3 rad/s.
 
-    The horizon is that of a difference's tenfold growth, which the buckling knee sets.
+    The horizon is the time of tenfold growth of a difference, by the unstable mode of the knee.
     """
 
     name: ClassVar[str] = "person_swaying"
@@ -257,10 +255,10 @@ class SwayingOnOneFoot(OneFoot):
 
 @validated
 def modes_upright(person: OneFoot) -> tuple[Array, Array]:
-    """Squares s [1/s^2] (5,) ascending, and shapes (5, 5) in columns, of small motions u'' = s u about standing
-    upright.
+    """Squares s [1/s^2] (5,) ascending, and shapes (5, 5) in columns, of small motions u'' = s u about upright.
 
-    s < 0 swings at sqrt(-s) rad/s, s > 0 grows like e^(sqrt(s) t). By differences of the equations of motion.
+    For s < 0 the mode swings at sqrt(-s) rad/s, for s > 0 it grows like e^(sqrt(s) t). Computed by finite differences
+    of the equations of motion.
     """
     upright, rest = np.array(UPRIGHT), np.zeros(5)
 
@@ -271,7 +269,9 @@ def modes_upright(person: OneFoot) -> tuple[Array, Array]:
         ]
         return np.array(columns).T / (2 * step)
 
-    # Richardson: central differences have even powers only. The steps balance rounding and the fifth derivative.
-    found: Any = eig((4 * slope(1e-4) - slope(2e-4)) / 3)
-    order = np.argsort(found[0].real)
-    return found[0].real[order], found[1].real[:, order]
+    # Richardson extrapolation of central differences, whose error has even powers only. The steps balance rounding and
+    # the fifth derivative.
+    solution: Any = eig((4 * slope(1e-4) - slope(2e-4)) / 3)
+    values, vectors = solution
+    order = np.argsort(values.real)
+    return values.real[order], vectors.real[:, order]

@@ -1,4 +1,4 @@
-"""Bodies on a pin and on skates, exact: pinned, on a slope, held; and Chaplygin's sleigh, coasting on one skate.
+"""Exact motions of bodies on a pin and on skates: pinned, on a slope, held; and Chaplygin's sleigh on one skate.
 
 With u the skate's speed along i', w the turning rate, a the offset of the centre of mass ahead of the skate:
 u' = a w^2, (I + m a^2) w' = -m a u w (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m
@@ -29,18 +29,18 @@ Array = NDArray[np.float64]
 
 
 def one_body(scene: Scene, mass: float, inertia: float, joint: Pin | Skate, gravity: Vector = (0.0, 0.0)) -> Mechanism:
-    """The mechanism of one body that a joint holds to the ground, where the scene's motion begins."""
+    """The mechanism of one body with a joint to the ground, at the start of the scene's motion."""
     start, name = scene.motion(0.0), joint.second or ""
     return Mechanism(bodies_of((name,), (mass,), (inertia,), start.pose[0], start.twist[0]), (joint,), gravity)
 
 
 @dataclass(frozen=True)
 class PinnedBody(Scene):
-    """mass [kg], inertia [kg m^2] about the centre of mass; the body's `point` [m], from there, is pinned at `pin` [m].
+    """A body on a pin, which moves as a pendulum with frequency^2 = m g r / (I + m r^2).
 
-    angle [rad] of the body and turning_rate [rad/s] at t = 0; gravity [m/s^2] in any direction, or none. Under gravity
-    the line from the pin to the centre of mass is a pendulum, frequency^2 = m g r / (I + m r^2), swinging or whirling.
-    Raises InvalidMechanism for numbers not finite, or mass or inertia not positive.
+    mass [kg], inertia [kg m^2] about the centre of mass; the body's `point` [m], from there, is pinned at `pin` [m];
+    angle [rad] of the body and turning_rate [rad/s] at t = 0; gravity [m/s^2] in any direction, or none. Raises
+    InvalidMechanism for numbers not finite, or mass or inertia not positive.
     """
 
     name: ClassVar[str] = "pinned_body"
@@ -54,16 +54,16 @@ class PinnedBody(Scene):
     turning_rate: float = 2.0
     gravity: Vector = (0.0, -9.81)
     duration: Positive = 3.0
-    horizon: Positive = 3.0  # an error in the energy makes the phase drift in proportion to time
+    horizon: Positive = 3.0  # an error of the energy causes a drift of the phase, linear in time
 
     @cached_property
     def _lag(self) -> float:
-        """What to add to the body's angle to have the pendulum's, from the direction of gravity [rad]."""
+        """The pendulum's angle, from the direction of gravity, minus the body's [rad]."""
         return math.atan2(-self.point[1], -self.point[0]) - math.atan2(self.gravity[1], self.gravity[0])
 
     @cached_property
     def frequency(self) -> float:
-        """Of small swings [rad/s]; zero without gravity, or pinned at the centre of mass: then it only turns."""
+        """The rate of small swings [rad/s]; zero without gravity, or for a pin at the centre of mass."""
         arm, pull = math.hypot(*self.point), math.hypot(*self.gravity)
         return math.sqrt(self.mass * pull * arm / (self.inertia + self.mass * arm**2))
 
@@ -80,7 +80,7 @@ class PinnedBody(Scene):
 
     def _motion(self, times: Array) -> Trajectory:
         angle, rate, acceleration = self._turning(times)
-        arm = -rotated(angle, np.array(self.point))  # (18.63), solved for the body's place
+        arm = -rotated(angle, np.array(self.point))  # (18.63), solved for the body's position
         pose = np.column_stack([np.array(self.pin) + arm, angle])
         twist = np.concatenate([rotation_velocity(rate, arm), rate[:, None]], axis=-1)
         pull = rotation_acceleration(rate, acceleration, arm) - np.array(self.gravity)
@@ -89,7 +89,7 @@ class PinnedBody(Scene):
 
 @dataclass(frozen=True)
 class FreelyPinnedBody(PinnedBody):
-    """The pinned body seen from above: nothing pulls, it turns evenly for ever."""
+    """The pinned body without gravity: its rate is constant."""
 
     name: ClassVar[str] = "pinned_body_free"
 
@@ -98,11 +98,12 @@ class FreelyPinnedBody(PinnedBody):
 
 @dataclass(frozen=True)
 class ChaplyginSleigh(Scene):
-    """mass [kg], inertia [kg m^2] about the centre of mass, which is `offset` [m] ahead of the skate (< 0: behind).
+    """Chaplygin's sleigh: a body that slides on one skate.
 
-    speed [m/s] of the skate along its heading and turning_rate [rad/s] at t = 0, of either sign or zero; start is the
-    skate's pose. Zero inertia is a point mass: its motion is known, but no mechanism of bodies can have it. Raises
-    InvalidMechanism for numbers not finite, mass not positive, or an inertia of zero with an offset of zero.
+    mass [kg], inertia [kg m^2] about the centre of mass, which is `offset` [m] ahead of the skate (negative: behind);
+    speed [m/s] of the skate along its heading and turning_rate [rad/s] at t = 0, of either sign or zero; start: the
+    skate's pose. With zero inertia, a point mass, there is a motion but no mechanism. Raises InvalidMechanism for
+    numbers not finite, mass not positive, or inertia and offset both zero.
     """
 
     name: ClassVar[str] = "sleigh"
@@ -132,19 +133,19 @@ class ChaplyginSleigh(Scene):
 
     @cached_property
     def _top_speed(self) -> float:
-        """V, the speed when all the energy is in sliding [m/s]."""
+        """V, the speed of a straight motion with the same energy [m/s]."""
         return math.hypot(self.speed, self._arm * self.turning_rate)
 
     @cached_property
     def _phase(self) -> float:
-        """c; only used when the sleigh turns."""
+        """c, for a sleigh that turns."""
         return math.asinh(self.speed / (self._arm * abs(self.turning_rate)))
 
     def growth_rate(self) -> float:
-        """The rate of exp(rate t) at which a small turning grows on the straight run at this speed [1/s].
+        """The rate [1/s] of the exponential growth of a small turning rate in straight motion at this speed.
 
-        w' = -(m a u / (I + m a^2)) w: with the centre of mass behind the skate in the sense of travel it grows, and the
-        sleigh turns round.
+        w' = -(m a u / (I + m a^2)) w: it grows if the centre of mass is behind the skate in the direction of travel,
+        and the sleigh turns round.
         """
         return -self.offset * self.speed / self._arm**2
 
@@ -161,9 +162,9 @@ class ChaplyginSleigh(Scene):
 
     @validated
     def heading(self, t: ArrayLike) -> Array:
-        """theta at times t [rad, not wrapped]: a difference of Gudermannians, k/a (gd p - gd c), free of cancellation.
+        """theta at times t [rad, not wrapped]: the difference of Gudermannians k/a (gd p - gd c).
 
-        gd(c + 2 s) - gd c = 2 atan(sinh s / cosh(c + s)).
+        It is computed without cancellation by gd(c + 2 s) - gd c = 2 atan(sinh s / cosh(c + s)).
         """
         t = np.asarray(t, dtype=float)
         if self.turning_rate == 0 or self.offset == 0:
@@ -179,7 +180,7 @@ class ChaplyginSleigh(Scene):
 
     @cached_property
     def _settled(self) -> float:
-        """When it slides straight to far below rounding [s]: a stiff sleigh would else need panels without end."""
+        """The time [s] from which the motion is straight to rounding, so that no quadrature is needed."""
         phase = math.copysign(45 + 2 * math.log1p(self._arm / abs(self.offset)), self.offset)
         return max(0.0, (phase - self._phase) * self._arm**2 / (self.offset * self._top_speed))
 
@@ -192,7 +193,7 @@ class ChaplyginSleigh(Scene):
         return Antiderivative(velocity, 1 / fastest if fastest > 0 else 1.0)
 
     def skate_pose(self, t: ArrayLike) -> Array:
-        """Pose of the skate (times, 3); heading in closed form, position by quadrature to rounding of the distance."""
+        """Pose of the skate (times, 3); heading in closed form, position by quadrature to rounding."""
         return self._skate_pose(self.times(t))
 
     def _skate_pose(self, t: Array) -> Array:
@@ -229,24 +230,25 @@ class ChaplyginSleigh(Scene):
 
 @dataclass(frozen=True)
 class SleighBackwards(ChaplyginSleigh):
-    """The sleigh sliding with its centre of mass behind the skate: a small turning grows, until it has turned round."""
+    """The sleigh with its centre of mass behind the skate: a small turning rate grows until it has turned round."""
 
     name: ClassVar[str] = "sleigh_backwards"
 
     speed: float = -1.0
     turning_rate: float = 1e-3
     duration: Positive = 10.0
-    horizon: Positive = 0.8  # 1 / growth rate: later, errors grow exponentially until the sleigh has turned round
+    horizon: Positive = 0.8  # 1 / growth rate; later, errors grow exponentially until the sleigh has turned round
 
 
 @dataclass(frozen=True)
 class SkateOnSlope(Scene):
-    """A body with its skate under the centre of mass on an incline: `gravity` [m/s^2] is g's part along it, to -y.
+    """A body with its skate under the centre of mass on an incline.
 
-    Nothing turns it, so theta = heading + turning_rate t, and along the blade u' = -gravity sin theta: in closed form a
-    cycloid, which gains no height and loses none (Neimark and Fufaev). With turning_rate 0 and the blade across the
-    slope (heading 0) it rests for ever, its force being all of m g. mass [kg], inertia [kg m^2], speed [m/s] along the
-    blade at t = 0. Raises InvalidMechanism for numbers not finite, or masses not positive.
+    There is no moment, so theta = heading + turning_rate t, and along the blade u' = -gravity sin theta. The path is a
+    cycloid without mean descent (Neimark and Fufaev). With turning_rate 0 and the blade across the slope (heading 0)
+    the body is at rest, and the blade's force is m g. mass [kg], inertia [kg m^2]; gravity [m/s^2]: the component of g
+    along the incline, to -y; speed [m/s] along the blade at t = 0. Raises InvalidMechanism for numbers not finite, or
+    masses not positive.
     """
 
     name: ClassVar[str] = "skate_on_slope"
@@ -272,17 +274,17 @@ class SkateOnSlope(Scene):
         # (cos theta - cos first)/rate = -t sin(first + half) sinc(half): no cancellation at a small rate.
         chord = t * np.sinc(half / math.pi)
         speed = self.speed - self.gravity * chord * np.sin(first + half)
-        x, y = self._way(t)
+        x, y = self._path(t)
         pose = np.stack([x, y, angle], axis=-1)
         twist = np.stack([speed * np.cos(angle), speed * np.sin(angle), np.full_like(t, rate)], axis=-1)
         force = self.mass * (speed * rate + self.gravity * np.cos(angle))
         return Trajectory(t, pose[:, None, :], twist[:, None, :], force[:, None])
 
-    def _way(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _path(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """x and y of the blade [m]: the integrals of u cos theta and u sin theta."""
         first, rate, pull = self.heading, self.turning_rate, self.gravity
         if abs(rate) * float(t.max(initial=0.0)) < 1:
-            # The closed form divides by the rate's square. Within a radian a few nodes are as exact as rounding.
+            # The closed form divides by the rate's square; within a radian, Gauss quadrature is exact to rounding.
             nodes, weights = np.polynomial.legendre.leggauss(12)
             when = 0.5 * t[..., None] * (1 + nodes)
             angle, half = first + rate * when, 0.5 * rate * when
@@ -302,11 +304,11 @@ class SkateOnSlope(Scene):
 
 @dataclass(frozen=True)
 class HeldBySkates(Scene):
-    """A body on skates whose axles do not meet in one point: no freedom of velocity is left, and it stays, on a slope.
+    """A body at rest on a slope, on skates that leave no freedom of velocity.
 
-    Two skates always leave one freedom (their axles meet in a point, the centre of rotation, or are parallel); so it
-    takes a third, elsewhere. points [m] from the centre of mass, angles [rad] of the blades against the body; `gravity`
-    [m/s^2] is g's part along the incline, to -y. Raises InvalidMechanism unless the skates hold the body.
+    Two skates always leave one freedom, since their axles meet in the centre of rotation or are parallel; a third skate
+    removes it. points [m] from the centre of mass, angles [rad] of the blades relative to the body; gravity [m/s^2]:
+    the component of g along the incline, to -y. Raises InvalidMechanism if a freedom is left.
     """
 
     name: ClassVar[str] = "held_by_skates"
@@ -325,8 +327,8 @@ class HeldBySkates(Scene):
         super().__post_init__()
         owner = f"scene {self.name!r}"
         if len(self.points) != len(self.angles):
-            words = f"{len(self.points)} points and {len(self.angles)} angles; each skate has one"
-            raise InvalidMechanism(f"{owner}: {words}")
+            counts = f"{len(self.points)} points and {len(self.angles)} angles"
+            raise InvalidMechanism(f"{owner}: {counts}; each skate has one")
         _, freedoms = self.mechanism().degrees_of_freedom()
         if freedoms:
             raise InvalidMechanism(
@@ -343,5 +345,5 @@ class HeldBySkates(Scene):
 
     def _motion(self, times: Floats) -> Trajectory:
         pose = np.broadcast_to(np.array(self.pose, dtype=float), (len(times), 1, 3)).copy()
-        still = np.zeros_like(pose)
-        return Trajectory(times, pose, still, self.mechanism().reaction(pose, still))
+        zero = np.zeros_like(pose)
+        return Trajectory(times, pose, zero, self.mechanism().reaction(pose, zero))

@@ -1,12 +1,11 @@
-"""The slider-crank in formulas, and as scenes: driven at a constant rate, let go, and where methods fail.
+"""The slider-crank in formulas, and as scenes: driven at a constant rate, free, and two in which methods fail.
 
 The crank turns about the origin; the slider moves along the line y = offset. With crank r, rod l, offset e and crank
 angle theta, the rod's angle beta follows from r sin(theta) + l sin(beta) = e, and x = r cos(theta) + l cos(beta). The
 two branches are cos(beta) > 0 (+1) and cos(beta) < 0 (-1).
 
-The sliding block has a slot at its centre of mass and keeps its angle by a drive of rate zero: a slot alone would leave
-it free to turn about its pin, a third freedom that no slider-crank has. Where methods fail: the rod's own end in the
-slot, and a slider that has to start the crank.
+The sliding block has a slot at its centre of mass, and a drive of rate zero that keeps its angle: with a slot alone it
+could rotate about its pin. Methods fail for a rod's end in the slot, and for a slider that has to start the crank.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ Array = NDArray[np.float64]
 class SliderCrank(Valid):
     """Crank and rod [m], the slot's height `offset` [m], and the `branch`, +1 or -1.
 
-    Raises InvalidMechanism unless the crank can turn fully, |offset| < rod - crank: at equality the branches meet.
+    Raises InvalidMechanism unless the crank can turn fully, |offset| < rod - crank.
     """
 
     crank: Positive
@@ -51,9 +50,10 @@ class SliderCrank(Valid):
             )
 
     def _rod(self, theta: Any) -> tuple[Any, Any]:
-        """sin(beta) and cos(beta); unchecked, since an integration asks for them thousands of times.
+        """sin(beta) and cos(beta), without checks of the argument.
 
-        Of a complex step the cosine's derivative is written out: in that of (1 - sine)(1 + sine) a small sine is lost.
+        For a complex step the derivative of the cosine is explicit, since (1 - sine)(1 + sine) would round a small
+        sine.
         """
         sine = (self.offset - self.crank * np.sin(theta)) / self.rod
         flat = np.real(sine)
@@ -68,7 +68,7 @@ class SliderCrank(Valid):
 
     @validated
     def position(self, theta: Complexes) -> Any:
-        """x (...) [m] of the slider; analytic, so a complex step passes."""
+        """x (...) [m] of the slider; analytic."""
         return self.crank * np.cos(theta) + self.rod * self._rod(theta)[1]
 
     @validated
@@ -84,7 +84,7 @@ class SliderCrank(Valid):
     def dead_centres(self) -> tuple[float, float]:
         """The crank angles [rad] at which crank and rod are in line: stretched, then folded.
 
-        There the slider stands still, x' = 0, and can't drive the crank.
+        There x' = 0, so the slider can't drive the crank.
         """
         stretched = math.asin(self.offset / (self.rod + self.crank))
         folded = math.pi + math.asin(self.offset / (self.rod - self.crank))
@@ -93,7 +93,7 @@ class SliderCrank(Valid):
         return math.pi - stretched, 3 * math.pi - folded
 
     def stroke(self) -> float:
-        """The slider's way between its dead centres [m]."""
+        """The slider's distance between its dead centres [m]."""
         return math.sqrt((self.rod + self.crank) ** 2 - self.offset**2) - math.sqrt(
             (self.rod - self.crank) ** 2 - self.offset**2
         )
@@ -103,7 +103,7 @@ class SliderCrank(Valid):
 class DrivenSliderCrank(EmbeddedScene):
     """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; lengths [m], masses [kg], gravity [m/s^2].
 
-    The slider's `slider_inertia` [kg m^2] never acts: it doesn't turn.
+    `slider_inertia` [kg m^2] has no effect, since the slider doesn't rotate.
     """
 
     name: ClassVar[str] = "driven_slider_crank"
@@ -125,7 +125,7 @@ class DrivenSliderCrank(EmbeddedScene):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _ = self.shape  # refuses lengths that can't be
+        _ = self.shape  # raises InvalidMechanism for wrong lengths
 
     @cached_property
     def shape(self) -> SliderCrank:
@@ -139,11 +139,11 @@ class DrivenSliderCrank(EmbeddedScene):
     def tangent(self, coordinates: Any) -> tuple[Any, Any]:
         theta, shape, r = coordinates[..., 0], self.shape, self.crank
         sine, cosine, zero = np.sin(theta), np.cos(theta), 0 * theta
-        place, (turn, slide) = shape.position(theta), shape._rates(theta)
+        position, (turn, slide) = shape.position(theta), shape._rates(theta)
         poses = (
             (r * cosine / 2, r * sine / 2, theta),
-            ((r * cosine + place) / 2, (r * sine + self.offset) / 2, shape.rod_angle(np.real(theta))),
-            (place, self.offset + zero, zero),
+            ((r * cosine + position) / 2, (r * sine + self.offset) / 2, shape.rod_angle(np.real(theta))),
+            (position, self.offset + zero, zero),
         )
         rates = (-r * sine / 2, r * cosine / 2, 1 + zero)
         rates += ((slide - r * sine) / 2, r * cosine / 2, turn, slide, zero, zero)
@@ -177,59 +177,56 @@ class DrivenSliderCrank(EmbeddedScene):
         return self.embedded(*self._states(times), np.zeros((len(times), 1)) if self.driven else None)[1:]
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """A bound on the truth's own error (times,) [rad, rad/s], by two rules; none of a prescribed motion."""
+        """A bound (times,) on the error of the motion [rad, rad/s], by two rules; zero for a prescribed motion."""
         return np.zeros(len(self.times(t))) if self.driven else super().truth_error(t)
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """+1 where the slider is to the right of the crank pin, -1 to the left: the sign of cos(beta)."""
+        """+1 if the slider is to the right of the crank pin, -1 if to the left: the sign of cos(beta)."""
         pin = 2 * pose[..., 0, 0]  # the crank's centre is halfway out to its pin
         return np.sign(pose[..., 2, 0] - pin).astype(int)
 
 
 @dataclass(frozen=True)
 class FreeSliderCrank(DrivenSliderCrank):
-    """The same, let go at `angle` with `rate`: it turns over by its own speed, and gravity acts on it."""
+    """The free slider-crank, released at `angle` with `rate`, under gravity."""
 
     name: ClassVar[str] = "free_slider_crank"
     driven: ClassVar[bool] = False
     duration: Positive = 2.0
-    horizon: Positive = 2.0  # one freedom, turning: an error in the energy makes the phase drift in proportion to time
+    horizon: Positive = 2.0  # one freedom: an error of the energy causes a drift of the phase, linear in time
 
 
 @dataclass(frozen=True)
 class RodEndInSlot(DrivenSliderCrank):
-    """The driven slider-crank without a sliding block: the rod's own end runs in the slot, off its centre of mass.
+    """The driven slider-crank without a sliding block: the rod's end slides in the slot.
 
-    The motion of crank and rod is the same, since the crank is prescribed; `slider_mass` never acts.
+    The motion of crank and rod is that of the driven slider-crank; `slider_mass` has no effect.
     """
 
     name: ClassVar[str] = "rod_end_in_slot"
 
     def mechanism(self) -> Mechanism:
-        whole = super().mechanism()
-        kept = tuple(joint for joint in whole.joints if "slider" not in (joint.first, joint.second))
-        end = next(joint for joint in whole.joints if isinstance(joint, Pin) and joint.second == "slider")
-        guide = next(joint for joint in whole.joints if isinstance(joint, Slot))
-        return replace(
-            whole,
-            bodies=whole.bodies[:2],
-            joints=(*kept, replace(guide, second="rod", second_point=end.first_point)),
-        )
+        with_slider = super().mechanism()
+        joints = tuple(joint for joint in with_slider.joints if "slider" not in (joint.first, joint.second))
+        end = next(joint for joint in with_slider.joints if isinstance(joint, Pin) and joint.second == "slider")
+        guide = next(joint for joint in with_slider.joints if isinstance(joint, Slot))
+        slot = replace(guide, second="rod", second_point=end.first_point)
+        return replace(with_slider, bodies=with_slider.bodies[:2], joints=(*joints, slot))
 
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
         pose, twist, acceleration = (part[:, :2] for part in super().placement(times))
         return pose, twist, acceleration
 
     def _branch_of(self, pose: Floats) -> Any:
-        """+1 where the rod points to the right, -1 to the left."""
+        """+1 if the rod points to the right, -1 if to the left."""
         return np.sign(np.cos(pose[..., 1, 2])).astype(int)
 
 
 @dataclass(frozen=True)
 class SliderAtDeadCentre(FreeSliderCrank):
-    """Let go at rest next to the outer dead centre, everything pushed along the slot: the slider has no lever yet.
+    """Released at rest near the outer dead centre, under gravity along the slot.
 
-    In the dead centre itself it would stay for ever; `angle` [rad] is what decides when, and to which side, it leaves.
+    At the dead centre itself it would stay at rest; `angle` [rad] determines when and to which side it leaves.
     """
 
     name: ClassVar[str] = "slider_at_dead_centre"
@@ -240,7 +237,7 @@ class SliderAtDeadCentre(FreeSliderCrank):
 
     @property
     def angle_unit(self) -> float:
-        """The start's distance from the dead centre [rad]: an error in it grows as it does, and stays that part."""
+        """The distance from the dead centre at the start [rad]; errors grow in proportion to that distance."""
         return min(1.0, abs(self.angle)) or 1.0
 
     def mechanism(self) -> Mechanism:
@@ -252,9 +249,9 @@ class SlottedLever(PlacedScene):
     """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; its pin slides in a straight slot of the lever.
 
     crank and lever [m], the lever's pivot at (-distance, 0) [m]; uniform bars of crank_mass and lever_mass [kg];
-    gravity [m/s^2] downwards. The slot goes from the lever's pivot on, as long as it needs to be, turned by `slant`
-    [rad] against the lever's bar, so that the bar's centre of mass is not on it. Raises InvalidMechanism unless the
-    crank is shorter than the distance: the lever then swings to and fro, and the pin never meets its pivot.
+    gravity [m/s^2] downwards. The slot begins at the lever's pivot, at the angle `slant` [rad] to the lever's bar, so
+    that the bar's centre of mass is not on it. Raises InvalidMechanism unless the crank is shorter than the distance,
+    so that the lever swings.
     """
 
     name: ClassVar[str] = "slotted_lever"

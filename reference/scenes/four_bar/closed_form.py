@@ -1,7 +1,7 @@
 """The closed form of a four-bar for many crank angles: angles, rates and accelerations.
 
-By the triangles A B D and B C D on either side of the diagonal B D, as exact differences that keep their relative
-accuracy; the letters of the code are those of "The four-bar in closed form" in `reference/scenes/derivations.md`.
+The triangles A B D and B C D on both sides of the diagonal B D are solved with differences that have no cancellation.
+The letters of the code are those of "The four-bar in closed form" in `reference/scenes/derivations.md`.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Interval = tuple[float, float]
 
-# A crank angle is a rounded number: one that misses the reachable range by this many roundings is taken as its end.
-ROUNDINGS = 16
+# Roundings of a crank angle outside of the reachable range that are still counted as its end.
+ANGLE_ROUNDINGS = 16
 
 
 class Kinematics(NamedTuple):
@@ -32,7 +32,7 @@ class Kinematics(NamedTuple):
 
 
 class OutOfReach(Exception):
-    """Some angle in a block does not close the loop; `index` is the first, `undetermined` if B lies on D."""
+    """The loop can't close at an angle; `index` is the first such angle, `undetermined` is true if B is on D."""
 
     def __init__(self, index: int, undetermined: bool = False) -> None:
         super().__init__(index)
@@ -41,24 +41,29 @@ class OutOfReach(Exception):
 
 
 def difference(*terms: float) -> float:
-    """The sum of terms, and exactly zero where it is nothing but the rounding of the terms themselves."""
+    """The sum of terms; exactly zero if it is within the rounding of the terms."""
     total = math.fsum(terms)
     return 0.0 if abs(total) <= 4 * np.finfo(float).eps * sum(abs(term) for term in terms) else total
 
 
 @dataclass(frozen=True)
 class Constants:
-    """What the closed form needs of the lengths l1, l2, l3 [m] and the ground vector A -> D."""
+    """Constants of the closed form for lengths l1, l2, l3 [m] and the ground vector A -> D of length d [m].
+
+    heading [rad]: the direction of A -> D. outer_far: U at theta' = pi; if negative, B can't be that far from D.
+    outer_near: U at theta' = 0; if negative, there is no position. inner_near: W at theta' = 0; if negative, B can't be
+    that near to D. inner_far: W at theta' = pi; if negative, there is no position.
+    """
 
     l1: float
     l2: float
     l3: float
     d: float
-    heading: float  # rad, direction of A -> D
-    outer_far: float  # U at theta' = pi; negative: B can't go that far from D
-    outer_near: float  # U at theta' = 0; negative: no position at all
-    inner_near: float  # W at theta' = 0; negative: B can't come so near to D
-    inner_far: float  # W at theta' = pi; negative: no position at all
+    heading: float
+    outer_far: float
+    outer_near: float
+    inner_near: float
+    inner_far: float
 
     @classmethod
     def of(cls, l1: float, l2: float, l3: float, ground: tuple[float, float]) -> Constants:
@@ -77,7 +82,7 @@ class Constants:
 
     def crank_limits(self) -> tuple[Interval, ...] | None:
         """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns; None if all do."""
-        # theta' = 2 atan(sqrt(ratio)) where U or W vanishes; exact differences keep the digits near a change point.
+        # U or W is zero at theta' = 2 atan(sqrt(ratio)).
         outer = 2 * math.atan2(math.sqrt(self.outer_near), math.sqrt(-self.outer_far)) if self.outer_far < 0 else None
         inner = 2 * math.atan2(math.sqrt(-self.inner_near), math.sqrt(self.inner_far)) if self.inner_near < 0 else None
         if outer is None and inner is None:
@@ -91,7 +96,7 @@ class Constants:
 
 
 class Triangles(NamedTuple):
-    """A B D and B C D at crank angles (n,), in the letters of the formulas above [m^2]."""
+    """A B D and B C D at crank angles (n,), in the letters of the derivation [m^2]."""
 
     square: Array  # s^2
     m: Array
@@ -122,7 +127,7 @@ def closed_form(
         out += beta_1 * theta_dot, phi_1 * theta_dot
         if order == 1:
             return out
-        # 2 l1 d cos(theta'), from the shorter of the two bars: the square of the other would swamp it.
+        # 2 l1 d cos(theta'), with the square of the shorter of the two bars, to avoid cancellation.
         turned = 2 * c.l1**2 - m if c.l1 < c.d else 2 * c.d**2 - n
         y_1 = (turned - y * y * (c.l2**2 + c.l3**2 - square)) / q
         beta_2 = (h * (1 - (beta_1 + phi_1)) - y_1 * p) * half
@@ -134,15 +139,15 @@ def closed_form(
 
 
 def _triangles(c: Constants, theta: Array) -> Triangles:
-    """Raises OutOfReach where B C D doesn't close."""
-    # sin^2, cos^2 and their product of theta'/2 from one tangent.
+    """The triangles at crank angles (n,). Raises OutOfReach if B C D can't close."""
+    # sin^2 and cos^2 of theta'/2, and the product of sine and cosine, from one tangent.
     half, turn_x, turn_y = np.tan(0.5 * theta), math.cos(c.heading / 2), math.sin(c.heading / 2)
     sine, cosine = half * turn_x - turn_y, half * turn_y + turn_x  # both over cos(theta/2)
     product, sine, cosine = sine * cosine, sine * sine, cosine * cosine
     scale = 1 / (cosine + sine)
     fourfold = 4 * c.l1 * c.d
     along = fourfold * (sine * scale)
-    # From the end of the range where U, or W, is smaller: there it may vanish, and its digits must not cancel.
+    # From the end of the range where U or W is smaller, since it may be zero there.
     near_u, near_w = abs(c.outer_near) < abs(c.outer_far), abs(c.inner_near) < abs(c.inner_far)
     across = fourfold * (cosine * scale)
     u = c.outer_near - along if near_u else c.outer_far + across
@@ -164,11 +169,11 @@ def _triangles(c: Constants, theta: Array) -> Triangles:
 def _angles(c: Constants, triangles: Triangles, theta: Array, branch: Array) -> tuple[Array, Array]:
     """beta and phi [rad], continuous in theta."""
     _, m, n, h, p, r, area = triangles
-    # v is B - D, scaled, seen from the direction that it never turns away from by a right angle: D -> A, or A -> B if
+    # v is B - D, scaled, relative to a direction from which it differs by less than a right angle: D -> A, or A -> B if
     # that is longer.
     winding = c.l1 > c.d
     vx, vy = (m, h) if winding else (n, -h)
-    # That turn and the triangle's angle add up to less than a whole turn: one arctangent, a quarter turn off its cut.
+    # The sum of that angle and the triangle's angle is less than a whole turn, so one arctangent is enough.
     p, r = branch * p, branch * r
     wide_x, wide_y = vx * area, vy * area
     beta = np.arctan2(wide_y - vx * r, vy * r + wide_x)
@@ -180,9 +185,9 @@ def _angles(c: Constants, triangles: Triangles, theta: Array, branch: Array) -> 
 
 
 def _within_reach(c: Constants, u: Array, w: Array, square: Array) -> tuple[Array, Array]:
-    """U and W, misses by rounding made exact zeros; raises OutOfReach unless every triangle closes."""
+    """U and W, with negative values within rounding set to zero; raises OutOfReach unless every triangle closes."""
     if u.size and not min(float(np.min(u)), float(np.min(w))) >= 0:  # a NaN fails too
-        allowed = -ROUNDINGS * np.finfo(float).eps * (c.l1 + c.d) ** 2
+        allowed = -ANGLE_ROUNDINGS * np.finfo(float).eps * (c.l1 + c.d) ** 2
         bad = ~(np.minimum(u, w) >= allowed)
         if np.any(bad):
             raise OutOfReach(int(np.argmax(bad)))
@@ -193,11 +198,11 @@ def _within_reach(c: Constants, u: Array, w: Array, square: Array) -> tuple[Arra
 
 
 def grashof(crank: float, coupler: float, rocker: float, ground: float) -> str:
-    """The class by name, from the shortest bar s, the longest l and the others p, q; lengths [m].
+    """The Grashof class by name, from the shortest bar s, the longest l and the others p, q; lengths [m].
 
-    s + l > p + q: triple-rocker (no bar turns fully). Equal up to the rounding of the lengths: change-point. Below:
-    double-crank if the ground is shortest, double-rocker if the coupler is, crank-rocker if a side bar is; when that is
-    the rocker, it is the rocker that turns and the crank that swings.
+    s + l > p + q: triple-rocker (no bar turns fully). s + l = p + q to rounding: change-point. s + l < p + q:
+    double-crank if the ground is shortest, double-rocker if the coupler is, crank-rocker if a side bar is; if the
+    rocker is shortest, it turns fully and the crank swings.
     """
     bars = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
     shortest, *_ = ranked = sorted(bars, key=bars.__getitem__)

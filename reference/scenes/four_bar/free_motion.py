@@ -1,7 +1,7 @@
-"""A four-bar left to itself: one coordinate along the curve of its configurations, which no crank limit interrupts.
+"""The free four-bar, with one coordinate along its configuration curve, which is regular at crank limits too.
 
-The direction t in the space of (theta, beta, phi) keeps the loop closed, (theta, beta, phi)' = u t, and the root w of
-twice the kinetic energy is integrated beside the angles: see "A four-bar left to itself" in
+t is the tangent of the configuration curve in the space of (theta, beta, phi), (theta, beta, phi)' = u t, and the root
+w of twice the kinetic energy is integrated with the angles: see "A four-bar left to itself" in
 `reference/scenes/derivations.md`.
 """
 
@@ -23,9 +23,10 @@ from reference.scenes.four_bar.linkage import FourBar
 Array = NDArray[np.float64]
 
 States = Callable[[Array], Any]
-TOLERANCE = gauss.WINDOW_TOLERANCE / 10  # a thousand roundings of numpy.longdouble, or one of a double
-# Of the longest bar's square: what t comes down to where bars lie in line but for the rounding of their lengths.
-PASSED = 1e-7
+# A thousand roundings of numpy.longdouble, or one of a double.
+CURVE_TOLERANCE = gauss.WINDOW_TOLERANCE / 10
+# The largest component of t at a change point, relative to the longest bar's square: the bars are in line to rounding.
+CHANGE_POINT = 1e-7
 
 
 class BarAngles(NamedTuple):
@@ -64,21 +65,20 @@ class CurveMotion(Valid):
         return np.append(angle, np.longdouble(theta_dot) / along)
 
     def motion(self, start: Any, until: float, stages: int = gauss.STAGES) -> States:
-        """States (times, 4) of a start, up to `until` [s], in extended precision: call it with times (times,) [s].
+        """A function from times (times,) [s], up to `until` [s], to states (times, 4) in extended precision.
 
         Raises IntegrationFailed at a change point.
         """
         rate = start[3] * self._direction(start[:3])
         shortest = min(self.four_bar.lengths)
         unit = np.longdouble(max(float(np.abs(rate).max()), math.sqrt(math.hypot(*self.gravity) / shortest)) or 1.0)
-        # Angles are counted in parts of a radian that pass for rates [rad/s], as w does with the largest inertia.
-        largest, nearest = np.sqrt(self._own.max()), PASSED * max(self.four_bar.lengths) ** 2
+        # Angles times `unit`, and w divided by the root of the largest inertia, both have the unit of rates [rad/s].
+        largest, nearest = np.sqrt(self._bar_inertias.max()), CHANGE_POINT * max(self.four_bar.lengths) ** 2
 
         def slopes(_: Any, state: Any) -> Any:
             angle = state[..., :3] / unit
             direction = self._direction(angle)
             if np.abs(direction).max(axis=-1).min() < nearest:
-                # A window that comes there is too long, however short it is.
                 raise IntegrationFailed("four-bar: the motion comes to a change point")
             root = np.sqrt(self._inertia(angle, direction)) / largest
             turning = unit * (state[..., 3:] / root[..., None]) * direction
@@ -86,14 +86,14 @@ class CurveMotion(Valid):
 
         root = np.sqrt(self._inertia(start[:3], self._direction(start[:3]))) / largest
         state = np.append(unit * start[:3], start[3] * root)
-        # What is known of the first order is the rate of something that nothing asks for.
-        by = gauss.integrate(slopes, np.zeros(4), state, until, float(unit), stages, TOLERANCE)
+        # The integrator is for second-order equations. The first-order state is its velocity; its positions are unused.
+        solution = gauss.integrate(slopes, np.zeros(4), state, until, float(unit), stages, CURVE_TOLERANCE)
 
         def states(times: Array) -> Any:
-            found = by.extended(times)[:, 4:]
-            angle = found[:, :3] / unit
+            velocities = solution.extended(times)[:, 4:]
+            angle = velocities[:, :3] / unit
             root = np.sqrt(self._inertia(angle, self._direction(angle))) / largest
-            return np.column_stack([angle, found[:, 3] / root])
+            return np.column_stack([angle, velocities[:, 3] / root])
 
         return states
 
@@ -106,7 +106,7 @@ class CurveMotion(Valid):
         return BarAngles(*(np.asarray(value, dtype=float) for value in values))
 
     def _closed(self, angle: Any) -> Any:
-        """beta and phi of a closed loop, by Newton in extended precision: the start is known in double only."""
+        """theta, and beta and phi of the closed loop by Newton's method in extended precision."""
         l1, l2, l3 = (np.longdouble(length) for length in self.four_bar.lengths)
         x, y = (np.longdouble(value) for value in self.four_bar.ground)
         theta, beta, phi = angle
@@ -115,7 +115,7 @@ class CurveMotion(Valid):
             gap_y = l1 * np.sin(theta) + l2 * np.sin(beta) - l3 * np.sin(phi) - y
             between = np.sin(phi - beta)
             if abs(float(between)) < 1e-6:
-                break  # at a crank limit the double's closure is as good, and Newton's matrix is singular
+                break  # at a crank limit, where Newton's matrix is singular; the start in double precision is used
             beta, phi = (
                 beta - (gap_x * np.cos(phi) + gap_y * np.sin(phi)) / (l2 * between),
                 phi - (gap_x * np.cos(beta) + gap_y * np.sin(beta)) / (l3 * between),
@@ -136,21 +136,21 @@ class CurveMotion(Valid):
         return direction, factor * np.cos(difference) * turning
 
     @property
-    def _own(self) -> Any:
-        """The bars' inertias (3,) about their ends, with what hangs there [kg m^2]."""
+    def _bar_inertias(self) -> Any:
+        """The bars' inertias (3,) about their fixed ends, with the coupler's mass at the crank's end [kg m^2]."""
         m1, m2, m3 = (np.longdouble(mass) for mass in self.masses)
         lengths = np.array(self.four_bar.lengths, dtype=np.longdouble)
         return lengths**2 * np.array([m1 / 3 + m2, m2 / 3, m3 / 3])
 
     @property
     def _cross(self) -> Any:
-        """What couples crank and coupler while they are in line [kg m^2]."""
+        """The inertia that couples crank and coupler if they are in line [kg m^2]."""
         return np.longdouble(self.masses[1]) * np.longdouble(self.four_bar.crank) * np.longdouble(self.four_bar.coupler)
 
     def _inertia(self, angle: Any, t: Any) -> Any:
         """I (...,) at angles (..., 3)."""
         coupling = self._cross * np.cos(angle[..., 1] - angle[..., 0])
-        return np.sum(self._own * t * t, axis=-1) + coupling * t[..., 0] * t[..., 1]
+        return np.sum(self._bar_inertias * t * t, axis=-1) + coupling * t[..., 0] * t[..., 1]
 
     def _pull(self, angle: Any, t: Any) -> Any:
         """-grad V . t (...,)."""
@@ -164,7 +164,7 @@ class CurveMotion(Valid):
         between = angle[..., 1] - angle[..., 0]
         coupling, fading = self._cross * np.cos(between), -self._cross * np.sin(between)
         inertia_slope = (
-            2 * np.sum(self._own * t * bend, axis=-1)
+            2 * np.sum(self._bar_inertias * t * bend, axis=-1)
             + coupling * (bend[..., 0] * t[..., 1] + t[..., 0] * bend[..., 1])
             + fading * (t[..., 1] - t[..., 0]) * t[..., 0] * t[..., 1]
         )

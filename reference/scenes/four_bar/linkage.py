@@ -3,7 +3,7 @@
 Angles [rad] from +x, counter-clockwise: theta of A -> B (crank), beta of B -> C (coupler), phi of D -> C (rocker; the
 chapter's "rod CD", whose direction must be read from D). A is the origin, D anywhere else. `branch` is +1 for C left of
 the directed line B -> D, as in the chapter's figure, -1 for the other branch (assembly mode).
-Forces are those of uniform bars, by Newton's and Euler's laws of the three.
+Forces are those of uniform bars, by Newton's and Euler's laws.
 """
 
 from __future__ import annotations
@@ -93,17 +93,18 @@ def _cross(first: Any, second: Any) -> Any:
     return (np.conj(first) * second).imag
 
 
-# The chapter's pseudocode, which integrates the rates as printed: a method under test, not a reference. Nothing in it
-# holds the loop closed, so every error in the angles stays and feeds the next: with the common default tolerance (rtol
-# 1e-3) the coupler's angle is off by 0.02 rad after one revolution, and by a radian after a hundred.
+# The chapter's pseudocode, which integrates the rates as printed: a method under test, not a reference. It does not
+# correct the closure of the loop, so errors of the angles accumulate: with the common default tolerance (rtol 1e-3) the
+# error of the coupler's angle is 0.02 rad after one revolution and a radian after a hundred.
 
 ADAPTIVE: dict[str, Any] = {"RK45": RK45, "RK23": RK23, "DOP853": DOP853, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
-FIXED = {"euler": (0.0,), "rk4": (0.0, 0.5, 0.5, 1.0)}  # where each stage stands in its step
+# The nodes of the stages of methods with a fixed step, as fractions of the step.
+FIXED_STEP_NODES = {"euler": (0.0,), "rk4": (0.0, 0.5, 0.5, 1.0)}
 Method = Literal["euler", "rk4", "RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA"]
 
 
 class RateIntegration(NamedTuple):
-    """Angles [rad] at times t [s], NaN after the method gave up; the evaluations it took; why it stopped, or ''."""
+    """Angles [rad] at times t [s], NaN after the method stopped; evaluations; the reason why it stopped, or ''."""
 
     t: Array
     theta: Array
@@ -128,9 +129,9 @@ def integrate_rates(
     """Integrate (theta, beta, phi) from `start` at t[0] with the rates (18.70), (18.71) and theta' constant.
 
     lengths l1, l2, l3 [m]; theta_dot [rad/s]; t [s] increasing. "euler" and "rk4" take `every` steps between samples;
-    scipy's RK45, RK23, DOP853, Radau, BDF and LSODA choose theirs by rtol and atol, as solve_ivp does. After `limit`
-    evaluations, or where scipy's method fails, it stops and says so: near sin(beta - phi) = 0, which drift reaches even
-    for a crank that turns fully, the steps shrink without end. Raises InvalidMechanism, a ValueError.
+    scipy's RK45, RK23, DOP853, Radau, BDF and LSODA choose steps by rtol and atol, as solve_ivp does. It stops after
+    `limit` evaluations, or if scipy's method fails: near sin(beta - phi) = 0, which drift reaches even for a crank that
+    turns fully, the steps tend to zero. Raises InvalidMechanism, a ValueError.
     """
     times = t
     if times.size < 2 or not np.all(np.diff(times) > 0):
@@ -156,7 +157,7 @@ def integrate_rates(
         solver = ADAPTIVE[method](odes, times[0], out[0].copy(), times[-1], rtol=rtol, atol=atol)
         evaluations, stopped = _adaptive(solver, times, out, limit)
     else:
-        evaluations, stopped = _fixed(odes, FIXED[method], times, out, every, limit)
+        evaluations, stopped = _fixed(odes, FIXED_STEP_NODES[method], times, out, every, limit)
     return RateIntegration(times, out[:, 0], out[:, 1], out[:, 2], evaluations, stopped)
 
 
@@ -179,7 +180,7 @@ def _adaptive(solver: Any, times: Array, out: Array, limit: int) -> tuple[int, s
 def _fixed(
     odes: Callable[[float, Array], Array], nodes: tuple[float, ...], times: Array, out: Array, every: int, limit: int
 ) -> tuple[int, str]:
-    """Steps of Euler's method or the classical one of Runge and Kutta, whose stages follow from one another."""
+    """Steps of Euler's method or the classical Runge-Kutta method."""
     evaluations, weights = 0, np.array([1.0] if len(nodes) == 1 else [1 / 6, 1 / 3, 1 / 3, 1 / 6])
     for index in range(1, times.size):
         angles, step = out[index - 1], (times[index] - times[index - 1]) / every
@@ -198,24 +199,22 @@ def _fixed(
 
 
 class Unreachable(InvalidMechanism):
-    """A crank angle at which the loop can't close: the message names it and the range that is possible."""
+    """A crank angle at which the loop can't close; the message has the angle and the possible range."""
 
 
 @dataclass(frozen=True)
 class FourBar(Valid):
     """A planar four-bar A B C D with lengths AB, BC, CD [m] and D at `ground` [m].
 
-    Every method broadcasts its arguments. Angles are continuous in theta (not wrapped) as long as the crank moves in
-    one reachable interval, for any theta and not only along a path; they wind with the crank if it is longer than AD.
-    The chapter's start, theta = pi/2, has beta = pi/4 and phi = 3 pi/4; the other branch's angles are counted from
-    the same direction of B seen from D.
+    Every method broadcasts its arguments. Angles are continuous functions of theta (not wrapped) within one reachable
+    interval; they increase with the crank's turns if the crank is longer than AD. The chapter's start, theta = pi/2,
+    has beta = pi/4 and phi = 3 pi/4; the angles of the other branch are measured from the same direction D -> B.
 
-    Errors are a few roundings in regular positions. Near the end of a reachable interval, at a distance x [rad] from
-    it, angles leave their end value like sqrt(x), so that their error is about eps / sqrt(x), and sqrt(eps) = 1e-8 at
-    the end; rates grow like 1 / sqrt(x), with a relative error of eps / x, and at the end itself they are infinite or
-    NaN. Through a change point C is not determined by the crank, and each `branch` has a kink there. With crank = AD
-    and coupler = rocker, B meets D, where C is not determined at all: that crank angle is Unreachable, and across it
-    the angles jump by pi.
+    Errors are a few roundings in regular positions. At a distance x [rad] from the end of a reachable interval, angles
+    differ from their end value by about sqrt(x), so that their error is about eps / sqrt(x), and sqrt(eps) = 1e-8 at
+    the end; rates grow like 1 / sqrt(x), with a relative error of eps / x, and at the end they are infinite or NaN. At
+    a change point the crank does not determine C, and each `branch` has a kink. With crank = AD and coupler = rocker, B
+    meets D, where C is not determined: that crank angle is Unreachable, and the angles jump by pi across it.
 
     Raises InvalidMechanism for lengths not positive, D on A, or bars that can't be assembled at any crank angle;
     methods raise Unreachable, and ValueError for a crank angle that is not finite or a branch other than +1 or -1.
@@ -256,7 +255,7 @@ class FourBar(Valid):
 
     @validated
     def angles(self, theta: ArrayLike, branch: Signs = 1) -> tuple[Any, Any]:
-        """beta and phi [rad] in closed form; the chapter calls that impossible, and integrates rates instead."""
+        """beta and phi [rad] in closed form, which the chapter calls impossible."""
         return self._evaluated(theta, 0.0, 0.0, branch, order=0)  # type: ignore[return-value]
 
     @validated
@@ -275,7 +274,7 @@ class FourBar(Valid):
     def kinematics(
         self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: Signs = 1
     ) -> Kinematics:
-        """All six at once: the fast way for many crank angles."""
+        """All six quantities, fast for many crank angles."""
         return Kinematics(*self._evaluated(theta, theta_dot, theta_ddot, branch, order=2))
 
     def _evaluated(
@@ -345,6 +344,6 @@ class FourBar(Valid):
         branch: Sign = 1,
         **settings: Any,
     ) -> RateIntegration:
-        """The chapter's pseudocode from the given start, a method under test; settings of `integrate_rates`."""
+        """The chapter's pseudocode from a start, a method under test; settings: see `integrate_rates`."""
         beta, phi = self.angles(theta, branch)
         return integrate_rates(self.lengths, (theta, float(beta), float(phi)), theta_dot, np.asarray(t), **settings)

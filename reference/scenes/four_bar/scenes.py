@@ -1,5 +1,5 @@
-"""The four-bar as scenes: its crank driven at a constant rate, the whole linkage left to its weight, and where methods
-fail: a parallelogram through its change points, and a crank driven into its limit.
+"""Four-bar scenes: the crank driven at a constant rate, the linkage free under its weight, and two scenes in which
+methods fail: a parallelogram through its change points, and a crank driven into its limit.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class FourBarScene(Scene):
 
     @property
     def masses(self) -> tuple[float, float, float]:
-        """Of crank, coupler and rocker [kg]."""
+        """The masses of crank, coupler and rocker [kg]."""
         densities = three_densities(self.density)
         return densities[0] * self.crank, densities[1] * self.coupler, densities[2] * self.rocker
 
@@ -96,10 +96,10 @@ class FourBarScene(Scene):
 
 @dataclass(frozen=True)
 class DrivenFourBar(FourBarScene):
-    """The chapter's sample: the crank turns at a constant rate. Closed form throughout; `revolutions` of the crank.
+    """The chapter's sample: the crank turns at a constant rate, in closed form; `revolutions` of the crank.
 
-    An error of a stepping method has no freedom to grow in, so the horizon is the whole duration. `motion` raises
-    Unreachable if the crank can't turn that far.
+    Errors of a stepping method don't grow, since there is no freedom, so the horizon is the whole duration. `motion`
+    raises Unreachable if the crank can't turn that far.
     """
 
     name: ClassVar[str] = "driven_four_bar"
@@ -144,11 +144,10 @@ class DrivenFourBar(FourBarScene):
 
 @dataclass(frozen=True)
 class FreeFourBar(FourBarScene):
-    """The linkage under its weight, from rest or with a crank rate, through crank limits if it meets them.
+    """The linkage under its weight, from rest or with a crank rate, also through crank limits.
 
-    One freedom and a constant energy fix the path of the motion, so that an error can only be a drift of energy and of
-    time, which grow about linearly: the horizon is the whole duration. (Not so if the energy just suffices to reach a
-    position of rest, or at a change point.)
+    With one freedom and constant energy, errors are drifts of energy and time, which grow about linearly: the horizon
+    is the whole duration. (This does not hold if the energy is that of an unstable equilibrium, or at a change point.)
     """
 
     name: ClassVar[str] = "free_four_bar"
@@ -176,16 +175,16 @@ class FreeFourBar(FourBarScene):
         return Trajectory(times, pose, twist, self.mechanism().reaction(pose, acceleration))
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """The truth's own error (times,): the largest change [m, rad, m/s, rad/s] of a pose or twist when it is
-        computed again by another rule; rounding to double is a part of it."""
+        """The error (times,) of the motion: the largest change [m, rad, m/s, rad/s] of a pose or twist by another rule,
+        rounding to double included."""
         times = self.times(t)
         pairs = zip(self._bodies(self._angles(times)), self._bodies(self._angles(times, COARSE_STAGES)), strict=True)
-        return np.max([np.abs(one - other).max(axis=(1, 2)) for one, other in list(pairs)[:2]], axis=0)
+        return np.max([np.abs(fine - coarse).max(axis=(1, 2)) for fine, coarse in list(pairs)[:2]], axis=0)
 
     def _angles(self, times: Array, stages: int = STAGES) -> BarAngles:
         curve = self._curve
         start = curve.start(self.start, self.rate, self.branch)
-        if not times.any():  # a mechanism needs no more than the start
+        if not times.any():  # only the start, as for a mechanism
             return curve.bar_angles(np.repeat(start[None], len(times), axis=0))
         try:
             states = shared(FreeFourBar._solved, self, max(self.duration, float(times.max())), stages)
@@ -204,24 +203,25 @@ class FreeFourBar(FourBarScene):
 
 @dataclass(frozen=True)
 class SpinningFourBar(FreeFourBar):
-    """The free linkage with a crank rate at which its bars' own inertia outweighs gravity."""
+    """The free linkage with a crank rate at which the inertia of its bars dominates gravity."""
 
     name: ClassVar[str] = "spinning_four_bar"
 
     rate: float = 10.0
 
 
-# Within this of a change point (the sine of the transmission angle) the rows are as good as dependent, and the
-# reactions of ideal rigid bars are not determined.
+# Sine of the transmission angle below which the rows count as dependent, so that the reactions of ideal rigid bars are
+# not determined.
 IN_LINE = 1e-6
 
 
 @dataclass(frozen=True)
 class Parallelogram(DrivenFourBar):
-    """Crank and rocker equal, coupler and ground equal: twice a revolution all bars lie in line.
+    """Crank and rocker equal, coupler and ground equal: twice a revolution all bars are in line.
 
-    There two motions satisfy the joints, parallel bars and crossed ones. The truth is the one that is smooth: the
-    coupler stays parallel to the ground. `branch` can't express it, as C passes from one side of B -> D to the other.
+    At these positions two motions satisfy the joints, with parallel and with crossed bars. The reference motion is the
+    smooth one, in which the coupler is always parallel to the ground. It has no constant `branch`, since C passes from
+    one side of B -> D to the other.
     """
 
     name: ClassVar[str] = "parallelogram"
@@ -242,29 +242,29 @@ class Parallelogram(DrivenFourBar):
             )
 
     def _motion(self, times: Array) -> Trajectory:
-        """Reactions are NaN where the bars are in line: rigid bars then share them in no definite way."""
+        """Reactions are NaN if the bars are in line, since they are then not determined for rigid bars."""
         angles = self._angles(times)
         pose, twist, acceleration = self._bodies(angles)
         reaction = np.full((len(times), 9), np.nan)
-        apart = np.abs(np.sin(angles.angle[:, 2] - angles.angle[:, 1])) > IN_LINE
-        reaction[apart] = self.mechanism().reaction(pose[apart], acceleration[apart])
+        regular = np.abs(np.sin(angles.angle[:, 2] - angles.angle[:, 1])) > IN_LINE
+        reaction[regular] = self.mechanism().reaction(pose[regular], acceleration[regular])
         return Trajectory(times, pose, twist, reaction)
 
     def _angles(self, times: Array) -> BarAngles:
         theta = self.start + self.rate * times
-        still = np.zeros_like(theta)
+        zero = np.zeros_like(theta)
         heading = np.full_like(theta, math.atan2(self.ground[1], self.ground[0]))
         rate = np.full_like(theta, self.rate)
         return BarAngles(
             np.stack([theta, heading, theta], axis=-1),
-            np.stack([rate, still, rate], axis=-1),
+            np.stack([rate, zero, rate], axis=-1),
             np.zeros((len(theta), 3)),
         )
 
 
 @dataclass(frozen=True)
 class OverdrivenFourBar(DrivenFourBar):
-    """A triple-rocker whose crank is driven beyond what the other bars can follow: `motion` refuses from there."""
+    """A triple-rocker whose crank is driven beyond its limit; `motion` raises Unreachable for later times."""
 
     name: ClassVar[str] = "overdriven_four_bar"
     source: ClassVar[str] = "the singular set sin(beta - phi) = 0 of eqs. 18.70-18.71"
@@ -277,7 +277,7 @@ class OverdrivenFourBar(DrivenFourBar):
     revolutions: Positive = 0.5
 
     def _motion(self, times: Array) -> Trajectory:
-        """Raises Unreachable beyond the stopping time, also where the crank's angle alone could be reached again."""
+        """Raises Unreachable after the stopping time, also for crank angles that the loop could reach again."""
         motion = super()._motion(times)
         late = times[times > self.stopping_time * (1 + 1e-12)]
         if late.size:
@@ -289,7 +289,7 @@ class OverdrivenFourBar(DrivenFourBar):
 
     @property
     def stopping_time(self) -> float:
-        """When the crank meets its limit [s]; infinite if it never does."""
+        """The time at which the crank meets its limit [s]; infinite if it never does."""
         limits = self.four_bar.crank_limits()
         if limits is None:
             return math.inf

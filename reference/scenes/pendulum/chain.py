@@ -1,10 +1,10 @@
-"""N links hanging from one another: joint forces by one banded solve, an evaluation costs O(N); and their motion.
+"""A chain of N links: joint forces by one banded solve at the cost O(N), and the motion.
 
-Angles are absolute, from the downward vertical, counter-clockwise. Link i has its upper end at joint i, half-vector
-h = (l/2)(sin, -cos) down to its centre of mass and on to its lower end; F_i is the force of joint i on link i. Newton
-and Euler, m a = F_i - F_(i+1) + m g and I angle'' = -h x (F_i + F_(i+1)), and equal accelerations where two links meet
-give a block-tridiagonal, symmetric, positive definite system for the forces: J M^-1 J^T of the chain, without forming
-J.
+Angles are absolute, from the downward vertical, counter-clockwise. Link i has its upper end at joint i; the half-vector
+h = (l/2)(sin, -cos) leads from there to the centre of mass, and from there to the lower end. F_i is the force of joint
+i on link i. The laws of Newton and Euler, m a = F_i - F_(i+1) + m g and I angle'' = -h x (F_i + F_(i+1)), and equal
+accelerations of two links at their joint give a block-tridiagonal, symmetric, positive definite system for the forces:
+the matrix is J M^-1 J^T of the chain.
 """
 
 from __future__ import annotations
@@ -36,18 +36,24 @@ from reference.scenes.pendulum.link import direction_of
 
 Array = NDArray[np.float64]
 
-# Beyond this ratio of masses the forces are refined: a light link passes a heavy one's force on as a small difference.
+# Ratio of masses above which the forces are refined, since the acceleration of a light link between heavy ones is a
+# small difference of large forces.
 UNEVEN = 10.0
-REFINEMENTS = 3  # each removes about as many digits as the first solution has: enough up to a ratio of 1e9
-# A correction this small, in parts of the forces, is the last: the next would be its square, below extended rounding.
+# Steps of iterative refinement. Each reduces the error by about the relative error of the first solution, so that three
+# are enough up to a ratio of 1e9.
+MAX_REFINEMENTS = 3
+# Relative correction after which no other step is needed: its square is below the rounding of extended precision.
 CORRECTED = 3e-10
 
 
 Motion = Callable[[ArrayLike], Array]
 
-# Up to so many links a call of numpy costs more than its numbers, and windows are fastest; beyond, an explicit method.
+# Links up to which collocation is fastest, since a call of numpy costs more than its arithmetic; the explicit method is
+# faster for more.
 FEW_LINKS = 20
-NUDGE = 1e-6  # rad, the difference of starts whose growth is measured: small against a swing, large against rounding
+# Difference of starts [rad] whose growth is measured: small compared with a swing, large compared with rounding.
+PERTURBATION = 1e-6
+# Growth of a difference that defines the horizon.
 TENFOLD = 10.0
 
 
@@ -88,19 +94,16 @@ class Chain(Valid):
     @validated
     def forces(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         """The force of every joint on the link below it (..., links, 2) [N], for angles and rates (..., links)."""
-        angle, rate = self._alike(angle, rate)
+        angle, rate = self._checked(angle, rate)
         return self._forces(angle, rate).astype(float)
 
     def _forces(self, angle: Array, rate: Array) -> Any:
-        """`forces`, not yet rounded, of states (..., links) that are not checked.
+        """See `forces`; without checks, and in extended precision if the masses differ by more than UNEVEN.
 
-        A light link's acceleration is a small difference of these, so where masses are far apart they have more digits
-        than a double.
-
-        All states of a batch are one banded system, their blocks side by side: O(states x links). A mass ratio r loses
-        about r roundings in it; with masses more than UNEVEN apart the solution is refined with the error of the
-        joints' accelerations in extended precision, which leaves r / 2000 roundings (r where numpy.longdouble is the
-        ordinary double).
+        All states of a batch are one banded system with a block for each state, at the cost O(states x links). For a
+        ratio r of masses its error is about r roundings. If r is larger than UNEVEN, the solution is refined: the
+        residual, the relative accelerations of the links at the joints, is computed in extended precision. The error is
+        then r / 2000 roundings (r if numpy.longdouble is a double).
         """
         leading = angle.shape[:-1]
         links, uneven = len(self._mass), self._mass.max() > UNEVEN * self._mass.min()
@@ -109,7 +112,8 @@ class Chain(Valid):
         normal = perpendicular(half)
         outer = normal[..., :, None] * normal[..., None, :] / self.inertia[:, None, None]
         light = np.eye(2) / self._mass[:, None, None]
-        near, far = light + outer, outer - light  # acceleration of one end from a force on the same, on the other end
+        # Acceleration of an end of a link by a force on the same end (near) and on the other end (far).
+        near, far = light + outer, outer - light
         diagonal = near.copy()
         diagonal[..., 1:, :, :] += near[..., :-1, :, :]
         banded = np.zeros((4, *leading, links, 2))  # upper form: row 3 is the diagonal
@@ -129,75 +133,75 @@ class Chain(Valid):
             return solution.reshape(*leading, links, 2)
         factor = cholesky_banded(banded.reshape(4, -1), overwrite_ab=True, check_finite=False)
         forces = np.zeros((*leading, links, 2), dtype=np.longdouble)
-        parting = self._parting(angle, rate)
-        for _ in range(1 + REFINEMENTS):
-            missing = parting(forces).astype(float)
-            correction = cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False)
+        residual = self._residual(angle, rate)
+        for _ in range(1 + MAX_REFINEMENTS):
+            right = residual(forces).astype(float)
+            correction = cho_solve_banded((factor, False), right.reshape(-1), check_finite=False)
             forces -= correction.reshape(forces.shape)
-            each = (-1, 2 * links)
-            small = CORRECTED * np.abs(forces.reshape(each)).max(axis=1)
-            if np.all(np.abs(correction.reshape(each)).max(axis=1) <= small):
+            by_state = (-1, 2 * links)
+            small = CORRECTED * np.abs(forces.reshape(by_state)).max(axis=1)
+            if np.all(np.abs(correction.reshape(by_state)).max(axis=1) <= small):
                 break
         return forces
 
-    def _parting(self, angle: Array, rate: Array) -> Callable[[Any], Any]:
-        """How fast the joints would part under forces (..., links, 2) [m/s^2], in extended precision: a function."""
+    def _residual(self, angle: Array, rate: Array) -> Callable[[Any], Any]:
+        """A function from forces (..., links, 2) to the relative accelerations at the joints [m/s^2], extended."""
         half = self._length[:, None] / np.longdouble(2) * direction_of(np.asarray(angle, dtype=np.longdouble))
         normal = perpendicular(half)
         centripetal = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), np.zeros_like(half[..., 0]), half)
         turned, light = normal / self.inertia[:, None], 1 / self._mass.astype(np.longdouble)[:, None]
 
-        def parting(forces: Any) -> Any:
+        def residual(forces: Any) -> Any:
             below = np.zeros_like(forces)
             below[..., :-1, :] = forces[..., 1:, :]
             centre = (forces - below) * light
             alpha = -(turned * (forces + below)).sum(axis=-1)
             lever = centripetal + alpha[..., None] * normal
-            out = centre - lever  # the upper end's acceleration, but for gravity, which all links share
+            out = centre - lever  # the upper end's acceleration without gravity, which is the same for all links
             out[..., 1:, :] -= (centre + lever)[..., :-1, :]
             out[..., 0, 1] -= self.gravity
             return out
 
-        return parting
+        return residual
 
-    def _alike(self, *given: ArrayLike) -> list[Array]:
-        """Angles, rates and accelerations as arrays; raises InvalidMechanism unless they have a number a link."""
-        states = [np.asarray(state, dtype=float) for state in given]
+    def _checked(self, *arguments: ArrayLike) -> list[Array]:
+        """Angles, rates and accelerations as arrays; raises InvalidMechanism unless all have the shape (..., links)."""
+        states = [np.asarray(argument, dtype=float) for argument in arguments]
         shapes = [state.shape for state in states]
         if any(shape != shapes[0] or shape[-1:] != (self.links,) for shape in shapes):
             raise InvalidMechanism(
                 f"chain: angles and rates have the shapes {', '.join(map(str, shapes))}; "
-                f"all must be of one shape (..., {self.links}), a number a link"
+                f"all must be of one shape (..., {self.links}), a number for each link"
             )
         return states
 
     @validated
     def accelerations(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         """angle'' (..., links) [rad/s^2] from the joint forces."""
-        angle, rate = self._alike(angle, rate)
+        angle, rate = self._checked(angle, rate)
         return self._accelerations(angle, rate).astype(float)
 
     def _accelerations(self, angle: Any, rate: Any) -> Any:
-        """As precise as the forces are, of states as precise as they are given."""
+        """See `accelerations`; without checks, in the precision of the forces."""
         forces = self._forces(angle, rate)
         forces[..., :-1, :] += forces[..., 1:, :]
         normal = perpendicular(0.5 * self._length[:, None] * direction_of(np.asarray(angle, dtype=forces.dtype)))
         return -np.sum(normal * forces, axis=-1) / self.inertia
 
     def rates(self, state: Array) -> Array:
-        """d/dt of (angles, rates) (..., 2 links): what is integrated, so nothing is checked here."""
+        """d/dt of (angles, rates) (..., 2 links), without checks."""
         angle, rate = state[..., : self.links], state[..., self.links :]
         return np.concatenate([rate, self._accelerations(angle, rate).astype(float)], axis=-1)
 
     def solved(self, angle: ArrayLike, rate: ArrayLike, until: float) -> Motion:
-        """The motion up to `until` [s] from angles and rates (links,): times (times,) to states (times, 2 links)."""
+        """The motion up to `until` [s] from angles and rates (links,): a function from times to states (times, 2 n)."""
         start = self._start(angle, rate)
         if self.links > FEW_LINKS:
             return integrate(self.rates, start, until, unit=units_of_motion(self.rates, start))
-        return self._by_windows(start, until)
+        return self._by_collocation(start, until)
 
-    def _by_windows(self, start: Array, until: float, coarse: bool = False) -> gauss.CollocationMotion:
-        """The same for a few links; `coarse`: by another rule that lets ten times as much pass."""
+    def _by_collocation(self, start: Array, until: float, coarse: bool = False) -> gauss.CollocationMotion:
+        """The motion by collocation; `coarse`: by the rule with fewer stages and ten times the tolerance."""
         angle, rate = np.split(start, 2)
         unit = float(units_of_motion(self.rates, start)[-1])
         stages, tolerance = (gauss.COARSE_STAGES, gauss.COARSER) if coarse else (gauss.STAGES, 1.0)
@@ -209,7 +213,7 @@ class Chain(Valid):
     def motion(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> tuple[Array, Array, Array]:
         """Angles, rates and accelerations (times, links) [rad, rad/s, rad/s^2] at times t (times,) [s].
 
-        From any start, an angle [rad] and a rate [rad/s] a link (links,); integrated, see `truth_error`.
+        The start is an angle [rad] and a rate [rad/s] for each link (links,). For the error see `truth_error`.
         """
         times = sample_times("chain", t)
         state = self.solved(angle, rate, max(float(times.max(initial=0.0)), math.ulp(1.0)))(times)
@@ -220,7 +224,7 @@ class Chain(Valid):
     def inertia_matrix(self) -> Array:
         """The constants M_ij of the kinetic energy sum M_ij cos(angle_i - angle_j) rate_i rate_j / 2 (links, links).
 
-        Raises InvalidMechanism where that would take more than checks.LARGEST_ARRAY.
+        Raises InvalidMechanism if the matrix takes more than checks.LARGEST_ARRAY.
         """
         require_room("chain: the dense inertia matrix", (self.links, self.links))
         below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])  # mass hanging from each link
@@ -245,8 +249,8 @@ class Chain(Valid):
 
     @validated
     def placement(self, angle: ArrayLike, rate: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations of the centres of mass (..., links, 3), the body's x axis down the link."""
-        angle, rate, acceleration = self._alike(angle, rate, acceleration)
+        """Poses, twists and accelerations of the centres of mass (..., links, 3); the x axis is down the link."""
+        angle, rate, acceleration = self._checked(angle, rate, acceleration)
         half = 0.5 * self._length[:, None] * direction_of(angle)
 
         def centres(steps: Array) -> Array:
@@ -262,36 +266,36 @@ class Chain(Valid):
 
     @validated
     def divergence(self, angle: ArrayLike, rate: ArrayLike, t: Times, starts: Count = 3) -> Array:
-        """How many times larger a small difference of starts has become at times t (times,) [s]: the worst of some.
+        """Growth factor of a small difference of starts at times t (times,) [s]: the largest of some.
 
-        Measured, not guessed: `starts` neighbours are integrated beside the motion, their angles moved by NUDGE in
-        fixed pseudo-random directions. The norm is the largest difference of an angle.
+        `starts` neighbours of the motion are integrated too. Their angles differ by PERTURBATION in fixed pseudo-random
+        directions. The norm is the largest difference of an angle.
         """
         t, start = sample_times("chain", t), self._start(angle, rate)
         until = max(float(t.max(initial=0.0)), math.ulp(1.0))
-        tolerance = NUDGE * 1e-4  # its error stays far below the difference that is measured
+        tolerance = PERTURBATION * 1e-4  # far below the difference that is measured
         generator = np.random.default_rng(0)
         together = np.tile(start, (starts + 1, 1))
         for neighbour in together[1:]:
             move = generator.uniform(-1, 1, self.links)
-            neighbour[: self.links] += move * (NUDGE / np.abs(move).max())
+            neighbour[: self.links] += move * (PERTURBATION / np.abs(move).max())
 
         def rates(state: Array) -> Array:
-            """Of all at once: a call costs hardly more than that of one."""
+            """The rates of all motions in one call, which costs little more than one motion."""
             return self.rates(state.reshape(*state.shape[:-1], *together.shape)).reshape(state.shape)
 
         unit = np.tile(units_of_motion(self.rates, start), starts + 1)
         motions = integrate(rates, together.reshape(-1), until, tolerance, unit)(t).reshape(len(t), *together.shape)
-        apart = np.abs(motions[:, 1:] - motions[:, :1])[..., : self.links].max(axis=-1) / NUDGE
-        return np.asarray(apart.max(axis=-1, initial=0.0))
+        growth = np.abs(motions[:, 1:] - motions[:, :1])[..., : self.links].max(axis=-1) / PERTURBATION
+        return np.asarray(growth.max(axis=-1, initial=0.0))
 
     @validated
     def horizon(self, angle: ArrayLike, rate: ArrayLike, until: Positive) -> tuple[float, float]:
-        """(time [s] at which a difference has grown tenfold, rate [1/s] of its exponential growth from there to
+        """(time [s] at which a difference has grown tenfold, rate [1/s] of its exponential growth from then to
         `until`).
 
-        The first is `until` when that doesn't happen; the second is then NaN. It is a slope over a finite time, fitted
-        to the logarithm of `divergence`, so it depends on `until`: a Lyapunov exponent is its limit.
+        If it does not grow tenfold, the first is `until` and the second NaN. The rate is fitted to the logarithm of
+        `divergence` over a finite time, so it depends on `until`; its limit is a Lyapunov exponent.
         """
         t = np.linspace(0, until, 201)
         growth = self.divergence(angle, rate, t)
@@ -304,15 +308,15 @@ class Chain(Valid):
 
     @validated
     def truth_error(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> Array:
-        """A bound on the integrated motion's own error (times,) [rad, rad/s], from a tolerance 10 times coarser.
+        """A bound (times,) on the error of the integrated motion [rad, rad/s], from a tolerance 10 times coarser.
 
-        Windows are at rounding with both tolerances: there it is ten times the difference, and not below rounding.
+        By collocation it is ten times the difference, and at least rounding, since both tolerances are at rounding.
         """
         times, start = sample_times("chain", t), self._start(angle, rate)
         if self.links > FEW_LINKS:
             return error_of(self.rates, start, times, unit=units_of_motion(self.rates, start))
         until = max(float(times.max(initial=0.0)), math.ulp(1.0))
-        return gauss.bound(*(self._by_windows(start, until, coarse).extended(times) for coarse in (False, True)))
+        return gauss.bound(*(self._by_collocation(start, until, coarse).extended(times) for coarse in (False, True)))
 
     def _start(self, angle: ArrayLike, rate: ArrayLike) -> Array:
-        return np.concatenate(self._alike(angle, rate))
+        return np.concatenate(self._checked(angle, rate))

@@ -1,4 +1,4 @@
-"""One link under gravity, exactly: swinging, whirling and on the separatrix between; and the classical point pendulum.
+"""Exact motion of one link under gravity: swinging, whirling and on the separatrix; and the point pendulum.
 
 angle'' = -f^2 sin(angle), the angle from the downward vertical, counter-clockwise. With s = sin(angle/2) and p =
 rate/(2f) the energy is s^2 + p^2 = k^2, and (Whittaker, Analytical Dynamics, 44)
@@ -28,26 +28,27 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-# Jacobi's elliptic functions from the complementary parameter, so that they stay exact next to the separatrix: with
-# m = k^2 the parameter and n = 1 - m the complementary one, everything here takes n. Close to m = 1 the motion depends
-# on the logarithm of n, and n can't be had from a rounded m. Method: the arithmetic-geometric mean; R. Bulirsch,
-# "Numerical calculation of elliptic integrals and elliptic functions", Numerische Mathematik 7 (1965) 78-90.
+# Jacobi's elliptic functions are computed from the complementary parameter n = 1 - m with the parameter m = k^2, so
+# that they are accurate near the separatrix, m = 1: there the motion depends on the logarithm of n, which can't be
+# computed from a rounded m. Method: the arithmetic-geometric mean; R. Bulirsch, "Numerical calculation of elliptic
+# integrals and elliptic functions", Numerische Mathematik 7 (1965) 78-90.
 
-# The mean converges quadratically: once two iterates agree to this fraction, the next agree to its square.
+# Relative difference of two iterates of the mean at which the iteration ends. The convergence is quadratic, so that the
+# relative error is then the square of this number.
 HALF_PRECISION = 1e-9
 
 
 def quarter_period(complement: float) -> float:
     """K [1], the complete integral of the first kind, for 0 <= n <= 1; infinite at n = 0."""
-    # The same function as `incomplete` has, so that a body let go from rest begins with a rate of exactly zero.
+    # By the function that `incomplete` uses, so that the start rate of a body released from rest is exactly zero.
     return float(elliprf(0.0, complement, 1.0))
 
 
 def incomplete(sine: ArrayLike, cosine: ArrayLike, complement: float) -> Array:
     """F [1], the incomplete integral of the first kind, of the amplitude atan2(sine, cosine) in (-pi, pi].
 
-    Taken from a sine and a cosine (their common scale is free), because close to n = 0 an amplitude near pi/2 can't
-    carry the digits that F needs. At n = 0 the cosine must be positive.
+    The arguments are a sine and a cosine (with any common factor), since an amplitude near pi/2 has too few digits for
+    F if n is near 0. At n = 0 the cosine must be positive.
     """
     sine, cosine = np.asarray(sine, dtype=float), np.asarray(cosine, dtype=float)
     size = np.hypot(sine, cosine)
@@ -69,7 +70,7 @@ def jacobi(argument: ArrayLike, complement: float) -> tuple[Array, Array, Array,
     half_turns = np.round(argument / (2 * quarter))
     rest = argument - 2 * quarter * half_turns
     sign = np.where(half_turns % 2 == 0, 1.0, -1.0)
-    # Beyond K/2 the functions are taken from the other end: near K, cn and dn keep their relative accuracy only so.
+    # Beyond K/2 the functions are computed from K - argument, for the relative accuracy of cn and dn near K.
     far = np.abs(rest) > quarter / 2
     sine, cosine, delta = _first_quarter(np.where(far, quarter - np.abs(rest), np.abs(rest)), complement)
     root = math.sqrt(complement)
@@ -109,12 +110,12 @@ def _first_quarter(argument: Array, complement: float) -> tuple[Array, Array, Ar
 
 @dataclass(frozen=True)
 class Pendulum(Valid):
-    """The exact motion from any start: `frequency` f [rad/s] of small swings, `angle` [rad] and `rate` [rad/s] at t =
-    0.
+    """The exact motion from any start.
 
-    Error of the angle: a few 1e-16 (1 + f t) away from the separatrix. Next to it the motion depends on 1 - k^2, which
-    the start's own rounding fixes only to about 1e-16: the time of each passage of the top is then uncertain by about
-    1e-16 / |1 - k^2| / f, by whatever method. A start at rest keeps all digits: 1 - k^2 is then cos(angle/2)^2.
+    `frequency` f [rad/s] of small swings, `angle` [rad] and `rate` [rad/s] at t = 0. The error of the angle is a few
+    1e-16 (1 + f t), except near the separatrix. There the motion depends on 1 - k^2, which a rounded start determines
+    only to about 1e-16, so that the time of each passage of the top is uncertain by about 1e-16 / |1 - k^2| / f for any
+    method. A start at rest has no such error: 1 - k^2 is then cos(angle/2)^2.
     """
 
     frequency: Positive
@@ -132,9 +133,7 @@ class Pendulum(Valid):
 
     @cached_property
     def excess(self) -> float:
-        """k^2 - 1 = (p - c)(p + c) [1]: below zero it swings, above it whirls, at zero it climbs to the top for
-        ever.
-        """
+        """k^2 - 1 = (p - c)(p + c) [1]: negative if it swings, positive if it whirls, zero on the separatrix."""
         _, _, _, cosine, p = self._start
         return (p - cosine) * (p + cosine)
 
@@ -162,7 +161,7 @@ class Pendulum(Valid):
 
     @cached_property
     def period(self) -> float:
-        """A swing to and fro, or a whole turn [s]; infinite on the separatrix."""
+        """The period of a swing, or the time of a whole turn [s]; infinite on the separatrix."""
         speed, _, complement = self._elliptic
         return (2 if self.excess > 0 else 4) * quarter_period(complement) / speed
 
@@ -173,7 +172,7 @@ class Pendulum(Valid):
         speed, start, complement = self._elliptic
         t, cycles = np.asarray(t, dtype=float), np.zeros(np.shape(t))
         if math.isfinite(self.period):
-            within = np.remainder(t, self.period)  # exact in floating point: only the period's own rounding is left
+            within = np.remainder(t, self.period)  # exact in floating point, apart from the period's rounding
             t, cycles = within, np.round((t - within) / self.period)
         sn, cn, dn, amplitude = jacobi(speed * t + start, complement)
         if self.excess > 0:
@@ -186,7 +185,7 @@ class Pendulum(Valid):
 
     @validated
     def passages(self, angle: float, until: NonNegative) -> Array:
-        """The times [s] in [0, until] at which the pendulum stands at `angle` [rad], whole turns apart included."""
+        """The times [s] in [0, until] at which the pendulum is at `angle` [rad] plus any number of whole turns."""
         direction, *_ = self._start
         speed, start, complement = self._elliptic
         rest = direction * math.remainder(angle, 2 * math.pi)
@@ -208,14 +207,15 @@ class Pendulum(Valid):
 
 
 def direction_of(angle: NDArray[Any]) -> Any:
-    """From the pin down a link (..., 2) [1], for angles from the downward vertical, counter-clockwise [rad]."""
+    """Unit vector (..., 2) from the pin down a link, for angles from the downward vertical, counter-clockwise [rad]."""
     return np.stack([np.sin(angle), -np.cos(angle)], axis=-1)
 
 
 @dataclass(frozen=True)
 class BarPendulum(Scene):
-    """A uniform bar on a fixed pin at the origin: length [m], mass [kg], gravity [m/s^2], start angle [rad], rate
-    [rad/s].
+    """A uniform bar on a fixed pin at the origin.
+
+    length [m], mass [kg], gravity [m/s^2], angle [rad] and rate [rad/s] at the start.
     """
 
     name: ClassVar[str] = "pendulum_1"
@@ -226,7 +226,7 @@ class BarPendulum(Scene):
     angle: float = 2.0
     rate: float = 0.0
     duration: Positive = 10.0
-    horizon: Positive = 10.0  # not chaotic: an error in the energy makes the phase drift in proportion to time
+    horizon: Positive = 10.0  # not chaotic: an error of the energy causes a drift of the phase, linear in time
 
     @cached_property
     def pendulum(self) -> Pendulum:
@@ -260,8 +260,8 @@ class BarPendulum(Scene):
 class PointPendulum(BarPendulum):
     """The classical point pendulum from horizontal, a test of phase: 845 periods in 2000 s (IFToMM benchmark A01).
 
-    A rigid body can't be a point. A uniform bar of 3/2 the length has its centre of oscillation (Huygens) where the
-    point mass is, and swings exactly as it does; the benchmark's output is that point of the bar, `bob`.
+    A rigid body can't be a point. A uniform bar with 3/2 of the length has its centre of oscillation (Huygens) at the
+    point mass, and moves exactly like the point pendulum. The benchmark's output is that point of the bar, `bob`.
     """
 
     name: ClassVar[str] = "point_pendulum"
@@ -273,11 +273,11 @@ class PointPendulum(BarPendulum):
 
     @property
     def samples(self) -> int:
-        """Two a second, as in the benchmark: a hundred a second would be 200,000."""
+        """Two per second, as in the benchmark; a hundred per second would be 200,000."""
         return max(1, round(2 * self.duration))
 
     @validated
     def bob(self, pose: Poses) -> Array:
-        """Where the point mass is (..., 2) [m], for poses (..., 1, 3): 2/3 of the bar from the pin."""
+        """Position of the point mass (..., 2) [m] for poses (..., 1, 3): at 2/3 of the bar from the pin."""
         angle = pose[..., 0, 2] + math.pi / 2
         return pose[..., 0, :2] + (2 / 3 - 1 / 2) * self.length * direction_of(angle)

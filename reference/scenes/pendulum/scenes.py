@@ -1,4 +1,4 @@
-"""Pendulums of 2, 10, 100 and any number of links, and a ring of links that turns like a wheel, for counting costs."""
+"""Pendulums of 2, 10, 100 and any number of links, and a rotating ring of links, for measurements of cost."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ class LinkPendulum(Scene):
 
     name: ClassVar[str] = "pendulum_2"
     source: ClassVar[str] = "problems 18.5.1 and 18.5.2; section 18.5, closed kinematic chains: a double pendulum"
-    max_durations: ClassVar[float] = 2.0  # a chaotic truth: by then a pendulum of two links has lost half of its digits
+    # The motion is chaotic: at that time the reference motion of two links has half of its digits.
+    max_durations: ClassVar[float] = 2.0
     links: Count = 2
     length: Positive = 1.0
     mass: Positive = 1.0
@@ -59,7 +60,7 @@ class LinkPendulum(Scene):
         return state[:, : self.links], state[:, self.links :]
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """A bound on the truth's own error (times,) [rad, rad/s]."""
+        """A bound (times,) on the error of the reference motion [rad, rad/s]."""
         return self.chain.truth_error(np.full(self.links, self.angle), np.full(self.links, self.rate), self.times(t))
 
     def mechanism(self) -> Mechanism:
@@ -110,25 +111,25 @@ class HundredLinks(LinkPendulum):
 
 @dataclass(frozen=True)
 class OpenChain(Mechanism):
-    """Bodies hung on one another by pins, body i by pin i, which is its `second`: an open chain, so never singular."""
+    """An open chain of pinned bodies, which is never singular; body i is the `second` body of pin i."""
 
     @validated
     def degrees_of_freedom(self, pose: NDArray[np.float64] | None = None) -> tuple[int, int]:
-        """One angle a body, whatever the pose."""
+        """One angle for each body, at any pose."""
         return len(self.bodies), len(self.bodies)
 
     def reactions_of(
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Newton's law from the free end upwards: pin i carries what all bodies below it need (..., rows) [N]."""
-        needed = inertias[:, :2] * excess[..., :2]
-        carried = np.flip(np.cumsum(np.flip(needed, axis=-2), axis=-2), axis=-2)
-        return carried.reshape((*carried.shape[:-2], self.row_count))
+        """The reaction of pin i is the sum of mass times acceleration of all bodies below it (..., rows) [N]."""
+        momentum_rates = inertias[:, :2] * excess[..., :2]
+        sums = np.flip(np.cumsum(np.flip(momentum_rates, axis=-2), axis=-2), axis=-2)
+        return sums.reshape((*sums.shape[:-2], self.row_count))
 
 
 @dataclass(frozen=True)
 class LongPendulum(LinkPendulum):
-    """`links` bars of a metre and a kilogram, released in line from horizontal; short, so that none is chaotic yet."""
+    """`links` bars of a metre and a kilogram, released in line from horizontal, for a time without chaos."""
 
     name: ClassVar[str] = "pendulum_n"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a pendulum of 1, 2 and 100 links, and more"
@@ -176,6 +177,6 @@ class SpinningRing(PlacedScene):
         half = self.length / 2
         joints = tuple(
             Pin(f"joint {i + 1}", bodies[i - 1].name, bodies[i].name, (half, 0.0), (-half, 0.0))
-            for i in [*range(1, self.links), 0]  # the one that closes the ring comes last
+            for i in [*range(1, self.links), 0]  # the joint that closes the ring is the last
         )
         return Mechanism(bodies, joints)

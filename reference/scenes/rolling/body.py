@@ -1,4 +1,4 @@
-"""A body rolling under gravity: its motion from energy in one freedom, the forces it needs, when it hops or slips."""
+"""A body rolling under gravity: its motion with one freedom, its forces, and the times at which it hops or slips."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class RollingBody(Valid):
     """One body rolling on fixed ground under gravity, in the one coordinate theta.
 
     M(theta) theta'' + M'(theta) theta'^2 / 2 = -V'(theta), with M = inertia + mass r^2, r the distance from the contact
-    to the centre of mass, V = mass g height. Contact is ideal both ways: it also pulls (N < 0) and never slips, so
-    beyond `hop` or `slip` this is no longer what a real body does.
+    to the centre of mass, V = mass g height. The ideal contact can also pull (N < 0) and never slips, so a real body
+    moves differently after `hop` or `slip`.
 
     mass [kg]; inertia [kg m^2] about the centre of mass, the origin of the rolling's body curve; gravity [m/s^2]; start
     rate [rad/s]; the start angle is that of the rolling.
@@ -52,34 +52,33 @@ class RollingBody(Valid):
     def _angular_acceleration(self, contact: Contact, rate: Array) -> Array:
         arm = contact.arm
         inertia = self.inertia + self.mass * np.sum(arm**2, axis=-1)
-        # M'/2 = m r r', and r r' = -s' r . e_t: turning keeps r, only the advance of the contact changes it.
+        # M'/2 = m r r', and r r' = -s' r . e_t, since rotation does not change r, but the advance of the contact does.
         half_slope = -self.mass * contact.rate * np.sum(arm * contact.tangent, axis=-1)
         pull = self.mass * (arm[..., 0] * self.gravity[1] - arm[..., 1] * self.gravity[0])
         return (pull - half_slope * rate**2) / inertia
 
     def _rates(self, state: Array) -> Array:
-        """NaN beyond the rotations at which the body can roll: a step with a stage there is then taken shorter."""
+        """d/dt of (theta, theta'); NaN for rotations at which the body can't roll, so that the step becomes shorter."""
         theta, rate = state[..., 0], state[..., 1]
         low, high = self.rolling.limits
-        known = np.isfinite(theta) & np.isfinite(rate)  # a stage after one that was beyond is not
-        rolls = known & (theta >= low) & (theta <= high)
-        if np.any(known & ~rolls):
-            farthest = max(
-                (*self._beyond, *theta[known & ~rolls].flat), key=lambda angle: abs(angle - self.rolling.theta)
-            )
+        finite = np.isfinite(theta) & np.isfinite(rate)
+        rolls = finite & (theta >= low) & (theta <= high)
+        outside = theta[finite & ~rolls]
+        if outside.size:
+            farthest = max((*self._beyond, *outside.flat), key=lambda angle: abs(angle - self.rolling.theta))
             self._beyond[:] = [float(farthest)]
-        own, turning = np.where(rolls, theta, self.rolling.theta), np.where(rolls, rate, 0.0)
-        rates = np.stack([turning, self.angular_acceleration(own, turning)], axis=-1)
+        inside, turning = np.where(rolls, theta, self.rolling.theta), np.where(rolls, rate, 0.0)
+        rates = np.stack([turning, self.angular_acceleration(inside, turning)], axis=-1)
         return np.where(rolls[..., None], rates, np.nan)
 
     @cached_property
     def _beyond(self) -> list[float]:
-        """The farthest beyond the limits that a stage of the integrator was [rad], if any."""
+        """The rotation [rad] of an integrator's stage that was farthest beyond the limits, if there was one."""
         return []
 
     @contextmanager
     def _rolling_on(self) -> Iterator[None]:
-        """A motion that can't be carried on because the rolling ends is refused as the rolling refuses it."""
+        """Raise the error of the rolling if an integration fails at a limit of the rolling."""
         try:
             yield
         except IntegrationFailed:
@@ -89,23 +88,23 @@ class RollingBody(Valid):
 
     @cached_readonly
     def _units(self) -> Array:
-        """Next to a rest, a start that hardly moves is known no better than the rounding of its angle lets it go."""
-        unknown = np.finfo(float).eps * self._pace_of_rest / gauss.WINDOW_TOLERANCE
-        return np.maximum(units_of_motion(self._rates, self.start), [0.0, unknown])
+        """The units of theta and theta'. Near an equilibrium, the rounding of the start angle limits the accuracy."""
+        uncertain = np.finfo(float).eps * self._pace_of_rest / gauss.WINDOW_TOLERANCE
+        return np.maximum(units_of_motion(self._rates, self.start), [0.0, uncertain])
 
     @cached_property
-    def _known(self) -> list[tuple[float, gauss.Motion]]:
+    def _solutions(self) -> list[tuple[float, gauss.Motion]]:
         return []
 
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
         """theta [rad] and theta' [rad/s] (times,) at times t >= 0 [s], any order."""
         t = sample_times("rolling body", t)
         until = float(t.max(initial=0.0)) or math.ulp(1.0)
-        # Always integrated from zero with its own steps; kept, because samples and searches ask for many times.
-        if not self._known or self._known[0][0] < until:
+        # The motion is cached, since samples and searches need many times.
+        if not self._solutions or self._solutions[0][0] < until:
             with self._rolling_on():
-                self._known[:] = [(until, gauss.motion(self._rates, self.start, until, self._units))]
-        states = self._known[0][1](t)
+                self._solutions[:] = [(until, gauss.motion(self._rates, self.start, until, self._units))]
+        states = self._solutions[0][1](t)
         return states[:, 0], states[:, 1]
 
     def truth_error(self, t: ArrayLike) -> Array:
@@ -120,7 +119,7 @@ class RollingBody(Valid):
         return tangent, normal
 
     def _forces(self, t: ArrayLike) -> tuple[Array, Array, Array]:
-        """`forces`, and the sum of the sizes of the terms of which they are made (times,) [N]."""
+        """`forces`, and the sum (times,) of the absolute values of their terms [N]."""
         theta, rate = self.states(t)
         contact = self.rolling.contact(theta)
         turning = self._angular_acceleration(contact, rate)
@@ -131,7 +130,7 @@ class RollingBody(Valid):
         return np.sum(force * contact.tangent, axis=-1), np.sum(force * contact.normal, axis=-1), size
 
     def required_friction(self, t: ArrayLike) -> Array:
-        """|T| / N (times,): the friction coefficient that rolling needs; infinite where the contact must pull."""
+        """|T| / N (times,): the friction coefficient that rolling needs; infinite if the contact must pull."""
         tangent, normal = self.forces(t)
         with np.errstate(divide="ignore"):
             return np.where(normal > 0, np.abs(tangent) / np.where(normal > 0, normal, 1.0), np.inf)
@@ -143,52 +142,52 @@ class RollingBody(Valid):
 
     @validated
     def slip(self, friction: Positive, until: Positive) -> float | None:
-        """The first instant [s] before `until` at which |T| exceeds friction N, or None; at a hop at the latest."""
+        """The first instant [s] before `until` at which |T| exceeds friction N, not later than a hop, or None."""
         return self._first(((-1.0, friction), (1.0, friction)), until)
 
     def _first(self, parts: Sequence[tuple[float, float]], until: float) -> float | None:
-        """The first instant at which one of some sums of parts of T and of N falls below zero.
+        """The first instant at which a T + b N is negative for one of the pairs (a, b) in `parts`; None if never.
 
-        The motion is followed piece by piece, each as long as all before it: a body that parts soon is not followed
-        until a late `until`. Forces follow from the angle by energy: a body that has turned back twice, or once round
-        on level ground, has shown all of them.
+        The motion is integrated in intervals of doubling length, so that its late part is not needed if the instant is
+        early. Forces are functions of the angle by conservation of energy, so the search ends when the body has turned
+        back twice, or has rolled once round on level ground.
         """
 
         def spare(t: Array) -> tuple[Array, Array]:
             tangent, normal, size = self._forces(t)
             sums = np.stack([along * tangent + across * normal for along, across in parts])
-            return sums, size * max(abs(part) for each in parts for part in each)
+            return sums, size * max(abs(factor) for pair in parts for factor in pair)
 
-        seen, reach = 0.0, min(until, self._short)
+        begin, end = 0.0, min(until, self._short)
         while True:
-            self.states(reach)
-            motion = self._known[0][1]
-            found = first_below(spare, np.unique(np.clip(motion.times, seen, reach)))
-            if found is not None:
-                return found[0]
-            angle, rate = motion(np.append(motion.times[motion.times < reach], reach)).T  # it may be known further
+            self.states(end)
+            motion = self._solutions[0][1]
+            crossing = first_below(spare, np.unique(np.clip(motion.times, begin, end)))
+            if crossing is not None:
+                return crossing[0]
+            angle, rate = motion(np.append(motion.times[motion.times < end], end)).T
             turned_back = int(np.count_nonzero(rate[1:] * rate[:-1] < 0)) + (rate[0] == 0)
-            if reach >= until or turned_back > 1 or (self._level and np.ptp(angle) >= 2 * math.pi):
+            if end >= until or turned_back > 1 or (self._level and np.ptp(angle) >= 2 * math.pi):
                 return None
-            seen, reach = reach, min(until, 2 * reach)
+            begin, end = end, min(until, 2 * end)
 
     @property
     def _level(self) -> bool:
-        """Whether the ground is straight and, to rounding, across gravity."""
+        """Whether the ground is straight and, to rounding, at a right angle to gravity."""
         along = abs(float(np.asarray(self.gravity) @ self.rolling.contact(self.rolling.theta).tangent))
         flat = self.rolling.ground.curvature_range == (0.0, 0.0)
         return flat and along <= 4 * np.finfo(float).eps * math.hypot(*self.gravity)
 
     @property
     def _short(self) -> float:
-        """A time in which the start changes little [s]: of its rate, its acceleration, and the pace of a rest."""
+        """A time [s] in which the state changes little, from rate, acceleration and stiffness at the start."""
         theta, rate = self.start
         pull = math.sqrt(abs(float(self.angular_acceleration(theta, rate))))
         return 1 / (max(abs(rate), pull, self._pace_of_rest) or 1.0)
 
     @property
     def _pace_of_rest(self) -> float:
-        """The rate [1/s] at which a body at rest at the start would leave a balance there, or swing about it."""
+        """The rate [1/s] at which a body would leave an equilibrium at the start angle, or swing about it."""
         theta, _ = self.start
         mass = self.inertia + self.mass * float(np.sum(self.rolling.contact(theta).arm ** 2))
         return math.sqrt(abs(float(self.stiffness(theta))) / mass)
@@ -207,8 +206,8 @@ class RollingBody(Valid):
         stiffness = float(self.stiffness(equilibrium))
         if not stiffness > 0:
             raise InvalidMechanism(
-                f"rolling body: at theta = {equilibrium:.9g} rad it rests on a top (V'' = {stiffness:.6g} N m), "
-                "from which it doesn't oscillate; give the bottom"
+                f"rolling body: at theta = {equilibrium:.9g} rad the equilibrium is unstable (V'' = {stiffness:.6g} "
+                "N m), so there is no oscillation; give a stable one"
             )
         arm = self.rolling.contact(equilibrium).arm
         return math.sqrt(stiffness / (self.inertia + self.mass * float(arm @ arm)))

@@ -27,12 +27,12 @@ from reference.validators import from_to, of_shape
 class EllipticGears(Scene):
     """The first gear turns at a constant rate about its focus at the origin, the second about its own at (2a, 0).
 
-    The sum of the distances from the contact to the two pins is 2a at every angle, so the contact stays on the line of
-    the pins, and tan(theta_2 / 2) = -(1 + e) / (1 - e) tan(theta_1 / 2): the rate of the second swings between
-    (1 + e) / (1 - e) of the first and its inverse. Gears are uniform discs, described at their centres.
+    The sum of the distances from the contact to the two pins is always 2a, so the contact is on the line of the pins,
+    and tan(theta_2 / 2) = -(1 + e) / (1 - e) tan(theta_1 / 2). The ratio of the rates varies between (1 + e) / (1 - e)
+    and its inverse. Gears are uniform discs, described at their centres.
 
-    Pins already keep the gears apart, so a force along the line of the pins, from pin to gear to gear to pin, is not
-    determined by motion: those rows' reactions are NaN in the truth.
+    The pins already fix the distance of the gears, so the motion does not determine a force along the line of the pins:
+    the reactions of these rows are NaN.
     """
 
     name: ClassVar[str] = "elliptic_gears"
@@ -48,7 +48,7 @@ class EllipticGears(Scene):
 
     @property
     def samples(self) -> int:
-        """A fifth of those elsewhere: the contact of two ellipses takes a nested search, some ten times a circle's."""
+        """A fifth of the usual number, since a contact of two ellipses costs ten times as much as one of circles."""
         return max(1, super().samples // 5)
 
     @property

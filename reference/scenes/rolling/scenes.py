@@ -1,6 +1,6 @@
-"""Scenes of bodies that are not round, or not centred, rolling under gravity on flat and on curved ground.
+"""Scenes of bodies that are not round, or eccentric, rolling under gravity on flat and on curved ground.
 
-Where methods fail: a disc in a hole of nearly its size, and a square that comes to its corner.
+Two scenes in which methods fail: a disc in a hole of nearly its size, and a square that rolls to its corner.
 """
 
 from __future__ import annotations
@@ -33,24 +33,23 @@ class RollingScene(Scene):
 
     source: ClassVar[str] = "rolling of not round objects, (18.66)"
 
-    max_durations: ClassVar[float] = (
-        2.0  # the contact is searched for at every step, and bodies roll ever faster downhill
-    )
+    # The contact is searched at every step, and bodies roll faster and faster downhill.
+    max_durations: ClassVar[float] = 2.0
 
     mass: Positive = 1.0  # kg
     start_angle: float = 0.0  # rad
     start_rate: float = 4.0  # rad/s
-    ground_arc: float = 0.0  # m, where the contact begins
+    ground_arc: float = 0.0  # m, of the contact at the start
     gravity: Vector = (0.0, -GRAVITY)  # m/s^2
     duration: Positive = 2.0  # s
-    friction: Positive = 1.0  # the coefficient up to which a real contact is taken to hold
+    friction: Positive = 1.0  # friction coefficient of a real contact
 
     @abstractmethod
     def body_curve(self) -> Curve:
         """The body's boundary in its own frame, from the centre of mass."""
 
     def ground_curve(self) -> Curve:
-        """Flat ground through the origin, unless a scene says otherwise."""
+        """The ground's boundary, by default flat ground through the origin."""
         return Line()
 
     @property
@@ -69,12 +68,12 @@ class RollingScene(Scene):
 
     @cached_property
     def hop(self) -> float | None:
-        """When the contact would have to pull [s]; None within the duration."""
+        """The time [s] from which the contact would have to pull; None if it is not within the duration."""
         return self.motion_law.hop(self.duration)
 
     @cached_property
     def comparable_until(self) -> float:  # type: ignore[override]
-        """Up to where a contact of this friction slips, or hops: beyond, an engine is right to disagree [s]."""
+        """The time [s] at which a contact with this friction slips or hops; later an engine may differ."""
         return shared(RollingScene._until_slip, self)
 
     def _until_slip(self) -> float:
@@ -124,7 +123,7 @@ class RollingEllipse(RollingScene):
 
 @dataclass(frozen=True)
 class RollingDisc(RollingScene):
-    """A round disc whose centre of mass is off its centre, as if its inertia were that of a uniform disc."""
+    """A round disc with an eccentric centre of mass and the inertia of a uniform disc."""
 
     name: ClassVar[str] = "rolling_disc"
 
@@ -174,7 +173,7 @@ class RollingDownhill(RollingEllipse):
 
 @dataclass(frozen=True)
 class RollingInRing(RollingEllipse):
-    """The ellipse inside a round hole: rolling to and fro about the bottom and beyond."""
+    """The ellipse inside a round hole, rolling to and fro about the bottom."""
 
     name: ClassVar[str] = "rolling_in_ring"
 
@@ -183,7 +182,7 @@ class RollingInRing(RollingEllipse):
 
     @property
     def samples(self) -> int:
-        """Half as many as elsewhere: finding a contact on two curved boundaries costs a reader several times more."""
+        """Half of the usual number, since a contact of two curved boundaries costs several times as much."""
         return max(1, super().samples // 2)
 
     def ground_curve(self) -> Curve:
@@ -192,7 +191,7 @@ class RollingInRing(RollingEllipse):
 
 @dataclass(frozen=True)
 class RollingOnCircle(RollingDisc):
-    """The eccentric disc on top of a fixed round hill: it rolls off, and must hop where N falls to zero."""
+    """The eccentric disc on top of a fixed round hill: it rolls down, and hops when N falls to zero."""
 
     name: ClassVar[str] = "rolling_on_circle"
 
@@ -211,10 +210,10 @@ Clearance = Annotated[float, Rule(lambda value: 0 < value < 1, "between 0 and 1"
 
 @dataclass(frozen=True)
 class DiscInHole(RollingScene):
-    """A round disc that rolls round in a hole larger by the fraction `clearance`, without gravity.
+    """A round disc that rolls in a hole larger by the fraction `clearance`, without gravity.
 
-    Nothing slows it, so that it turns at a constant rate w; but the contact runs round the hole at about
-    w / clearance, and the disc's centre round a small circle as fast: the nearer to conformal, the faster.
+    It rotates at a constant rate w, but the contact and the disc's centre go round at the much higher rate
+    w / clearance.
     """
 
     name: ClassVar[str] = "disc_in_hole"
@@ -242,11 +241,11 @@ class DiscInHole(RollingScene):
 
     @cached_property
     def comparable_until(self) -> float:  # type: ignore[override]
-        """The hole presses with mass clearance hole (w radius / (clearance hole))^2 and needs no friction: always."""
+        """Infinite: N = mass clearance hole (w radius / (clearance hole))^2 is positive and T is zero."""
         return math.inf
 
     def _motion(self, times: Array) -> Trajectory:
-        """In closed form, since an integrator would follow rounding round the hole."""
+        """In closed form, since an integrator would amplify rounding."""
         rolling = self.motion_law.rolling
         theta = rolling.theta + self.start_rate * times
         contact = rolling.contact(theta)
@@ -265,9 +264,9 @@ class DiscInHole(RollingScene):
 
 @dataclass(frozen=True)
 class SquareOnCatenaries(RollingScene):
-    """A square on the arch of a catenary that fits its side: its centre stays level until it stands on a corner.
+    """A square on the arch of a catenary that fits its side: its centre moves on a level line until the corner.
 
-    At the corner the curvature is infinite and the contact has no direction to go on; the reference refuses there.
+    At the corner the curvature is infinite, so the motion ends there with an error.
     """
 
     name: ClassVar[str] = "square_on_catenary"
@@ -289,25 +288,25 @@ class SquareOnCatenaries(RollingScene):
 
     @cached_property
     def motion_law(self) -> RollingBody:  # type: ignore[override]
-        """From the middle of the side at the top of the arch: a straight side doesn't tell the place by its angle."""
+        """With the start contact at the middle of the side and the top of the arch, given as arcs."""
         rolling = Rolling.at_arcs(self.body_curve(), self.ground_curve())
         return RollingBody(rolling, self.mass, self.inertia, self.start_rate, self.gravity)
 
     @cached_property
     def comparable_until(self) -> float:  # type: ignore[override]
-        """The arch is never too steep for a friction of 1 before the corner: what ends the motion is the corner."""
+        """Infinite: until the corner, a friction of 1 is enough."""
         return math.inf
 
     @property
     def corner(self) -> float:
-        """When it stands on its corner [s]: a quarter of a half turn, at a rate that energy gives in closed form.
+        """The time [s] at which the corner is reached, after an eighth of a turn.
 
-        The centre is level, so the kinetic energy stays: M(theta) theta'^2 with M = inertia + mass r^2 and, for this
-        arch, r = side / (2 cos theta).
+        The centre moves on a level line, so the kinetic energy M(theta) theta'^2 / 2 is constant, with
+        M = inertia + mass r^2 and, for this arch, r = side / (2 cos theta).
         """
 
         def mass(theta: float) -> float:
             return self.inertia + self.mass * (self.side / 2 / math.cos(theta)) ** 2
 
-        whole = quad(lambda theta: math.sqrt(mass(theta) / mass(0.0)), 0.0, math.pi / 4, epsabs=1e-14, epsrel=1e-14)
-        return whole[0] / abs(self.start_rate)
+        angle, _ = quad(lambda theta: math.sqrt(mass(theta) / mass(0.0)), 0.0, math.pi / 4, epsabs=1e-14, epsrel=1e-14)
+        return angle / abs(self.start_rate)

@@ -23,17 +23,18 @@ from reference.validators import NOT_FINITE, Rule, from_to, of_shape
 Array = NDArray[np.float64]
 Input = float | Callable[[Array], Array]
 
-NEAR = 0.5  # of m s: up to there exponentials have not gone apart
+# Argument m s of the hyperbolic functions up to which their direct formulas have no cancellation.
+SMALL_ARGUMENT = 0.5
 
 
 @dataclass(frozen=True)
 class Tow(Valid):
-    """A drawbar of `length` L [m], whose hitch travels from `start` (x, y, direction of travel) on a circle of `radius`
-    R [m]: positive to the left, negative to the right, infinite straight on.
+    """A drawbar of `length` L [m] whose hitch moves on a circle.
 
-    `angle` psi [rad] at the start: 0 straight behind (it stays so on a straight line), +-pi folded over, ahead of the
-    hitch. A number of exactly +-math.pi on a straight line is taken as that equilibrium, though pi is not a float.
-    Raises InvalidMechanism for a length that is not positive, a radius of 0 or not a number, an angle beyond +-pi.
+    start: x, y [m] and direction of travel [rad] of the hitch; `radius` R [m] of its circle: positive to the left,
+    negative to the right, infinite for a straight line. `angle` psi [rad] at the start: 0 is straight behind the hitch,
+    +-pi folded, ahead of the hitch; exactly +-math.pi counts as that unstable equilibrium. Raises InvalidMechanism for
+    a length that is not positive, a radius of 0 or NaN, or an angle beyond +-pi.
     """
 
     length: Positive
@@ -43,7 +44,7 @@ class Tow(Valid):
 
     @cached_property
     def curvature(self) -> float:
-        """Of the hitch's path [1/m], to the left."""
+        """The curvature of the hitch's path [1/m], positive to the left."""
         return 1 / self.radius
 
     @cached_property
@@ -62,24 +63,24 @@ class Tow(Valid):
 
     @validated
     def relative_angle(self, way: ArrayLike) -> Array:
-        """psi [rad, not wrapped] after the hitch has gone `way` s [m] (...); negative when it is pushed back."""
+        """psi [rad, not wrapped] after the hitch has moved by `way` s [m] (...), negative backwards."""
         way = np.asarray(way, dtype=float)
         across, along = self._moved(way)
-        # The turn of (q, p) is half that of psi, and monotonous; it is less than pi unless the wheel goes round.
+        # The angle of (q, p) is half of psi, and monotonic; it is less than pi if the discriminant is not negative.
         half_turns = np.round(self._rate * way / math.pi) if self._discriminant < 0 else 0.0
         return self.angle + 2 * (np.arctan2(across, along) - math.copysign(math.pi, self.radius) * half_turns)
 
     @cached_property
     def _rate(self) -> float:
-        """Of the turn of (q, p) where the wheel goes round for ever [rad/m]."""
+        """The rate of the angle of (q, p) for a negative discriminant, if the wheel goes round for ever [rad/m]."""
         return math.sqrt(-self._discriminant) / (2 * self.length)
 
     def _rest(self, way: Array) -> Array:
-        """The turn of (q, p) less its half turns [rad]."""
+        """The angle of (q, p) minus its half turns [rad]."""
         return self._rate * way - np.round(self._rate * way / math.pi) * math.pi
 
     def _moved(self, way: Array) -> tuple[Array, Array]:
-        """(q, p), that began as a unit vector, across and along its start, up to a common factor."""
+        """(q, p), which is a unit vector at the start, across and along its start, up to a common factor."""
         sine, cosine, swing = self._start
         if self._discriminant < 0:
             rest = self._rest(way)
@@ -88,12 +89,13 @@ class Tow(Valid):
             return across, along
         root = math.sqrt(self._discriminant)  # 2 L m
         size = root * np.abs(way) / (2 * self.length)
-        near = size < NEAR
+        near = size < SMALL_ARGUMENT
         # tanh(m s)/(2 L m), also for m = 0.
-        some = np.where(near & (size > 0), size, 1.0)
-        tangent = way / (2 * self.length) * np.where(size > 0, np.tanh(some) / some, 1.0)
-        # Further on, tanh = 1 hides a start close to the unstable equilibrium: there the exponentials go apart, and the
-        # coefficient that is small (root + cosine, or root - cosine) is had from its product with the other.
+        argument = np.where(near & (size > 0), size, 1.0)
+        tangent = way / (2 * self.length) * np.where(size > 0, np.tanh(argument) / argument, 1.0)
+        # For large arguments the growing and the decaying exponential are separate, since tanh = 1 would lose a start
+        # near the unstable equilibrium. The small one of root + cosine and root - cosine is computed from their
+        # product.
         product = swing * (sine - self.length * self.curvature)
         growing = root + cosine if cosine >= 0 else product / (root - cosine)
         dying = root - cosine if cosine <= 0 else product / (root + cosine)
@@ -109,7 +111,8 @@ class Tow(Valid):
         way = np.asarray(way, dtype=float)
         if self._discriminant >= 0:
             return self.start[2] + self.curvature * way + self.relative_angle(way)
-        # The hitch's turn and psi nearly cancel on a small circle: what they share, 2 rate s, is not added at all.
+        # The hitch's angle and psi nearly cancel on a small circle, so their common part, 2 rate s, is left out of
+        # both.
         across, along = self._moved(way)
         slower = 1 / (self.length**2 * (abs(self.curvature) + 2 * self._rate))  # |c| - 2 rate
         shared = math.copysign(1.0, self.radius) * (slower * way + 2 * self._rest(way))
@@ -117,7 +120,7 @@ class Tow(Valid):
 
     @validated
     def hitch(self, way: ArrayLike) -> Array:
-        """Where the hitch is (..., 2) [m]."""
+        """Position of the hitch (..., 2) [m]."""
         way = np.asarray(way, dtype=float)
         half = 0.5 * self.curvature * way
         chord = way * np.sinc(half / np.pi)
@@ -126,28 +129,34 @@ class Tow(Valid):
 
     @validated
     def wheel(self, way: ArrayLike) -> Array:
-        """Where the towed wheel is (..., 2) [m]."""
+        """Position of the towed wheel (..., 2) [m]."""
         heading = self.heading(way)
         return self.hitch(way) - self.length * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
 
 
 @validated
 def towed(v: Complexes, w: Complexes, bend: Complexes, hitch: float, length: Positive) -> tuple[Any, Any]:
-    """Speed [m/s] and turning rate [rad/s] of a trailer's axle from those of the axle before it; bend b in [rad]."""
+    """Speed [m/s] and turning rate [rad/s] of a trailer's axle from those of the axle before it; bend [rad]."""
     cosine, sine = np.cos(bend), np.sin(bend)
     return v * cosine + hitch * w * sine, (v * sine - hitch * w * cosine) / length
 
 
 @dataclass(frozen=True)
 class Convoy:
-    """The poses of a car and its trailers at times t, and when it jack-knifed."""
+    """The poses of a car and its trailers, and the first jack-knife.
 
-    t: Array  # (times,) s
-    pose: Array  # (times, vehicles, 3) of the axles' middles and headings: m, m, rad
-    speed: Array  # (times, vehicles) m/s along the headings; a trailer's sign differs from the car's once it is folded
-    error: Array  # (times,) m or rad, a bound on the integration's own error
-    jackknifed_at: float | None  # s, the first time that a joint is bent beyond the limit
-    jackknifed: int | None  # which trailer, counted from 1
+    t (times,) [s]; pose (times, vehicles, 3) [m, m, rad]: middles of the axles and headings; speed (times, vehicles)
+    [m/s] along the headings, for a folded trailer with the other sign than the car's; error (times,) [m or rad]: a
+    bound on the error of the integration; jackknifed_at [s]: the first time at which a joint is bent beyond the limit;
+    jackknifed: the number of that trailer, from 1.
+    """
+
+    t: Array
+    pose: Array
+    speed: Array
+    error: Array
+    jackknifed_at: float | None
+    jackknifed: int | None
 
     @property
     def bends(self) -> Array:
@@ -157,9 +166,11 @@ class Convoy:
 
 @dataclass(frozen=True)
 class CarWithTrailers(Valid):
-    """A car, `wheelbase` [m] from rear axle to steered wheel, and trailers with drawbars `lengths` [m] from hitch to
-    axle, hitched `hitches` [m] behind the axle before (0: on it, negative: ahead of it). Raises InvalidMechanism for a
-    length that is not positive, or unequal numbers of lengths and hitches.
+    """A car with trailers.
+
+    wheelbase [m] from rear axle to steered wheel; lengths [m] of the drawbars from hitch to axle; hitches [m]: distance
+    of each hitch behind the axle before it, negative if ahead. Raises InvalidMechanism for a length that is not
+    positive, or unequal numbers of lengths and hitches.
     """
 
     wheelbase: Positive
@@ -189,7 +200,7 @@ class CarWithTrailers(Valid):
 
     @validated
     def turning_rate(self, speed: Complexes, steering: Complexes) -> Any:
-        """Of the car, from its rear axle's speed and its steered wheel's angle [rad/s]: v tan(steering)/wheelbase."""
+        """The car's turning rate v tan(steering)/wheelbase [rad/s]; v: speed of the rear axle."""
         return speed * np.tan(steering) / self.wheelbase
 
     @validated
@@ -202,10 +213,10 @@ class CarWithTrailers(Valid):
         t: Times,
         limit: Positive = math.pi / 2,
     ) -> Convoy:
-        """Follow the car from the pose `start` of its rear axle and joint angles `bends` [rad], at times t [s].
+        """The motion at times t [s] from the pose `start` of the rear axle and joint angles `bends` [rad].
 
-        speed [m/s] of the rear axle and steering [rad] are numbers or functions of time. A joint bent beyond `limit`
-        [rad] is a jack-knife: it is dated, and the motion goes on, as ideal wheels would (bodies that touch would not).
+        speed [m/s] of the rear axle and steering [rad] are numbers or functions of time. A joint angle beyond `limit`
+        [rad] is a jack-knife. Its time is returned, and the motion of the ideal wheels goes on.
         """
         times = sample_times("car", t)
         if len(bends) != len(self.lengths):
@@ -233,16 +244,16 @@ class CarWithTrailers(Valid):
         headings = states[:, 3:]
         poses = [np.concatenate([states[:, 1:3], headings[:, :1]], axis=-1)]
         for index, (length, hitch) in enumerate(zip(self.lengths, self.hitches, strict=True)):
-            before, heading = poses[-1], headings[:, index + 1]
-            x = before[:, 0] - hitch * np.cos(before[:, 2]) - length * np.cos(heading)
-            y = before[:, 1] - hitch * np.sin(before[:, 2]) - length * np.sin(heading)
+            leader, heading = poses[-1], headings[:, index + 1]
+            x = leader[:, 0] - hitch * np.cos(leader[:, 2]) - length * np.cos(heading)
+            y = leader[:, 1] - hitch * np.sin(leader[:, 2]) - length * np.sin(heading)
             poses.append(np.stack([x, y, heading], axis=-1))
         speeds, _ = self.axle_rates(headings, *inputs(times))
         when, which = self._jackknife(motion, first, limit)
         return Convoy(times, np.stack(poses, axis=1), speeds, error, when, which)
 
     def _jackknife(self, motion: Integrated | None, first: Array, limit: float) -> tuple[float | None, int | None]:
-        """The first instant that a joint passes the limit, and which trailer's, counted from 1."""
+        """The first instant at which a joint passes the limit, and the number of its trailer, from 1."""
 
         def spare(states: Array) -> Array:
             bends = np.diff(states[..., 3:], axis=-1)

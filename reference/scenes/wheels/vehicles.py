@@ -1,12 +1,12 @@
-"""Vehicles that coast: a car with its steering held and a trailer on a hitch, and a grocery cart on free casters.
+"""Coasting vehicles: a car with locked steering and a trailer on a hitch, and a cart on free casters.
 
 The car has one freedom of velocity, its rear axle's speed v along a circle, so the energy M(s) v^2/2 gives the speed at
-every way s: the trailer's direction is a towed drawbar's (`trailers.Tow`), its hitch on a circle of its own, and
-t(s) = int sqrt(M(s)/M(0)) ds / v(0) is inverted. No multiplier and no equation of motion is solved.
+the distance s. The trailer's direction is that of a towed drawbar (`trailers.Tow`) whose hitch moves on a circle, and
+t(s) = int sqrt(M(s)/M(0)) ds / v(0) is inverted. No equation of motion is solved.
 
-A caster is a drawbar towed by its kingpin, and swings round in reverse. Its wheel stands `trail` c behind its kingpin;
-with beta its direction (wheel to kingpin) less the cart's, and the kingpin at (x, y) from the middle of the rear axle,
-which has the speed u and the turning rate w: w + beta' = (x w cos beta - (u - y w) sin beta)/c.
+A caster is a drawbar towed by its kingpin; it swings round in reverse. Its wheel is `trail` c behind its kingpin. The
+kingpin is at (x, y) from the middle of the rear axle, which has the speed u and the turning rate w; beta is the
+caster's direction (wheel to kingpin) relative to the cart: w + beta' = (x w cos beta - (u - y w) sin beta)/c.
 """
 
 from __future__ import annotations
@@ -37,13 +37,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class CarAndTrailer(Scene):
-    """masses [kg], inertias [kg m^2] and centres of mass [m] ahead of the own axle, for the car and for the trailer.
+    """A coasting car with locked steering, and its trailer.
 
-    wheelbase [m]; steering [rad] of the front wheel, held; hitch [m] behind the car's rear axle; length [m] from hitch
-    to the trailer's axle; speed [m/s] of the rear axle (negative: backwards, unstable) and bend [rad], the trailer's
-    direction less the car's, at t = 0; pose of the rear axle. The two wheels of an axle stop the same motion: one row
-    is modelled, and with `redundant` both, `track` [m] apart. Raises InvalidMechanism for numbers not finite, masses or
-    lengths not positive, or steering of a right angle and more.
+    masses [kg], inertias [kg m^2] and centres of mass [m] ahead of the axle, for the car and for the trailer; wheelbase
+    [m]; steering [rad] of the front wheel; hitch [m] behind the car's rear axle; length [m] from hitch to the trailer's
+    axle; speed [m/s] of the rear axle (negative: backwards, unstable) and bend [rad], the trailer's direction minus the
+    car's, at t = 0; pose of the rear axle. The two wheels of an axle have dependent rows: one is modelled, or with
+    `redundant` both, `track` [m] apart. Raises InvalidMechanism for numbers not finite, masses or lengths not positive,
+    or steering of a right angle or more.
     """
 
     name: ClassVar[str] = "car_and_trailer"
@@ -67,16 +68,18 @@ class CarAndTrailer(Scene):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not abs(self.steering) < math.pi / 2:
-            raise InvalidMechanism(f"{self._owner()}: steering is {self.steering!r} rad; a right angle is too much")
+            raise InvalidMechanism(
+                f"{self._owner()}: steering is {self.steering!r} rad; it must be below a right angle"
+            )
 
     @property
     def curvature(self) -> float:
-        """Of the rear axle's circle [1/m]: tan(steering)/wheelbase."""
+        """The curvature of the rear axle's circle [1/m]: tan(steering)/wheelbase."""
         return math.tan(self.steering) / self.wheelbase
 
     @cached_property
     def _tow(self) -> tuple[Tow, float, float]:
-        """The drawbar's tow, the hitch's way for 1 m of the car's, and what to add to the tow's heading [rad]."""
+        """The drawbar, the hitch's path length per metre of the rear axle's, and the offset of the heading [rad]."""
         pace = math.hypot(1.0, self.hitch * self.curvature)
         direction = self.pose[2] - math.atan(self.hitch * self.curvature)
         heading = self.pose[2] + self.bend
@@ -85,18 +88,18 @@ class CarAndTrailer(Scene):
         return Tow(self.length, angle, radius, (0.0, 0.0, direction)), pace, heading - direction - angle
 
     def _headings(self, way: Array) -> Array:
-        """Of car and trailer (..., 2) [rad] after the way s [m] of the rear axle."""
+        """Headings of car and trailer (..., 2) [rad] after the distance s [m] of the rear axle."""
         tow, pace, turns = self._tow
         return np.stack([self.pose[2] + self.curvature * way, tow.heading(pace * way) + turns], axis=-1)
 
     def _per_way(self, headings: NDArray[Any]) -> NDArray[Any]:
         """Twists for a speed of 1 (..., 2 bodies, 3), analytic in the headings."""
-        (car, trailer), (ahead, before) = np.moveaxis(headings, -1, 0), self.centres
+        (car, trailer), (car_centre, trailer_centre) = np.moveaxis(headings, -1, 0), self.centres
         speed, turning = towed(1.0, self.curvature, car - trailer, self.hitch, self.length)
         out = []
         for heading, v, w, centre in (
-            (car, 1.0, self.curvature + 0 * car, ahead),
-            (trailer, speed, turning, before),
+            (car, 1.0, self.curvature + 0 * car, car_centre),
+            (trailer, speed, turning, trailer_centre),
         ):
             cosine, sine = np.cos(heading), np.sin(heading)
             out.append(np.stack([v * cosine - centre * w * sine, v * sine + centre * w * cosine, w], axis=-1))
@@ -104,7 +107,7 @@ class CarAndTrailer(Scene):
 
     @property
     def _weights(self) -> Array:
-        return np.array([(mass, mass, own) for mass, own in zip(self.masses, self.inertias, strict=True)])
+        return np.array([(mass, mass, inertia) for mass, inertia in zip(self.masses, self.inertias, strict=True)])
 
     @validated
     def apparent_mass(self, way: ArrayLike) -> Array:
@@ -120,7 +123,7 @@ class CarAndTrailer(Scene):
         return Antiderivative(lambda r: np.sqrt(self.apparent_mass(sign * r) / first), shortest)
 
     def _way(self, times: Array) -> Array:
-        """The rear axle's way s (times,) [m], backwards negative."""
+        """The rear axle's distance s (times,) [m], negative backwards."""
         sign, first = math.copysign(1.0, self.speed), float(self.apparent_mass(0.0))
         goal = abs(self.speed) * times
 
@@ -133,10 +136,10 @@ class CarAndTrailer(Scene):
         start = self._moving(np.zeros(1), np.array([self.speed]))
         names = ("car", "trailer")
         bodies = bodies_of(names, self.masses, self.inertias, start[0][0], start[1][0])
-        (ahead, before), half = self.centres, self.track / 2
+        (car_centre, trailer_centre), half = self.centres, self.track / 2
         joints: list[Joint] = [
-            Skate("front wheel", None, "car", (self.wheelbase - ahead, 0.0), self.steering),
-            Pin("hitch", "car", "trailer", (-ahead - self.hitch, 0.0), (self.length - before, 0.0)),
+            Skate("front wheel", None, "car", (self.wheelbase - car_centre, 0.0), self.steering),
+            Pin("hitch", "car", "trailer", (-car_centre - self.hitch, 0.0), (self.length - trailer_centre, 0.0)),
         ]
         for name, centre in zip(names, self.centres, strict=True):
             if self.redundant:
@@ -184,14 +187,14 @@ class Casters(Valid):
 
     @validated
     def turning_rates(self, angles: Complexes, speed: Complexes, turning_rate: Complexes) -> Any:
-        """The casters' own rates in the world w + beta' (..., casters) [rad/s] at angles beta (..., casters) [rad]."""
+        """The casters' rates in the world w + beta' (..., casters) [rad/s] at angles beta (..., casters) [rad]."""
         x, y = np.array(self.places, dtype=float).T
         speed, turning_rate = np.asarray(speed)[..., None], np.asarray(turning_rate)[..., None]
         return (x * turning_rate * np.cos(angles) - (speed - y * turning_rate) * np.sin(angles)) / self.trail
 
     @validated
     def tow(self, caster: int, angle: float, speed: float, turning_rate: float) -> tuple[Tow, float]:
-        """For a constant speed and turning rate: the caster as a tow in closed form, and its kingpin's speed [m/s].
+        """The caster as a tow for a constant speed and turning rate, and its kingpin's speed [m/s].
 
         The caster's angle beta at time t is then tow.relative_angle(kingpin speed * t) + (angle - tow.angle).
         """
@@ -206,8 +209,8 @@ class Casters(Valid):
     def swing(self, angles: tuple[float, ...], speed: Input, turning_rate: Input, t: Times) -> tuple[Array, Array]:
         """Angles beta (times, casters) [rad, not wrapped] from `angles` at t = 0, and the integration's error (times,).
 
-        speed [m/s] and turning_rate [rad/s] of the cart are numbers or functions of time. Straight back from a small
-        angle the caster swings round to pi; from exactly zero it stays, which no real one does.
+        speed [m/s] and turning_rate [rad/s] of the cart are numbers or functions of time. In reverse the caster swings
+        round to pi from a small angle; an angle of exactly zero is an unstable equilibrium.
         """
         times = sample_times("casters", t)
 
@@ -215,8 +218,8 @@ class Casters(Valid):
             time = state[..., 0]
             u = speed(time) if callable(speed) else np.full(np.shape(time), speed)
             w = turning_rate(time) if callable(turning_rate) else np.full(np.shape(time), turning_rate)
-            own = self.turning_rates(state[..., 1:], u, w) - np.asarray(w)[..., None]
-            return np.concatenate([np.ones((*time.shape, 1)), own], axis=-1)
+            relative = self.turning_rates(state[..., 1:], u, w) - np.asarray(w)[..., None]
+            return np.concatenate([np.ones((*time.shape, 1)), relative], axis=-1)
 
         first = np.array([0.0, *angles])
         last = float(times.max(initial=0.0))
@@ -227,12 +230,13 @@ class Casters(Valid):
 
 @dataclass(frozen=True)
 class Cart(EmbeddedScene):
-    """c = (x, y, theta of the axle's middle; the casters' directions in the world), nu = (speed, turning rate).
+    """A coasting cart on two free casters.
 
-    mass [kg] and inertia [kg m^2] of the cart, its centre of mass `centre` [m] ahead of the axle; kingpins `front` [m]
-    ahead, `width` [m] apart; casters with their wheel `trail` [m] and centre of mass `caster_centre` [m] behind the
-    kingpin. speed [m/s] and turning_rate [rad/s] of the axle, angles [rad] of the casters against the cart (0: trailing
-    as when going ahead) at t = 0. The fixed axle's two wheels stop the same motion: one row is modelled, and with
+    c = (x, y, theta of the axle's middle; the casters' directions in the world), nu = (speed, turning rate). mass [kg]
+    and inertia [kg m^2] of the cart, its centre of mass `centre` [m] ahead of the axle; kingpins `front` [m] ahead,
+    `width` [m] apart; casters with their wheel `trail` [m] and centre of mass `caster_centre` [m] behind the kingpin.
+    speed [m/s] and turning_rate [rad/s] of the axle, angles [rad] of the casters relative to the cart (0: wheel behind
+    the kingpin) at t = 0. The two wheels of the fixed axle have dependent rows: one is modelled, or with
     `redundant` both. Raises InvalidMechanism for numbers not finite or lengths and masses not positive.
     """
 
@@ -272,9 +276,9 @@ class Cart(EmbeddedScene):
     def coordinate_rates(self, coordinates: NDArray[Any], velocities: NDArray[Any]) -> NDArray[Any]:
         heading, directions = coordinates[..., 2], coordinates[..., 3:]
         speed, turning = velocities[..., 0], velocities[..., 1]
-        own = self.casters.turning_rates(directions - heading[..., None], speed, turning)
+        swinging = self.casters.turning_rates(directions - heading[..., None], speed, turning)
         moved = np.stack([speed * np.cos(heading), speed * np.sin(heading), turning], axis=-1)
-        return np.concatenate([moved, own], axis=-1)
+        return np.concatenate([moved, swinging], axis=-1)
 
     def tangent(self, coordinates: Any) -> tuple[Any, Any]:
         heading, directions = coordinates[..., 2], coordinates[..., 3:]
@@ -283,16 +287,16 @@ class Cart(EmbeddedScene):
         for index, (x, y) in enumerate(self.casters.places):
             kingpin = components(heading, x, y)
             behind = components(directions[..., index], self.caster_centre, 0.0)
-            place = [coordinates[..., axis] + kingpin[axis] - behind[axis] for axis in (0, 1)]
-            poses.append(np.stack([*place, directions[..., index]], axis=-1))
+            centre = [coordinates[..., axis] + kingpin[axis] - behind[axis] for axis in (0, 1)]
+            poses.append(np.stack([*centre, directions[..., index]], axis=-1))
         columns = []
         for speed, turning in ((1.0, 0.0), (0.0, 1.0)):
-            own = self.casters.turning_rates(directions - heading[..., None], speed, turning)
+            rates = self.casters.turning_rates(directions - heading[..., None], speed, turning)
             parts = [*components(heading, speed, self.centre * turning), turning + 0 * heading]
             for index, (x, y) in enumerate(self.casters.places):
                 kingpin = components(heading, speed - y * turning, x * turning)
-                swung = components(directions[..., index], 0.0, -self.caster_centre * own[..., index])
-                parts += [kingpin[0] + swung[0], kingpin[1] + swung[1], own[..., index]]
+                swung = components(directions[..., index], 0.0, -self.caster_centre * rates[..., index])
+                parts += [kingpin[0] + swung[0], kingpin[1] + swung[1], rates[..., index]]
             columns.append(np.stack(parts, axis=-1))
         return np.stack(poses, axis=-2), np.stack(columns, axis=-1)
 
@@ -300,7 +304,7 @@ class Cart(EmbeddedScene):
         return integrate(self.rates, self.start, until)
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """A bound on this truth's own error (times,) [m, rad]: what a coarser tolerance changes."""
+        """A bound (times,) on the error of the motion [m, rad]: its change by a coarser tolerance."""
         return error_of(self.rates, self.start, self.times(t))
 
     def mechanism(self) -> Mechanism:
