@@ -103,7 +103,7 @@ REFUSED: dict[str, tuple[Any, str]] = {
     "bars of Andrews'": (lambda: Andrews(rod=(0.1, 0.0115)), "the bars don't reach from the pivots"),
     "a chain without links": (lambda: Chain((), ()), "0 links"),
     "unequal numbers of links": (lambda: Chain((1.0,), (1.0, 1.0)), "1 lengths and 2 masses"),
-    "a state of another chain": (lambda: Chain((1.0,), (1.0,)).forces([0.4, 0.1], [0.0, 0.0]), "a number for each link"),
+    "a state of another chain": (lambda: Chain((1.0,), (1.0,)).forces([0.4, 0.1], [0.0, 0.0]), "number for each link"),
     "feet too far apart": (lambda: TwoFeet(stance=1.8), r"stance is 1\.8 m"),
     "a right leg too short": (lambda: TwoFeet(stance=1.2, hip_x=0.3), "from the right ankle"),
     "a left leg too short": (lambda: TwoFeet(hip_y=1.0), "from the left ankle"),
