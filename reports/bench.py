@@ -22,7 +22,7 @@ import numpy as np
 
 from engines import Engine, Unsupported, method_name
 from engines.lagrange import Lagrange
-from engines.lagrange.machine import Machine
+from engines.lagrange.compiled_model import CompiledModel
 from engines.loading import Kind, registered_by_key
 from reference.scene import Scene
 from reference.scenes.four_bar.scenes import FreeFourBar
@@ -109,7 +109,7 @@ def measure_judge(links: Sequence[int] = (100, 300, 1000), turns: int = TURNS) -
     """
     scene = FreeFourBar(duration=1.0)
     mechanism = scene.mechanism()
-    machine = Machine.of(mechanism) if Lagrange().in_machine_code else None
+    machine = CompiledModel.of(mechanism) if Lagrange().in_machine_code else None
     if machine is None:
         raise BadInput("the judge is timed as compiled code: install numba, the extra 'fast'")
     rows = [("four-bar: one evaluation", 1e6 * _least(lambda: _measure_evaluation(machine), turns), "us")]
@@ -147,9 +147,9 @@ def measure_truths(scenes: Iterable[Scene]) -> list[Row]:
     return sorted(rows, key=lambda row: -row[1])
 
 
-def _measure_evaluation(machine: Machine, count: int = 2000) -> float:
+def _measure_evaluation(machine: CompiledModel, count: int = 2000) -> float:
     """CPU seconds of rows, bias, J M^-1 J^T, its factor, reactions and accelerations at the start."""
-    poses, twists = machine.empty(count)
+    poses, twists = machine.empty_samples(count)
     poses[:], twists[:] = poses[0], twists[0]
     begin = time.process_time()
     machine.reactions(1e-3, poses, twists)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import EXACT, ConvergenceOrder, Enforcement, Engine, NotDeclared, OneShot, Regularisation, Size
+from engines.lagrange.compiled_model import CompiledModel, compile_functions, open_warning, stopped_warning
 from engines.lagrange.dynamics import (
     FIXED_DOP853,
     NONE,
@@ -21,8 +22,7 @@ from engines.lagrange.dynamics import (
     runge_kutta,
     semi_implicit_euler,
 )
-from engines.lagrange.loading import compiled, installed
-from engines.lagrange.machine import Machine, left_open, not_held
+from engines.lagrange.loading import installed
 from engines.motions import is_prescribed, over_three
 from reference.checks import Count, InvalidMechanism, Positive, Valid, validated
 from reference.joints import Joint
@@ -91,7 +91,7 @@ class Lagrange(Engine, Valid):
     def prepare(self) -> None:
         """Have the machine code read, or compiled where that is not done: ten seconds that belong to no model."""
         if self.in_machine_code:
-            compiled()
+            compile_functions(self.tolerance is not None)
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
@@ -152,9 +152,10 @@ class _LagrangeRun(OneShot):
     def __init__(self, engine: Lagrange, mechanism: Mechanism, dt: float) -> None:
         self._engine, self._mechanism, self._dt = engine, mechanism, dt
         self._softness = engine.regularisation(mechanism, dt)
-        self._machine = Machine.of(mechanism) if engine.in_machine_code else None
+        self._machine = CompiledModel.of(mechanism) if engine.in_machine_code else None
+        engine.prepare()
         if self._machine is not None and self._softness is not None:
-            self._machine.soften(self._softness, np.ones(mechanism.row_count, dtype=bool))
+            self._machine.regularise(self._softness, np.ones(mechanism.row_count, dtype=bool))
         self._dynamics = Dynamics(mechanism, self._softness) if self._machine is None else None
         count = len(mechanism.bodies)
         self.size = Size(count, 3 * count, mechanism.row_count, mechanism.row_count)
@@ -188,10 +189,10 @@ class _LagrangeRun(OneShot):
                 self._in_numpy(poses, twists, 0, every)
                 stepping, warnings = time.process_time() - started, ()
             else:
-                columns, fast = self._machine.empty(samples)
+                columns, fast = self._machine.empty_samples(samples)
                 done = self._in_machine_code(self._machine, columns, fast, every)
                 poses, twists = (part[:, :-3].reshape(shape) for part in (columns, fast))
-                if self._machine.left_to_numpy:
+                if self._machine.lacks_contact:
                     self._in_numpy(poses, twists, done, every)
                 stepping = time.process_time() - started
                 warnings = self._machine.warnings(self._engine.tolerance)
@@ -206,9 +207,9 @@ class _LagrangeRun(OneShot):
     def _stopped(self, t: Array, poses: Array) -> tuple[str, ...]:
         """What is to be said of a run that did not come to its end, or of which numpy left joints open."""
         if self._dynamics is not None and not np.isnan(self._dynamics.unclosed):
-            return (left_open(self._dynamics.unclosed),)
+            return (open_warning(self._dynamics.unclosed),)
         ended = np.all(np.isfinite(poses), axis=(1, 2))
-        return () if ended[-1] else (not_held(self._engine.tolerance, float(t[int(np.argmin(ended)) - 1])),)
+        return () if ended[-1] else (stopped_warning(self._engine.tolerance, float(t[int(np.argmin(ended)) - 1])),)
 
     def _slipped(self, t: Array, poses: Array, twists: Array) -> tuple[str, ...]:
         """What is to be said where joints slip after a projection: then one of their rows was left out.
@@ -241,12 +242,12 @@ class _LagrangeRun(OneShot):
         row = np.abs(rows) * np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
         return row.max(axis=1, initial=0.0) > part * (np.abs(rates * size).max(axis=(1, 2)) + slow)
 
-    def _in_machine_code(self, machine: Machine, poses: Array, twists: Array, every: int) -> int:
+    def _in_machine_code(self, machine: CompiledModel, poses: Array, twists: Array, every: int) -> int:
         """Fill samples; gives the last that is done."""
         if self._engine.tolerance is not None:
-            return machine.control(self._engine.tolerance, self._dt * every, 0, poses, twists)
+            return machine.adaptive_steps(self._engine.tolerance, self._dt * every, 0, poses, twists)
         project = PROJECTION_ITERATIONS if self._engine.stabilisation == "projection" else 0
-        return machine.march(TABLEAUS[self._engine.integrator], project, self._dt, every, 0, poses, twists)
+        return machine.fixed_steps(TABLEAUS[self._engine.integrator], project, self._dt, every, 0, poses, twists)
 
     def _in_numpy(self, poses: Array, twists: Array, begin: int, every: int) -> None:
         """Fill samples from one on that is there."""
@@ -278,8 +279,8 @@ class _LagrangeRun(OneShot):
             columns, fast = parts
             columns[:, :-3], fast[:, :-3] = poses[:last].reshape(last, -1), twists[:last].reshape(last, -1)
             reactions[:last], accelerations[:last] = self._machine.reactions(float(t[1]), columns, fast)
-            if not self._machine.left_to_numpy:
-                if self._machine.dependent:
+            if not self._machine.lacks_contact:
+                if self._machine.has_dependent_rows:
                     reactions[:last] = mechanism.reaction(poses[:last], accelerations[:last], twist=twists[:last])
                 return reactions, accelerations
         for at in np.flatnonzero(alive):

@@ -1,13 +1,13 @@
-"""Loading of the compiled code: whether numba is installed, and the folder in which numba keeps what it has compiled.
+"""Loading of the compiled functions, and the folder in which numba caches their machine code.
 
-Why numba: it compiles Python that stands beside its numpy twin, has wheels for every Python and system of this suite,
-and needs no compiler; the code reads no types of a mechanism, so it is compiled once and then read from files in a
-fifth of a second. Nothing of it is imported before something is stepped.
+numba compiles Python functions, has wheels for all systems of this suite, and needs no compiler. The types of the
+arguments are the same for every mechanism, so each function is compiled once, and read from files in a fraction of a
+second afterwards. numba is imported when something is stepped, not before.
 
-The folder's name has a digest of all that is compiled, since numba looks only at the file of the function that is
-called and would go on with the old code of those that it calls. It is in NUMBA_CACHE_DIR if that is set, else beside
-the sources, else, for an installation that can't be written to, in the user's cache. Processes that start at once may
-each compile: numba writes whole files only.
+numba's own cache checks the file of the called function only, and would use old machine code after a change in one of
+the functions that it calls. The folder's name therefore contains a digest of all sources. The folder is in
+NUMBA_CACHE_DIR if that is set; else beside the sources; else, for a read-only installation, in the user's cache.
+Processes that start at once may each compile: numba replaces whole files only.
 """
 
 from __future__ import annotations
@@ -20,64 +20,69 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
-from engines.lagrange import arrays
 from engines.user_cache import cache_folder
 
-SOURCES = Path(__file__).parent
-READY = "ready"  # a file that says that all is compiled
+FOLDER = Path(__file__).parent
 
 
 @cache
 def installed() -> bool:
-    """Whether there is numba; it is not imported."""
+    """Whether numba is installed; it is not imported."""
     return find_spec("numba") is not None
 
 
 def is_cold() -> bool:
-    """Whether the first motion of this installation has to wait until its machine code is compiled: a minute or two."""
-    return installed() and not compiled.cache_info().currsize and not (_folder() / READY).exists()
+    """Whether the judge's first motion has to wait until its functions are compiled: up to two minutes."""
+    return installed() and not any(_cache_folder().rglob("*adaptive_steps*.nbi"))
+
+
+class CompiledFunctions(NamedTuple):
+    """The functions of the package `compiled` that Python calls."""
+
+    fixed_steps: Callable[..., int]
+    adaptive_steps: Callable[..., int]
+    evaluate_samples: Callable[..., int]
 
 
 @cache
-def compiled() -> Callable[..., int]:
-    """`run` of `compiled.adaptive`. Raises ImportError without numba."""
-    folder, config = _folder(), import_module("numba").config
-    before, config.CACHE_DIR = config.CACHE_DIR, str(folder)  # where other functions are kept stays as it is
+def compiled() -> CompiledFunctions:
+    """The compiled functions; raises ImportError without numba."""
+    config = import_module("numba").config
+    default, config.CACHE_DIR = config.CACHE_DIR, str(_cache_folder())  # read by numba when functions are defined
     try:
-        run = import_module("engines.lagrange.compiled.adaptive").run
+        steps = import_module("engines.lagrange.compiled.steps")
+        adaptive = import_module("engines.lagrange.compiled.adaptive")
     finally:
-        config.CACHE_DIR = before
-    (folder / READY).touch()
-    return run
+        config.CACHE_DIR = default
+    return CompiledFunctions(steps.fixed_steps, adaptive.adaptive_steps, steps.evaluate_samples)
 
 
 def _digest() -> str:
-    """Of the sources of the compiled code, and of the constants that it takes from elsewhere."""
+    """A digest of the sources of the compiled functions and of their records."""
     digest = hashlib.sha256()
-    for source in sorted((SOURCES / "compiled").glob("*.py")):
+    for source in (FOLDER / "records.py", *sorted((FOLDER / "compiled").glob("*.py"))):
         digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
-    constants = {(name, value) for name, value in vars(arrays).items() if type(value) is int}
-    digest.update(repr(sorted(constants)).encode())
     return digest.hexdigest()[:16]
 
 
 @cache
-def _temporary() -> tempfile.TemporaryDirectory[str]:
-    """A folder of this process, for a machine on which nothing else can be written to."""
+def _temporary_folder() -> tempfile.TemporaryDirectory[str]:
+    """A folder of this process, if no other one can be written to."""
     return tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
 
 
-def _folder() -> Path:
-    """The folder for compiled code, which exists and can be written to."""
-    named: Any = os.environ.get("NUMBA_CACHE_DIR")
-    for place in [Path(named)] if named else [SOURCES / "__pycache__", cache_folder()]:
-        folder = place / f"lagrange-{_digest()}"
+@cache
+def _cache_folder() -> Path:
+    """The folder for machine code; it exists and can be written to."""
+    configured = os.environ.get("NUMBA_CACHE_DIR")
+    for parent in [Path(configured)] if configured else [FOLDER / "__pycache__", cache_folder()]:
+        folder = parent / f"lagrange-{_digest()}"
         try:
             folder.mkdir(parents=True, exist_ok=True)
             tempfile.TemporaryFile(dir=folder).close()
         except OSError:
             continue
         return folder
-    return Path(_temporary().name)
+    return Path(_temporary_folder().name)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Regularisation
-from engines.lagrange.arrays import SMALLEST
+from engines.lagrange.compiled_model import CompiledModel
 from engines.lagrange.dynamics import (
     LEAST_INVERSE_INERTIA,
     PROJECTION_ITERATIONS,
@@ -28,7 +28,6 @@ from engines.lagrange.dynamics import (
     semi_implicit_euler,
 )
 from engines.lagrange.loading import installed
-from engines.lagrange.machine import Machine
 from reference.checks import freeze
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE
@@ -105,23 +104,23 @@ def _compiled(
     Rows that depend on each other at the start are told apart by their compliances, if they give way.
     """
     machine = _machine(mechanism, soft)
-    if machine is None or (project if soft is not None else machine.dependent):
+    if machine is None or (project if soft is not None else machine.has_dependent_rows):
         return None
-    poses, twists = machine.empty(samples)
+    poses, twists = machine.empty_samples(samples)
     iterations = PROJECTION_ITERATIONS if project else 0
-    if machine.march(TABLEAUS[order], iterations, spacing / every, every, 0, poses, twists) < samples:
+    if machine.fixed_steps(TABLEAUS[order], iterations, spacing / every, every, 0, poses, twists) < samples:
         return None
     reactions, _ = machine.reactions(spacing, poses, twists)
-    if not np.all(np.isfinite(reactions)) or machine.status(SMALLEST) < RANK_TOLERANCE:
+    if not np.all(np.isfinite(reactions)) or machine.smallest_pivot < RANK_TOLERANCE:
         return None
     return _trajectory(mechanism, spacing, poses, twists, reactions)
 
 
-def _machine(mechanism: Mechanism, soft: Regularisation | None) -> Machine | None:
+def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel | None:
     """The compiled mechanism, with joints that give way where a softness is given; None without numba."""
-    machine = Machine.of(mechanism) if installed() else None
+    machine = CompiledModel.of(mechanism) if installed() else None
     if machine is not None and soft is not None:
-        machine.soften(soft, giving_way(mechanism, soft))
+        machine.regularise(soft, giving_way(mechanism, soft))
     return machine
 
 
@@ -141,13 +140,13 @@ def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Regularisa
     machine = _machine(mechanism, soft)
     if machine is None:
         return None
-    poses, twists = machine.empty(samples * PARTS)
+    poses, twists = machine.empty_samples(samples * PARTS)
     length, unit = spacing / PARTS, np.tile(mechanism.pose_unit, len(mechanism.bodies) + 1)
     taken, steps = 0, 1
 
     def stepped(part: int, count: int) -> tuple[Array, Array] | None:
         own = poses[: part + 2], twists[: part + 2]
-        done = machine.march(RK4, 0, length / count, count, part, *own)
+        done = machine.fixed_steps(RK4, 0, length / count, count, part, *own)
         return (own[0][-1].copy(), own[1][-1].copy()) if done > part else None
 
     for part in range(samples * PARTS):

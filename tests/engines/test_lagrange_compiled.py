@@ -11,9 +11,9 @@ import pytest
 
 from engines import Regularisation
 from engines.lagrange import METHODS, Lagrange, loading
-from engines.lagrange.arrays import CHANGE, FORCE_KINDS, KINDS, MATRIX, ROWS, arrays_of
+from engines.lagrange.compiled_model import CompiledModel
 from engines.lagrange.dynamics import RK4
-from engines.lagrange.machine import Machine
+from engines.lagrange.records import FORCE_KINDS, JOINT_KINDS, system_of
 from reference.couplings import Coupling
 from reference.forces import CoupledForce, Damper, TorsionDamper
 from reference.mechanism import Mechanism
@@ -55,7 +55,7 @@ def test_random_mechanisms_of_all_joints_links_and_forces_move_as_in_numpy(numbe
 def test_the_random_mechanisms_have_every_joint_link_and_force_of_the_compiled_code():
     drawn = [random_mechanism(21, number, EVERY) for number in range(12)]
     kinds = {type(part) for mechanism in drawn for part in (*mechanism.joints, *mechanism.forces)}
-    assert kinds == {*KINDS, *FORCE_KINDS} - {Coupling, CoupledForce}  # see tests/engines/test_couplings.py
+    assert kinds == {*JOINT_KINDS, *FORCE_KINDS} - {Coupling, CoupledForce}  # see tests/engines/test_couplings.py
 
 
 def test_rows_that_follow_from_others_change_no_motion_and_share_the_reaction():
@@ -71,8 +71,8 @@ def test_rows_that_follow_from_others_change_no_motion_and_share_the_reaction():
 @pytest.mark.parametrize("links", [100, 1000])
 def test_a_long_chain_is_factorised_in_a_narrow_band(links):
     scene = LongPendulum(links=links)
-    whole = arrays_of(scene.mechanism()).whole
-    assert whole[CHANGE] - whole[MATRIX] < 4 * whole[ROWS]  # a pin's two rows meet those of its two neighbours
+    system, _ = system_of(scene.mechanism())
+    assert len(system.matrix) < 4 * len(system.rows)  # a pin's two rows meet those of its two neighbours
     run = Lagrange("rk4").build(scene.mechanism(), 1e-4)(2, 2)
     truth = scene.motion(run.t)
     # 2e-4 s after its release the chain has hardly turned; what is compared is how its links begin to differ.
@@ -89,19 +89,19 @@ def test_a_projection_with_the_factor_of_the_rows_before_it_leaves_no_slip():
 
 def test_a_body_that_rolls_beyond_its_table_gets_another_window_and_moves_as_before():
     mechanism = RollingEllipse().mechanism()
-    machine = present(Machine.of(mechanism))
-    steps = machine.empty(10), machine.empty(10)
-    machine.march(RK4, 8, 1e-3, 2, 0, *steps[0])
-    machine.windows.cells[:] = np.nan  # as if it had come to where there are no cells yet
-    machine.arrays.rolls[:, 1:3] = 0
-    machine.march(RK4, 8, 1e-3, 2, 0, *steps[1])
+    model = present(CompiledModel.of(mechanism))
+    steps = model.empty_samples(10), model.empty_samples(10)
+    model.fixed_steps(RK4, 8, 1e-3, 2, 0, *steps[0])
+    model.windows.cells[:] = np.nan  # as if it had come to where there are no cells yet
+    model.system.rolls["first_cell"] = model.system.rolls["cell_count"] = 0
+    model.fixed_steps(RK4, 8, 1e-3, 2, 0, *steps[1])
     np.testing.assert_array_equal(steps[0], steps[1])
 
 
 def test_where_a_table_has_no_cell_numpy_goes_on(monkeypatch):
     mechanism = RollingEllipse().mechanism()
     expected = Lagrange("rk4", compiled=False).build(mechanism, 1e-3)(4, 2)
-    monkeypatch.setattr("engines.lagrange.machine.CellWindows.move", lambda self, which, theta: False)
+    monkeypatch.setattr("engines.lagrange.compiled_model.CellWindows.move", lambda self, which, theta: False)
     found = Lagrange("rk4").build(mechanism, 1e-3)(4, 2)
     np.testing.assert_array_equal(found.pose, expected.pose)
     np.testing.assert_array_equal(found.reaction, expected.reaction)

@@ -4,134 +4,176 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange import arrays as ix
-from engines.lagrange.compiled.inner import inner
-from engines.lagrange.compiled.rows import applied_accelerations, rows
-from engines.lagrange.compiled.schur import ALL, HOLONOMIC, residual, row_times, solve
+from engines.lagrange.compiled import entry, inlined, inner, merged
+from engines.lagrange.compiled.forces import applied_accelerations
+from engines.lagrange.compiled.joints import set_bodies, set_equations
+from engines.lagrange.compiled.solve import FEW_ROWS, WELL_CONDITIONED, factorise_rows, row_times, solve
+from engines.lagrange.records import ALL_ROWS, HOLONOMIC_ROWS, IDEAL
 
-# Newton's correction is squared by the next one: after one this small, in parts of the mechanism, the next is lost in
-# rounding. So is what a factor of the rows before it leaves of the slip, which is itself a small part of the speeds.
+# Newton's method is quadratic: after a correction this small, in units of the mechanism's length, the next one is
+# below rounding.
 CLOSED = 1e-9
 
 
 @inner
-def accelerations(whole, real, cells, pose, twist, t, out):
-    """Accelerations under all forces and the joints' reactions, to `out`; the rows and reactions there stay too."""
-    applied_accelerations(whole, real, pose, twist, out)
-    if whole[ix.ROWS] == 0:
+def accelerate(system, pose, twist, t, out):
+    """Set `out` (coordinates,) to the accelerations under forces and joints; rows and reactions stay in the system."""
+    set_bodies(system.bodies, pose, twist)
+    applied_accelerations(system, out)
+    ground = len(out) - 3
+    if len(system.rows) > 0:
+        set_equations(system, t)
+        set_right_side(system, twist, out)
+        system.status.selection = ALL_ROWS
+        factorise_rows(system)
+        solve(system, 1 if len(system.rows) > FEW_ROWS else 0)
+        for k in range(ground):
+            out[k] += system.change[k]
+    for k in range(ground, ground + 3):  # 0 times NaN of a lost stage would stay there
+        out[k] = 0.0
+
+
+@merged
+def set_right_side(system, twist, applied):
+    """Set what J times the reactions' accelerations has to be: the bias, less the applied accelerations; of regularised
+    rows less the acceleration of their springs and dampers, too."""
+    rows = len(system.rows)
+    for row in range(rows):
+        system.right[row] = system.equations[row].bias - row_times(system, row, applied)
+    if system.constants.regularised == IDEAL:
         return
-    rows(whole, real, cells, pose, twist, t)
-    residual(whole, real, out, whole[ix.BIAS], whole[ix.RIGHT])
-    if whole[ix.SOFT] > 0:
-        for row in range(whole[ix.ROWS]):
-            slip = row_times(whole, real, twist, row) - real[whole[ix.RATE] + row]
-            value = real[whole[ix.DAMPING] + row] * slip + real[whole[ix.STIFFNESS] + row] * real[whole[ix.GAP] + row]
-            real[whole[ix.RIGHT] + row] -= value + real[whole[ix.LACKING] + row] * real[whole[ix.BIAS] + row]
-    whole[ix.WHICH] = ALL
-    solve(whole, real, False, False)
-    change, ground = whole[ix.CHANGE], whole[ix.COLUMNS] - 3
-    for k in range(ground):
-        real[out + k] += real[change + k]
-    for k in range(ground, ground + 3):  # zero times a stage that was lost would stay there, and in all that follow
-        real[out + k] = 0.0
+    for row in range(rows):
+        equation = system.equations[row]
+        slip = row_times(system, row, twist) - equation.rate
+        value = equation.damping * slip + equation.stiffness * equation.gap
+        system.right[row] -= value + equation.without_bias * equation.bias
 
 
 @inner
-def project_onto_joints(whole, real, cells, pose, twist, t, most):
-    """Move a pose and a twist to the nearest, by mass, that the joints allow: Newton's method, `most` times at most.
+def project(system, pose, twist, t, iterations, pose_unit):
+    """Move a pose and a twist to the nearest ones, by mass, that satisfy the joints, by Newton's method.
 
-    ix.UNCLOSED tells when that was not enough: a step ended too far from any pose of the joints, or in a singular one.
+    `open_from` of the status is the first time at which the iterations did not close the joints: the step ended too far
+    from any pose of the joints, or at a singular one.
     """
-    if whole[ix.ROWS] == 0:
+    rows = len(system.rows)
+    if rows == 0:
         return
-    holonomic = most if whole[ix.HOLONOMIC_ROWS] > 0 else 0
-    which = HOLONOMIC if whole[ix.HOLONOMIC_ROWS] < whole[ix.ROWS] else ALL
-    kept, columns, right, gaps = False, whole[ix.COLUMNS], whole[ix.RIGHT], whole[ix.GAP]
-    change, units = whole[ix.CHANGE], whole[ix.POSE_UNIT]
-    for iteration in range(holonomic + 1):  # the last one for the twist
-        last, largest = iteration == holonomic, 0.0
-        rows(whole, real, cells, pose, twist, t)
-        if last:
-            residual(whole, real, twist, whole[ix.RATE], right)
-        else:
-            for row in range(whole[ix.ROWS]):
-                real[right + row] = -real[gaps + row]
-        whole[ix.WHICH] = ALL if last else which
-        solve(whole, real, True, last and kept)
-        if last:
-            for k in range(columns):
-                real[twist + k] += real[change + k]
-            return
-        for k in range(columns):
-            real[pose + k] += real[change + k]
-            largest = max(largest, abs(real[change + k]) / real[units + k])
+    right, change = system.right, system.change
+    last_pose = iterations if system.constants.holonomic_rows > 0 else 0
+    all_holonomic = system.constants.holonomic_rows == rows
+    keeps_factor = False
+    for iteration in range(iterations):
+        if iteration == last_pose:
+            break
+        set_bodies(system.bodies, pose, twist)
+        set_equations(system, t)
+        for row in range(rows):
+            right[row] = -system.equations[row].gap
+        system.status.selection = ALL_ROWS if all_holonomic else HOLONOMIC_ROWS
+        factorise_rows(system)
+        solve(system, 1 if keeps_factor else 0)
+        largest = 0.0
+        for k in range(len(change)):
+            pose[k] += change[k]
+            largest = max(largest, abs(change[k]) / pose_unit[k])
         if not largest > CLOSED:
-            holonomic, kept = iteration + 1, which == ALL
-        elif iteration + 1 == holonomic and math.isnan(real[whole[ix.STATUS] + ix.UNCLOSED]):
-            real[whole[ix.STATUS] + ix.UNCLOSED] = t
+            last_pose, keeps_factor = iteration + 1, all_holonomic
+        elif iteration + 1 == last_pose and math.isnan(system.status.open_from):
+            system.status.open_from = t
+    set_bodies(system.bodies, pose, twist)
+    set_equations(system, t)
+    for row in range(rows):
+        right[row] = system.equations[row].rate - row_times(system, row, twist)
+    system.status.selection = ALL_ROWS
+    if not keeps_factor or system.status.factor_pivot < WELL_CONDITIONED:
+        factorise_rows(system)
+    solve(system, 1 if keeps_factor else 0)
+    for k in range(len(change)):
+        twist[k] += change[k]
 
 
 @inner
-def evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt):
-    """One stage of a tableau, from the state at these places: its velocity and its acceleration."""
-    columns = whole[ix.COLUMNS]
-    velocity, acceleration = whole[ix.VELOCITY] + stage * columns, whole[ix.ACCELERATION] + stage * columns
-    place = whole[ix.STAGE_POSE]
+def evaluate_stage(system, storage, stages, nodes, stage, t, dt):
+    """Set the velocity and the acceleration of one stage of a tableau."""
+    velocities, accelerations = storage.velocities, storage.accelerations
+    velocity, place = storage.stage_twist, storage.stage_pose
+    columns = len(place)
     for k in range(columns):
-        real[velocity + k], real[place + k] = real[twist + k], real[pose + k]
+        velocity[k], place[k] = storage.twist[k], storage.pose[k]
     for earlier in range(stage):
         share = stages[stage, earlier] * dt
         if share != 0:
-            gain, rate = whole[ix.ACCELERATION] + earlier * columns, whole[ix.VELOCITY] + earlier * columns
             for k in range(columns):
-                real[velocity + k] += share * real[gain + k]
-                real[place + k] += share * real[rate + k]
-    at = t + nodes[stage] * dt
-    accelerations(whole, real, cells, place, velocity, at, acceleration)
+                velocity[k] += share * accelerations[earlier, k]
+                place[k] += share * velocities[earlier, k]
+    accelerate(system, place, velocity, t + nodes[stage] * dt, storage.acceleration)
+    store_stage(storage, stage, velocity)
 
 
-@inner
-def add_stages(whole, real, weights, dt, pose, twist):
-    """Add to a state the weighted velocities and accelerations of the stages: their sum, which rounds a place once."""
-    columns = whole[ix.COLUMNS]
-    for k in range(columns):
+@inlined
+def store_stage(storage, stage, velocity):
+    for k in range(len(velocity)):
+        storage.velocities[stage, k], storage.accelerations[stage, k] = velocity[k], storage.acceleration[k]
+
+
+@inlined
+def add_stages(storage, weights, dt, pose, twist):
+    """Add the weighted velocities and accelerations of the stages to a state; their sum comes first, to round once."""
+    for k in range(len(pose)):
         moved = gained = 0.0
         for stage in range(len(weights)):
-            moved += weights[stage] * real[whole[ix.VELOCITY] + stage * columns + k]
-            gained += weights[stage] * real[whole[ix.ACCELERATION] + stage * columns + k]
-        real[pose + k] += dt * moved
-        real[twist + k] += dt * gained
+            moved += weights[stage] * storage.velocities[stage, k]
+            gained += weights[stage] * storage.accelerations[stage, k]
+        pose[k] += dt * moved
+        twist[k] += dt * gained
 
 
-@inner
-def fixed_steps(whole, real, cells, stages, weights, nodes, project, dt, every, begin, poses, twists):
-    """Steps of `dt` from the sample `begin` on, `every` of them a sample, into rows of poses and twists.
+@entry
+def fixed_steps(system, storage, tableau, iterations, dt, every, begin, poses, twists):
+    """Steps of `dt` from the sample `begin` on, `every` steps for a sample, into rows of poses and twists.
 
-    Without stages it is the semi-implicit Euler method. `project`: how often Newton's method may correct a step, 0 for
-    no projection. Gives the last sample that is done: all of them, that before a pose that is not finite, or that
-    before a contact that a table has no cell for (`WANTED_ROLL`).
+    Without stages it is the semi-implicit Euler method. iterations: of Newton's method after a step, 0 for no
+    projection. Returns the last completed sample: the last one, that before a pose that is not finite, or that before a
+    contact without a cell in its table (`missing_roll`).
     """
-    columns, pose, twist, acceleration = whole[ix.COLUMNS], whole[ix.POSE], whole[ix.TWIST], whole[ix.ACCELERATION]
-    for k in range(columns):
-        real[pose + k], real[twist + k] = poses[begin, k], twists[begin, k]
+    pose, twist = storage.pose, storage.twist
+    for k in range(len(pose)):
+        pose[k], twist[k] = poses[begin, k], twists[begin, k]
     for sample in range(begin, len(poses) - 1):
         for step in range(every):
             t = (sample * every + step) * dt
-            if len(nodes) == 0:
-                accelerations(whole, real, cells, pose, twist, t, acceleration)
-                for k in range(columns):
-                    real[twist + k] += dt * real[acceleration + k]
-                    real[pose + k] += dt * real[twist + k]
+            if len(tableau.nodes) == 0:
+                accelerate(system, pose, twist, t, storage.acceleration)
+                for k in range(len(pose)):
+                    twist[k] += dt * storage.acceleration[k]
+                    pose[k] += dt * twist[k]
             else:
-                for stage in range(len(nodes)):
-                    evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
-                add_stages(whole, real, weights, dt, pose, twist)
-            if project > 0:
-                project_onto_joints(whole, real, cells, pose, twist, t + dt, project)
-            if real[whole[ix.STATUS] + ix.WANTED_ROLL] >= 0:
+                for stage in range(len(tableau.nodes)):
+                    evaluate_stage(system, storage, tableau.stages, tableau.nodes, stage, t, dt)
+                add_stages(storage, tableau.weights, dt, pose, twist)
+            if iterations > 0:
+                project(system, pose, twist, t + dt, iterations, storage.pose_unit)
+            if system.status.missing_roll >= 0:
                 return sample
-        for k in range(columns):
-            if not math.isfinite(real[pose + k]):
+        for k in range(len(pose)):
+            if not math.isfinite(pose[k]):
                 return sample
-            poses[sample + 1, k], twists[sample + 1, k] = real[pose + k], real[twist + k]
+            poses[sample + 1, k], twists[sample + 1, k] = pose[k], twist[k]
+    return len(poses) - 1
+
+
+@entry
+def evaluate_samples(system, storage, dt, begin, poses, twists, reactions, accelerations):
+    """Set the reactions and accelerations at samples `dt` apart; returns the last one completed, as `fixed_steps`."""
+    for sample in range(begin, len(poses)):
+        for k in range(len(storage.pose)):
+            storage.pose[k], storage.twist[k] = poses[sample, k], twists[sample, k]
+        accelerate(system, storage.pose, storage.twist, sample * dt, storage.acceleration)
+        if system.status.missing_roll >= 0:
+            return sample
+        for row in range(len(system.reaction)):
+            reactions[sample, row] = system.reaction[row]
+        for k in range(len(storage.pose)):
+            accelerations[sample, k] = storage.acceleration[k]
     return len(poses) - 1

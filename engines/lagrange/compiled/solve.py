@@ -1,0 +1,246 @@
+"""The row system J M^-1 J^T reaction = right, the Schur complement of the KKT system: O(bodies) for a chain.
+
+The factor L D L^T needs no scaling: scaled rows give the same digits. A pivot is compared with its row's diagonal. If
+it is below the limit, the row follows from earlier rows; its reaction is set to zero, which does not change the motion.
+The condition number of the product is the square of that of J. Where a pivot is small, the residual of the right side,
+computed with J itself, is therefore solved for again (corrected seminormal equations, Bjorck 1987).
+"""
+
+from __future__ import annotations
+
+import math
+
+from engines.lagrange.compiled import inlined, inner, merged, unsigned
+from engines.lagrange.records import ALL_ROWS, COMPLIANT, HOLONOMIC_ROWS, RIGID_ROWS
+
+# The largest pivot, relative to the diagonal, of a row that follows from others, where all rows are independent at the
+# start: a thousand times the rounding of the product.
+INDEPENDENT_PIVOT = 1e-13
+# The same where some rows are dependent at the start. An open joint perturbs such a pivot by the square of its gap in
+# a step, so this is RANK_TOLERANCE of `reference.rows`.
+DEPENDENT_PIVOT = 1e-9
+# Above this smallest pivot rounding costs less than two digits, and no correction is made.
+WELL_CONDITIONED = 1e-2
+# More rows than this are always corrected once: the condition of a long chain is not visible in its pivots.
+FEW_ROWS = 24
+MOST_CORRECTIONS = 4
+LEAST_INVERSE_INERTIA = 0.1  # as in `engines.lagrange.dynamics`
+
+
+@inlined
+def is_left_out(system, row):
+    """Whether a row does not belong to the selected rows; it then gets a diagonal of one and no coupling."""
+    selection = system.status.selection
+    if selection == HOLONOMIC_ROWS:
+        return system.rows[row].holonomic == 0
+    return selection == RIGID_ROWS and system.equations[row].compliance > 0
+
+
+@inlined
+def assemble(system):
+    """Set the matrix to J M^-1 J^T."""
+    matrix, ends = system.matrix, system.ends
+    for entry in range(len(matrix)):
+        matrix[entry] = 0.0
+    end, x, y, turn = unsigned(len(ends)), 0.0, 0.0, 0.0
+    for index in range(len(system.products)):
+        product = system.products[index]
+        if product.end != end:  # the products of one end stand together
+            end, body = product.end, system.bodies[product.body]
+            one = ends[end]
+            x, y, turn = one.x * body.inverse_mass, one.y * body.inverse_mass, one.turn * body.inverse_inertia
+        other = ends[product.other]
+        matrix[product.entry] += x * other.x + y * other.y + turn * other.turn
+
+
+@inlined
+def factorise(system):
+    """Replace the matrix by its factor; the smallest pivot, relative to its row's diagonal, of independent rows."""
+    matrix, inverse_pivots, rows = system.matrix, system.inverse_pivots, system.rows
+    limit = DEPENDENT_PIVOT if system.constants.dependent != 0 else INDEPENDENT_PIVOT
+    smallest = 1.0
+    for row in range(len(rows)):
+        first, begin = rows[unsigned(row)].column, rows[unsigned(row)].begin
+        if system.status.selection != ALL_ROWS:
+            leave_out(system, row, first, begin)
+        rest = diagonal = matrix[unsigned(begin + row)]
+        for column in range(first, row):
+            other = rows[unsigned(column)].begin
+            value = matrix[unsigned(begin + column)]
+            for k in range(max(first, rows[unsigned(column)].column), column):
+                value -= matrix[unsigned(begin + k)] * matrix[unsigned(other + k)]
+            matrix[unsigned(begin + column)] = value
+        for column in range(first, row):
+            value = matrix[unsigned(begin + column)]
+            matrix[unsigned(begin + column)] = value * inverse_pivots[unsigned(column)]
+            rest -= value * matrix[unsigned(begin + column)]
+        if rest > limit * diagonal:
+            smallest = min(smallest, rest / diagonal)
+            inverse_pivots[unsigned(row)] = 1.0 / rest
+        else:
+            inverse_pivots[unsigned(row)] = 0.0 if rest <= limit * diagonal else math.nan
+    return smallest
+
+
+@merged
+def leave_out(system, row, first, begin):
+    """Remove the entries of a row that couple selected rows with others."""
+    is_out = is_left_out(system, row)
+    for column in range(first, row):
+        if is_out or is_left_out(system, column):
+            system.matrix[begin + column] = 0.0
+    if is_out:
+        system.matrix[begin + row] = 1.0
+
+
+@inlined
+def substitute(system, vector):
+    """Replace the vector (rows,) by the solution of L D L^T x = vector.
+
+    The result of a row is handed to the next in a variable: through memory this would take twice as long.
+    """
+    rows, matrix, inverse_pivots = system.rows, system.matrix, system.inverse_pivots
+    before = 0.0
+    for row in range(len(rows)):
+        first, begin, value = rows[unsigned(row)].column, rows[unsigned(row)].begin, vector[unsigned(row)]
+        for column in range(first, row - 1):
+            value -= matrix[unsigned(begin + column)] * vector[unsigned(column)]
+        if first < row:
+            value -= matrix[unsigned(begin + row - 1)] * before
+        vector[unsigned(row)] = before = value
+    for row in range(len(rows)):
+        vector[unsigned(row)] *= inverse_pivots[unsigned(row)]
+    value = vector[unsigned(len(rows) - 1)]
+    for row in range(len(rows) - 1, 0, -1):
+        first, begin, before = rows[unsigned(row)].column, rows[unsigned(row)].begin, vector[unsigned(row - 1)]
+        if first < row:
+            before -= matrix[unsigned(begin + row - 1)] * value
+        for column in range(first, row - 1):
+            vector[unsigned(column)] -= matrix[unsigned(begin + column)] * value
+        vector[unsigned(row - 1)] = value = before
+
+
+@inlined
+def apply_reactions(system):
+    """Set the change to M^-1 J^T reaction."""
+    change, ends, bodies = system.change, system.ends, system.bodies
+    for k in range(len(change)):
+        change[k] = 0.0
+    for index in range(len(system.rows)):
+        row = system.rows[index]
+        add_end(change, row.first, ends[2 * index], system.reaction[index])
+        add_end(change, row.second, ends[2 * index + 1], system.reaction[index])
+    for index in range(len(system.further_ends)):
+        further = system.further_ends[index]
+        add_end(change, further.body, ends[further.end], system.reaction[further.row])
+    for index in range(len(bodies)):
+        body, at = bodies[index], 3 * index
+        change[at] *= body.inverse_mass
+        change[at + 1] *= body.inverse_mass
+        change[at + 2] *= body.inverse_inertia
+
+
+@inlined
+def add_end(vector, body, end, factor):
+    at = 3 * body
+    vector[unsigned(at)] += end.x * factor
+    vector[unsigned(at + 1)] += end.y * factor
+    vector[unsigned(at + 2)] += end.turn * factor
+
+
+@inlined
+def row_times(system, index, vector):
+    """The product of one row of J with a vector of coordinates."""
+    row, end, other = system.rows[index], system.ends[2 * index], system.ends[2 * index + 1]
+    first, second = 3 * row.first, 3 * row.second
+    value = (
+        end.x * vector[unsigned(first)]
+        + end.y * vector[unsigned(first + 1)]
+        + end.turn * vector[unsigned(first + 2)]
+        + other.x * vector[unsigned(second)]
+        + other.y * vector[unsigned(second + 1)]
+        + other.turn * vector[unsigned(second + 2)]
+    )
+    for k in range(len(system.further_ends)):
+        further = system.further_ends[k]
+        if further.row == index:
+            end, at = system.ends[further.end], 3 * further.body
+            value += (
+                end.x * vector[unsigned(at)] + end.y * vector[unsigned(at + 1)] + end.turn * vector[unsigned(at + 2)]
+            )
+    return value
+
+
+@inner
+def factorise_rows(system):
+    """Set the factor of the selected rows."""
+    if system.constants.regularised == COMPLIANT and system.status.selection == ALL_ROWS:
+        assemble_compliant(system)
+    else:
+        assemble(system)
+    system.status.factor_pivot = factorise(system)
+
+
+@inner
+def solve(system, corrections):
+    """Set the change to the smallest one, by mass, with J change = right, and set its reactions, by the factor.
+
+    corrections: how many are made where all pivots are large; otherwise there are up to MOST_CORRECTIONS.
+    """
+    rows, status = len(system.rows), system.status
+    reaction, residual, right = system.reaction, system.residual, system.right
+    is_part, pivot = status.selection != ALL_ROWS, status.factor_pivot
+    status.smallest_pivot = min(status.smallest_pivot, pivot)
+    for row in range(rows):
+        reaction[row] = 0.0 if is_part and is_left_out(system, row) else right[row]
+    substitute(system, reaction)
+    apply_reactions(system)
+    if system.constants.regularised == COMPLIANT and not is_part:
+        return  # J change differs from the right side by the compliance
+    before = math.inf
+    for _ in range(corrections if pivot > WELL_CONDITIONED else MOST_CORRECTIONS):
+        largest = 0.0
+        for row in range(rows):
+            missing = (
+                0.0 if is_part and is_left_out(system, row) else right[row] - row_times(system, row, system.change)
+            )
+            residual[row] = missing
+            largest = max(largest, missing * missing * system.inverse_pivots[row])
+        if not 0 < largest < 0.25 * before:
+            return
+        before = largest
+        substitute(system, residual)
+        for row in range(rows):
+            reaction[row] += residual[row]
+        apply_reactions(system)
+
+
+@inner
+def assemble_compliant(system):
+    """Set the matrix to J M^-1 J^T with compliances on its diagonal, in units of each row's inverse inertia.
+
+    This is the inverse inertia while the rigid rows hold, the diagonal of the Schur complement, but at least
+    LEAST_INVERSE_INERTIA times that of the row alone.
+    """
+    reaction, residual, equations = system.reaction, system.residual, system.equations
+    rows = len(system.rows)
+    assemble(system)
+    system.status.selection = RIGID_ROWS
+    factorise(system)
+    for compliant in range(rows):
+        if is_left_out(system, compliant):
+            for row in range(rows):
+                reaction[row] = 1.0 if row == compliant else 0.0
+            apply_reactions(system)
+            inverse_inertia = alone = row_times(system, compliant, system.change)
+            for row in range(rows):
+                residual[row] = 0.0 if is_left_out(system, row) else row_times(system, row, system.change)
+            substitute(system, residual)
+            for row in range(rows):
+                inverse_inertia -= residual[row] * row_times(system, row, system.change)
+            equations[compliant].inverse_inertia = max(inverse_inertia, LEAST_INVERSE_INERTIA * alone)
+    system.status.selection = ALL_ROWS
+    assemble(system)
+    for row in range(rows):
+        equation = equations[row]
+        system.matrix[system.rows[row].begin + row] += equation.compliance * equation.inverse_inertia

@@ -1,0 +1,247 @@
+"""A mechanism that is stepped by compiled code: the calls, the cells of its tables, and the warnings of a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Regularisation
+from engines.lagrange.dynamics import ADAPTIVE_DOP853, NONE, PROJECTION_ITERATIONS, Tableau
+from engines.lagrange.loading import CompiledFunctions, compiled
+from engines.lagrange.records import (
+    CELL_SIZE,
+    COMPLIANT,
+    FORCE_KINDS,
+    JOINT_KINDS,
+    NOT_TABULATED,
+    SPRINGS,
+    TABULATED,
+    Records,
+    StepStorage,
+    System,
+    new_storage,
+    system_of,
+)
+from engines.rolling_table import BLOCK, FARTHEST, Table, rolled
+from reference.joints import Roll
+from reference.mechanism import Body, Mechanism
+from reference.rolling.kinematics import Rolling
+
+Array = NDArray[np.float64]
+
+STEP_SHARE = 0.1  # local tolerance over tolerance: errors of steps add up, and the sum then about holds the tolerance
+LEAST_STEP_TOLERANCE = 2e-15  # about ten roundings
+MOST_MOVES = 8  # of a table's window for one sample; a body that turns farther between two samples is lost
+MOST_CELLS = 2**15  # in the window of a table: 10 MB
+
+
+class CellWindows:
+    """The cells of tables that compiled code may use: a window around the rotations so far.
+
+    Compiled code stops at a rotation without a cell, and the window is moved. Near the end of a curve, or where the
+    curves nearly fit, there are no cells; there only the exact contacts of the reference can be used.
+    """
+
+    def __init__(self, rolls: Sequence[Rolling], records: Records) -> None:
+        self._tables = [rolled(rolling) for rolling in rolls]
+        self._records = records  # (rolls,) ROLLING records, changed here
+        self._parts = [np.zeros((0, CELL_SIZE), dtype=complex) for _ in rolls]
+        self.cells = np.zeros((0, CELL_SIZE), dtype=complex)
+        for number, rolling in enumerate(rolls):
+            if records[number]["form"] == TABULATED:
+                self.move(number, rolling.theta)
+
+    def move(self, number: int, theta: float) -> bool:
+        """Move a roll's window to a rotation [rad]; False if the table has no cell there."""
+        table, record = self._tables[number], self._records[number]
+        if not isinstance(table, Table) or not abs(theta) < FARTHEST:
+            return False
+        wanted = math.floor(theta / table.width)
+        first, count = int(record["first_cell"]), int(record["cell_count"])
+        if first <= wanted < first + count:  # a cell of the window, without numbers
+            return False
+        if abs(wanted - first) * table.width > 2 * math.pi:  # a diverged motion: the old window is not needed again
+            count = 0
+        # One block on either side at first, then twice as far each time: making cells takes longer than a short motion.
+        reach = min(max(BLOCK, count), MOST_CELLS // 2)
+        low, high = wanted - reach, wanted + reach
+        if count and high - low + count <= MOST_CELLS:
+            low, high = min(low, first), max(high, first + count)
+        try:
+            cells = table.cells(low, high - low)
+        except (ValueError, ArithmeticError):  # the curves cannot touch somewhere in the window
+            return False
+        if np.isnan(cells[wanted - low, 0].real):
+            return False
+        self._parts[number] = cells
+        record["first_cell"], record["cell_count"] = low, high - low
+        ends = np.cumsum([0, *map(len, self._parts)])
+        self._records["cell_begin"] = ends[:-1]
+        self.cells = np.concatenate(self._parts)
+        return True
+
+
+def stopped_warning(tolerance: float | None, t: float) -> str:
+    """The warning of a run that stopped at t [s]; tolerance None: of a run with steps of one length."""
+    if tolerance is None:
+        return f"lagrange: the motion is lost at {t:.6g} s; give a shorter step, or end the run there"
+    return (
+        f"lagrange: the tolerance {tolerance:g} can't be held beyond {t:.6g} s: "
+        "steps become too small or too many; give a larger tolerance, or end the run there"
+    )
+
+
+def open_warning(t: float) -> str:
+    """The warning of a run in which a projection at t [s] did not close the joints."""
+    return (
+        f"lagrange: at {t:.6g} s the projection onto the joints does not converge: "
+        "the step is too long, or they are in a singular position"
+    )
+
+
+@dataclass
+class CompiledModel:
+    """A mechanism's records, and the compiled functions that step them."""
+
+    mechanism: Mechanism
+    system: System
+    storage: StepStorage
+    positions: NDArray[np.int64]  # (rows,) of the mechanism's rows in the system
+    windows: CellWindows
+    functions: CompiledFunctions = field(default_factory=compiled)
+
+    @classmethod
+    def of(cls, mechanism: Mechanism) -> CompiledModel | None:
+        """None if numpy has to evaluate the mechanism: for a pair of curves that no table represents, and for a type of
+        joint or force without a compiled function.
+        """
+        known = {*map(type, mechanism.joints)} <= {*JOINT_KINDS} and {*map(type, mechanism.forces)} <= {*FORCE_KINDS}
+        if not known:
+            return None
+        system, positions = system_of(mechanism)
+        if np.any(system.rolls["form"] == NOT_TABULATED):
+            return None
+        rolls = [joint.rolling for joint in mechanism.joints if isinstance(joint, Roll)]
+        windows = CellWindows(rolls, system.rolls)
+        return cls(mechanism, system, new_storage(mechanism), positions, windows)
+
+    def regularise(self, regularisation: Regularisation, rows: NDArray[np.bool_]) -> None:
+        """Regularise the rows that the mask (rows,) selects, by springs, dampers and a compliance."""
+        system, selected = self.system, self.positions[rows]
+        system.constants["regularised"] = COMPLIANT if regularisation.compliance > 0 else SPRINGS
+        for name in ("stiffness", "damping", "compliance"):
+            system.equations[name][selected] = getattr(regularisation, name)
+        system.equations["without_bias"][selected] = not regularisation.complete
+
+    @property
+    def has_dependent_rows(self) -> bool:
+        """Whether some rows follow from others at the start."""
+        return bool(self.system.constants["dependent"])
+
+    @property
+    def lacks_contact(self) -> bool:
+        """Whether the last call ended at a contact that no table has."""
+        return bool(self.system.status["missing_roll"] >= 0)
+
+    @property
+    def smallest_pivot(self) -> float:
+        """The smallest pivot of the row system, relative to its diagonal, since the last step began."""
+        return float(self.system.status["smallest_pivot"])
+
+    def warnings(self, tolerance: float | None) -> tuple[str, ...]:
+        """The warnings of projections and of step control after a run."""
+        status = self.system.status
+        warnings = [] if np.isnan(status["open_from"]) else [open_warning(status["open_from"])]
+        if tolerance is None:
+            return tuple(warnings)
+        if not np.isnan(status["stopped_at"]):
+            warnings.append(stopped_warning(tolerance, status["stopped_at"]))
+        if not np.isnan(status["stiff_from"]):
+            warnings.append(
+                f"lagrange: stiff from {status['stiff_from']:.6g} s on: stability and not accuracy sets the steps"
+            )
+        if status["rounding"] > 10 * tolerance:
+            warnings.append(
+                "lagrange: rows are so nearly dependent that rounding alone changes speeds by "
+                f"{status['rounding']:.1g} of the mechanism's own, more than the tolerance {tolerance:g}"
+            )
+        return tuple(warnings)
+
+    def empty_samples(self, samples: int) -> tuple[Array, Array]:
+        """Poses and twists (samples + 1, coordinates): the start, and NaN after it. The ground's coordinates are 0."""
+        poses, twists = np.full((2, samples + 1, len(self.storage.pose)), np.nan)
+        poses[0], twists[0] = (np.append(start, np.zeros(3)) for start in (self.mechanism.pose, self.mechanism.twist))
+        return poses, twists
+
+    def fixed_steps(
+        self, tableau: Tableau, iterations: int, dt: float, every: int, begin: int, poses: Array, twists: Array
+    ) -> int:
+        """Fill samples after `begin` by steps of dt [s], `every` for a sample, with up to `iterations` of projection.
+
+        Returns the last completed sample; at the next one only numpy can evaluate a contact, or the motion is lost.
+        """
+
+        def call(system: System, sample: int) -> int:
+            return self.functions.fixed_steps(
+                system, self.storage, tableau, iterations, dt, every, sample, poses, twists
+            )
+
+        return self._call_repeatedly(call, begin)
+
+    def adaptive_steps(self, tolerance: float, spacing: float, begin: int, poses: Array, twists: Array) -> int:
+        """Fill samples `spacing` [s] apart by adaptive steps; otherwise as `fixed_steps`."""
+        step_tolerance = max(STEP_SHARE * tolerance, LEAST_STEP_TOLERANCE)
+        self.system.status["accepted_steps"] = 0
+
+        def call(system: System, sample: int) -> int:
+            return self.functions.adaptive_steps(
+                *(system, self.storage, ADAPTIVE_DOP853, PROJECTION_ITERATIONS, step_tolerance, spacing),
+                *(sample, poses, twists),
+            )
+
+        return self._call_repeatedly(call, begin)
+
+    def reactions(self, dt: float, poses: Array, twists: Array) -> tuple[Array, Array]:
+        """Reactions (samples, rows) and accelerations (samples, bodies, 3) of states dt [s] apart; NaN if unknown."""
+        reactions = np.full((len(poses), len(self.positions)), np.nan)
+        accelerations = np.full_like(poses, np.nan)
+
+        def call(system: System, sample: int) -> int:
+            return self.functions.evaluate_samples(
+                system, self.storage, dt, sample, poses, twists, reactions, accelerations
+            )
+
+        if len(poses):
+            self._call_repeatedly(call, 0)
+        return reactions[:, self.positions], accelerations[:, :-3].reshape(len(poses), -1, 3)
+
+    def _call_repeatedly(self, call: Callable[[System, int], int], begin: int) -> int:
+        """Call from the last completed sample, as long as the window of a missing contact can be moved."""
+        status = self.system.status
+        done, moves = begin, 0
+        while True:
+            status["missing_roll"] = -1
+            before, done = done, call(self.system._replace(cells=self.windows.cells), done)
+            moves = moves + 1 if done == before else 0
+            roll = int(status["missing_roll"])
+            if roll < 0 or moves > MOST_MOVES or not self.windows.move(roll, float(status["missing_angle"])):
+                return done
+
+
+@cache
+def compile_functions(adaptive: bool) -> None:
+    """Compile the functions of a run, or read their machine code: ten seconds of CPU time at first."""
+    model = CompiledModel.of(Mechanism((Body("body", 1.0, 1.0, (0.0, 0.0, 0.0)),), ()))
+    if model is None:
+        return
+    poses, twists = model.empty_samples(1)
+    if adaptive:
+        model.adaptive_steps(1e-3, 1.0, 0, poses, twists)
+    else:
+        model.fixed_steps(NONE, 0, 1.0, 1, 0, poses, twists)
+    model.reactions(1.0, poses, twists)
