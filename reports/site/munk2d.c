@@ -1,6 +1,6 @@
-// One call that builds a space from numbers, steps it and records poses and twists: all that the page asks of Munk2D.
+// One function for the page: it builds a space from numbers, steps it and records poses and twists.
 // The numbers are those of reports/site/live/models.py: gravity (2), collision slop and bias, the number of bodies,
-// how it is swept, the bodies, and records of joints, shapes and of what is done by hand around each step. Velocities are per second;
+// settings of the solver, the bodies, and records of joints, shapes and of code of ours around each step. Velocities are per second;
 // the space counts time in `unit` seconds, as the adapter's model does.
 
 #include "chipmunk/chipmunk_private.h"
@@ -31,7 +31,7 @@ static void add_joint(World *world, cpConstraint *joint, double error_bias)
     world->joints[world->joint_count++] = cpSpaceAddConstraint(world->space, joint);
 }
 
-// Every shape sees only those of its own category: the two of one rolling contact.
+// A shape collides only with shapes of its own category: the two shapes of one rolling contact.
 static void add_shape(World *world, cpShape *shape, const double *own)
 {
     cpShapeSetFriction(shape, own[1]);
@@ -64,7 +64,7 @@ static void add_record(World *world, int part, const double *own, int numbers, d
     }
 }
 
-// A groove laid under the blade where it will stand after the drift; as AimedGroove in engines/pymunk/joints/slide.py.
+// A groove under the place of the blade after the step; as AimedGroove in engines/pymunk/joints/slide.py.
 static void aim(World *world, const double *own, double dt)
 {
     cpBody *body = world->bodies[(int)own[0]];
@@ -76,7 +76,7 @@ static void aim(World *world, const double *own, double dt)
     cpGrooveJointSetGrooveB(groove, cpv(x + own[4] * cos(angle), y + own[4] * sin(angle)));
 }
 
-// The velocity across the blade taken away; as Zeroed in engines/pymunk/joints/slide.py.
+// Set the velocity across the blade to zero; as Zeroed in engines/pymunk/joints/slide.py.
 static void zero(World *world, const double *own)
 {
     cpBody *body = world->bodies[(int)own[0]];

@@ -218,7 +218,7 @@ def test_the_engines_in_the_page_give_what_python_gives(running, lesson, word, g
             assert name in found["lost"]
             continue
         if name in found["lost"]:
-            assert re.search("by code of ours in Python|writes rows while it steps", found["lost"][name])
+            assert re.search("needs Python code in every step|writes rows while it steps", found["lost"][name])
             continue
         page = np.reshape(np.array(found["motions"][name]["pose"], dtype=float), python.pose.shape)
         lost = np.isnan(page)  # MuJoCo started anew, or a motion blew up: what follows is no motion
@@ -283,7 +283,7 @@ def test_a_joint_is_taken_by_hand_and_the_linkage_stays_closed(opened):
     page.mouse.down()
     page.mouse.move(pin["x"] + 40, pin["y"] + 30, steps=5)
     page.mouse.up()
-    page.wait_for_function("document.querySelector('.status').textContent.includes('finds the exact motion itself')")
+    page.wait_for_function("document.querySelector('.status').textContent.includes('computes this exact motion itself')")
     held = page.evaluate("window.crosscheck.setting().start")
     assert np.abs(DrivenFourBar().mechanism().gap(np.reshape(held, (3, 3)), 0.0)[:8]).max() < 1e-9
 

@@ -7,11 +7,11 @@ const HEIGHT = 150;
 const LEFT = 62;
 const BOTTOM = 30;
 const TOP = 20;
-const FLOOR = 1e-16; // below rounding nothing is drawn
+const FLOOR = 1e-16; // errors below rounding are not drawn
 
 /** @typedef {{name: string, mark: number, values: ArrayLike<number>}} Line */
 
-/** How wide a chart is in its place: letters are as large on a phone as elsewhere. @param {Element} place */
+/** Return the width of a chart for its element, so that letters have the same size on all screens. @param {Element} place */
 const widthIn = (place) => Math.min(WIDEST, Math.max(NARROWEST, place.clientWidth || WIDEST));
 
 /** @param {string} tag @param {Record<string, string|number>} attributes @param {string} [text] */
@@ -25,7 +25,7 @@ export function svg(tag, attributes, text) {
 /** @typedef {"angle"|"position"} Measure */
 const MEASURES = { angle: "largest error of an angle [rad]", position: "largest error of a place [m]" };
 
-/** Draw lines over time; what is returned moves the mark of the present instant.
+/** Draw lines over time. Returns a function that moves the mark of the present instant.
  * @param {Element} place @param {ArrayLike<number>} t @param {Line[]} lines @param {Measure} measure
  * @returns {(time: number) => void} */
 export function errorChart(place, t, lines, measure) {
@@ -34,7 +34,7 @@ export function errorChart(place, t, lines, measure) {
   const positive = lines.flatMap((line) => Array.from(line.values).filter((v) => v > FLOOR && Number.isFinite(v)));
   if (!positive.length) return () => {};
   const high = Math.ceil(Math.log10(Math.max(...positive)));
-  // The first instants would take half of the scale: what nine in ten values are above is shown.
+  // The scale covers nine of ten values: the first instants alone would take half of it.
   const tenth = positive.sort((a, b) => a - b)[Math.floor(positive.length / 10)];
   const low = Math.min(high - 1, Math.max(Math.floor(Math.log10(tenth)), high - 9));
   const last = t[t.length - 1];
@@ -49,7 +49,7 @@ export function errorChart(place, t, lines, measure) {
     chart.append(svg("line", { class: "axis", x1: LEFT, x2: width - 12, y1: y(power), y2: y(power) }));
     chart.append(svg("text", { x: LEFT - 8, y: y(power) + 4, "text-anchor": "end" }, `1e${power}`));
   }
-  const parts = width < 400 ? 2 : 4; // numbers that have room beside each other
+  const parts = width < 400 ? 2 : 4; // number of labels that fit
   for (let part = 0; part <= parts; part++) {
     const time = first + ((last - first) * part) / parts;
     const text = `${Number(time.toPrecision(3))}${part === parts ? " s" : ""}`;

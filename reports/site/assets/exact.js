@@ -1,8 +1,8 @@
 // @ts-check
-/** The exact motion where the page has to find it itself: ideal pins, slots of the ground and drives, by multipliers.
+/** The exact motion of ideal pins, slots of the ground and drives, by Lagrange multipliers.
  *
- * M a = f + J' l, J a = -J. v, solved for l; classical Runge-Kutta, and after each step the nearest pose and velocity
- * that the joints allow, in the metric of the masses. tests/reports/test_site_in_browser.py holds it to the reference. */
+ * M a = f + J' l, J a = -J. v, solved for l; the classical Runge-Kutta method, and after each step a projection onto the
+ * joints in the metric of the masses. tests/reports/test_site_in_browser.py compares it with the reference. */
 
 import { placed } from "./motion.js";
 
@@ -12,15 +12,15 @@ import { placed } from "./motion.js";
 /** @typedef {{columns: number[], gap: number, rate: number, bias: number}} Row one equation: J v = rate, J a = bias */
 
 const STEP = 5e-4; // s, at most
-const ROUNDS = 3; // of Newton's method after a step, from a pose that is wrong by the step's error alone
+const ROUNDS = 3; // of Newton's method after a step, whose start differs by the error of the step
 
-/** Where a point of a body is from its centre, in the world; a point of the ground. @param {ArrayLike<number>} pose @param {number} body @param {number[]} point */
+/** Return the vector from the centre of a body to its point, in world directions; for the ground the point itself. @param {ArrayLike<number>} pose @param {number} body @param {number[]} point */
 function arm(pose, body, point) {
   return body < 0 ? [0, 0] : placed([0, 0, pose[3 * body + 2]], point);
 }
 
-/** The equations of all joints at a pose. @param {Pick<Mechanism, "joints"|"drives">} mechanism @param {ArrayLike<number>} pose
- * @param {ArrayLike<number>} twist @param {number[]|null} offsets of drives [rad]; null: they are left out @returns {Row[]} */
+/** Return the equations of all joints at a pose. @param {Pick<Mechanism, "joints"|"drives">} mechanism @param {ArrayLike<number>} pose
+ * @param {ArrayLike<number>} twist @param {number[]|null} offsets of drives [rad]; null: without drives @returns {Row[]} */
 export function rows(mechanism, pose, twist, offsets) {
   const width = pose.length;
   const found = [];
@@ -54,7 +54,7 @@ export function rows(mechanism, pose, twist, offsets) {
   return found;
 }
 
-/** Multipliers l with J W J' l + c l = right, by Cholesky; the change W J' l. @param {Row[]} equations @param {number[]} weights
+/** Solve J W J' l + c l = right by Cholesky's method. Returns the change W J' l. @param {Row[]} equations @param {number[]} weights
  * the inverse of the metric @param {number[]} right @param {number[]} [soft] c of each row */
 function pushed(equations, weights, right, soft) {
   const size = equations.length;
@@ -81,7 +81,7 @@ function pushed(equations, weights, right, soft) {
 /** @param {Mechanism} mechanism */
 const inverse = ({ inertia }) => inertia.map((value) => 1 / value);
 
-/** Move to the nearest pose that the joints allow. @param {Mechanism} mechanism @param {Float64Array} pose @param {number[]|null} offsets @param {number} rounds */
+/** Project a pose onto the joints. @param {Mechanism} mechanism @param {Float64Array} pose @param {number[]|null} offsets @param {number} rounds */
 function close(mechanism, pose, offsets, rounds) {
   for (let round = 0; round < rounds; round++) {
     const equations = rows(mechanism, pose, pose, offsets);
@@ -89,7 +89,7 @@ function close(mechanism, pose, offsets, rounds) {
   }
 }
 
-/** The nearest velocities that the joints allow. @param {Mechanism} mechanism @param {Float64Array} pose @param {Float64Array} twist @param {number[]} offsets */
+/** Project velocities onto the joints. @param {Mechanism} mechanism @param {Float64Array} pose @param {Float64Array} twist @param {number[]} offsets */
 function steer(mechanism, pose, twist, offsets) {
   const equations = rows(mechanism, pose, twist, offsets);
   const right = equations.map(({ columns, rate }) => rate - columns.reduce((sum, value, k) => sum + value * twist[k], 0));
@@ -105,7 +105,7 @@ function acceleration(mechanism, pose, twist, offsets) {
   return { forces, change: change.map((by, k) => free[k] + by) };
 }
 
-/** Drag a point of a body towards a place: the nearest pose on the present branch, drives let loose.
+/** Drag a point of a body towards a place: return the nearest pose on the present branch, without drives.
  * @param {Mechanism} mechanism @param {ArrayLike<number>} pose @param {number} body @param {number[]} point @param {number[]} wanted */
 export function dragged(mechanism, pose, body, point, wanted) {
   const found = Float64Array.from(pose);
@@ -115,7 +115,7 @@ export function dragged(mechanism, pose, body, point, wanted) {
     const equations = rows(mechanism, found, found, null);
     const fixed = equations.length;
     const own = arm(found, body, point);
-    // A step of the hand is short, so that the pose stays on its branch.
+    // Short steps keep the pose on its branch.
     const away = [wanted[0] - found[3 * body] - own[0], wanted[1] - found[3 * body + 1] - own[1]];
     const shorter = Math.min(1, (0.1 * size) / (Math.hypot(...away) || 1));
     for (const axis of [0, 1]) {
@@ -131,7 +131,7 @@ export function dragged(mechanism, pose, body, point, wanted) {
   return rows(mechanism, found, found, null).every(({ gap }) => Math.abs(gap) < 1e-9 * size) ? found : Float64Array.from(pose);
 }
 
-/** The mechanism let go at a pose: at rest, but for what is driven. @param {Mechanism} mechanism @param {ArrayLike<number>} pose @returns {Mechanism} */
+/** Return the mechanism released at a pose: at rest, apart from drives. @param {Mechanism} mechanism @param {ArrayLike<number>} pose @returns {Mechanism} */
 export function released(mechanism, pose) {
   const [place, twist] = [Float64Array.from(pose), new Float64Array(pose.length)];
   const offsets = offsetsOf(mechanism, place);
@@ -139,14 +139,14 @@ export function released(mechanism, pose) {
   return { ...mechanism, pose: [...place], twist: [...twist] };
 }
 
-/** Relative angles of drives at a pose. @param {Pick<Mechanism, "drives">} mechanism @param {ArrayLike<number>} pose */
+/** Return the relative angles of drives at a pose. @param {Pick<Mechanism, "drives">} mechanism @param {ArrayLike<number>} pose */
 function offsetsOf({ drives }, pose) {
   const angle = (/** @type {number} */ body) => (body < 0 ? 0 : pose[3 * body + 2]);
   return drives.map(({ first, second }) => angle(second) - angle(first));
 }
 
-/** Poses and twists at so many intervals of `spacing` [s] and the forces of joints on their second bodies there [N]; in
- * steps of STEP or less, `finer` times as many. @param {Mechanism} mechanism @param {number} samples @param {number} spacing @param {number} finer */
+/** Return poses and twists at `samples` intervals of `spacing` [s], and the forces of joints on their second bodies [N],
+ * by steps of STEP / `finer` or less. @param {Mechanism} mechanism @param {number} samples @param {number} spacing @param {number} finer */
 export function motion(mechanism, samples, spacing, finer = 1) {
   const width = mechanism.inertia.length;
   const pose = Float64Array.from(mechanism.pose);

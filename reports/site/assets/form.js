@@ -1,5 +1,5 @@
 // @ts-check
-/** The controls of a lesson: what they stand for, the numbers in the text that move them, and the link that holds them. */
+/** The controls of a lesson, the numbers in the text that move them, and the link that stores them. */
 
 /** @typedef {import("./live_data.js").Setting} Setting */
 
@@ -23,7 +23,7 @@ export class Form {
     return Number(this.choice.value);
   }
 
-  /** A slider of the present scene, or of an engine. @param {string} name */
+  /** Return a slider of the present scene or of an engine. @param {string} name */
   input(name) {
     const own = `${this.index}.${name}`;
     return this.inputs.find((input) => input.name === own) ?? this.inputs.find((input) => input.name === name);
@@ -34,23 +34,23 @@ export class Form {
     return Number(this.input(name)?.value ?? 0);
   }
 
-  /** What a slider stands for. @param {string} name */
+  /** Return the value of a slider. @param {string} name */
   value(name) {
     return JSON.parse(this.input(name)?.dataset.values ?? "[null]")[this.place(name)];
   }
 
-  /** What is written beside a slider. @param {string} name */
+  /** Return the label of a slider's value. @param {string} name */
   words(name) {
     return JSON.parse(this.input(name)?.dataset.words ?? '[""]')[this.place(name)];
   }
 
-  /** What of an engine's own settings is not as the method has it. @param {string} engine */
+  /** Return texts of the settings of an engine that differ from those of the method. @param {string} engine */
   changed(engine) {
     const own = this.inputs.filter((input) => input.closest("fieldset")?.dataset.engine === engine && input.value !== input.defaultValue && !input.disabled);
     return own.map(({ name }) => `${(this.input(name)?.closest("label")?.dataset.name ?? name)} ${this.words(name)}`);
   }
 
-  /** The present places of all sliders. @param {number[]|null} start @returns {Setting} */
+  /** Return the present positions and values of all sliders. @param {number[]|null} start @returns {Setting} */
   setting(start) {
     const { key, fields } = this.scenes[this.index];
     const place = fields.reduce((/** @type {number} */ sum, /** @type {string} */ name) => sum * (Number(this.input(name)?.max) + 1) + this.place(name), 0);
@@ -62,12 +62,12 @@ export class Form {
     };
   }
 
-  /** The sliders of the present scene and of the engines. */
+  /** Return the sliders of the present scene and of the engines. */
   shown() {
     return this.inputs.filter(({ name }) => !name.includes(".") || name.startsWith(`${this.index}.`));
   }
 
-  /** Write beside each slider, and in the text, what it stands for; what acts on nothing here can't be moved. @param {string[]} idle */
+  /** Write the value of each slider beside it and in the text; disable the sliders without an effect here. @param {string[]} idle */
   label(idle) {
     for (const group of this.form.querySelectorAll("fieldset[data-scene]")) {
       if (group instanceof HTMLElement) group.hidden = group.dataset.scene !== this.choice.value;
@@ -75,7 +75,7 @@ export class Form {
     for (const input of this.shown()) {
       const name = input.name.split(".").at(-1) ?? "";
       input.disabled = idle.includes(name);
-      const text = input.disabled ? "acts on nothing here" : this.words(name);
+      const text = input.disabled ? "no effect here" : this.words(name);
       const output = input.closest("label")?.querySelector(".value");
       if (output) output.textContent = text;
       input.setAttribute("aria-valuetext", text);
@@ -90,7 +90,7 @@ export class Form {
     }
   }
 
-  /** A number in the text: dragged to either side, or moved by the arrow keys, it moves its slider. @param {HTMLElement} number */
+  /** Make a number in the text move its slider: by dragging it to either side, or by the arrow keys. @param {HTMLElement} number */
   draggable(number) {
     const part = /** @type {HTMLElement|null} */ (number.closest(".part"));
     const to = (/** @type {number} */ place) => {
@@ -121,7 +121,7 @@ export class Form {
     });
   }
 
-  /** Another scene, its sliders at places, the others as they come. @param {number} scene @param {Record<string, number>} places */
+  /** Choose a scene and positions of its sliders; the others get their start positions. @param {number} scene @param {Record<string, number>} places */
   move(scene, places) {
     this.choice.value = String(scene);
     for (const input of this.shown()) input.value = input.defaultValue;
@@ -131,12 +131,12 @@ export class Form {
     }
   }
 
-  /** The link that holds the sliders. */
+  /** Return the link that stores the sliders. */
   get link() {
     return `${LINK}${[`scene=${this.index}`, ...this.shown().filter(({ value, defaultValue }) => value !== defaultValue).map(({ name, value }) => `${name}=${value}`)].join("&")}`;
   }
 
-  /** The sliders as a link has them; what a link has wrong is left alone. @param {string} link */
+  /** Set the sliders from a link; invalid parts of a link are ignored. Returns whether it is such a link. @param {string} link */
   restore(link) {
     if (!link.startsWith(LINK)) return false;
     const given = link.slice(LINK.length).split("&").map((part) => part.split("=")).filter(([, value]) => /^\d+$/.test(value ?? ""));

@@ -1,5 +1,5 @@
 // @ts-check
-/** A magnifier on one joint: how it opens in each engine, and how one step of pymunk sweeps over the joints. */
+/** A magnifier on one joint: its gap in each engine, and the iterations of one step of pymunk. */
 
 import { svg } from "./chart.js";
 import { rows } from "./exact.js";
@@ -8,7 +8,7 @@ import { ends, slip, told } from "./motion.js";
 /** @typedef {import("./motion.js").Take} Take */
 /** @typedef {{pose: Float64Array, twist: Float64Array, impulses: Float64Array, left: number}} Sweep */
 
-const SIZE = 200; // of the picture, whose middle is the pin of the ideal joint
+const SIZE = 200; // of the picture, whose centre is the ideal joint
 const TRAIL = 12; // frames
 
 export class Lens {
@@ -52,7 +52,7 @@ export class Lens {
     this.scale();
   }
 
-  /** The largest opening of a joint in this motion. @param {number} index */
+  /** Return the largest gap of a joint in this motion. @param {number} index */
   most(index) {
     const { take, joints } = this;
     let most = 0;
@@ -62,7 +62,7 @@ export class Lens {
     return most;
   }
 
-  /** How much larger the joint is drawn: its largest opening fills the picture. */
+  /** Return the magnification at which the largest gap fills the picture. */
   scale() {
     const most = this.most(Number(this.choice.value));
     this.factor = most > 0 ? (0.42 * SIZE) / most : 0;
@@ -101,14 +101,15 @@ export class Lens {
     this.words.textContent = `${joint.unit === "m" ? "Open" : "Slips"} by: ${remarks.join(", ")}${times}.`;
   }
 
-  /** How large a metre is drawn in the picture above, in the units of this one. */
+  /** Return the length of a metre of the main picture in units of this one. */
   get drawn() {
     const stage = /** @type {SVGGraphicsElement|null} */ (this.place.closest("figure")?.querySelector("svg.stage .world"));
     const own = this.picture.clientWidth / SIZE;
     return stage && own ? Math.abs(stage.getScreenCTM()?.a ?? 0) / own : 0;
   }
 
-  /** One sweep of a step: what it adds to each joint's impulse and by what the joint still opens; which sweep it is.
+  /** Fill the table with one iteration of a step: the impulse that it adds to each joint, and the opening velocity left.
+   * Returns the caption.
    * @param {{found: Sweep[], whole: number, which: number[], step: number}} step @param {number} number from 0 @param {Element} table */
   sweep({ found, whole, which, step }, number, table) {
     const { take } = this;
@@ -126,18 +127,18 @@ export class Lens {
       row.insertCell().append(bar);
       return row;
     }));
-    return `One step of pymunk, ${told(1000 * step)} ms long, after sweep ${number + 1} of ${whole}:`;
+    return `One step of pymunk, ${told(1000 * step)} ms long, after iteration ${number + 1} of ${whole}:`;
   }
 }
 
-/** The speed with which a joint opens beyond what the solver asks for [m/s]. @param {import("./motion.js").Joint} joint
+/** Return the velocity at which a joint opens beyond the solver's target [m/s]. @param {import("./motion.js").Joint} joint
  * @param {Sweep} sweep @param {number} step */
 function remaining(joint, { pose, twist, left }, step) {
   const equations = rows({ joints: [joint], drives: [] }, pose, twist, null);
   return Math.hypot(...equations.map(({ columns, gap }) => ((1 - left) / step) * gap + columns.reduce((sum, value, k) => sum + value * twist[k], 0)));
 }
 
-/** A line between two points, drawn as a spring if it is one. @param {number} x1 @param {number} y1 @param {number} x2 @param {number} y2 @param {boolean} spring */
+/** Return a line between two points, as a zigzag for a spring. @param {number} x1 @param {number} y1 @param {number} x2 @param {number} y2 @param {boolean} spring */
 function zigzag(x1, y1, x2, y2, spring) {
   const points = spring ? 12 : 1;
   const length = Math.hypot(x2 - x1, y2 - y1) || 1;

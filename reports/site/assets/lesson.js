@@ -1,5 +1,5 @@
 // @ts-check
-/** A lesson: one stage for all of its experiments, guesses, numbers that can be dragged, and the engines in a worker. */
+/** A lesson: one picture for all experiments, questions, numbers that can be dragged, and the engines in a worker. */
 
 import { svg } from "./chart.js";
 import { dragged } from "./exact.js";
@@ -31,7 +31,7 @@ let shown = null;
 /** @type {number[]|null} the pose at which the reader let go */
 let start = null;
 /** @type {{setting: Setting, play: boolean, ways: Record<string, string>}|null} what is wanted next: of settings that wait,
- * the last one, with what each engine's way is called */
+ * the last one, with the label of each engine's method */
 let waiting = null;
 let busy = false;
 
@@ -43,7 +43,7 @@ function ask(message) {
   });
 }
 
-/** The worker, and in it the engines, once the page needs them. */
+/** Start the worker, which loads the engines, when the page needs them first. */
 function load() {
   if (worker) return;
   const base = new URL(root.dataset.folder ?? "", document.baseURI).href;
@@ -56,7 +56,7 @@ function load() {
   };
   worker.onerror = (event) => failed(new Error(event.message ?? "the worker could not start"));
   ask({ kind: "load", folder: base, packages: `${base}packages/`, wanted: (root.dataset.engines ?? "").split(" ") }).catch(failed);
-  find(".status").textContent = "The engines are being loaded.";
+  find(".status").textContent = "Loading the engines.";
 }
 
 /** @param {unknown} reason */
@@ -64,7 +64,7 @@ function failed(reason) {
   find(".status").textContent = `The engines could not be run: ${reason instanceof Error ? reason.message : reason}`;
 }
 
-/** Show what the form says; while one runs, of those that follow the last one wins. @param {boolean} play */
+/** Run the settings of the form; while a run lasts, later requests replace each other. @param {boolean} play */
 function run(play) {
   const ways = Object.fromEntries(Object.keys(NAMES).map((name) => [name, [form.words(name), ...form.changed(name)].join(", ")]));
   waiting = { setting: form.setting(start), play, ways };
@@ -85,7 +85,7 @@ async function next() {
   if (waiting) requestAnimationFrame(next);
 }
 
-/** The drawing of a place of the sliders: bodies of each run, and of the truth over them. @param {Answer} answer */
+/** Return the drawing at a position of the sliders: the bodies of each run, and those of the exact motion over them. @param {Answer} answer */
 function stage({ drawing, motions }) {
   const bodies = drawing.bodies.map((/** @type {string} */ shape) => `<g class="body">${shape}</g>`).join("");
   const kinds = [...motions.map((/** @type {any} */ { name }) => `method method-${MARKS[name]}`), "truth"];
@@ -96,7 +96,7 @@ function stage({ drawing, motions }) {
   );
 }
 
-/** The path of a body's point. @param {ArrayLike<number>} pose @param {number} bodies @param {number} body @param {number[]} point */
+/** Return the path of a body's point. @param {ArrayLike<number>} pose @param {number} bodies @param {number} body @param {number[]} point */
 function pathOf(pose, bodies, body, point) {
   let path = "";
   for (let at = 3 * body; at < pose.length; at += 3 * bodies) {
@@ -142,24 +142,24 @@ function show(answer, play, ways) {
   }
 }
 
-/** What MuJoCo's loop is, by its own numbers. @param {any} spring @param {Answer} answer */
+/** Return a sentence on the spring that closes MuJoCo's loop. @param {any} spring @param {Answer} answer */
 function springWords(spring, { joints, blades, motions, forces }) {
   if (!(joints.length + blades.length) || !motions.some((/** @type {any} */ { name }) => name === "mujoco")) return "";
   const contact = blades.length || forces.some((/** @type {any} */ each) => each.contact);
-  if (!spring) return contact ? "" : "MuJoCo needs no spring here: its joints are hinges of a tree, which can't open.";
-  const [k, b, impedance] = spring; // of a unit of inertia: 1/s^2, 1/s, 1
-  return `MuJoCo holds this ${contact ? "contact" : "loop"} by a spring and a damper: a gap dies out in about ${told(2000 / b)} ms, and of an acceleration a that opens it (1 − d)/(d k) a stays: ${told((1 - impedance) / (impedance * k) * 1e6)} µm for each m/s².`;
+  if (!spring) return contact ? "" : "MuJoCo needs no spring here: its joints are hinges of a tree, which cannot open.";
+  const [k, b, impedance] = spring; // stiffness [1/s^2] and damping [1/s] for a unit of inertia, impedance [1]
+  return `MuJoCo enforces this ${contact ? "contact" : "loop"} by a spring and a damper: a gap decays in about ${told(2000 / b)} ms, and an acceleration a that opens it leaves a gap of (1 − d)/(d k) a: ${told((1 - impedance) / (impedance * k) * 1e6)} µm for each m/s².`;
 }
 
 /** @param {Answer} answer */
 function statusOf({ exact, motions, versions, release }) {
-  const missed = exact.missed === null ? "" : `Here the page finds the exact motion itself, to ${told(Math.max(exact.missed, 1e-15))} m or rad. `;
+  const missed = exact.missed === null ? "" : `The page computes this exact motion itself, with an error of at most ${told(Math.max(exact.missed, 1e-15))} m or rad. `;
   const apart = motions.filter((/** @type {any} */ each) => each.apart !== null).map((/** @type {any} */ { name, apart: by }) =>
-    `${NAMES[name]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python are at most ${told(by)} m or rad apart.`);
+    `${NAMES[name]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python differ by at most ${told(by)} m or rad.`);
   return missed + apart.join(" ");
 }
 
-/** One part of the lesson on the stage. @param {HTMLElement} part @param {"before"|"after"} which @param {boolean} play */
+/** Show one part of the lesson in the picture. @param {HTMLElement} part @param {"before"|"after"} which @param {boolean} play */
 function stageOf(part, which, play) {
   start = null;
   const { scene, before, after, shown: on } = part.dataset;
@@ -170,7 +170,7 @@ function stageOf(part, which, play) {
   run(play);
 }
 
-/** A guess is made: run it before and after, tell both errors, and why. @param {HTMLElement} part @param {HTMLElement} button */
+/** Answer a guess: run the settings before and after the change, show both errors and the explanation. @param {HTMLElement} part @param {HTMLElement} button */
 async function guessed(part, button) {
   for (const each of part.querySelectorAll(".answers button")) {
     each.classList.toggle("chosen", each === button);
@@ -203,7 +203,7 @@ function compared(before, after) {
   }).join(" ");
 }
 
-/** What the reader changes by hand is kept in the address; what the page shows by itself is not. */
+/** Store in the address what the reader changes; changes by the page itself are not stored. */
 function changed() {
   history.replaceState(history.state, "", form.link);
   run(true);
@@ -238,7 +238,7 @@ function begin() {
     }
     find(".sweeps").hidden = false;
     find(".sweeps .which").textContent = lens.sweep(sweep, ++at, find(".sweeps tbody"));
-    find(".next").textContent = at >= sweep.found.length - 1 ? "again from sweep 1" : "next sweep";
+    find(".next").textContent = at >= sweep.found.length - 1 ? "again from iteration 1" : "next iteration";
   });
   /** @type {Float64Array|null} */
   let held = null;
@@ -252,11 +252,11 @@ function begin() {
     held = null;
     run(true);
   });
-  // The first experiment that is read is shown; the engines are loaded when it comes near.
+  // The picture shows the part that is being read; the engines are loaded for the first one.
   const linked = form.restore(location.hash);
   const parts = [...root.querySelectorAll(".part")];
   if (linked) run(false);
-  let moved = linked; // until the reader has passed the parts that the link opened the page at, of which there may be two
+  let moved = linked; // until the reader leaves the parts at which the link has opened the page
   const looking = new IntersectionObserver((entries) => {
     const near = entries.filter(({ target, isIntersecting }) => isIntersecting && !target.classList.contains("shown"));
     for (const { target } of moved ? [] : near) {

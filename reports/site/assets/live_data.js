@@ -1,11 +1,11 @@
 // @ts-check
-/** What a worker loads of its scenes: models, truth and drawings at every place of the sliders. */
+/** The data of scenes: models, exact motions and drawings at every position of the sliders. */
 
 import { motion, released } from "./exact.js";
 
 /**
  * @typedef {{text: string, bodies: number[], links: number[][], idle: string[]}} Text
- * @typedef {{numbers: string, idle: string[], impulses: number[]}} Plan
+ * @typedef {{numbers: string, idle: string[], impulses: number[]}} Space
  * @typedef {{why: string, idle: string[]}} Missing
  * @typedef {{box: string, ground: string, bodies: string[], size: number}} Drawing
  * @typedef {{equations: Omit<import("./exact.js").Mechanism, "joints">|null, truth: string|null, drawing: Drawing,
@@ -13,16 +13,16 @@ import { motion, released } from "./exact.js";
  *   blades: import("./motion.js").Blade[], traces: {body: number, point: number[]}[]}} Place
  * @typedef {"munk"|"mujoco"} Name
  * @typedef {{measure: "angle"|"position", frames: number, window: [number, number], duration: number, bodies: string[],
- *   centre: number|null, places: Place[], mujoco: ({models: Text[][]}|Missing)[], munk: ({models: Plan[][]}|Missing)[],
+ *   centre: number|null, places: Place[], mujoco: ({models: Text[][]}|Missing)[], munk: ({models: Space[][]}|Missing)[],
  *   native: Record<Name, (string[]|null)[]>, versions: Record<Name, string>}} Scene
  * @typedef {{key: string, place: number, stepPlace: number, steps: number, munk: number, mujoco: number,
  *   integrator: number|null, timeConstant: number|null, impedance: number|null, solverIterations: number|null,
  *   tolerance: number|null, iterations: number|null, bias: number|null, start: number[]|null, own: boolean}} Setting
- *   what the page asks for; start: poses at which the reader let go; own: whether all is as in the scene but the ways
+ *   the settings of a run; start: poses at which the reader released the mechanism; own: whether only methods were changed
  * @typedef {Setting & {scene: Scene, at: Place, every: number, samples: number, step: number}} Run
  */
 
-/** Doubles as the site wrote them: base64, the lowest byte first. @param {string} text */
+/** Parse doubles: base64, little-endian. @param {string} text */
 export function doubles(text) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   return new Float64Array(bytes.buffer);
@@ -34,13 +34,13 @@ export function runOf(setting, scene) {
   return { ...setting, scene, at: scene.places[setting.place], every, samples: setting.steps / every, step: scene.duration / setting.steps };
 }
 
-/** What an engine is given, or why it can't run what is chosen. @param {Run} run @param {Name} engine @returns {any} */
+/** Return the model of an engine for the chosen settings, or the reason why it cannot run them. @param {Run} run @param {Name} engine @returns {any} */
 export function modelOf({ scene, place, stepPlace, ...run }, engine) {
   const way = scene[engine][run[engine]];
   return "why" in way ? way : way.models[place][Math.min(stepPlace, way.models[place].length - 1)];
 }
 
-/** The equations of a pinned linkage, from where the reader let it go; null where it is no such linkage.
+/** Return the equations of a pinned linkage, from the pose at which the reader released it; null for other mechanisms.
  * @param {Run} run @returns {import("./exact.js").Mechanism|null} */
 export function mechanismOf(run) {
   const { at: { equations, joints }, start } = run;
@@ -48,8 +48,8 @@ export function mechanismOf(run) {
   return start ? released({ ...equations, joints }, start) : { ...equations, joints };
 }
 
-/** The exact motion at the samples: as the reference computed it, or else by the page. `missed`: by how much the page's
- * own moves when its steps are halved. @param {Run} run
+/** Return the exact motion at the samples, from the reference or computed by the page. `missed`: the change of the
+ * page's motion when its steps are halved. @param {Run} run
  * @returns {{pose: Float64Array, twist: Float64Array, forces: import("./motion.js").Force[], missed: number|null}} */
 export function truth(run) {
   const { scene, at, start, samples } = run;
@@ -67,7 +67,7 @@ export function truth(run) {
   return { ...found, missed: found.pose.reduce((most, value, index) => Math.max(most, Math.abs(value - rough.pose[index])), 0) };
 }
 
-/** Poses and twists apart. @param {ArrayLike<number>[]} states of every sample, six numbers a body */
+/** Split states into poses and twists. @param {ArrayLike<number>[]} states of every sample, six numbers a body */
 export function split(states) {
   const half = (/** @type {boolean} */ first) => Float64Array.from(states.flatMap((state) => Array.from(state).filter((_, index) => index % 6 < 3 === first)));
   return { pose: half(true), twist: half(false) };

@@ -1,15 +1,15 @@
 // @ts-check
-/** The engines themselves: MuJoCo and Munk2D in WebAssembly, run as the Python adapters run them. */
+/** The engines MuJoCo and Munk2D in WebAssembly, run as by the Python adapters. */
 
 import { doubles, mechanismOf, modelOf, split, truth } from "./live_data.js";
 
 /** @typedef {import("./live_data.js").Run} Run
- * @typedef {import("./live_data.js").Text} Text @typedef {import("./live_data.js").Plan} Plan */
+ * @typedef {import("./live_data.js").Text} Text @typedef {import("./live_data.js").Space} Space */
 
-const HEAD = 8; // numbers of a plan before its bodies, see live/models.py
+const HEAD = 8; // count of numbers before the bodies, see live/models.py
 const BODY = 11; // numbers of a body
 
-/** Poses and twists at the samples by MuJoCo, and the spring that its first row is at the end. @param {any} mujoco @param {Run} run */
+/** Return poses and twists at the samples by MuJoCo, and the spring of its first constraint row at the end. @param {any} mujoco @param {Run} run */
 export function runMujoco(mujoco, run) {
   const told = /** @type {Text} */ (modelOf(run, "mujoco"));
   const model = mujoco.MjModel.from_xml_string(told.text);
@@ -26,7 +26,7 @@ export function runMujoco(mujoco, run) {
   }
 }
 
-/** The sliders of MuJoCo; what is null stays as the method has it. @param {any} model @param {Run} run */
+/** Apply the sliders of MuJoCo; null keeps the value of the method. @param {any} model @param {Run} run */
 function set(model, run) {
   const { opt } = model;
   opt.timestep = run.step;
@@ -42,7 +42,7 @@ function set(model, run) {
   }
 }
 
-/** Start where the reader let go: hinges and slides from the poses of bodies. @param {Run} run @param {Text} told @param {any} data */
+/** Start at the pose of release: hinges and slides from the poses of bodies. @param {Run} run @param {Text} told @param {any} data */
 function begin(run, told, data) {
   const now = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
   const old = /** @type {import("./exact.js").Mechanism} */ (mechanismOf({ ...run, start: null }));
@@ -64,9 +64,9 @@ function begin(run, told, data) {
 function states(run, told, mujoco, model, data) {
   const { samples, every, step } = run;
   const compiled = { ...run, start: null };
-  const first = mechanismOf(compiled)?.pose ?? truth(compiled).pose; // models in tree coordinates tell changes of angles
+  const first = mechanismOf(compiled)?.pose ?? truth(compiled).pose; // tree coordinates are changes of angles
   const state = () => {
-    // A step leaves the places and velocities of bodies as they were before it.
+    // After a step, the positions and velocities of bodies in `data` are those before it.
     for (const renew of ["mj_kinematics", "mj_comPos", "mj_comVel"]) mujoco[renew](model, data);
     const { xpos, qpos, cvel, subtree_com: com } = data;
     /** @type {number[]} */
@@ -83,7 +83,7 @@ function states(run, told, mujoco, model, data) {
   const found = [];
   for (let sample = 0; sample <= samples; sample++) {
     for (let count = 0; sample > 0 && count < every; count++) mujoco.mj_step(model, data);
-    // MuJoCo starts anew, its clock too, once numbers grow too large: what follows is no motion of this mechanism.
+    // MuJoCo resets itself, its time too, when numbers become too large: the motion has ended.
     if (!(Math.abs(data.time - sample * every * step) < step / 2)) break;
     found.push(state());
   }
@@ -91,15 +91,15 @@ function states(run, told, mujoco, model, data) {
   return split(found);
 }
 
-/** Poses and twists at the samples by Munk2D; with `last`, after `samples` a step more of so many iterations, and each
- * joint's impulse after it [N s]. @param {any} munk @param {Run} run @param {number} last */
+/** Return poses and twists at the samples by Munk2D; with `last`, one further step with that many iterations, and the
+ * impulse of each joint after it [N s]. @param {any} munk @param {Run} run @param {number} last */
 export function runMunk(munk, run, last = 0) {
-  const plan = doubles(/** @type {Plan} */ (modelOf(run, "munk")).numbers);
+  const plan = doubles(/** @type {Space} */ (modelOf(run, "munk")).numbers);
   const bodies = plan[HEAD - 4];
   if (run.start) place(run, plan);
   const iterations = run.iterations ?? plan[HEAD - 3];
   const bias = run.bias ?? plan[HEAD - 2];
-  // A part of a gap that is left after a step, not after a second, is told in a space whose second is the step.
+  // For a residual gap after a step instead of a second, the space has the step as its unit of time.
   const unit = run.bias === null && plan[HEAD - 1] ? run.step : 1;
   const states_ = run.samples + 1 + (last ? 1 : 0);
   const size = states_ * 6 * bodies + (last ? 2 * plan.length : 0);
@@ -117,7 +117,7 @@ export function runMunk(munk, run, last = 0) {
   }
 }
 
-/** Start where the reader let go. @param {Run} run @param {Float64Array} plan */
+/** Start at the pose of release. @param {Run} run @param {Float64Array} plan */
 function place(run, plan) {
   const { pose, twist } = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
   for (let at = HEAD, body = 0; body < run.scene.bodies.length; at += BODY, body++) {
@@ -125,12 +125,12 @@ function place(run, plan) {
     const [ox, oy] = plan.subarray(at + 9, at + 11);
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
     plan.set([x + c * ox - s * oy, y + s * ox + c * oy, angle], at + 3);
-    // A crank's own motion is a turn about its origin, which is its pin.
+    // A kinematic crank turns about its origin, which is its pin.
     plan.set(plan[at] ? [0, 0, twist[3 * body + 2]] : twist.slice(3 * body, 3 * body + 3), at + 6);
   }
 }
 
-/** From where Munk2D has a body's origin to our own, in place. @param {Float64Array} state @param {Float64Array} plan */
+/** Convert states from Munk2D's origin of a body to ours, in place. @param {Float64Array} state @param {Float64Array} plan */
 function fromOrigins(state, plan) {
   for (let at = HEAD + 9, own = 0; own < state.length; at += BODY, own += 6) {
     const [x, y] = plan.subarray(at, at + 2);
@@ -145,7 +145,7 @@ function fromOrigins(state, plan) {
   return state;
 }
 
-/** The engines that this site has, loaded; null for one that it was built without. @param {string} packages @param {string[]} wanted */
+/** Load the engines of this site; null for one that it was built without. @param {string} packages @param {string[]} wanted */
 export async function load(packages, wanted) {
   const one = async (/** @type {string} */ name, /** @type {object} */ given) => (await import(`${packages}${name}`)).default(given);
   const [mujoco, munk] = await Promise.all([

@@ -1,5 +1,5 @@
 // @ts-check
-/** What can be said of a motion: where points are, how far joints are open, how far it is from the exact one. */
+/** Quantities of a motion: positions of points, gaps of joints, errors against the exact motion. */
 
 /**
  * @typedef {{name: string, first: number, second: number, firstPoint: number[], secondPoint: number[],
@@ -17,7 +17,7 @@
 
 export const UNITS = { angle: "rad", position: "m" };
 
-/** A pose [x, y, angle] at an instant; NaN where there is none.
+/** Return the pose [x, y, angle] at an instant, or NaN.
  * @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frame @param {number} body
  * @returns {[number, number, number]} */
 export function poseAt(pose, bodies, frame, body) {
@@ -26,14 +26,14 @@ export function poseAt(pose, bodies, frame, body) {
   return [read(start), read(start + 1), read(start + 2)];
 }
 
-/** Where a point of a body is, for its pose. @param {number[]} pose @param {number[]} point @returns {Point} */
+/** Return the position of a point of a body at its pose. @param {number[]} pose @param {number[]} point @returns {Point} */
 export function placed([x, y, angle], [a, b]) {
   const cosine = Math.cos(angle);
   const sine = Math.sin(angle);
   return [x + cosine * a - sine * b, y + sine * a + cosine * b];
 }
 
-/** The two points of a pin at an instant, or the point of a slot and the nearest one of its line; a body of -1 is the
+/** Return the two points of a pin at an instant, or the point of a slot and the nearest one of its line; body -1 is the
  * ground.
  * @param {Joint} joint @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frame
  * @returns {[Point, Point]} */
@@ -47,7 +47,7 @@ export function ends(joint, pose, bodies, frame) {
   return [[first[0] + along * Math.cos(angle), first[1] + along * Math.sin(angle)], second];
 }
 
-/** The largest error of an angle [rad] and of a place [m] at every instant; NaN where the method gave up.
+/** Return the largest error of an angle [rad] and of a position [m] at every instant; NaN after a method has failed.
  * @param {ArrayLike<number|null>} truth @param {ArrayLike<number|null>} pose @param {number} bodies
  * @param {number} frames @returns {{angle: Float64Array, position: Float64Array}} */
 export function errors(truth, pose, bodies, frames) {
@@ -59,7 +59,7 @@ export function errors(truth, pose, bodies, frames) {
       const own = poseAt(pose, bodies, frame, body);
       const turned = Math.abs(own[2] - exact[2]);
       const moved = Math.hypot(own[0] - exact[0], own[1] - exact[1]);
-      // NaN has to win: Math.max hands it on.
+      // Math.max returns NaN if a value is NaN.
       angle[frame] = Math.max(angle[frame], turned);
       position[frame] = Math.max(position[frame], moved);
     }
@@ -67,10 +67,10 @@ export function errors(truth, pose, bodies, frames) {
   return { angle, position };
 }
 
-/** Values that charts can have: what blew up is no number. @param {Float64Array} pose */
+/** Replace values that are too large by NaN. @param {Float64Array} pose */
 export const finite = (pose) => pose.map((value) => (Math.abs(value) < 1e6 ? value : NaN));
 
-/** How far apart two motions look at every instant: of bodies, as far as they reach [m]; NaN where one gave up.
+/** Return the visible difference of two motions at every instant [m]; NaN after a method has failed.
  * @param {ArrayLike<number|null>} truth @param {ArrayLike<number|null>} pose @param {number} bodies
  * @param {number} frames @param {number} size */
 export function seen(truth, pose, bodies, frames, size) {
@@ -78,7 +78,7 @@ export function seen(truth, pose, bodies, frames, size) {
   return position.map((moved, frame) => moved + 0.5 * size * Math.sin(Math.min(angle[frame], Math.PI) / 2));
 }
 
-/** The velocity of a body's point that is across a blade there, as a vector [m/s]. @param {Blade} blade
+/** Return the velocity across a blade at its point, as a vector [m/s]. @param {Blade} blade
  * @param {ArrayLike<number>} pose @param {ArrayLike<number>} twist @param {number} bodies @param {number} frame @returns {Point} */
 export function slip({ body, point, angle }, pose, twist, bodies, frame) {
   const [vx, vy, rate] = poseAt(twist, bodies, frame, body);
@@ -89,13 +89,13 @@ export function slip({ body, point, angle }, pose, twist, bodies, frame) {
   return [across * nx, across * ny];
 }
 
-/** The point about which a body turns at an instant, for its pose and twist; null where it does not turn.
+/** Return the instant centre of a body for its pose and twist; null where it does not turn.
  * @param {number[]} pose @param {number[]} twist @returns {Point|null} */
 export function instantCentre([x, y], [vx, vy, rate]) {
   return Math.abs(rate) < 1e-9 ? null : [x - vy / rate, y + vx / rate];
 }
 
-/** A number for a reader: two digits, and a power of ten where that is shorter. @param {number} value */
+/** Format a number with two digits, with a power of ten where that is shorter. @param {number} value */
 export function told(value) {
   if (!Number.isFinite(value)) return "lost";
   if (value === 0) return "0";

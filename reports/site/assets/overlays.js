@@ -1,5 +1,5 @@
 // @ts-check
-/** What can be switched on over a picture: forces, the friction that rolling demands, instant centres. */
+/** Overlays of a picture: forces, the friction that rolling requires, instant centres. */
 
 import { svg } from "./chart.js";
 import { instantCentre, poseAt, told } from "./motion.js";
@@ -8,7 +8,7 @@ import { instantCentre, poseAt, told } from "./motion.js";
 /** @typedef {{take: Take, frame: number, overlay: SVGGElement, width: number}} Scene what is drawn on */
 /** @typedef {{there: (take: Take) => boolean, draw: (scene: Scene) => string}} Overlay */
 
-const ARROW = 0.3; // length of the longest arrow, of the picture's width
+const ARROW = 0.3; // length of the longest arrow as a fraction of the picture's width
 
 /** @type {Record<string, Overlay>} */
 export const OVERLAYS = {
@@ -17,17 +17,17 @@ export const OVERLAYS = {
   centre: { there: ({ centre }) => centre !== null, draw: drawCentre },
 };
 
-/** A vector of numbers in pairs, at an instant. @param {ArrayLike<number|null>} flat @param {number} frame @returns {Point} */
+/** Return the vector at an instant from a flat list of pairs. @param {ArrayLike<number|null>} flat @param {number} frame @returns {Point} */
 const at = (flat, frame) => [flat[2 * frame] ?? NaN, flat[2 * frame + 1] ?? NaN];
 
-/** Lengths of vectors. @param {ArrayLike<number|null>} flat */
+/** Return the lengths of vectors. @param {ArrayLike<number|null>} flat */
 function norms(flat) {
   const found = [];
   for (let index = 0; index < flat.length; index += 2) found.push(Math.hypot(flat[index] ?? 0, flat[index + 1] ?? 0));
   return found;
 }
 
-/** The largest of numbers, of those that are there. @param {(number|null)[]} values */
+/** Return the largest of the numbers that are not null. @param {(number|null)[]} values */
 const most = (values) => [...values].reduce((/** @type {number} */ a, b) => (b !== null && b > a ? b : a), 0);
 
 /** @param {Scene} scene @param {Point} from @param {Point} by @param {string} kind */
@@ -62,7 +62,7 @@ function drawForces(scene) {
   return `The longest arrow of this motion is ${told(largest)} N.${partly}`;
 }
 
-/** The contact force in its two parts, and the coefficient that they ask for. @param {Scene} scene */
+/** Draw the two components of the contact force, and the friction coefficient that they require. @param {Scene} scene */
 function drawFriction(scene) {
   const { take, frame, width } = scene;
   const remarks = [];
@@ -82,7 +82,7 @@ function drawFriction(scene) {
   return remarks.join(" ");
 }
 
-/** The point about which the body turns: by the truth, and by the pose and velocity of each engine. @param {Scene} scene */
+/** Draw the instant centre of the exact motion, and that of each engine from its pose and velocity. @param {Scene} scene */
 function drawCentre({ take, frame, overlay, width }) {
   const body = take.centre ?? 0;
   const bodies = take.bodies.length;

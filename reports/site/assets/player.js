@@ -1,5 +1,5 @@
 // @ts-check
-/** A picture that moves: played slower where errors grow, dragged, and given what can be switched on over it. */
+/** An animated picture: played slower where errors grow; a reader can drag the mechanism and switch overlays on. */
 
 import { errorChart } from "./chart.js";
 import { Lens } from "./lens.js";
@@ -8,8 +8,8 @@ import { OVERLAYS } from "./overlays.js";
 
 /** @typedef {import("./motion.js").Take} Take */
 
-const SHORTEST = 5; // s: a motion that is faster is slowed down until it takes as long
-const GROWING = 3; // times slower while the visible difference grows fastest
+const SHORTEST = 5; // s: a shorter motion is played in slow motion of this duration
+const GROWING = 3; // factor of slow motion where the visible difference grows fastest
 const SLOWER = [1, 2, 5, 10, 20, 50, 100];
 
 /** @param {Element} element @param {number} x @param {number} y @param {number} angle [rad] */
@@ -33,7 +33,7 @@ export class Player {
     this.take = null;
     this.frame = 0;
     this.playing = false;
-    this.stopAt = 0; // the frame at which a motion looks most wrong
+    this.stopAt = 0; // the frame with the largest visible difference
     this.slower = 1;
     /** @type {number[]} when each frame is shown [s], from the first on */
     this.schedule = [];
@@ -52,7 +52,7 @@ export class Player {
     return /** @type {SVGSVGElement} */ (this.figure.querySelector("svg.stage"));
   }
 
-  /** Take over a drawing whose groups stand in the order of the motions, the truth last. @param {Take} take */
+  /** Use a drawing whose groups have the order of the motions, the exact one last. @param {Take} take */
   load(take) {
     this.take = take;
     this.groups = [...this.stage.querySelectorAll(".motion")].map((group) => [...group.querySelectorAll(".body")]);
@@ -69,7 +69,7 @@ export class Player {
     this.show();
   }
 
-  /** Errors, drawn and told; how fast each part of the motion is to be played, and where it stops. @param {Take} take */
+  /** Draw and write the errors; set the speed of each part of the motion and the last frame. @param {Take} take */
   measure(take) {
     const { bodies: { length: bodies }, t: { length: frames }, truth, window: [first, last] } = take;
     const lines = take.motions.map(({ name, mark, pose }) => ({ name, mark, values: errors(truth.pose, pose, bodies, frames)[take.measure] }));
@@ -85,7 +85,7 @@ export class Player {
     const far = apart.map((value) => Math.min(value, take.size));
     this.stopAt = last;
     for (let frame = last; frame >= first; frame--) if (far[frame] > far[this.stopAt]) this.stopAt = frame;
-    // A motion that looks most wrong at its beginning is played to its end.
+    // Where the largest difference is at the beginning, the motion is played to its end.
     if (this.stopAt < first + 0.3 * (last - first)) this.stopAt = last;
     const real = take.t[last] - take.t[first];
     this.slower = SLOWER.find((by) => real * by >= SHORTEST) ?? 100;
@@ -99,7 +99,7 @@ export class Player {
     }
   }
 
-  /** @param {boolean} anew from the first frame to where the difference is largest, else on from here to the end */
+  /** @param {boolean} anew true: from the first frame to the largest difference; false: from here to the end */
   play(anew) {
     if (!this.take) return;
     const [first, last] = this.take.window;
@@ -158,7 +158,7 @@ export class Player {
     this.remark.textContent = remarks.filter(Boolean).join(" ");
   }
 
-  /** Let the reader take the mechanism: `pull` gets the body, its point and where the hand is; `release` the end.
+  /** Let the reader drag the mechanism: `pull` gets the body, its point and the place of the pointer; `release` ends it.
    * @param {(body: number, point: number[], wanted: number[]) => Float64Array|null} pull @param {() => void} release */
   grabbed(pull, release) {
     const frame_ = /** @type {HTMLElement} */ (this.figure.querySelector(".frame"));

@@ -1,5 +1,5 @@
 // @ts-check
-/** The stored rows as a chart with hover and a table; what the reader chooses stands in the link. */
+/** The stored rows as a chart with tooltips and a table; the link stores the choice of the reader. */
 
 import { equip } from "./tables.js";
 
@@ -14,7 +14,7 @@ const MOST = 400; // rows in the table at once
 
 /** Of each engine the role of its colour, and whether it solves the equations as they are. @type {Record<string, {role: string, exact: boolean}>} */
 let looks = {};
-// Variants by line, so that a method has one look in every chart: an engine's colour, its variant's dashes.
+// A method has the same look in every chart: a colour for the engine, dashes for the variant.
 const DASHES = /** @type {Record<string, string>} */ ({ default: "2 3", tuned: "7 4", extended: "" });
 /** @type {Record<string, string>} */
 let headings = {};
@@ -42,7 +42,7 @@ function draw(rows) {
     .filter((row) => Number(row[x]) > 0 && Number(row[y]) > 0)
     .map((row) => ({ ...row, method: nameOf(row) }));
   const engines = [...new Set(points.map((row) => String(row.engine)))];
-  // What is chosen says its unit.
+  // The labels of the choices have units.
   const [across, error] = ["x", "y"].map((name) => /** @type {HTMLSelectElement} */ (form.elements.namedItem(name)).selectedOptions[0].text);
   chart.replaceChildren(
     points.length
@@ -55,7 +55,7 @@ function draw(rows) {
           marks: [
             ...[...new Set(points.map((row) => String(row.variant)))].map((variant) =>
               Plot.line(points.filter((row) => row.variant === variant), { x, y, z: "method", stroke: "engine", sort: x, strokeDasharray: DASHES[variant] ?? "1 2 6 2" })),
-            // Lines of engines as shipped come together at short steps, the others at long ones: names stand where they part.
+            // Lines of engines as shipped meet at short steps, the others at long ones: labels are at the other end.
             Plot.text(points.filter(({ variant }) => variant !== "default"), Plot.selectMinX({ x, y, z: "method", text: "method", fill: "engine", textAnchor: "start", dx: 6, dy: -7 })),
             Plot.text(points.filter(({ variant }) => variant === "default"), Plot.selectMaxX({ x, y, z: "method", text: "method", fill: "engine", textAnchor: "end", dx: -6, dy: -7 })),
             Plot.dot(points, {
@@ -83,13 +83,13 @@ function draw(rows) {
   count.textContent = `${kept.length} rows${shown}.`;
 }
 
-/** Whether a row is one of an engine's three variants: of other methods there are many. @param {Row} row */
+/** Return whether a row is of one of the three variants of an engine. @param {Row} row */
 const usual = ({ engine, variant }) => String(variant) in headings && !looks[String(engine)].exact;
 
-/** What a method is called. @param {Row} row */
+/** Return the name of a method. @param {Row} row */
 const nameOf = ({ engine, variant }) => `${engine} ${headings[String(variant)] ?? variant}`;
 
-/** What the reader chose, in the address. */
+/** Store the choice of the reader in the address. */
 function keep() {
   const state = [...new FormData(form)].filter(([, value]) => value).map(([name, value]) => `${name}=${encodeURIComponent(String(value))}`);
   history.replaceState(history.state, "", `#${state.join("&")}`);

@@ -1,7 +1,7 @@
-// Light or dark: the reader's choice if there is one, else the system's. Runs before the page is drawn.
+// Light or dark: the choice of the reader, else that of the system. It runs before the page is drawn.
 (() => {
   const root = document.documentElement;
-  /** Where a page may keep nothing, the choice holds for this page. @param {(store: Storage) => void} use */
+  /** Without access to the storage the choice holds for this page. @param {(store: Storage) => void} use */
   const kept = (use) => {
     try {
       use(localStorage);

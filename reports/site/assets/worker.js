@@ -1,5 +1,5 @@
 // @ts-check
-/** Runs the engines beside the page, so that the page never waits: a setting comes in, motions go out. */
+/** Runs the engines in a worker, so that the page never waits: it receives settings and sends motions. */
 
 import { doubles, mechanismOf, modelOf, runOf, truth } from "./live_data.js";
 import { load, runMujoco, runMunk } from "./live_engines.js";
@@ -21,7 +21,7 @@ async function sceneOf(key) {
   return known;
 }
 
-/** All that a page shows of a setting. @param {Setting} setting @param {{mujoco: any, munk: any}} engines */
+/** Return the motions, drawing and errors for a setting. @param {Setting} setting @param {{mujoco: any, munk: any}} engines */
 async function answer(setting, engines) {
   const scene = await sceneOf(setting.key);
   const run = runOf(setting, scene);
@@ -31,7 +31,7 @@ async function answer(setting, engines) {
   const lost = {};
   for (const name of /** @type {Name[]} */ (["munk", "mujoco"])) {
     const why = modelOf(run, name).why || (engines[name] ? "" : "this site was built without it");
-    const kept = setting.own ? scene.native[name][setting[name]]?.map(doubles) : null; // as Python stored it
+    const kept = setting.own ? scene.native[name][setting[name]]?.map(doubles) : null; // stored motion of Python
     if (why && !kept) {
       lost[name] = why;
       continue;
@@ -54,12 +54,12 @@ async function answer(setting, engines) {
     drawing: run.at.drawing, joints: run.at.joints, blades: run.at.blades, traces: run.at.traces,
     forces: exact.missed === null ? run.at.forces : exact.forces,
     mechanism: mechanismOf(run), release: engines.mujoco?.mj_versionString() ?? "",
-    // What acts on nothing in this model: its sliders are not to be moved.
+    // Sliders without an effect on this model are disabled.
     idle: [...modelOf(run, "munk").idle, ...modelOf(run, "mujoco").idle],
   };
 }
 
-/** The sweeps of one step of Munk2D: velocities and impulses after each; `which`: the place of each joint's impulse.
+/** Return the iterations of one step of Munk2D: velocities and impulses after each; `which`: index of each joint's impulse.
  * @param {Setting} setting @param {number} frame */
 async function sweeps(setting, frame) {
   const { munk } = await /** @type {Promise<{mujoco: any, munk: any}>} */ (loading);

@@ -19,7 +19,7 @@ DENSITY = Slider("density", "the coupler's density to that of the others", DENSI
 HEAVY = DENSITIES[-1]
 COUPLER = FreeFourBar().coupler
 COUPLERS = Slider(
-    "coupler", "coupler [m]", (0.53, COUPLER, 0.65, 0.9), ("0.53", f"{COUPLER:.3f}, the chapter's", "0.65", "0.9")
+    "coupler", "coupler [m]", (0.53, COUPLER, 0.65, 0.9), ("0.53", f"{COUPLER:.3f} (chapter)", "0.65", "0.9")
 )
 REVOLUTION = (15, 30, 60, 120, 300, 600, 1200)
 DRIVEN = Live(

@@ -18,7 +18,7 @@ NAMES: dict[Name, str] = {"munk": "pymunk", "mujoco": "MuJoCo"}
 MOST = 125  # positions of a scene's sliders: each has a model for each engine and a drawing in the page
 SHIPPED, DOCUMENTED = "as shipped", "documented settings"
 # Settings of the engines: values and their labels. None: the value of the chosen method.
-OWN = (None, "value of the method")
+OWN = (None, "the method's value")
 INTEGRATORS = (OWN, (0, "Euler"), (3, "implicitfast"), (1, "RK4"))
 TIME_CONSTANTS = (OWN, *((value, f"{1000 * value:g} ms") for value in (0.002, 0.005, 0.01, 0.02, 0.05)))
 IMPEDANCES = (OWN, *((value, str(value)) for value in (0.9, 0.99, 0.999, 0.9999)))
@@ -28,7 +28,7 @@ SWEEPS = (OWN, *((value, str(value)) for value in (1, 2, 5, 10, 20, 50, 100)))
 BIASES = (OWN, (0.5, "0.5"), (float(pymunk.SHIPPED_ERROR_BIAS), "0.0018"), (1e-6, "1e-6"), (0.0, "0"))
 ENGINES: dict[Name, dict[str, tuple[str, tuple[tuple[Any, str], ...]]]] = {
     "munk": {
-        "iterations": ("iterations of the solver", SWEEPS),
+        "iterations": ("iterations: number in each step", SWEEPS),
         "bias": ("error_bias: residual gap after a second", BIASES),
     },
     "mujoco": {
