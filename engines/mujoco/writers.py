@@ -1,7 +1,7 @@
-"""What `crosscheck export` and `view` ask of MuJoCo: MJCF and URDF that run without this suite, and its viewer.
+"""Writers of MJCF and URDF files that run without this suite, and MuJoCo's viewer, for `crosscheck export` and `view`.
 
-MJCF is what `mujoco.MjSpec` writes, with all digits instead of six. Bodies have the mechanism's names, the start is a
-keyframe, and bars and points let the mechanism be seen: nothing touches these, and they have no mass.
+An MJCF file is the output of `mujoco.MjSpec` with all digits instead of six. Bodies have the mechanism's names, and the
+start is a keyframe. Bars and points show the mechanism; they have no mass and no contacts.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from reference.plane import rotated
 if TYPE_CHECKING:
     from engines.mujoco.model import MuJoCoModel
 
-FLAGS = ("contact", "island")
+MODEL_FLAGS = ("contact", "island")  # the flags that a model of ours may disable
 TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
-THICKNESS = 0.02  # of bars, in the mechanism's lengths
-UNTOUCHED = {"contype": "0", "conaffinity": "0", "mass": "0"}
+THICKNESS = 0.02  # of bars, relative to the mechanism's length
+NO_CONTACT = {"contype": "0", "conaffinity": "0", "mass": "0"}
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Mjcf:
     suffix: str = ".xml"
 
     def write(self, mechanism: Mechanism, dt: float, variant: str) -> str:
-        """The file's text. Raises Unsupported where no file can hold it, ValueError for an unknown variant."""
+        """The file's text. Raises Unsupported for a mechanism without such a file, ValueError for a wrong variant."""
         from engines.mujoco.methods import VARIANTS
 
         known = {engine.variant: engine for engine in VARIANTS}
@@ -53,18 +53,18 @@ class Mjcf:
 
     def commented(self, text: str, lines: Sequence[str]) -> str:
         """The text with a comment before it."""
-        told = "\n".join(lines).replace("--", "- -")
-        return f"<!--\n{told}\n-->\n{text}"
+        comment = "\n".join(lines).replace("--", "- -")
+        return f"<!--\n{comment}\n-->\n{text}"
 
 
 @dataclass(frozen=True)
 class Urdf(Mjcf):
-    """URDF, which knows no settings: of any variant the same."""
+    """URDF, which has no settings, so that it is the same for all variants."""
 
     suffix: str = ".urdf"
 
     def write(self, mechanism: Mechanism, dt: float, variant: str) -> str:
-        """The file's text. Raises Unsupported for what URDF has no word for."""
+        """The file's text. Raises Unsupported for elements that URDF lacks."""
         return urdf(mechanism)
 
 
@@ -73,7 +73,7 @@ def show(text: str) -> None:
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Unsupported("there is no display")
     try:
-        import mujoco.viewer  # an extra of MuJoCo's: it asks for a window system
+        import mujoco.viewer  # an extra of MuJoCo's, which needs a window system
     except ImportError as reason:
         raise Unsupported(f"MuJoCo's viewer is not installed: {reason}") from None
     model = mujoco.MjModel.from_xml_string(text)
@@ -88,23 +88,24 @@ def show(text: str) -> None:
 
 
 MJCF, URDF = Mjcf(), Urdf()
-IN_URDF = Capability("URDF", frozenset({Pin, Slot, Weld, Drive}), frozenset())
+URDF_CAPABILITY = Capability("URDF", frozenset({Pin, Slot, Weld, Drive}), frozenset())
 
 
 def urdf(mechanism: Mechanism) -> str:
-    """The file's text. Raises Unsupported for loops, free bodies, prescribed motions, and forces."""
-    IN_URDF.require(mechanism)
+    """The text of a URDF file. Raises Unsupported for loops, free bodies, prescribed motions, and forces."""
+    URDF_CAPABILITY.require(mechanism)
     tree = spanning_tree(mechanism)
     for joint in tree.loops:
         raise Unsupported(f"joint {joint.name!r} closes a loop, which a URDF can't hold")
     for joint in mechanism.joints:
-        if isinstance(joint, Drive) and joint not in tree.kept:
+        if isinstance(joint, Drive) and not tree.holds(joint):
             raise Unsupported(f"drive {joint.name!r} prescribes a motion, which URDF has no word for")
     root = xml.Element("robot", {"name": "crosscheck"})
     xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _upright(*mechanism.gravity)})
     if mechanism.twist.any():
-        words = " The mechanism starts in motion, which URDF has no word for: here it starts at rest. "
-        root.append(xml.Comment(words))
+        root.append(
+            xml.Comment(" The mechanism starts in motion, which URDF has no word for: here it starts at rest. ")
+        )
     xml.SubElement(root, "link", {"name": "world"})
     anchors = {link.body: link.anchor for link in tree.links}
     for link in tree.links:
@@ -113,7 +114,7 @@ def urdf(mechanism: Mechanism) -> str:
 
 
 def _add_link(root: xml.Element, mechanism: Mechanism, link: Link, anchors: Mapping[int, Vector]) -> None:
-    """A body and its joint; the body's frame is its joint's point (`anchors`), parallel to the world at the start."""
+    """Add a body and its joint. The body's frame is at the joint, see `anchors`, and parallel to the world at t = 0."""
     body = mechanism.bodies[link.body]
     if link.kind == "free" or (link.kind == "slot" and link.turns):
         raise Unsupported(f"body {body.name!r} is held by less than a hinge or a slide, which URDF has no joint for")
@@ -137,12 +138,12 @@ def _add_link(root: xml.Element, mechanism: Mechanism, link: Link, anchors: Mapp
 
 
 def _upright(x: float, y: float) -> str:
-    """A vector of the plane in URDF's frame."""
+    """A vector of the plane in the frame of a URDF file, whose z is upwards."""
     return _row((x, 0.0, y))
 
 
 def mjcf(model: MuJoCoModel, softening: float) -> str:
-    """The text of a model in kg. Raises Unsupported for a model that our code helps while it is stepped."""
+    """The MJCF of a model in kg. Raises Unsupported where our code changes the model or runs while it is stepped."""
     if model.hooks:
         raise Unsupported("this variant writes rows while it steps: a file would not run without this suite")
     if softening != 1:
@@ -168,12 +169,13 @@ def _text(root: xml.Element) -> str:
 
 
 def _option(option: Any) -> xml.Element:
-    """The settings as compiled, those that are MuJoCo's own too."""
+    """The settings of the compiled model, MuJoCo's defaults included."""
     attributes = {name: _row(getattr(option, name)) for name in ("timestep", "gravity", "tolerance")}
     for name in ("Integrator", "Solver", "Jacobian", "Cone"):
         attributes[name.lower()] = spelled(getattr(mujoco, f"mjt{name}")(getattr(option, name.lower())))
     element = xml.Element("option", attributes | {"iterations": str(int(option.iterations))})
-    off = [flag for flag in FLAGS if option.disableflags & int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag.upper()}"))]
+    bits = {flag: int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag.upper()}")) for flag in MODEL_FLAGS}
+    off = [flag for flag, bit in bits.items() if option.disableflags & bit]
     if off:
         xml.SubElement(element, "flag", dict.fromkeys(off, "disable"))
     return element
@@ -182,7 +184,7 @@ def _option(option: Any) -> xml.Element:
 def _write_all_digits(root: xml.Element, spec: Any, compiled: Any) -> None:
     """Replace the numbers in the text of a mujoco.MjSpec, which have six digits.
 
-    Shapes stand where the compiled model has them: a blade is pressed into its plane once its weight is known.
+    Positions of shapes are those of the compiled model: the plane below a blade is raised after it is compiled.
     """
     for element in root.iter("body"):
         body = spec.body(element.get("name"))
@@ -196,20 +198,21 @@ def _write_all_digits(root: xml.Element, spec: Any, compiled: Any) -> None:
         _set(element, pos=shape.pos, quat=shape.quat, size=shape.size[:size])
     for element in root.iterfind("worldbody//site"):
         _set(element, pos=spec.site(element.get("name")).pos)
-    places = iter(compiled.wrap_prm)
+    coefficients = iter(compiled.wrap_prm)
     for element in root.find("tendon") or ():
         tendon = spec.tendon(element.get("name"))
-        linear = {name: np.ravel(getattr(tendon, name))[:1] for name in ("stiffness", "damping")}
-        _set(element, springlength=tendon.springlength, **linear)
-        for child, coefficient in zip(element, places, strict=False):
+        # Newer releases have polynomials here, of which the last zeros are left out.
+        polynomials = {name: np.trim_zeros(np.ravel(getattr(tendon, name)), "b") for name in ("stiffness", "damping")}
+        _set(element, springlength=tendon.springlength, **polynomials)
+        for child, coefficient in zip(element, coefficients, strict=False):
             if child.tag == "joint":
                 _set(child, coef=coefficient)
-    for number, (element, held) in enumerate(zip(root.find("equality") or (), spec.equalities, strict=True)):
-        _set(element, solref=held.solref, solimp=held.solimp)
+    for number, (element, equality) in enumerate(zip(root.find("equality") or (), spec.equalities, strict=True)):
+        _set(element, solref=equality.solref, solimp=equality.solimp)
         if element.tag == "weld":
             _set(element, relpose=compiled.eq_data[number][3:10])
         if element.tag != "tendon":
-            _set(element, anchor=held.data[:3])
+            _set(element, anchor=equality.data[:3])
     for element, pair in zip(root.find("contact") or (), spec.pairs, strict=True):
         names = ("friction", "solref", "solimp", "solreffriction", "margin")
         _set(element, **{name: getattr(pair, name) for name in names})
@@ -218,7 +221,7 @@ def _write_all_digits(root: xml.Element, spec: Any, compiled: Any) -> None:
 
 
 def _set(element: xml.Element | None, **numbers: Any) -> None:
-    """Set these attributes; zeros that MJCF leaves out stay so."""
+    """Set attributes of an element, except zeros that the text does not contain."""
     assert element is not None
     for name, values in numbers.items():
         if np.any(values) or name in element.attrib:
@@ -226,13 +229,13 @@ def _set(element: xml.Element | None, **numbers: Any) -> None:
 
 
 def _rename(root: xml.Element, model: MuJoCoModel) -> None:
-    """Bodies under the mechanism's names, with a number where something else in the file has that name."""
-    written = [f"body {number}" for number in range(len(model.mechanism.bodies))]
+    """Give the bodies the mechanism's names, with a number where another body of the file has that name."""
+    old = [f"body {number}" for number in range(len(model.mechanism.bodies))]
     names = Names()
     for other in ("world", *(element.get("name", "") for element in root.iter("body"))):
-        if other not in written:
+        if other not in old:
             names.new(other)
-    new = dict(zip(written, (names.new(body.name) for body in model.mechanism.bodies), strict=True))
+    new = dict(zip(old, (names.new(body.name) for body in model.mechanism.bodies), strict=True))
     for element in root.iter():
         for attribute in ("name", "body", "body1", "body2"):
             value = element.get(attribute)
@@ -245,7 +248,7 @@ def _row(values: Any) -> str:
 
 
 def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
-    """Bars through the joints of every "body i" of a model that has no shapes yet, and the view onto its plane."""
+    """Add bars through the joints of every "body i" without shapes, and a view onto the plane."""
     size = THICKNESS * mechanism.length_scale
     visual = xml.Element("visual")
     xml.SubElement(visual, "global", {"azimuth": "90", "elevation": "-90"})
@@ -254,16 +257,16 @@ def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
     world = root.find("worldbody")
     assert world is not None
 
-    def add(parent: xml.Element, kind: str, size: float, colour: str = "0.3 0.5 0.8 1", **place: str) -> None:
-        look = {"type": kind, **place, "size": repr(size), "rgba": colour}
-        parent.append(xml.Element("geom", {**look, **UNTOUCHED}))
+    def add(parent: xml.Element, kind: str, size: float, colour: str = "0.3 0.5 0.8 1", **position: str) -> None:
+        look = {"type": kind, **position, "size": repr(size), "rgba": colour}
+        parent.append(xml.Element("geom", {**look, **NO_CONTACT}))
 
     bodies = {element.get("name"): element for element in world.iter("body")}
     for index, body in enumerate(mechanism.bodies):
         element = bodies[f"body {index}"]
         if element.find("geom") is not None:
             continue
-        # The file's bodies stand parallel to the world at the start.
+        # The frames of the file's bodies are parallel to the world at the start.
         ends = [_row([*rotated(body.pose[2], np.array(point)), 0.0]) for point in _points(mechanism, body.name)]
         for first, second in pairwise(ends):
             add(element, "capsule", size, fromto=f"{first} {second}")
@@ -274,7 +277,7 @@ def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
 
 
 def _points(mechanism: Mechanism, name: str | None) -> list[Vector]:
-    """Joint points of a body, with its centre of mass where there is at most one; those of the ground alone."""
+    """The points of a body's joints, and its centre of mass if these are fewer than two; only joints for the ground."""
     points = [
         tuple(getattr(joint, which))
         for joint in mechanism.joints

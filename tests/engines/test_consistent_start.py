@@ -177,7 +177,7 @@ def test_a_state_of_mujoco_that_was_printed_with_six_digits_is_closed(text):
     first = read_mujoco(model)
     truth = TRUTH.build(first.mechanism, 1e-3)(100, 1)
     data = mujoco.MjData(model)
-    data.qpos[:] = six_digits(positions(first.model.scene, truth.pose[-1:])[0])
+    data.qpos[:] = six_digits(positions(first.model.planar, truth.pose[-1:])[0])
     reading = read_mujoco(model, data)
     mechanism = reading.mechanism
     assert np.abs(np.nan_to_num(mechanism.gap(mechanism.pose, 0.0))).max() < 1e-11  # of factors up to 18

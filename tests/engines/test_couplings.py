@@ -179,7 +179,7 @@ def test_a_coupling_in_mujoco_moves_as_its_tree_with_multipliers(name):
     for sample, coordinates in enumerate(wanted):
         data.qpos[:] = coordinates
         mujoco.mj_kinematics(model, data)
-        places = centres(reading.model.scene, data) @ reading.model.scene.frame.both.T
+        places = centres(reading.model.planar, data) @ reading.model.planar.frame.both.T
         assert ours.pose[sample, :, :2] == pytest.approx(places, abs=1e-8 * max(1.0, unit))
     names = [name for joint in reading.mechanism.joints for name in [type(joint).__name__] * joint.size]
     coupled = [place for place, kind in enumerate(names) if kind == "Coupling"]

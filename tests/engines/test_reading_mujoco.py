@@ -254,7 +254,7 @@ def test_poses_go_back_to_mujocos_positions():
     data.qpos[:] = 0.3 * np.arange(1, model.nq + 1)
     reading = read(model, data)
     run, again = reading.model.run(20, 10), in_state(model, data)
-    for qpos in positions(reading.model.scene, run.pose):  # type: ignore[attr-defined]
+    for qpos in positions(reading.model.planar, run.pose):  # type: ignore[attr-defined]
         np.testing.assert_allclose(qpos, again.qpos, atol=1e-10)
         mujoco.mj_step(model, again, nstep=10)
 

@@ -125,7 +125,7 @@ def test_a_limit_of_a_servos_force_is_named_with_the_time_at_which_it_is_reached
     # In the advised duration, and with the limit switched off, the same model is checked.
     duration = float(words.split("--duration ")[1].split(";")[0])
     assert check(reading, "servo", duration, 1e-3, plan=NOTHING).met
-    without = read_mjcf(reading.model.scene.model, reading.model.scene.data, ("forcelimit",))  # type: ignore[attr-defined]
+    without = read_mjcf(reading.model.planar.model, reading.model.planar.data, ("forcelimit",))  # type: ignore[attr-defined]
     assert check(without, "servo", 0.5, 1e-2, plan=NOTHING).met
 
 

@@ -1,4 +1,4 @@
-"""A user's MuJoCo model (MJCF or URDF) as a mechanism of the plane: `read`."""
+"""The reader of users' MuJoCo models (MJCF, URDF or binary) as mechanisms of the plane."""
 
 from __future__ import annotations
 
@@ -12,8 +12,16 @@ import mujoco
 import numpy as np
 
 from engines.consistent_start import OpenStart, closed_positions, with_consistent_start
-from engines.mujoco.reading.elements import EQUALITIES, JOINTS, TENDON, drives, equalities, is_steady, tree_joints
-from engines.mujoco.reading.forces import ACTUATOR, FORCES, forces, is_off, turns
+from engines.mujoco.reading.elements import (
+    EQUALITIES,
+    TENDON,
+    TREE_CONNECTIONS,
+    drives,
+    equalities,
+    is_driven,
+    tree_joints,
+)
+from engines.mujoco.reading.forces import ACTUATOR, FORCE_COUNTERPARTS, forces, is_off, turns
 from engines.mujoco.reading.frame import (
     FREE,
     HINGE,
@@ -32,43 +40,46 @@ from engines.reading import AS_IT_IS, Note, Reading, ReadingTerms, Source, left_
 from reference.checks import InvalidMechanism
 from reference.forces import Force
 
-SUFFIXES = (".xml", ".mjcf", ".urdf", ".mjb")
+MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf", ".mjb")
 
 
 def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: bool = True) -> Reading:
-    """The mechanism of a mujoco.MjModel in the state of a mujoco.MjData, or in its first one.
+    """The mechanism of a mujoco.MjModel in the state of a mujoco.MjData, or in the model's first state.
 
-    The plane of motion is found. `without`: elements to switch off first, in a copy of the model too. Raises
-    Unsupported for what has no counterpart in the plane, in a sentence that names it, and InvalidMechanism for a start
-    that does not satisfy the model's own equalities, unless rounded digits explain it and `closing` is true.
+    `without`: kinds of elements to switch off, in a copy of the model. Raises Unsupported, in a sentence that names the
+    element, where there is no counterpart in a plane. Raises InvalidMechanism for a start that violates the model's own
+    equalities, except by rounded digits if `closing` is true.
     """
-    scene, users, tilt = _plane_of(model, mujoco.MjData(model) if data is None else data, without)
-    joints = [*tree_joints(scene), *drives(scene), *equalities(scene)]
-    acting = forces(scene)
-    bodies, weights = _with_armature(scene)
-    gravity = (0.0, 0.0) if is_off(scene.model, "GRAVITY") else scene.frame.in_plane(scene.model.opt.gravity)
-    _note_gravity_across(scene)
-    _note_what_may_act(scene)
+    planar, users, tilt = _plane_of(model, mujoco.MjData(model) if data is None else data, without)
+    joints = [*tree_joints(planar), *drives(planar), *equalities(planar)]
+    acting = forces(planar)
+    bodies, weights = _with_armature(planar)
+    gravity = (0.0, 0.0) if is_off(planar.model, "GRAVITY") else planar.frame.in_plane(planar.model.opt.gravity)
+    _note_gravity_across(planar)
+    _note_limits_and_contacts(planar)
     for element in without:
-        scene.note(element, "left out at your word, in your model too")
+        planar.note(element, "left out at your word, in your model too")
     elements = bodies, joints, gravity, (*acting, *weights)
     closed = closed_positions(*elements) if closing else None
     if closed is not None:
-        scene.data.qpos[:] = positions(scene, closed[0][None])[0]
-        reading = read(model, scene.data, without, closing=False)
+        planar.data.qpos[:] = positions(planar, closed[0][None])[0]
+        reading = read(model, planar.data, without, closing=False)
         return replace(reading, notes=(closed[1], *reading.notes))
     try:
         mechanism, jumped = with_consistent_start(*elements)
     except OpenStart as reason:
         words = "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed"
         raise InvalidMechanism(f"{reason}: {words}") from None
-    own = OwnMuJoCo(scene, mechanism, users, tilt)
+    own = OwnMuJoCo(planar, mechanism, users, tilt)
     refuse_at_start(own, mechanism)
-    return Reading(mechanism, own, (*jumped, *scene.notes), model.names.split(b"\x00")[0].decode())
+    return Reading(mechanism, own, (*jumped, *planar.notes), model.names.split(b"\x00")[0].decode())
 
 
 def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarModel, Any, float]:
-    """The model in its plane and in this state, without some elements; also the user's own, and its tilt [rad]."""
+    """The model in its plane and in a state, without some elements; the user's model; and its tilt [rad].
+
+    Raises Unsupported where no plane exists.
+    """
     model = copy.copy(model)
     for element in without:
         switch_off(model, element)
@@ -79,7 +90,7 @@ def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarMod
         words = "MuJoCo stops a tree of bodies that is slow, even a pendulum at its turning point, which no joint does"
         raise refuse("flag sleep", f"{words}; {left_out('sleep')}")
     _refuse_not_finite(model, started)
-    # No contacts and no solver: a model of thousands of bodies is refused before that.
+    # Contacts and the solver are not evaluated yet: a model of thousands of bodies is refused before.
     mujoco.mj_kinematics(model, started)
     mujoco.mj_comPos(model, started)
     frame = find_frame(model, started)
@@ -101,9 +112,13 @@ def read_object(model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:
 
 
 def _refuse_not_finite(model: Any, data: Any) -> None:
-    """MuJoCo takes NaN and infinity as they come, and every number after them is none."""
-    places = np.searchsorted(model.jnt_qposadr, np.arange(model.nq), side="right") - 1
-    for name, kind, owners in (("qpos", JOINT, places), ("qvel", JOINT, model.dof_jntid), ("ctrl", ACTUATOR, None)):
+    """Raise Unsupported for NaN or infinity in the start, which MuJoCo accepts."""
+    joints_of_qpos = np.searchsorted(model.jnt_qposadr, np.arange(model.nq), side="right") - 1
+    for name, kind, owners in (
+        ("qpos", JOINT, joints_of_qpos),
+        ("qvel", JOINT, model.dof_jntid),
+        ("ctrl", ACTUATOR, None),
+    ):
         values = getattr(data, name)
         for index in np.flatnonzero(~np.isfinite(values)):
             element = name_of(model, kind, index if owners is None else owners[index])
@@ -111,52 +126,56 @@ def _refuse_not_finite(model: Any, data: Any) -> None:
             raise refuse("the model", reason)
 
 
-def _note_gravity_across(scene: PlanarModel) -> None:
-    model = scene.model
-    across = 0.0 if is_off(model, "GRAVITY") else float(model.opt.gravity @ scene.frame.normal)
+def _note_gravity_across(planar: PlanarModel) -> None:
+    """Note gravity normal to the plane. Raises Unsupported where a free body would follow it."""
+    model = planar.model
+    across = 0.0 if is_off(model, "GRAVITY") else float(model.opt.gravity @ planar.frame.normal)
     if abs(across) <= 1e-12 * max(1.0, float(np.linalg.norm(model.opt.gravity))):
         return
     if np.any(model.jnt_type == FREE):
         raise refuse("gravity", "it pulls a free body out of the plane")
-    scene.note("gravity", f"{across:g} m/s^2 of it act across the plane, where joints hold the bodies")
+    planar.note("gravity", f"{across:g} m/s^2 of it act across the plane, where joints hold the bodies")
 
 
-def _note_what_may_act(scene: PlanarModel) -> None:
-    """Limits and contacts, which count as left out once nothing in the judged motion has met them."""
-    model, limit = scene.model, "its limit is left out, since it is not reached in the judged motion"
+def _note_limits_and_contacts(planar: PlanarModel) -> None:
+    """Note limits and contacts, which have no part in the mechanism. A judged motion must not reach them."""
+    model, limit = planar.model, "its limit is left out, since it is not reached in the judged motion"
     for element in limited_forces(model):
-        scene.note(element, f"its force is limited; {limit}")
+        planar.note(element, f"its force is limited; {limit}")
     low, high = model.jnt_range.T
     for index in np.flatnonzero((low == high) & (low != 0) & (model.jnt_limited == 0)):
         words = f"MuJoCo does not limit it, since both ends of its range are {low[index]:g}; an equality holds it there"
-        scene.note(name_of(model, JOINT, index), words)
+        planar.note(name_of(model, JOINT, index), words)
     if is_off(model, "CONSTRAINT"):
         return
     for kind, limited in ((JOINT, model.jnt_limited), (TENDON, model.tendon_limited)):
         for index in np.flatnonzero(limited * (not is_off(model, "LIMIT"))):
-            scene.note(name_of(model, kind, index), limit)
+            planar.note(name_of(model, kind, index), limit)
     shaped = np.any(model.geom_contype) and np.any(model.geom_conaffinity)
     if not is_off(model, "CONTACT") and model.ngeom > 1 and (shaped or model.npair):
-        scene.note("contacts", "they are left out, since none is made in the judged motion")
+        planar.note("contacts", "they are left out, since none is made in the judged motion")
 
 
-def _with_armature(scene: PlanarModel) -> tuple[tuple[Any, ...], list[Force]]:
-    """Bodies with the inertia that armature gives them, and what takes its weight off where it has none."""
-    model, bodies, weights = scene.model, list(scene.bodies), []
+def _with_armature(planar: PlanarModel) -> tuple[tuple[Any, ...], list[Force]]:
+    """Bodies with the inertia of armatures, and forces that compensate the weight, which an armature does not have.
+
+    Raises Unsupported for an armature of a relative motion.
+    """
+    model, bodies, weights = planar.model, list(planar.bodies), []
     gravity = np.zeros(3) if is_off(model, "GRAVITY") else model.opt.gravity
     for joint in range(model.njnt):
         added = float(model.dof_armature[int(model.jnt_dofadr[joint])])
-        if not added or is_steady(scene, joint):
+        if not added or is_driven(planar, joint):
             continue
-        group, parent = scene.group_of(joint), scene.parent(joint)
+        group, parent = planar.group_of(joint), planar.parent(joint)
         element, body = name_of(model, JOINT, joint), bodies[group]
-        if model.jnt_type[joint] == HINGE and not turns(scene, parent):
+        if model.jnt_type[joint] == HINGE and not turns(planar, parent):
             bodies[group] = replace(body, inertia=body.inertia + added)
-        elif model.jnt_type[joint] != FREE and parent < 0 and len(scene.joints_of(group)) == 1:
+        elif model.jnt_type[joint] != FREE and parent < 0 and len(planar.joints_of(group)) == 1:
             bodies[group] = replace(body, mass=body.mass + added)
-            weight = scene.frame.in_plane(-added * gravity)
+            weight = planar.frame.in_plane(-added * gravity)
             if any(weight):
-                label = scene.names.new(f"{body.name}: armature has no weight")
+                label = planar.names.new(f"{body.name}: armature has no weight")
                 weights.append(Force(label, body.name, (0.0, 0.0), weight))
         else:
             words = "its armature is an inertia of a relative motion, which no body has"
@@ -164,18 +183,18 @@ def _with_armature(scene: PlanarModel) -> tuple[tuple[Any, ...], list[Force]]:
     return tuple(bodies), weights
 
 
-class Reader:
+class MuJoCoReader:
     """For `crosscheck check`: MJCF, URDF, and MuJoCo's own binary models."""
 
     words = "a MuJoCo model (model.xml, model.urdf)"
     elements: ClassVar[Mapping[str, str]] = {
-        **JOINTS,
+        **TREE_CONNECTIONS,
         **{f"equality {kind}": words for kind, (_, words) in EQUALITIES.items()},
-        **FORCES,
+        **FORCE_COUNTERPARTS,
     }
 
     def reads(self, word: str) -> bool:
-        return Path(word).suffix.lower() in SUFFIXES
+        return Path(word).suffix.lower() in MODEL_SUFFIXES
 
     def read(self, word: str, folder: Path, terms: ReadingTerms) -> Reading:
         """Raises ValueError for a file that is no model, Unsupported for a model that is no planar mechanism."""
@@ -224,4 +243,4 @@ def _key(model: Any, key: str) -> int:
     return names.index(key)
 
 
-READER = Reader()
+READER = MuJoCoReader()

@@ -7,14 +7,14 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from engines.mujoco.reading.elements import TENDON, Parts, angle_weights, straight, terms_of, wrapped_joints
+from engines.mujoco.reading.elements import TENDON, Parts, angle_weights, ends_of_tendon, terms_of, wrapped_joints
 from engines.mujoco.reading.frame import BODY, FREE, HINGE, JOINT, PLANAR, SLIDE, PlanarModel, name_of, plain_name
 from engines.reading import left_out, refuse
 from reference.forces import CoupledForce, Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
 ACTUATOR = mujoco.mjtObj.mjOBJ_ACTUATOR
-# What acts, and what it is read as.
-FORCES = {
+# The elements of a model that act as forces, and their ideal counterparts.
+FORCE_COUNTERPARTS = {
     "stiffness, springref and damping of a joint": "a spring and a damper",
     "tendon between two sites": "a spring and a damper",
     "tendon over joints": "a spring and a damper along the sum",
@@ -25,88 +25,88 @@ FORCES = {
 NEGATIVE = "a negative stiffness or damping has no counterpart here"
 
 
-def forces(scene: PlanarModel) -> list[ForceElement]:
-    """All that acts besides gravity."""
-    _refuse_what_has_no_counterpart(scene.model)
-    return [*_of_joints(scene), *_of_tendons(scene), *_of_actuators(scene), *_applied(scene)]
+def forces(planar: PlanarModel) -> list[ForceElement]:
+    """The force elements of the model besides gravity. Raises Unsupported for forces without an ideal counterpart."""
+    _refuse_forces_without_counterpart(planar.model)
+    return [*_of_joints(planar), *_of_tendons(planar), *_of_actuators(planar), *_applied(planar)]
 
 
 def is_off(model: Any, word: str) -> bool:
-    """Whether a flag of the model switches this off."""
+    """Whether the flag with this name is disabled in the model."""
     return bool(model.opt.disableflags & int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{word}")))
 
 
-def _refuse_what_has_no_counterpart(model: Any) -> None:
+def _refuse_forces_without_counterpart(model: Any) -> None:
     friction = "its friction loss has no ideal counterpart"
-    rubs = not (is_off(model, "FRICTIONLOSS") or is_off(model, "CONSTRAINT"))
+    has_friction = not (is_off(model, "FRICTIONLOSS") or is_off(model, "CONSTRAINT"))
     if model.opt.density or model.opt.viscosity:
         reason = f"the drag of a fluid has no ideal counterpart; {left_out('fluid')}"
         raise refuse("option density or viscosity", reason)
     if model.nplugin or model.nflex:
         raise refuse("a plugin or a flexible body", "its forces have no ideal counterpart")
-    for dof in np.flatnonzero(model.dof_frictionloss * rubs):
+    for dof in np.flatnonzero(model.dof_frictionloss * has_friction):
         raise refuse(name_of(model, JOINT, model.dof_jntid[dof]), f"{friction}; {left_out('frictionloss')}")
-    for tendon in np.flatnonzero(model.tendon_frictionloss * rubs):
+    for tendon in np.flatnonzero(model.tendon_frictionloss * has_friction):
         raise refuse(name_of(model, TENDON, tendon), friction)
-    for words, *tables in (
+    for element, *tables in (
         ("a stiffness that is not linear", model.jnt_stiffnesspoly, model.tendon_stiffnesspoly),
         ("a damping that is not linear", model.dof_dampingpoly, model.tendon_dampingpoly),
         ("a spring that yields", model.jnt_plasticadr >= 0, model.tendon_plasticadr >= 0),
     ):
         if any(map(np.any, tables)):
-            raise refuse("a joint or a tendon", f"{words} has no ideal counterpart")
+            raise refuse("a joint or a tendon", f"{element} has no ideal counterpart")
 
 
 def _along(
-    scene: PlanarModel,
+    planar: PlanarModel,
     element: str,
     name: str,
     parts: Parts,
-    way: float,
+    stretch: float,
     push: float = 0.0,
     stiffness: float = 0.0,
     damping: float = 0.0,
 ) -> list[ForceElement]:
     """A constant force, a spring and a damper along a sum of joints' coordinates.
 
-    `way`: from the sum at the start to that at which the spring is at ease [m or rad].
+    `stretch`: the change of the sum from the start to the rest position of the spring [m or rad].
     """
     if min(stiffness, damping) < 0:
         raise refuse(element, NEGATIVE)
     if not (push or stiffness or damping):
         return []
-    weights = angle_weights(scene, parts)
+    weights = angle_weights(planar, parts)
     opposite = len(weights) == 1 or (len(weights) == 2 and abs(sum(weights.values())) <= PLANAR)
-    if not opposite or any(scene.model.jnt_type[joint] != HINGE for joint, _ in parts):
-        terms, start = terms_of(scene, parts)
-        return [CoupledForce(scene.names.new(name), terms, push, stiffness, damping, start + way)]
+    if not opposite or any(planar.model.jnt_type[joint] != HINGE for joint, _ in parts):
+        terms, start = terms_of(planar, parts)
+        return [CoupledForce(planar.names.new(name), terms, push, stiffness, damping, start + stretch)]
     first, second = (-1, *weights)[-2:]
-    factor, ends, out = weights[second], (scene.name(first), scene.name(second)), list[ForceElement]()
+    factor, ends, out = weights[second], (planar.name(first), planar.name(second)), list[ForceElement]()
     if push:
-        out.append(Torque(scene.names.new(name), *ends, push * factor))
+        out.append(Torque(planar.names.new(name), *ends, push * factor))
     if stiffness:
-        rest = scene.turned(first, second) + way / factor
-        out.append(TorsionSpring(scene.names.new(f"{name} spring"), *ends, stiffness * factor**2, rest))
+        rest = planar.turned(first, second) + stretch / factor
+        out.append(TorsionSpring(planar.names.new(f"{name} spring"), *ends, stiffness * factor**2, rest))
     if damping:
-        out.append(TorsionDamper(scene.names.new(f"{name} damper"), *ends, damping * factor**2))
+        out.append(TorsionDamper(planar.names.new(f"{name} damper"), *ends, damping * factor**2))
     return out
 
 
-def _of_joints(scene: PlanarModel) -> list[ForceElement]:
-    model, out = scene.model, list[ForceElement]()
+def _of_joints(planar: PlanarModel) -> list[ForceElement]:
+    model, out = planar.model, list[ForceElement]()
     for joint in range(model.njnt):
         stiffness = 0.0 if is_off(model, "SPRING") else float(model.jnt_stiffness[joint])
         damping = 0.0 if is_off(model, "DAMPER") else float(model.dof_damping[model.jnt_dofadr[joint]])
-        element, name, place = name_of(model, JOINT, joint), plain_name(model, JOINT, joint), scene.qpos_of(joint)
+        element, name, address = name_of(model, JOINT, joint), plain_name(model, JOINT, joint), planar.qpos_of(joint)
         if model.jnt_type[joint] == FREE and (stiffness or damping):
             raise refuse(element, "stiffness or damping of a free joint has no counterpart here")
-        way = float(model.qpos_spring[place]) - float(scene.data.qpos[place])
-        out += _along(scene, element, name, [(joint, 1.0)], way, 0.0, stiffness, damping)
+        stretch = float(model.qpos_spring[address]) - float(planar.data.qpos[address])
+        out += _along(planar, element, name, [(joint, 1.0)], stretch, 0.0, stiffness, damping)
     return out
 
 
-def _of_tendons(scene: PlanarModel) -> list[ForceElement]:
-    model, out = scene.model, list[ForceElement]()
+def _of_tendons(planar: PlanarModel) -> list[ForceElement]:
+    model, out = planar.model, list[ForceElement]()
     for tendon in range(model.ntendon):
         element, name = name_of(model, TENDON, tendon), plain_name(model, TENDON, tendon)
         stiffness = 0.0 if is_off(model, "SPRING") else float(model.tendon_stiffness[tendon])
@@ -122,35 +122,35 @@ def _of_tendons(scene: PlanarModel) -> list[ForceElement]:
             continue
         parts = wrapped_joints(model, tendon)
         if parts is not None:
-            out += _along(scene, element, name, parts, low - _length(scene, tendon), 0.0, stiffness, damping)
+            out += _along(planar, element, name, parts, low - _length(planar, tendon), 0.0, stiffness, damping)
             continue
-        ends = straight(scene, tendon)
+        ends = ends_of_tendon(planar, tendon)
         if ends[0] == ends[1]:
-            scene.note(element, "its two ends are on one body")
+            planar.note(element, "its two ends are on one body")
             continue
         if stiffness:
-            out.append(Spring(scene.names.new(f"{name} spring"), *scene.between(*ends), stiffness, low))
+            out.append(Spring(planar.names.new(f"{name} spring"), *planar.between(*ends), stiffness, low))
         if damping:
-            out.append(Damper(scene.names.new(f"{name} damper"), *scene.between(*ends), damping))
+            out.append(Damper(planar.names.new(f"{name} damper"), *planar.between(*ends), damping))
     return out
 
 
-def _length(scene: PlanarModel, tendon: int) -> float:
-    return float(scene.data.ten_length[tendon])
+def _length(planar: PlanarModel, tendon: int) -> float:
+    return float(planar.data.ten_length[tendon])
 
 
-def _of_actuators(scene: PlanarModel) -> list[ForceElement]:
-    model = scene.model
+def _of_actuators(planar: PlanarModel) -> list[ForceElement]:
+    model = planar.model
     if is_off(model, "ACTUATION"):
         return []
-    return [force for actuator in range(model.nu) for force in _of_actuator(scene, actuator)]
+    return [force for actuator in range(model.nu) for force in _of_actuator(planar, actuator)]
 
 
-def _of_actuator(scene: PlanarModel, actuator: int) -> list[ForceElement]:
-    model = scene.model
+def _of_actuator(planar: PlanarModel, actuator: int) -> list[ForceElement]:
+    model = planar.model
     element, name = name_of(model, ACTUATOR, actuator), plain_name(model, ACTUATOR, actuator)
     if model.opt.disableactuator & (1 << max(0, int(model.actuator_group[actuator]))):
-        scene.note(element, "its group is switched off")
+        planar.note(element, "its group is switched off")
         return []
     if np.any(model.actuator_armature[actuator]) or np.any(model.actuator_damping[actuator]):
         raise refuse(element, "armature or damping of an actuator has no ideal counterpart here; give the joint's")
@@ -163,9 +163,9 @@ def _of_actuator(scene: PlanarModel, actuator: int) -> list[ForceElement]:
         and not np.any(model.actuator_delay[actuator])
     )
     bias = model.actuator_biasprm[actuator][:3] * is_affine
-    push = float(model.actuator_gainprm[actuator][0]) * _control(scene, actuator, element) + float(bias[0])
+    push = float(model.actuator_gainprm[actuator][0]) * _control(planar, actuator, element) + float(bias[0])
     if is_simple and not push and not np.any(bias):
-        scene.note(element, "its control is zero, so it does not act")
+        planar.note(element, "its control is zero, so it does not act")
         return []
     if not is_simple:
         raise refuse(element, "only a motor or a servo without a state of its own, at constant control, is read")
@@ -177,78 +177,78 @@ def _of_actuator(scene: PlanarModel, actuator: int) -> list[ForceElement]:
     if kind in (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT):
         if model.jnt_type[target] not in (HINGE, SLIDE):
             raise refuse(element, "it acts on a joint that is neither a hinge nor a slide")
-        way = -float(scene.data.qpos[scene.qpos_of(target)])
-        return _along(scene, element, name, [(target, 1.0)], way, *servo)
+        stretch = -float(planar.data.qpos[planar.qpos_of(target)])
+        return _along(planar, element, name, [(target, 1.0)], stretch, *servo)
     if kind == mujoco.mjtTrn.mjTRN_TENDON and (parts := wrapped_joints(model, target)) is not None:
-        return _along(scene, element, name, parts, -_length(scene, target), *servo)
+        return _along(planar, element, name, parts, -_length(planar, target), *servo)
     if np.any(bias[1:]):
         raise refuse(element, "a servo is read only where it acts on a joint, or on a tendon over joints")
     if kind != mujoco.mjtTrn.mjTRN_SITE:
         raise refuse(element, "it acts neither on a joint, nor on a sum of angles, nor at a site")
-    return _at_site(scene, element, name, actuator, push)
+    return _at_site(planar, element, name, actuator, push)
 
 
-def _control(scene: PlanarModel, actuator: int, element: str) -> float:
+def _control(planar: PlanarModel, actuator: int, element: str) -> float:
     """The constant control of an actuator, within its range."""
-    model, control = scene.model, float(scene.data.ctrl[actuator])
+    model, control = planar.model, float(planar.data.ctrl[actuator])
     if not model.actuator_ctrllimited[actuator] or is_off(model, "CLAMPCTRL"):
         return control
     clamped = float(np.clip(control, *model.actuator_ctrlrange[actuator]))
     if clamped != control:
-        scene.note(element, f"its control of {control:g} is beyond its range; MuJoCo takes {clamped:g}, so we do")
+        planar.note(element, f"its control of {control:g} is beyond its range; MuJoCo takes {clamped:g}, so we do")
     return clamped
 
 
-def _at_site(scene: PlanarModel, element: str, name: str, actuator: int, push: float) -> list[ForceElement]:
+def _at_site(planar: PlanarModel, element: str, name: str, actuator: int, push: float) -> list[ForceElement]:
     """A constant force and torque at a site, in the directions of a site of the ground."""
-    model, data = scene.model, scene.data
+    model, data = planar.model, planar.data
     site, base = (int(index) for index in model.actuator_trnid[actuator])
-    if base < 0 or scene.group(model.site_bodyid[base]) >= 0:
+    if base < 0 or planar.group(model.site_bodyid[base]) >= 0:
         raise refuse(element, "a force at a site that turns with a body is not constant in the plane")
     axes = data.site_xmat[base].reshape(3, 3)
     force, torque = (push * (axes @ part) for part in np.split(model.actuator_gear[actuator], 2))
-    group = scene.group(model.site_bodyid[site])
-    return _on_body(scene, group, data.site_xpos[site], force, torque, name, name)
+    group = planar.group(model.site_bodyid[site])
+    return _on_body(planar, group, data.site_xpos[site], force, torque, name, name)
 
 
 def _on_body(
-    scene: PlanarModel, group: int, at: Any, force: Any, torque: Any, force_name: str, torque_name: str
+    planar: PlanarModel, group: int, at: Any, force: Any, torque: Any, force_name: str, torque_name: str
 ) -> list[ForceElement]:
     """A constant force (3,) [N] at a point of the world, and a torque (3,) [N m], on a body."""
-    second, out, pull = scene.name(group), list[ForceElement](), scene.frame.in_plane(force)
+    second, out, pull = planar.name(group), list[ForceElement](), planar.frame.in_plane(force)
     if second is not None and any(pull):
-        out.append(Force(scene.names.new(force_name), second, scene.in_body(group, at), pull))
-    if second is not None and torque @ scene.frame.normal:
-        out.append(Torque(scene.names.new(torque_name), None, second, float(torque @ scene.frame.normal)))
+        out.append(Force(planar.names.new(force_name), second, planar.in_body(group, at), pull))
+    if second is not None and torque @ planar.frame.normal:
+        out.append(Torque(planar.names.new(torque_name), None, second, float(torque @ planar.frame.normal)))
     return out
 
 
-def _applied(scene: PlanarModel) -> list[ForceElement]:
-    """The forces that stand in the data, and weights that the model takes off bodies."""
-    model, data, out = scene.model, scene.data, list[ForceElement]()
+def _applied(planar: PlanarModel) -> list[ForceElement]:
+    """The forces in the data of the model, and the compensation of gravity."""
+    model, data, out = planar.model, planar.data, list[ForceElement]()
     for dof in np.flatnonzero(data.qfrc_applied):
         joint = int(model.dof_jntid[dof])
         element, name = name_of(model, JOINT, joint), plain_name(model, JOINT, joint)
         if model.jnt_type[joint] not in (HINGE, SLIDE):
             raise refuse(element, "a force applied to a free joint is not read; apply it to a body")
-        out += _along(scene, element, f"{name} applied", [(joint, 1.0)], 0.0, float(data.qfrc_applied[dof]))
+        out += _along(planar, element, f"{name} applied", [(joint, 1.0)], 0.0, float(data.qfrc_applied[dof]))
     gravity = np.zeros(3) if is_off(model, "GRAVITY") else model.opt.gravity
     for body in range(1, model.nbody):
         push = data.xfrc_applied[body][:3] - model.body_gravcomp[body] * model.body_mass[body] * gravity
         name = plain_name(model, BODY, body)
         names = f"{name} force", f"{name} torque"
-        out += _on_body(scene, scene.group(body), data.xipos[body], push, data.xfrc_applied[body][3:], *names)
+        out += _on_body(planar, planar.group(body), data.xipos[body], push, data.xfrc_applied[body][3:], *names)
     return out
 
 
-def turns(scene: PlanarModel, group: int) -> bool:
-    """Whether a body can turn."""
+def turns(planar: PlanarModel, group: int) -> bool:
+    """Whether the body of a group can turn."""
     return group >= 0 and (
-        bool(scene.joints_of(group, HINGE, FREE)) or turns(scene, scene.parent(scene.joints_of(group)[0]))
+        bool(planar.joints_of(group, HINGE, FREE)) or turns(planar, planar.parent(planar.joints_of(group)[0]))
     )
 
 
 def limited_servos(model: Any) -> Any:
-    """Actuators (nu,) with a limit whose force is not constant; a constant one is read with its limit."""
+    """A mask (nu,) of the actuators with a limited force that is not constant. A constant force is read as limited."""
     affine = model.actuator_biastype == int(mujoco.mjtBias.mjBIAS_AFFINE)
     return model.actuator_forcelimited.astype(bool) & affine & np.any(model.actuator_biasprm[:, 1:3], axis=1)

@@ -1,7 +1,7 @@
-"""The plane in which a MuJoCo model moves, found from its joints, and its bodies seen in that plane.
+"""The plane in which a MuJoCo model moves, found from its joints, and the bodies of the model in that plane.
 
-Bodies without joints are merged with their parents. Positions and inertias across the plane have no part in the motion:
-joints hold them, and products of inertia only load these.
+Bodies without joints are merged with their parents. Positions and inertias across the plane do not affect the motion:
+joints hold the bodies in the plane, and products of inertia only load these joints.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from engines.reading import MOST_BODIES, Names, Note, refuse
 from reference.joints import Body, Joint, Vector
 
 Array = NDArray[np.float64]
-PLANAR = 1e-9  # of a unit vector, or of an inertia: what counts as rounding
-# rad. Files with six digits tilt an axis by 2e-6, 1.5708 for a right angle by 4e-6, and chains add the tilts of their
-# bodies up. What is tilted on purpose is tilted by more; 1.57, 8e-4 off, is far above usual tolerances.
-PRINTED = 1e-4
-ROUGH = 1e-2  # rad: what a few digits less may make
+PLANAR = 1e-9  # relative to a unit vector or an inertia: smaller components are rounding
+# rad: up to this tilt an axis counts as normal to the plane. Six digits in a file tilt an axis by 2e-6, 1.5708 for a
+# right angle by 4e-6, and tilts add up along chains. An intended tilt is larger, and so is that of 1.57, 8e-4.
+MAX_TILT = 1e-4
+MAX_ROUNDED_TILT = 1e-2  # rad: up to this tilt a message mentions rounding in the file
 
 BODY, JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
 FREE, BALL, SLIDE, HINGE = (
@@ -33,7 +33,7 @@ FREE, BALL, SLIDE, HINGE = (
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """The plane: unit vectors (3,) of its x, its y, and the normal about which angles are counted."""
+    """The plane: unit vectors (3,) along its x and its y, and the normal, about which angles are positive."""
 
     across: Array
     up: Array
@@ -41,7 +41,7 @@ class Frame:
 
     @cached_property
     def both(self) -> Array:
-        """(2, 3): what takes a vector of the world to the plane."""
+        """The matrix (2, 3) that projects a vector of the world onto x and y of the plane."""
         return np.array([self.across, self.up])
 
     def in_plane(self, vector: Any) -> tuple[float, float]:
@@ -50,15 +50,15 @@ class Frame:
 
 
 def name_of(model: Any, kind: Any, index: Any) -> str:
-    """An element's name as a user knows it, or its number."""
+    """The kind of an element with its name, or its number, for a message."""
     word = str(kind).rsplit("_", 1)[-1].lower()
     name = mujoco.mj_id2name(model, kind, int(index))
     return f"{word} {name!r}" if name else f"{word} {index}"
 
 
 def plain_name(model: Any, kind: Any, index: int) -> str:
-    """The name alone, or the kind and the number."""
-    return mujoco.mj_id2name(model, kind, index) or f"{str(kind).rsplit('_', 1)[-1].lower()} {index}"
+    """The name of an element alone; its kind and number if it has none."""
+    return mujoco.mj_id2name(model, kind, index) or name_of(model, kind, index)
 
 
 def find_frame(model: Any, data: Any) -> Frame:
@@ -67,38 +67,48 @@ def find_frame(model: Any, data: Any) -> Frame:
     for index in np.flatnonzero(kinds == BALL):
         raise refuse(name_of(model, JOINT, index), "a ball joint turns its body out of any plane")
     hinges, slides = np.flatnonzero(kinds == HINGE), np.flatnonzero(kinds == SLIDE)
-    normal = data.xaxis[hinges[0]].copy() if len(hinges) else _without_hinges(model, data, slides)
+    normal = data.xaxis[hinges[0]].copy() if len(hinges) else _normal_to_slides(model, data, slides)
     normal = _nearest_axis(normal / np.linalg.norm(normal))
     largest = int(np.argmax(np.abs(normal)))
-    # Seen from the side that leaves x to the right: z out of the plane, or y into it.
+    # The normal points along z, or against y, so that x is to the right.
     if normal[largest] * (-1 if largest == 1 else 1) < 0:
         normal = -normal
-    more = "; if rounding in the file makes that, give its angles and quaternions with six digits or more"
-    for index in hinges:
-        if (off := float(np.linalg.norm(np.cross(normal, data.xaxis[index])))) > PRINTED:
-            first = name_of(model, JOINT, int(hinges[0]))
-            words = f"it is not parallel to {first}, but {off:.2g} rad off: this model moves in no plane"
-            raise refuse(name_of(model, JOINT, index), words + more * (off < ROUGH))
-    for index in slides:
-        if (off := abs(float(normal @ data.xaxis[index]))) > PRINTED:
-            words = f"it slides out of the plane in which the others move, by {off:.2g} rad"
-            raise refuse(name_of(model, JOINT, index), words + more * (off < ROUGH))
+    _refuse_tilted_joints(model, data, normal)
     upward = np.array([0.0, 1.0, 0.0]) if abs(normal[2]) > 1 - PLANAR else np.array([0.0, 0.0, 1.0])
     up = upward - (upward @ normal) * normal
     up /= np.linalg.norm(up)
     return Frame(np.cross(up, normal), up, normal)
 
 
+def _refuse_tilted_joints(model: Any, data: Any, normal: Array) -> None:
+    """Raise Unsupported for a hinge that is not along the normal, or a slide that is not across it."""
+    hinges = np.flatnonzero(model.jnt_type == HINGE)
+    for index in np.flatnonzero((model.jnt_type == HINGE) | (model.jnt_type == SLIDE)):
+        is_hinge = model.jnt_type[index] == HINGE
+        axis = data.xaxis[index]
+        tilt = float(np.linalg.norm(np.cross(normal, axis))) if is_hinge else abs(float(normal @ axis))
+        if tilt <= MAX_TILT:
+            continue
+        if is_hinge:
+            first = name_of(model, JOINT, int(hinges[0]))
+            reason = f"it is not parallel to {first}, but {tilt:.2g} rad off: this model moves in no plane"
+        else:
+            reason = f"it slides out of the plane in which the others move, by {tilt:.2g} rad"
+        if tilt < MAX_ROUNDED_TILT:
+            reason += "; if rounding in the file makes that, give its angles and quaternions with six digits or more"
+        raise refuse(name_of(model, JOINT, index), reason)
+
+
 def _nearest_axis(normal: Array) -> Array:
-    """A unit vector, or the axis of the world that it is but for the rounding of a file."""
+    """An axis of the world if a unit vector is within MAX_TILT of it, else the vector."""
     axis = np.round(normal)
-    return axis if np.linalg.norm(normal - axis) <= PRINTED else normal
+    return axis if np.linalg.norm(normal - axis) <= MAX_TILT else normal
 
 
 def flattened(model: Any, frame: Frame) -> tuple[Any, float]:
-    """A copy whose joints move exactly in the plane, and by how much those of the model are tilted [rad].
+    """A copy of the model whose joints move exactly in the plane, and the largest tilt of those of the model [rad].
 
-    Only the joints' axes are turned, where qpos0 places them: the bodies then stay at their heights above the plane.
+    The axes of joints are turned in the pose qpos0, so that the bodies keep their heights above the plane.
     """
     flat, data = copy.copy(model), mujoco.MjData(model)
     data.qpos[:] = model.qpos0
@@ -113,11 +123,11 @@ def flattened(model: Any, frame: Frame) -> tuple[Any, float]:
     return flat, tilt
 
 
-def _without_hinges(model: Any, data: Any, slides: Any) -> Array:
+def _normal_to_slides(model: Any, data: Any, slides: Any) -> Array:
     """A normal across all slides, and across gravity unless two slides span the plane."""
     axes = data.xaxis[slides].reshape(-1, 3)
-    spanned = np.linalg.matrix_rank(axes, tol=PLANAR) == 2
-    vectors = axes if spanned else np.vstack([axes, model.opt.gravity])
+    is_spanned = np.linalg.matrix_rank(axes, tol=PLANAR) == 2
+    vectors = axes if is_spanned else np.vstack([axes, model.opt.gravity])
     _, sizes, directions = np.linalg.svd(vectors)
     if np.sum(sizes > PLANAR * max(1.0, *sizes)) == 3:
         raise refuse("its slides and gravity", "they lie in no common plane")
@@ -129,10 +139,11 @@ def _without_hinges(model: Any, data: Any, slides: Any) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Groups:
-    """MuJoCo bodies that move as one: `of` (nbody,) is the index among the mechanism's bodies, -1 for the ground.
+    """Groups of MuJoCo bodies that are fixed to one another: each is a body of the mechanism.
 
-    `roots`: the MuJoCo body of each group that has the joints. `centres` (groups, 3) [m]: centres of mass in the frames
-    of the roots. `signs` (njnt,): the sense of each joint's axis against the normal.
+    `of` (nbody,): the group of each MuJoCo body, -1 for the ground. `roots`: the MuJoCo body of each group that has the
+    joints. `centres` (groups, 3) [m]: centres of mass in the frames of the roots. `signs` (njnt,): 1 for a joint whose
+    axis is along the normal, -1 for one against it.
     """
 
     of: Array
@@ -142,7 +153,7 @@ class Groups:
 
 
 def find_bodies(model: Any, data: Any, frame: Frame) -> tuple[Groups, tuple[Body, ...]]:
-    """MuJoCo's bodies merged with those that are fixed to them, and the mechanism's bodies in the state of `data`."""
+    """The groups of MuJoCo's bodies, and the mechanism's bodies in the state of `data`. Raises Unsupported."""
     roots = [int(body) for body in np.flatnonzero(model.body_jntnum)]
     if not roots:
         raise refuse("the model", "nothing in it can move")
@@ -157,7 +168,7 @@ def find_bodies(model: Any, data: Any, frame: Frame) -> tuple[Groups, tuple[Body
 
 
 def _body(model: Any, data: Any, frame: Frame, groups: Groups, index: int, angle: float) -> Body:
-    """One body of the mechanism; its centre of mass is stored in `groups`."""
+    """The body of the mechanism for a group; stores its centre of mass in `groups`."""
     root, parts = groups.roots[index], np.flatnonzero(groups.of == index)
     element, masses = name_of(model, BODY, root), model.body_mass[parts]
     if not masses.sum() > 0:
@@ -174,9 +185,9 @@ def _body(model: Any, data: Any, frame: Frame, groups: Groups, index: int, angle
     tilted = np.linalg.norm(tensor @ frame.normal - inertia * frame.normal)
     if model.jnt_type[model.body_jntadr[root]] == FREE and tilted > PLANAR * inertia:
         raise refuse(element, "it is free, and the normal of the plane is no principal axis of its inertia")
-    turn = data.xmat[root].reshape(3, 3)
-    groups.centres[index] = turn.T @ (centre - data.xpos[root])
-    centre = data.xpos[root] + turn @ groups.centres[index]  # as every later state has it
+    rotation = data.xmat[root].reshape(3, 3)
+    groups.centres[index] = rotation.T @ (centre - data.xpos[root])
+    centre = data.xpos[root] + rotation @ groups.centres[index]  # rounded as in every later state
     moving, turning = np.zeros((2, 3, model.nv))
     mujoco.mj_jac(model, data, moving, turning, centre, root)
     speed, rate = moving @ data.qvel, turning @ data.qvel
@@ -189,33 +200,39 @@ def _body(model: Any, data: Any, frame: Frame, groups: Groups, index: int, angle
 
 
 def angles_of(model: Any, frame: Frame, groups: Groups, qpos: Array) -> Array:
-    """Angles (times, groups) [rad], not wrapped, of positions (times, nq): the sums of the hinges up to the ground."""
+    """Angles (times, groups) [rad] at positions (times, nq), not wrapped: sums of hinge angles along the chain."""
     angles = np.zeros((len(qpos), len(groups.roots)))
     for index, root in enumerate(groups.roots):
         parent, first = int(groups.of[model.body_parentid[root]]), int(model.body_jntadr[root])
         if parent >= 0:
             angles[:, index] = angles[:, parent]
         for joint in range(first, first + int(model.body_jntnum[root])):
-            place = int(model.jnt_qposadr[joint])
+            address = int(model.jnt_qposadr[joint])
             if model.jnt_type[joint] == HINGE:
-                angles[:, index] += groups.signs[joint] * qpos[:, place]
+                angles[:, index] += groups.signs[joint] * qpos[:, address]
             elif model.jnt_type[joint] == FREE:
-                angles[:, index] += np.unwrap(2 * np.arctan2(*_turn(model, frame, place + 3, qpos)))
+                angles[:, index] += np.unwrap(2 * np.arctan2(*_half_angle(model, frame, address + 3, qpos)))
     return angles
 
 
-def _turn(model: Any, frame: Frame, place: int, qpos: Array) -> tuple[Array, Array]:
-    """Sine and cosine (times,) of half the angle by which a quaternion has turned about the normal since qpos0."""
-    now, begin = qpos[:, place : place + 4], model.qpos0[place : place + 4]
-    vector = now[:, 1:] * begin[0] - now[:, :1] * begin[1:] - np.cross(now[:, 1:], begin[1:])
+def _half_angle(model: Any, frame: Frame, address: int, qpos: Array) -> tuple[Array, Array]:
+    """Sine and cosine (times,) of half the angle about the normal between qpos0 and the quaternion at an address.
+
+    Raises Unsupported for a rotation out of the plane.
+    """
+    quaternion, start = qpos[:, address : address + 4], model.qpos0[address : address + 4]
+    vector = quaternion[:, 1:] * start[0] - quaternion[:, :1] * start[1:] - np.cross(quaternion[:, 1:], start[1:])
     if np.abs(vector @ frame.both.T).max() > PLANAR:
         raise refuse("a free joint", "its body is turned out of the plane in what MuJoCo makes of the motion")
-    return vector @ frame.normal, now @ begin
+    return vector @ frame.normal, quaternion @ start
 
 
 @dataclass(eq=False)
 class PlanarModel:
-    """A model in its start, while it is read, and the bodies of its mechanism."""
+    """A model at its start while it is read, the bodies of its mechanism, and the notes of the reading.
+
+    `held`: the ideal joints of each equality, by its index.
+    """
 
     model: Any
     data: Any
@@ -224,10 +241,10 @@ class PlanarModel:
     bodies: tuple[Body, ...]
     names: Names = field(default_factory=Names)
     notes: list[Note] = field(default_factory=list)
-    held: dict[int, tuple[Joint, ...]] = field(default_factory=dict)  # the ideal joints of each equality
+    held: dict[int, tuple[Joint, ...]] = field(default_factory=dict)
 
     def group(self, body: int) -> int:
-        """The index among the mechanism's bodies, -1 for the ground."""
+        """The group of a MuJoCo body, -1 for the ground."""
         return int(self.groups.of[body])
 
     def group_of(self, joint: int) -> int:
@@ -235,7 +252,7 @@ class PlanarModel:
         return self.group(self.model.jnt_bodyid[joint])
 
     def parent(self, joint: int) -> int:
-        """The group against which a joint moves its own."""
+        """The group against which a joint moves its own group."""
         return self.group(self.model.body_parentid[self.model.jnt_bodyid[joint]])
 
     def name(self, group: int) -> str | None:
@@ -263,7 +280,7 @@ class PlanarModel:
         return self.name(first), self.name(second), self.in_body(first, at), self.in_body(second, other)
 
     def direction(self, group: int, axis: Any) -> float:
-        """The angle [rad] of a direction of the world in the frame of a body."""
+        """The angle [rad] in the frame of a body of a direction of the world."""
         x, y = self.frame.in_plane(axis)
         return float(np.arctan2(y, x)) - self.angle(group)
 

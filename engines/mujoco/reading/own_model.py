@@ -1,7 +1,4 @@
-"""A user's MuJoCo model as it is: run from its start, with its own settings or with others that MuJoCo documents.
-
-The limits and contacts that a motion meets in it are here as well.
-"""
+"""A user's MuJoCo model, run from its start with its own or other settings, and the limits and contacts in a motion."""
 
 from __future__ import annotations
 
@@ -30,53 +27,53 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 STATE = ("qpos", "qvel", "ctrl", "act", "qfrc_applied", "xfrc_applied", "eq_active", "mocap_pos", "mocap_quat")
-LIMITS = {
+LIMIT_ROWS = {
     int(mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT): JOINT,
     int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON): TENDON,
 }
 
 
 def in_state(model: Any, state: Any) -> Any:
-    """A fresh mujoco.MjData with positions, velocities and inputs of another one."""
+    """A new mujoco.MjData with the positions, velocities and inputs of another one."""
     data = mujoco.MjData(model)
     for name in STATE:
         getattr(data, name)[:] = getattr(state, name)
     return data
 
 
-def centres(scene: PlanarModel, data: Any) -> Array:
+def centres(planar: PlanarModel, data: Any) -> Array:
     """The centres of mass (bodies, 3) [m] in the world."""
-    roots = list(scene.groups.roots)
-    return data.xpos[roots] + np.einsum("bij,bj->bi", data.xmat[roots].reshape(-1, 3, 3), scene.groups.centres)
+    roots = list(planar.groups.roots)
+    return data.xpos[roots] + np.einsum("bij,bj->bi", data.xmat[roots].reshape(-1, 3, 3), planar.groups.centres)
 
 
-def directions(scene: PlanarModel, data: Any) -> Array:
-    """(bodies, 3, nv): the twists of unit velocities of MuJoCo's coordinates."""
-    jac, out = np.zeros((2, 3, scene.model.nv)), np.zeros((len(scene.bodies), 3, scene.model.nv))
-    for index, (root, centre) in enumerate(zip(scene.groups.roots, centres(scene, data), strict=True)):
-        mujoco.mj_jac(scene.model, data, jac[0], jac[1], centre, root)
-        out[index, :2], out[index, 2] = scene.frame.both @ jac[0], scene.frame.normal @ jac[1]
+def directions(planar: PlanarModel, data: Any) -> Array:
+    """The twists (bodies, 3, nv) of unit velocities of MuJoCo's coordinates."""
+    jac, out = np.zeros((2, 3, planar.model.nv)), np.zeros((len(planar.bodies), 3, planar.model.nv))
+    for index, (root, centre) in enumerate(zip(planar.groups.roots, centres(planar, data), strict=True)):
+        mujoco.mj_jac(planar.model, data, jac[0], jac[1], centre, root)
+        out[index, :2], out[index, 2] = planar.frame.both @ jac[0], planar.frame.normal @ jac[1]
     return out
 
 
-def positions(scene: PlanarModel, pose: Array) -> Array:
-    """qpos (times, nq) of poses (times, bodies, 3); MuJoCo's coordinates have no loops, so any pose has one."""
-    model, data = scene.model, in_state(scene.model, scene.data)
+def positions(planar: PlanarModel, pose: Array) -> Array:
+    """qpos (times, nq) for poses (times, bodies, 3)."""
+    model, data = planar.model, in_state(planar.model, planar.data)
     out = np.empty((len(pose), model.nq))
     for sample, wanted in enumerate(pose):
-        data.qpos[:] = scene.data.qpos
-        # Angles are linear in the coordinates. With these right, places are linear in those that turn nothing.
+        data.qpos[:] = planar.data.qpos
+        # Angles are linear in the coordinates. With the angles set, positions are linear in the other coordinates.
         for part in (slice(2, 3), slice(0, 2)):
             mujoco.mj_kinematics(model, data)
             mujoco.mj_comPos(model, data)
-            angle = angles_of(model, scene.frame, scene.groups, data.qpos[None])[0]
-            miss = wanted - np.column_stack([centres(scene, data) @ scene.frame.both.T, angle])
-            columns = directions(scene, data)
-            still = ~np.any(columns[:, 2], axis=0) if part.start == 0 else np.any(columns[:, 2], axis=0)
-            way = np.zeros(model.nv)
-            right = miss[:, part].reshape(-1)
-            way[still] = np.linalg.lstsq(columns[:, part][..., still].reshape(len(right), -1), right, rcond=None)[0]
-            mujoco.mj_integratePos(model, data.qpos, way, 1.0)
+            angle = angles_of(model, planar.frame, planar.groups, data.qpos[None])[0]
+            error = wanted - np.column_stack([centres(planar, data) @ planar.frame.both.T, angle])
+            columns = directions(planar, data)
+            turns = np.any(columns[:, 2], axis=0)
+            used = ~turns if part.start == 0 else turns
+            step, right = np.zeros(model.nv), error[:, part].reshape(-1)
+            step[used] = np.linalg.lstsq(columns[:, part][..., used].reshape(len(right), -1), right, rcond=None)[0]
+            mujoco.mj_integratePos(model, data.qpos, step, 1.0)
         out[sample] = data.qpos
     return out
 
@@ -89,15 +86,15 @@ def limited_forces(model: Any) -> list[str]:
 
 def _at_limits(model: Any, data: Any) -> list[str]:
     """The elements that are at a limit of their force in the state of `data`, after mj_fwdPosition."""
-    free = copy.copy(model)
-    free.actuator_forcelimited[limited_servos(model)] = 0
-    free.jnt_actfrclimited[:] = free.tendon_actfrclimited[:] = 0
+    unlimited = copy.copy(model)
+    unlimited.actuator_forcelimited[limited_servos(model)] = 0
+    unlimited.jnt_actfrclimited[:] = unlimited.tendon_actfrclimited[:] = 0
     mujoco.mj_fwdVelocity(model, data)
-    mujoco.mj_fwdActuation(free, data)
-    wanted, unlimited = data.actuator_force.copy(), data.qfrc_actuator.copy()
+    mujoco.mj_fwdActuation(unlimited, data)
+    actuator_force, joint_force = data.actuator_force.copy(), data.qfrc_actuator.copy()
     mujoco.mj_fwdActuation(model, data)
-    actuators = np.flatnonzero(wanted != data.actuator_force)
-    joints = [] if len(actuators) else model.dof_jntid[unlimited != data.qfrc_actuator]
+    actuators = np.flatnonzero(actuator_force != data.actuator_force)
+    joints = [] if len(actuators) else model.dof_jntid[joint_force != data.qfrc_actuator]
     return [name_of(model, ACTUATOR, index) for index in actuators] + [name_of(model, JOINT, index) for index in joints]
 
 
@@ -105,16 +102,18 @@ def _at_limits(model: Any, data: Any) -> list[str]:
 class OwnMuJoCo:
     """The compiled model and its start; see `engines.reading.OwnModel`.
 
-    `users`: the user's model, which is run; the scene's is the same, except that its joints move exactly in the plane;
-    `tilt` [rad]: by how much the user's do not.
+    `users`: the user's model, which is run. That of `planar` is the same, with joints that move exactly in the plane;
+    `tilt` [rad] is the largest difference of an axis. `urdf`: it was read from a URDF file without an element for
+    MuJoCo, so the lines to copy contain one. `classes`: the file may have classes of defaults, whose values a new
+    default does not change.
     """
 
-    scene: PlanarModel
+    planar: PlanarModel
     mechanism: Mechanism
     users: Any
     tilt: float = 0.0
-    urdf: bool = False  # read from a URDF file without an element of MuJoCo's own: the lines to copy bring one
-    classes: bool = False  # the file may have classes of its own, which a default that is copied does not reach
+    urdf: bool = False
+    classes: bool = False
 
     engine = "MuJoCo"
     assumed = ""
@@ -122,20 +121,20 @@ class OwnMuJoCo:
 
     @property
     def dt(self) -> float:
-        return float(self.scene.model.opt.timestep)
+        return float(self.planar.model.opt.timestep)
 
     @property
     def declares(self) -> bool:
-        """Not with a rod: the equality of a tendon leaves out the term of the velocities, which no ideal row does."""
+        """Not with a rod: the equality of a tendon lacks the velocity term, which an ideal row has."""
         return not any(isinstance(joint, Rod) for joint in self.mechanism.joints)
 
     @property
     def has_soft_joints(self) -> bool:
-        return any(self.scene.held.values())
+        return any(self.planar.held.values())
 
     @property
     def start_twist(self) -> Array:
-        return np.array([body.twist for body in self.scene.bodies])
+        return np.array([body.twist for body in self.planar.bodies])
 
     @property
     def suspects(self) -> Mapping[str, str]:
@@ -143,7 +142,7 @@ class OwnMuJoCo:
 
     @property
     def settings(self) -> Mapping[str, str]:
-        model, option = self.scene.model, self.scene.model.opt
+        model, option = self.planar.model, self.planar.model.opt
         out = {
             "timestep": f"{option.timestep:g} s",
             "integrator": spelled(mujoco.mjtIntegrator(option.integrator)),
@@ -152,96 +151,94 @@ class OwnMuJoCo:
             "tolerance": f"{option.tolerance:g}",
             "cone": spelled(mujoco.mjtCone(option.cone)),
         }
-        for index, joints in self.scene.held.items():
+        for index, joints in self.planar.held.items():
             for name in ("solref", "solimp") if joints else ():
                 values = getattr(model, f"eq_{name}")[index]
                 out[f"{name} of {name_of(model, EQUALITY, index)}"] = " ".join(f"{value:g}" for value in values)
         return out
 
     def start(self) -> Array:
-        return self._start(self.scene.model)
+        return self._start_accelerations(self.planar.model)
 
     def without(self, element: str) -> Array:
-        model = copy.copy(self.scene.model)
+        model = copy.copy(self.planar.model)
         switch_off(model, element)
-        return self._start(model)
+        return self._start_accelerations(model)
 
-    def _start(self, model: Any) -> Array:
-        """With the solver's tolerance at zero: the equations are to be compared, not where a solver stops."""
+    def _start_accelerations(self, model: Any) -> Array:
+        """Accelerations (bodies, 3) at the start, with a tolerance of zero, so that the solver's error is rounding."""
         model = copy.copy(model)
         model.opt.tolerance, model.opt.iterations = 0.0, max(100, model.opt.iterations)
-        data = self._started(model)
+        data = self._consistent_start(model)
         with logged_warnings(data):
             mujoco.mj_forward(model, data)
         return self._motion(model, data)[1]
 
     def regularisation(self, gap: Array, pose: Array) -> RowRegularisation:
-        return self._give(gap, pose)
+        return self._regularisation(gap, pose)
 
     @cached_property
-    def _give(self) -> Any:
-        data = self._fresh(self.scene.model)
+    def _regularisation(self) -> Any:
+        data = self._own_start(self.planar.model)
 
         def moved(pose: Array) -> Any:
-            data.qpos[:] = positions(self.scene, pose[None])[0]
-            mujoco.mj_fwdPosition(self.scene.model, data)
+            data.qpos[:] = positions(self.planar, pose[None])[0]
+            mujoco.mj_fwdPosition(self.planar.model, data)
             return data
 
-        columns = directions(self.scene, self.scene.data).reshape(-1, self.scene.model.nv)
-        return declared(self.scene, self.mechanism, columns, self._drift(), moved)
+        columns = directions(self.planar, self.planar.data).reshape(-1, self.planar.model.nv)
+        return declared(self.planar, self.mechanism, columns, self._drift(), moved)
 
     def _drift(self) -> Array:
-        """Accelerations (3 bodies,) at the start with MuJoCo's coordinates at a steady rate."""
-        data = self._started(self.scene.model)
-        mujoco.mj_forward(self.scene.model, data)
+        """Accelerations (3 bodies,) at the start with zero accelerations of MuJoCo's coordinates."""
+        data = self._consistent_start(self.planar.model)
+        mujoco.mj_forward(self.planar.model, data)
         data.qacc[:] = 0.0
-        return self._motion(self.scene.model, data)[1].reshape(-1)
+        return self._motion(self.planar.model, data)[1].reshape(-1)
 
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
-        """What the motion of poses and twists (times, bodies, 3) meets first, in the order of time."""
-        model, data, first = self.scene.model, self._fresh(self.scene.model), dict[str, Obstacle]()
+        model, data, first = self.planar.model, self._own_start(self.planar.model), dict[str, Obstacle]()
         kinds = mujoco.mjtConstraint
         touching = range(int(kinds.mjCNSTR_CONTACT_FRICTIONLESS), int(kinds.mjCNSTR_CONTACT_ELLIPTIC) + 1)
         has_limits = bool(limited_forces(model))
-        for at, qpos, rates in zip(t, positions(self.scene, pose), twist, strict=True):
+        for at, qpos, rates in zip(t, positions(self.planar, pose), twist, strict=True):
             data.qpos[:] = qpos
             mujoco.mj_fwdPosition(model, data)
-            met: list[tuple[str, str]] = []
+            events: list[tuple[str, str]] = []  # words, and the kind of element to switch off
             for kind, index in zip(data.efc_type, data.efc_id, strict=True):
-                if kind in LIMITS:
-                    met.append((f"{name_of(model, LIMITS[kind], index)} reaches its limit", "limit"))
+                if kind in LIMIT_ROWS:
+                    events.append((f"{name_of(model, LIMIT_ROWS[kind], index)} reaches its limit", "limit"))
                 elif kind in touching:
                     pair = [name_of(model, mujoco.mjtObj.mjOBJ_GEOM, geom) for geom in data.contact[index].geom]
-                    met.append((f"{pair[0]} touches {pair[1]}", "contact"))
+                    events.append((f"{pair[0]} touches {pair[1]}", "contact"))
             if has_limits:
                 self._set_rates(data, rates)
-                met += [
-                    (f"{element} reaches the limit of its force", "forcelimit") for element in _at_limits(model, data)
-                ]
-            for words, without in met:
+                at_limits = _at_limits(model, data)
+                events += [(f"{element} reaches the limit of its force", "forcelimit") for element in at_limits]
+            for words, without in events:
                 first.setdefault(words, Obstacle(float(at), words, left_out(without)))
         return sorted(first.values(), key=lambda obstacle: obstacle.t)
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
-        return changes(self.scene.model, self.has_soft_joints, smallest, self.urdf, self.classes, further)
+        return changes(self.planar.model, self.has_soft_joints, smallest, self.urdf, self.classes, further)
 
     def remarks(self, run: Trajectory) -> Sequence[Note]:
         if not self.tilt:
             return ()
         samples, every = len(run.t) - 1, max(1, round(float(run.t[1]) / self.dt))
-        flat = replace(self, users=self.scene.model)
+        flat = replace(self, users=self.planar.model)
 
-        def moved(of: Trajectory, change: Change | None) -> str:
-            off = np.abs(flat.run(samples, every, change).pose - of.pose).max(axis=(0, 1))
-            return f"{max(off[0], off[1]):.2g} m and {off[2]:.2g} rad"
+        def difference(run: Trajectory, change: Change | None) -> str:
+            largest = np.abs(flat.run(samples, every, change).pose - run.pose).max(axis=(0, 1))
+            return f"{max(largest[0], largest[1]):.2g} m and {largest[2]:.2g} rad"
 
         words = (
             f"they are up to {self.tilt:.2g} rad off, as rounding of a file makes them, and taken as exact; with exact "
-            f"ones your model moves differently by {moved(run, None)} in {run.t[-1]:.3g} s"
+            f"ones your model moves differently by {difference(run, None)} in {run.t[-1]:.3g} s"
         )
         if self.has_soft_joints:
             stiff = self.changes(self.dt)[-1]
-            words += f", with stiff loops by {moved(self.run(samples, every, stiff), stiff)}"
+            words += f", with stiff loops by {difference(self.run(samples, every, stiff), stiff)}"
         return (Note("the directions of joints", words),)
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
@@ -255,65 +252,65 @@ class OwnMuJoCo:
                 model.eq_solimp[:] = STIFFEST
         steps = max(1, round(spacing / model.opt.timestep))
         t = np.arange(samples + 1, dtype=np.float64) * spacing
-        data = self._fresh(model)
+        data = self._own_start(model)
         qpos, qvel = np.full((samples + 1, model.nq), np.nan), np.full((samples + 1, model.nv), np.nan)
         now_qpos, now_qvel = data.qpos, data.qvel
 
         def record(sample: int) -> bool:
-            has_restarted = data.time < t[sample] - spacing / 2
-            if not has_restarted:
+            is_reset = data.time < t[sample] - spacing / 2
+            if not is_reset:
                 qpos[sample], qvel[sample] = now_qpos, now_qvel
-            return has_restarted
+            return is_reset
 
         with logged_warnings(data) as log:
             stepping = sampled([steps] * samples, lambda count: mujoco.mj_step(model, data, nstep=count), record)
-            reset = log.reset_at
-            sound = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
-            if reset is not None:
-                sound &= t < reset - model.opt.timestep / 2  # a sum of steps is rounded
-            sound = np.logical_and.accumulate(sound)
-            pose, twist, acceleration = self._read(model, qpos[sound], qvel[sound], len(t))
+            reset_at = log.reset_at
+            is_valid = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
+            if reset_at is not None:
+                is_valid &= t < reset_at - model.opt.timestep / 2  # a sum of steps is rounded
+            is_valid = np.logical_and.accumulate(is_valid)
+            pose, twist, acceleration = self._read(model, qpos[is_valid], qvel[is_valid], len(t))
             warnings = (*log.messages, *release_warnings())
         reaction = np.full((samples + 1, self.mechanism.row_count), np.nan)
-        if self.mechanism.row_count and sound.any():
-            reaction[sound] = self.mechanism.reaction(pose[sound], acceleration[sound], twist=twist[sound])
-        return Trajectory(t, pose, twist, reaction, stepping, warnings, reset)
+        if self.mechanism.row_count and is_valid.any():
+            reaction[is_valid] = self.mechanism.reaction(pose[is_valid], acceleration[is_valid], twist=twist[is_valid])
+        return Trajectory(t, pose, twist, reaction, stepping, warnings, reset_at)
 
     def _read(self, model: Any, qpos: Array, qvel: Array, count: int) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (count, bodies, 3) of the first states, NaN after them."""
         pose, twist, acceleration = np.full((3, count, len(self.mechanism.bodies), 3), np.nan)
-        data = self._fresh(model)
+        data = self._own_start(model)
         if len(qpos):
-            pose[: len(qpos), :, 2] = angles_of(model, self.scene.frame, self.scene.groups, qpos)
+            pose[: len(qpos), :, 2] = angles_of(model, self.planar.frame, self.planar.groups, qpos)
         for sample in range(len(qpos)):
             data.qpos[:], data.qvel[:] = qpos[sample], qvel[sample]
             mujoco.mj_forward(model, data)
             data.qacc_warmstart[:] = data.qacc
             twist[sample], acceleration[sample] = self._motion(model, data)
-            pose[sample, :, :2] = centres(self.scene, data) @ self.scene.frame.both.T
+            pose[sample, :, :2] = centres(self.planar, data) @ self.planar.frame.both.T
         return pose, twist, acceleration
 
-    def _fresh(self, model: Any) -> Any:
-        """A mujoco.MjData at the user's start."""
-        return in_state(model, self.scene.data)
+    def _own_start(self, model: Any) -> Any:
+        """A new mujoco.MjData at the user's start."""
+        return in_state(model, self.planar.data)
 
-    def _started(self, model: Any) -> Any:
-        """The same at the velocities of the mechanism, which satisfy all joints."""
-        data = self._fresh(model)
+    def _consistent_start(self, model: Any) -> Any:
+        """A new mujoco.MjData at the start with the velocities of the mechanism, which satisfy all joints."""
+        data = self._own_start(model)
         mujoco.mj_fwdPosition(model, data)
         if np.any(self.start_twist != self.mechanism.twist):
             self._set_rates(data, self.mechanism.twist)
         return data
 
     def _set_rates(self, data: Any, twist: Array) -> None:
-        columns = directions(self.scene, data).reshape(-1, self.scene.model.nv)
+        columns = directions(self.planar, data).reshape(-1, self.planar.model.nv)
         data.qvel[:] = np.linalg.lstsq(columns, twist.reshape(-1), rcond=None)[0]
 
     def _motion(self, model: Any, data: Any) -> tuple[Array, Array]:
         """Twists and accelerations (bodies, 3) in the state of `data`, after mj_forward."""
-        frame, out = self.scene.frame, np.zeros((2, len(self.mechanism.bodies), 3))
+        frame, out = self.planar.frame, np.zeros((2, len(self.mechanism.bodies), 3))
         jac, rate = np.zeros((2, 2, 3, model.nv))
-        for index, (root, centre) in enumerate(zip(self.scene.groups.roots, centres(self.scene, data), strict=True)):
+        for index, (root, centre) in enumerate(zip(self.planar.groups.roots, centres(self.planar, data), strict=True)):
             mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
             mujoco.mj_jacDot(model, data, rate[0], rate[1], centre, root)
             for which, (along, turning) in enumerate((jac @ data.qvel, jac @ data.qacc + rate @ data.qvel)):
