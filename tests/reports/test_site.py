@@ -64,8 +64,8 @@ def require_packages():
 def source(tmp_path_factory):
     """The published pages, no motions, and no packages: npm is not asked."""
     cache = tmp_path_factory.mktemp("cache")
-    given = {"answers": {}, "cache": cache, "foot": "Made by a test.", "contributing": CONTRIBUTING, "api": False}
-    return Source(**texts_of(RESULTS), **given)
+    options = {"answers": {}, "cache": cache, "foot": "Made by a test.", "contributing": CONTRIBUTING, "api": False}
+    return Source(**texts_of(RESULTS), **options)
 
 
 @pytest.fixture(scope="module")
@@ -76,19 +76,19 @@ def files(source, tmp_path_factory):
         return build(source)
 
 
-def test_arrows_add_up_to_what_moves_the_bodies():
+def test_the_forces_at_the_coupler_sum_to_mass_times_acceleration():
     scene = FreeFourBar()
     mechanism = scene.mechanism()
     dense = scene.motion(np.array([0.5 - 1e-5, 0.5, 0.5 + 1e-5]))
-    held = {each["name"]: np.reshape(each["force"], (-1, 2)) for each in forces(mechanism, dense)}
+    by_joint = {force["name"]: np.reshape(force["force"], (-1, 2)) for force in forces(mechanism, dense)}
     acceleration = (dense.twist[2] - dense.twist[0]) / 2e-5
     coupler = mechanism.bodies[1]
     wanted = coupler.mass * (acceleration[1, :2] - np.array(mechanism.gravity))
     # B acts on the coupler, C on the rocker, so its opposite acts on the coupler.
-    assert held["B"][1] - held["C"][1] == pytest.approx(wanted, rel=1e-6)
+    assert by_joint["B"][1] - by_joint["C"][1] == pytest.approx(wanted, rel=1e-6)
 
 
-def test_a_part_of_a_lesson_is_words_a_question_and_why():
+def test_a_part_of_a_lesson_has_text_question_and_explanation():
     text = "Heading\n\nWords\nmore.\n\n> What?\n>\n> - one\n> - **two**\n> - three\n\nBecause."
     answers = (("one", False), ("two", True), ("three", False))
     assert part_of(text) == Part("Heading", "Words\nmore.", "What?", answers, "Because.")
@@ -105,8 +105,8 @@ def test_a_comment_in_code_ends_no_section_and_a_heading_of_a_higher_rank_does()
 def test_lessons_quote_parts_of_their_pages_of_results_whose_links_lead_there(files):
     for lesson in LESSONS:
         page = unescape(files[f"lessons/{lesson.name}.html"].decode())
-        quoted = [each.section for each in lesson.experiments if each.section]
-        assert [heading for heading in quoted if f"<summary>More: {heading}</summary>" not in page] == []
+        headings = [experiment.section for experiment in lesson.experiments if experiment.section]
+        assert [heading for heading in headings if f"<summary>More: {heading}</summary>" not in page] == []
     page = files["lessons/four_bar.html"].decode()
     body = page.partition("<summary>More: Nine configurations</summary>")[2].partition("</details>")[0]
     assert "Fig. 18.66 of the chapter" in body
@@ -152,7 +152,7 @@ def test_a_notebook_becomes_a_page_with_the_output_and_the_pictures_of_its_cells
         printed([sys.executable, "-c", "import time; time.sleep(60)"], "a cell fails", 0.1)
 
 
-def test_formulas_are_mathml_and_code_is_none(files):
+def test_formulas_become_mathml_and_code_does_not(files):
     page = render_html("A $x^2$ and `$HOME` costs 3 $ or 4 $.\n\n```\n$y$\n```\n")
     assert page.count("<math") == page.count("<msup>") == 1
     assert 'display="block"' in files["results/errata.html"].decode()
@@ -195,25 +195,25 @@ def test_the_code_of_a_how_to_page_runs(path, capsys, monkeypatch):
     blocks = re.findall(r"```python\n(.*?)```", path.read_text("utf-8"), re.DOTALL)
     module = ModuleType("howto")  # dataclasses look their module up
     monkeypatch.setitem(sys.modules, "howto", module)
-    given: dict[str, Any] = vars(module)
+    namespace: dict[str, Any] = vars(module)
     for block in blocks:
-        exec(compile(block, path.name, "exec"), given)
-    if "MULTIPLIERS" in given:  # the smallest engine
-        asked = [(case.check.name, case.result()) for case in cases(given["MULTIPLIERS"])]
-        assert [(name, told.sentence) for name, told in asked if told.status == "fails"] == []
-        assert sum(told.status == "holds" for _, told in asked) > 200
-    if "SCENE" in given:
-        found = Lagrange("dop853", "projection").build(given["SCENE"].mechanism(), 1e-2)(100, 1)
-        assert np.abs(found.pose - given["SCENE"].motion(found.t).pose).max() < 1e-9
-    if "mechanism" in given:
-        errors = [float(each) for each in re.findall(r": (\S+) rad", capsys.readouterr().out)]
+        exec(compile(block, path.name, "exec"), namespace)
+    if "MULTIPLIERS" in namespace:  # the smallest engine
+        results = [(case.check.name, case.result()) for case in cases(namespace["MULTIPLIERS"])]
+        assert [(name, result.sentence) for name, result in results if result.status == "fails"] == []
+        assert sum(result.status == "holds" for _, result in results) > 200
+    if "SCENE" in namespace:
+        run = Lagrange("dop853", "projection").build(namespace["SCENE"].mechanism(), 1e-2)(100, 1)
+        assert np.abs(run.pose - namespace["SCENE"].motion(run.t).pose).max() < 1e-9
+    if "mechanism" in namespace:
+        errors = [float(number) for number in re.findall(r": (\S+) rad", capsys.readouterr().out)]
         assert len(errors) == 2
         assert errors[0] > errors[1] > 0  # as shipped, and tuned
 
 
-def test_all_rows_are_told_with_their_cost_and_settings():
-    told = explored(*((RESULTS / f"{name}.csv").read_text("utf-8") for name in ("errors", "timings", "descriptions")))
-    rows = [dict(zip(told["columns"], row, strict=True)) for row in told["rows"]]
+def test_every_stored_row_has_its_cost_and_settings():
+    data = explored(*((RESULTS / f"{name}.csv").read_text("utf-8") for name in ("errors", "timings", "descriptions")))
+    rows = [dict(zip(data["columns"], row, strict=True)) for row in data["rows"]]
     assert len(rows) > 500
     free = ("free_four_bar", "pymunk", "default")
     (row,) = [r for r in rows if (r["scene"], r["engine"], r["variant"]) == free and abs(r["step"] - 1e-3) < 1e-6]

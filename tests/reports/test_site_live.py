@@ -35,7 +35,7 @@ from reports.site.live.sliders import Live
 LIVE = {f"{lesson.name}: {live.word}": live for lesson in LESSONS for live in lesson.scenes}
 
 
-def test_a_scene_is_a_place_of_its_sliders_and_sliders_that_do_not_fit_are_refused():
+def test_a_scene_is_a_position_of_its_sliders_and_sliders_that_do_not_fit_are_refused():
     for live in LIVE.values():
         assert live.scene in live.places()
         assert live.steps[live.start] % live.frames == 0
@@ -49,18 +49,18 @@ def test_a_scene_is_a_place_of_its_sliders_and_sliders_that_do_not_fit_are_refus
 
 @pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.name)
 def test_experiments_set_controls_that_are_there_and_have_their_words(lesson):
-    for part, each in zip(lesson.parts, lesson.experiments, strict=True):
-        live = lesson.scene(each.scene)
-        for given in (each.before, each.after, *(change for change, _ in each.causes)):
-            assert len(live.located(given)) == len(given)
-        assert bool(part.question) == bool(each.after), part.heading  # what changes is guessed first
+    for part, experiment in zip(lesson.parts, lesson.experiments, strict=True):
+        live = lesson.scene(experiment.scene)
+        for values in (experiment.before, experiment.after, *(change for change, _ in experiment.causes)):
+            assert len(live.located(values)) == len(values)
+        assert bool(part.question) == bool(experiment.after), part.heading  # what changes is guessed first
         # A change has a claim that is measured, but where it is the exact motion that changes.
-        assert each.claims or not set(each.after) - {slider.field for slider in live.sliders}, part.heading
+        assert experiment.claims or not set(experiment.after) - {slider.field for slider in live.sliders}, part.heading
         numbers = re.findall(r"{(\w+)}", part.text + part.after)
         assert set(numbers) <= set(live.controls()), part.heading
 
 
-def test_a_method_that_our_code_helps_is_no_model_of_a_page():
+def test_a_method_with_python_code_in_every_step_is_refused():
     sleigh = ChaplyginSleigh().mechanism()
     with pytest.raises(Unsupported, match="writes rows while it steps"):
         mujoco_text(mujoco_engine.TUNED, sleigh, 1e-3)
@@ -71,30 +71,30 @@ def test_a_method_that_our_code_helps_is_no_model_of_a_page():
 def records(engine: Any, scene: Any) -> tuple[tuple[float, ...], np.ndarray, list[tuple[float, ...]]]:
     """The head, the bodies and the records of a plan, which have to fill it."""
     plan = space_of(engine, scene.mechanism(), scene.duration).numbers
-    place, found = 8 + 11 * int(plan[4]), []
-    while place < len(plan):
-        found.append((plan[place], *plan[place + 2 : place + 2 + int(plan[place + 1])]))
-        place += 2 + int(plan[place + 1])
-    assert place == len(plan)
-    return plan[:8], np.reshape(plan[8 : 8 + 11 * int(plan[4])], (-1, 11)), found
+    position, out = 8 + 11 * int(plan[4]), []
+    while position < len(plan):
+        out.append((plan[position], *plan[position + 2 : position + 2 + int(plan[position + 1])]))
+        position += 2 + int(plan[position + 1])
+    assert position == len(plan)
+    return plan[:8], np.reshape(plan[8 : 8 + 11 * int(plan[4])], (-1, 11)), out
 
 
-def test_what_munk2d_is_given_is_what_pymunk_holds():
+def test_the_space_for_munk2d_equals_that_of_pymunk():
     scene = DrivenFourBar()
     mechanism = scene.mechanism()
-    head, bodies, found = records(pymunk_engine.DEFAULT, scene)
+    head, bodies, parts = records(pymunk_engine.DEFAULT, scene)
     assert (head[:2], head[4:]) == (mechanism.gravity, (3, 10, pymunk_engine.SHIPPED_ERROR_BIAS, 0))
     assert bodies[:, 0].tolist() == [1, 0, 0]  # the crank is kinematic
-    held = [*mechanism.inertias[1:, 1:].T, *mechanism.pose[1:].T, *mechanism.twist[1:].T]
+    expected = [*mechanism.inertias[1:, 1:].T, *mechanism.pose[1:].T, *mechanism.twist[1:].T]
     free = bodies[1:, 1:9].T
-    assert free == pytest.approx(np.array(held))
-    assert [each[:3] for each in found] == [
+    assert free == pytest.approx(np.array(expected))
+    assert [record[:3] for record in parts] == [
         (RecordKind.PIVOT, 0, 1),
         (RecordKind.PIVOT, 1, 2),
         (RecordKind.PIVOT, -1, 2),
     ]
-    told = space_of(pymunk_engine.DEFAULT, mechanism, scene.duration)
-    assert (told.impulses, told.idle) == ((-1, 0, 1, 2), ())
+    space = space_of(pymunk_engine.DEFAULT, mechanism, scene.duration)
+    assert (space.impulses, space.idle) == ((-1, 0, 1, 2), ())
 
 
 @pytest.mark.parametrize(
@@ -107,25 +107,25 @@ def test_what_munk2d_is_given_is_what_pymunk_holds():
         (pymunk_engine.DEFAULT, DrivenSliderCrank(), [RecordKind.PIVOT, RecordKind.PIVOT, RecordKind.GROOVE]),
     ],
 )
-def test_a_plan_says_what_each_shape_and_each_hand_is(engine, scene, parts):
-    assert [each[0] for each in records(engine, scene)[2]] == parts
+def test_a_space_has_the_kind_of_each_shape_and_of_each_code_around_a_step(engine, scene, parts):
+    assert [record[0] for record in records(engine, scene)[2]] == parts
 
 
-def test_a_live_scene_holds_the_truth_of_every_place():
-    whole = LIVE["skate: the sleigh"]
-    live = replace(whole, sliders=whole.sliders[-1:])  # every place has a model of each engine, which takes its time
-    held = json.loads(json.dumps(live_data(live, {}), allow_nan=False))
+def test_a_live_scene_has_the_exact_motion_at_every_position_of_its_sliders():
+    sleigh = LIVE["skate: the sleigh"]
+    live = replace(sleigh, sliders=sleigh.sliders[-1:])  # every place has a model of each engine, which takes its time
+    loaded = json.loads(json.dumps(live_data(live, {}), allow_nan=False))
     frames = np.arange(live.frames + 1)
     for index, scene in enumerate(live.places()):
-        truth = np.frombuffer(base64.b64decode(held["places"][index]["truth"]), dtype="<f8").reshape(-1, 1, 6)
+        truth = np.frombuffer(base64.b64decode(loaded["places"][index]["truth"]), dtype="<f8").reshape(-1, 1, 6)
         motion = scene.motion(frames * (scene.duration / live.frames))
         assert np.array_equal(truth, np.concatenate([motion.pose, motion.twist], axis=-1))
-    assert held["native"]["munk"] == [None] * len(live.munk)
-    assert held["munk"][0]["why"] == "pymunk as shipped has no joint for a skate"
-    assert held["measure"] == "position"
+    assert loaded["native"]["munk"] == [None] * len(live.munk)
+    assert loaded["munk"][0]["why"] == "pymunk as shipped has no joint for a skate"
+    assert loaded["measure"] == "position"
 
 
-def test_forces_and_frictions_that_a_motion_determines_are_told_and_no_others():
+def test_forces_and_friction_are_returned_only_where_the_motion_determines_them():
     gears = EllipticGears()
     truth = gears.motion(np.linspace(0, 1, 5))
     first, second, mesh = forces(gears.mechanism(), truth)
@@ -134,15 +134,15 @@ def test_forces_and_frictions_that_a_motion_determines_are_told_and_no_others():
     assert (mesh["contact"], "friction" in mesh) == (True, False)
     scene = RollingEllipse()
     t = np.linspace(0, scene.duration, 50)
-    (told,) = [each for each in forces(scene.mechanism(), scene.motion(t)) if "friction" in each]
-    assert np.array(told["friction"]) == pytest.approx(scene.motion_law.required_friction(t), rel=1e-5, abs=1e-6)
+    (contact,) = [force for force in forces(scene.mechanism(), scene.motion(t)) if "friction" in force]
+    assert np.array(contact["friction"]) == pytest.approx(scene.motion_law.required_friction(t), rel=1e-5, abs=1e-6)
     assert required_friction(np.array([[1.0, 2.0], [1.0, -1.0]])) == pytest.approx([0.5, np.nan], nan_ok=True)
 
 
 def test_a_contact_turns_with_the_body_on_which_something_rolls():
     joint = Roll("roll", "first", "second", Rolling.at_arcs(Circle(0.3), Circle(0.5)))
     first, second = np.array([[0.0, 0.0, 0.0]]), np.array([[0.8, 0.0, 0.4]])
-    place, turn, shift = place_of(joint, first, second), 0.7, np.array([1.0, 2.0])
+    contact, turn, shift = place_of(joint, first, second), 0.7, np.array([1.0, 2.0])
     second_turned = [*(shift + rotated(turn, second[0, :2])), 0.4 + turn]
     turned = place_of(joint, np.array([[*shift, turn]]), np.array([second_turned]))
-    assert turned[0] == pytest.approx(shift + rotated(turn, place[0]), abs=1e-14)
+    assert turned[0] == pytest.approx(shift + rotated(turn, contact[0]), abs=1e-14)
