@@ -13,8 +13,8 @@ from reports.cli.report import published, refuse_outside_a_checkout, write_files
 from reports.cli.terminal import Terminal, interruptible, opened
 from reports.model.cells import Cell
 from reports.model.measure import Measurement
-from reports.pages.atlas.columns import FILE, as_csv, columns_of, line_of, read, run_columns
-from reports.pages.atlas.subjects import SUBJECTS
+from reports.pages.atlas.columns import FILE, as_csv, columns_of, read, run_columns, stored_column
+from reports.pages.atlas.subjects import MAPS
 from reports.run import cluster
 from reports.run.running import run_into
 
@@ -39,7 +39,7 @@ def atlas(
     ] = False,
 ) -> None:
     """Map where methods fail: step against the parameter that breaks a scene. It is no part of a full run."""
-    known = {subject.name: subject for subject in SUBJECTS}
+    known = {stability_map.name: stability_map for stability_map in MAPS}
     names = tuple(known) if scenes is None else listed("--scenes", [scenes], known)
     if publish:
         refuse_outside_a_checkout()
@@ -57,9 +57,9 @@ def atlas(
             return store.get(cells)
 
         rows = run_columns(columns, run, 1 if every_point or points < SMALL else STRIDE)
-    lines = [line_of(column, some) for column, some in zip(columns, rows, strict=True)]
-    cells = sum(line.run for line in lines)
+    stored = [stored_column(column, of_column) for column, of_column in zip(columns, rows, strict=True)]
+    cells = sum(column.run_count for column in stored)
     for folder in (results / ATLAS, *([published()] if publish else [])):
-        others = [line for line in read(folder / FILE) if line.subject not in names]
-        write_files({folder / FILE: as_csv([*lines, *others])}, f"{cells} cells written to {folder / FILE}")
+        others = [column for column in read(folder / FILE) if column.subject not in names]
+        write_files({folder / FILE: as_csv([*stored, *others])}, f"{cells} cells written to {folder / FILE}")
     terminal.say(f"{run_now} of {cells} cells were run, the others were stored")

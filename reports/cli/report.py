@@ -28,7 +28,7 @@ from reports.model.outcomes import Loss
 from reports.model.page import Material, Page
 from reports.pages import index, rendering
 from reports.pages.claims import contradicted
-from reports.pages.four_bar.page import MOVED, MOVING, MOVING_EVERY, MOVING_PICTURE
+from reports.pages.four_bar.page import MOVING_EVERY, MOVING_METHODS, MOVING_PICTURE, MOVING_TASKS
 from reports.run.files import write_whole
 from reports.run.running import missing, worker_count
 from reports.run.store import Store
@@ -39,7 +39,7 @@ from reports.site.animated import animation, shown
 from reports.site.lessons import take_like
 from reports.write.csv_files import DIGESTS, as_published, digests_csv, read_published
 from reports.write.tables import step_words
-from reports.write.templates import without_links_to_nothing
+from reports.write.templates import without_dead_links
 
 CHECKOUT = Path(__file__).parents[2]
 SEARCHED = ("search.md", "search_errors.svg")
@@ -166,9 +166,7 @@ def rendered(
     def is_page(name: str) -> bool:
         return name in files or (folder / name).is_file()
 
-    return {
-        name: without_links_to_nothing(text, is_page) if name.endswith(".md") else text for name, text in files.items()
-    }
+    return {name: without_dead_links(text, is_page) if name.endswith(".md") else text for name, text in files.items()}
 
 
 @dataclass(frozen=True)
@@ -216,11 +214,12 @@ def drawn(material: Materials, words: Iterable[str], command: str, order: Path) 
 
 def moving_picture(material: Iterable[Material]) -> dict[str, str]:
     """The moving picture of README, by its name; nothing where not all of its motions are stored."""
-    answers = {task: answer for stored in material for task, answer in stored.answers.items() if task in MOVED}
-    if any(task not in answers for task in MOVED):
+    answers = {task: answer for stored in material for task, answer in stored.answers.items() if task in MOVING_TASKS}
+    if any(task not in answers for task in MOVING_TASKS):
         return {}
-    take = take_like(MOVED[0].cell.scene, tuple((word, engine, MOVING_EVERY) for word, engine in MOVING.items()))
-    title = f"A four-bar linkage falls: the exact motion, and engines at steps of {step_words(MOVED[0].cell.step)}"
+    cell = MOVING_TASKS[0].cell
+    take = take_like(cell.scene, tuple((name, engine, MOVING_EVERY) for name, engine in MOVING_METHODS.items()))
+    title = f"A four-bar linkage falls: the exact motion, and engines at steps of {step_words(cell.step)}"
     return {MOVING_PICTURE: animation(shown(take, answers), title)}
 
 

@@ -12,34 +12,40 @@ DIGITS = 4  # of the numbers in a report's CSV files
 
 @dataclass(frozen=True)
 class Quantity:
-    """A kind of error. Rounding: positions and angles lose about 1e-16 a step over 1e5 steps, so 1e-11 has room for
-    some ill-conditioning; velocities are differences of those over a step, and reactions of those again."""
+    """A kind of error, with all facts that checks and tables need to know of it.
+
+    rounding: errors below it carry no information on a model. Positions and angles lose about 1e-16 a step over 1e5
+    steps, so 1e-11 has room for some ill-conditioning; velocities are differences of those over a step, and reactions
+    of those again.
+    """
 
     name: str  # the field of a Measurement
     unit: str
-    rounding: float  # errors below it carry no information on a model
+    rounding: float
     check: str  # the check of the gate of theory that holds it
+    needs_truth: bool = True  # False for constraint violations, which follow from the joints and the run alone
+    is_of_joints: bool = False  # tables of scenes have it beside the quantity of the page
 
     @property
     def label(self) -> str:
         return self.name
 
     @property
-    def axis(self) -> str:
-        """The label of an axis with its errors."""
-        return f"{self.label} error [{self.unit}]"
+    def heading(self) -> str:
+        """The header of a column with its errors, and the label of an axis."""
+        return f"{self.label} error [{self.unit}]" if self.needs_truth else f"{self.label} [{self.unit}]"
 
 
-# The order in which tables and checks have them.
+# Tables and checks keep this order.
 QUANTITIES = (
     Quantity("position", "m", 1e-11, "error"),
     Quantity("angle", "rad", 1e-11, "error"),
     Quantity("velocity", "m/s", 1e-10, "rate"),
     Quantity("rate", "rad/s", 1e-10, "rate"),
-    Quantity("gap", "m", 1e-12, "gap"),
-    Quantity("slip", "m/s", 1e-11, "gap"),
+    Quantity("gap", "m", 1e-12, "gap", needs_truth=False, is_of_joints=True),
+    Quantity("slip", "m/s", 1e-11, "gap", needs_truth=False, is_of_joints=True),
     Quantity("energy", "relative", 1e-11, "energy"),
-    Quantity("reaction", "relative", 1e-9, "reaction"),
+    Quantity("reaction", "relative", 1e-9, "reaction", is_of_joints=True),
 )
 
 

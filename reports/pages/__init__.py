@@ -1,1 +1,1 @@
-"""The pages: one package a mechanism (page, experiments, template), and what they share."""
+"""The pages: a package for each subject (page, texts, experiments), and the modules that they share."""

@@ -1,7 +1,7 @@
-"""Claims of pages ("falls", "stays", "torn") as predicates on rows and motions: without them nothing is published.
+"""Claims of pages as predicates on rows and motions; a report that contradicts one of them is not published.
 
-Those of an experiment stand below its text in `experiments.md`, as Jinja expressions with the names of `_names` and the
-words of the experiment. Those of other parts of pages are functions here.
+The claims of an experiment are Jinja expressions below its text in `experiments.md`; they use the functions of `_names`
+and the experiment's context. The claims of other parts of pages are functions in this module.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
-from reports.pages.atlas.page import lines as atlas_lines
+from reports.pages.atlas.page import stored_columns
 from reports.pages.guides import page as guides
 from reports.write.rows import Rows
 from reports.write.templates import environment
@@ -21,7 +21,7 @@ from reports.write.unmeasured import UNMEASURED
 
 
 def _names(failure: Failure, material: Material) -> dict[str, Any]:
-    """The functions of an experiment's claims. Rows of a method are sorted by step, the largest first."""
+    """The functions that an experiment's claims use; rows of a method are sorted by step, the largest first."""
     whole = Rows(sorted(material.of(failure.cells), key=lambda row: -row.step))
 
     def rows(method: str) -> Rows:
@@ -33,26 +33,26 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         return [getattr(row, name) for method in methods for row in rows(method)]
 
     def falls(method: str, factor: float = 5.0, name: str = "angle") -> bool:
-        """Whether each error is less than a part of the one at the next larger step."""
+        """Whether each error is smaller than the error at the next larger step by more than a factor."""
         values = errors((method,), name)
         return len(values) > 1 and all(fine < coarse / factor for coarse, fine in pairwise(values))
 
     def stays(method: str, skip: int = 0) -> bool:
-        """Whether errors at neighbouring steps differ by at most a quarter, but for the first ones."""
+        """Whether errors at neighbouring steps differ by at most a quarter; the first `skip` errors are ignored."""
         values = errors((method,), "angle")[skip:]
         return len(values) > 1 and all(0.8 < fine / coarse < 1.25 for coarse, fine in pairwise(values))
 
     def above(method: str, other: str, factor: float = 1.0) -> bool:
-        """Whether the first has more than so many times the error of the other, at each step."""
+        """Whether the first method's error is more than `factor` times the other's at each step."""
         pairs = zip(errors((method,), "angle"), errors((other,), "angle"), strict=True)
         return all(first > factor * second for first, second in pairs)
 
     def share(*outcomes: str, without: str = "") -> float:
-        """The share of runs that end so, of all methods but one."""
+        """The share of runs with these outcomes among all methods but `without`."""
         counted = Rows(row for row in whole if row.method != without)
         return counted.count(*outcomes) / counted.count()
 
-    def alike(scene: str, name: str, *methods: str) -> bool:
+    def same_as_in(scene: str, name: str, *methods: str) -> bool:
         """Whether methods have the same errors here as in the sweep of a scene, within 1 %."""
         sweep = {(row.method, row.every): getattr(row, name) for row in material.rows.values() if _is_of(row, scene)}
         return all(
@@ -74,7 +74,7 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         "ratio": lambda method: rows(method)[-1].angle / rows(method)[-2].angle,  # smallest step over the next one
         "above": above,
         "share": share,
-        "alike": alike,
+        "alike": same_as_in,
         **failure.context(material),
     }
 
@@ -84,13 +84,13 @@ def _is_of(row: Measurement, scene: str) -> bool:
 
 
 def settings_of_a_loop(material: Material) -> bool:
-    """One change wins little, both win much, and implicitfast does what Euler does."""
-    rows = Rows(material.sweep((guides.FOUR_BAR,)))
+    """Whether one change alone gains little, both gain much, and implicitfast has the errors of Euler."""
+    rows = Rows(material.sweep((guides.LOOP,)))
 
     def method(name: str) -> Rows:
-        return rows.of(guides.FOUR_BAR.name, name)
+        return rows.of(guides.LOOP.name, name)
 
-    def at(name: str, every: int = guides.EVERY) -> Any:
+    def at(name: str, every: int = guides.STEPS_PER_SAMPLE) -> Any:
         return next((row for row in method(name) if row.every == every), UNMEASURED)
 
     euler, implicit, tuned = (f"mujoco {name}" for name in ("stiff Euler", "stiff implicitfast", "tuned"))
@@ -98,7 +98,7 @@ def settings_of_a_loop(material: Material) -> bool:
     return (
         min(at("mujoco RK4 alone").angle, at(euler).angle) > shipped / 2
         and at(tuned).angle < 1e-3 * shipped
-        and all(abs(at(implicit, n).angle / at(euler, n).angle - 1) < 0.01 for n in (1, guides.EVERY))
+        and all(abs(at(implicit, n).angle / at(euler, n).angle - 1) < 0.01 for n in (1, guides.STEPS_PER_SAMPLE))
         and all(abs(method(name).sweep().order - n) < 0.1 for name, n in ((euler, 1), (implicit, 1), (tuned, 2)))
         and not method(tuned).sweep().plateau > 0
         and method(tuned).sweep("reaction").plateau > 10 * at(tuned).angle
@@ -106,18 +106,18 @@ def settings_of_a_loop(material: Material) -> bool:
     )
 
 
-def _map(subject: str) -> dict[str, dict[float, tuple[Outcome, ...]]]:
-    """Outcomes of a map of the atlas by method and value, largest step first."""
-    found: dict[str, dict[float, tuple[Outcome, ...]]] = {}
-    for line in atlas_lines():
-        if line.subject == subject:
-            found.setdefault(line.method, {})[line.value] = line.told
-    return found
+def _outcomes_of_map(name: str) -> dict[str, dict[float, tuple[Outcome, ...]]]:
+    """Method -> parameter value -> outcomes of a map of the atlas, the largest step first."""
+    outcomes: dict[str, dict[float, tuple[Outcome, ...]]] = {}
+    for column in stored_columns():
+        if column.subject == name:
+            outcomes.setdefault(column.method, {})[column.value] = column.outcome_of_steps
+    return outcomes
 
 
 def maps(material: Material) -> bool:
-    """What the atlas says of couplers, of slots near their reach, and of sleighs."""
-    couplers, offsets, sleighs = (_map(subject) for subject in ("coupler", "offset", "sleigh"))
+    """Whether the remarks of the atlas on couplers, slots near the largest offset, and sleighs hold."""
+    couplers, offsets, sleighs = (_outcomes_of_map(name) for name in ("coupler", "offset", "sleigh"))
     soft, naive = couplers["mujoco default"], sleighs.pop("pymunk default")
     nearest = [offsets[f"{name} default"] for name in ("pymunk", "mujoco")]
     right = [couplers["mujoco tuned"], offsets["pymunk tuned"], *sleighs.values()]
@@ -130,21 +130,21 @@ def maps(material: Material) -> bool:
     )
 
 
-# By page.
-OTHERS: Mapping[str, Callable[[Material], bool]] = {
+# Page -> the claim of a part that is not an experiment.
+PAGE_CLAIMS: Mapping[str, Callable[[Material], bool]] = {
     "atlas": maps,
     "settings": settings_of_a_loop,
 }
 
 
 def contradicted(pages: Mapping[Page, Material]) -> list[str]:
-    """The claims that the rows or motions of these pages contradict or do not have, as "page, experiment: claim"."""
+    """The claims that rows or motions contradict, or can't confirm for lack of them, as "page, experiment: claim"."""
     return [where for page, material in pages.items() for where, claim in _claims(page, material) if not _holds(claim)]
 
 
 def _claims(page: Page, material: Material) -> Iterator[tuple[str, Callable[[], Any]]]:
-    if page.name in OTHERS:
-        yield f"{page.name}: {OTHERS[page.name].__name__}", lambda: OTHERS[page.name](material)
+    if page.name in PAGE_CLAIMS:
+        yield f"{page.name}: {PAGE_CLAIMS[page.name].__name__}", lambda: PAGE_CLAIMS[page.name](material)
     for failure in page.failures:
         names = _names(failure, material) if failure.claims else {}
         for claim in failure.claims:
@@ -155,5 +155,5 @@ def _claims(page: Page, material: Material) -> Iterator[tuple[str, Callable[[], 
 def _holds(claim: Callable[[], Any]) -> bool:
     try:
         return bool(claim())
-    except (LookupError, StopIteration, ValueError):  # a method or a step of the claim was not run
+    except (LookupError, StopIteration, ValueError):  # a method or a step that the claim needs was not run
         return False

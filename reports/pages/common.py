@@ -1,4 +1,4 @@
-"""Shared by experiments of several pages: their methods, their cells, and the texts of `experiments.md`."""
+"""Functions for pages of scenes and their experiments: methods, cells, texts of `experiments.md`, known deviations."""
 
 from __future__ import annotations
 
@@ -17,30 +17,31 @@ from reference.scene import Scene
 from reports.model.cells import Cell
 from reports.model.checks import Deviation
 from reports.model.outcomes import Outcome
-from reports.model.page import Failure, Material, Observation
+from reports.model.page import Failure, Material, Observation, Page, no_context
 from reports.model.tasks import Answer, Task
+from reports.write.rows import lookups
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
-# What is run in every scene, without ideal constraints.
+# The engines' variants that are run in every scene; `lagrange`, which has ideal constraints, is left out.
 ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engine.name != "lagrange")
 
 
 def sweeps(count: int) -> Engine:
-    """pymunk closing every gap in one step, by this many sweeps."""
+    """pymunk with this number of iterations and `error_bias = 0`, so that a step closes the whole gap."""
     return replace(pymunk.DEFAULT, variant=f"{count} sweeps, all of the gap", iterations=count, error_bias=0.0)
 
 
 def cells(
     scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
 ) -> tuple[Cell, ...]:
-    """The cells of an experiment: a scene in engines with so many steps between samples."""
+    """The cells of an experiment: a scene in each engine, with each number of steps between samples."""
     steps = tuple(every)
     return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
 
 
 def steps_for(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
-    """What runs a cell at many steps is at rounding with the longest already."""
+    """The steps of an engine in an experiment: extrapolated variants reach rounding with the longest one already."""
     return every[:1] if engine.variant == "extended" else every
 
 
@@ -53,7 +54,7 @@ def to_rounding(
     engines: Iterable[Engine] = ENGINES_ALONE,
     **fields: Any,
 ) -> Failure:
-    """An experiment in which each engine runs a scene at `steps_for` it; fields: others of the experiment."""
+    """An experiment in which each engine runs a scene at its `steps_for`; `fields`: other fields of the experiment."""
     run = tuple(cell for engine in engines for cell in cells(scene, (engine,), steps_for(engine, every), samples))
     return Failure(title, cells=run, columns=columns, **fields)
 
@@ -61,10 +62,10 @@ def to_rounding(
 def described(source: str, *failures: Failure, **values: Any) -> tuple[Failure, ...]:
     """The experiments with their texts from `experiments.md` beside the file `source`.
 
-    A section has the experiment's title, a paragraph with the expectation, paragraphs with the lesson if there is one,
-    and a list of the claims in it (`reports.pages.claims`). All are templates of `values` and of the experiment's own
-    words. An experiment that is run no more has its last numbers there as a table. Raises ValueError unless each
-    experiment has a section and each section an experiment.
+    A section has the experiment's title, a paragraph with the expectation, optional paragraphs with the lesson, and an
+    optional list of claims (`reports.pages.claims`). All are templates with `values` and the experiment's context. An
+    experiment that is no longer run has a table with its last numbers there. Raises ValueError unless the sections are
+    those of the experiments.
     """
     text = Path(source).with_name("experiments.md").read_text(encoding="utf-8")
     sections = {}
@@ -85,7 +86,8 @@ def _with_text(failure: Failure, paragraphs: Iterable[str], values: Mapping[str,
         for paragraph in paragraphs
         if not paragraph.startswith("- ")
     ]
-    claims = [line.removeprefix("- ") for each in paragraphs if each.startswith("- ") for line in each.splitlines()]
+    lists = [paragraph for paragraph in paragraphs if paragraph.startswith("- ")]
+    claims = [line.removeprefix("- ") for claim_list in lists for line in claim_list.splitlines()]
     return replace(
         failure,
         expected=texts[0],
@@ -95,9 +97,27 @@ def _with_text(failure: Failure, paragraphs: Iterable[str], values: Mapping[str,
     )
 
 
+def scene_page(
+    name: str,
+    *,
+    scenes: tuple[Scene, ...],
+    context: Callable[[Material], Mapping[str, Any]] = no_context,
+    **fields: Any,
+) -> Page:
+    """A page that teaches scenes: templates can look up rows of these, and its known deviations are in a file.
+
+    `context` adds further variables for the page's template; `fields`: other fields of `Page`.
+    """
+
+    def with_lookups(material: Material) -> Mapping[str, Any]:
+        return {**lookups(material, scenes), **context(material)}
+
+    return Page(name=name, scenes=scenes, context=with_lookups, known=deviations(name), **fields)
+
+
 @dataclass(frozen=True)
 class OfMethod(Task):
-    """What one method gives; subclasses say in a few words `what` that is."""
+    """A task of one method; `what`: a short description of the result, a format of the task."""
 
     what: ClassVar[str]
 
@@ -113,7 +133,7 @@ class OfMethod(Task):
 
 
 def run_script(name: str, text: str) -> dict[str, Any]:
-    """The names that a script of a document has at its end; what it prints is dropped."""
+    """The global names of a script after its run; its output is discarded."""
     names: dict[str, Any] = {"__name__": "__main__"}
     with contextlib.redirect_stdout(io.StringIO()):
         exec(compile(text, name, "exec"), names)
@@ -121,22 +141,22 @@ def run_script(name: str, text: str) -> dict[str, Any]:
 
 
 def refusals(attempts: Mapping[str, Callable[[], object]]) -> list[Observation]:
-    """The reference's sentences on settings that can't be, by setting; AssertionError where it goes along."""
-    lines = []
+    """The reference's error messages for impossible settings. Raises AssertionError for a setting that it accepts."""
+    observations = []
     for setting, attempt in attempts.items():
         try:
             attempt()
-        except ValueError as sentence:
-            lines.append(Observation("the reference", setting, f"refuses: {sentence}"))
+        except ValueError as error:
+            observations.append(Observation("the reference", setting, f"refuses: {error}"))
         else:
-            raise AssertionError(f"the reference went along with {setting}")
-    return lines
+            raise AssertionError(f"the reference accepted {setting}")
+    return observations
 
 
 def read_answers(
     material: Material, method: str, settings: Iterable[tuple[Task, str]], read: Callable[[Answer], str]
 ) -> list[Observation]:
-    """A line for each task that was run: what `read` finds in its answer, or why it did not finish."""
+    """An observation for each task that was run: the result of `read`, or why the task did not finish."""
     answers = {setting: material.answers.get(task) for task, setting in settings}
     return [
         Observation(method, setting, read(answer) if answer.finished else answer.told)

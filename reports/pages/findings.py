@@ -1,7 +1,7 @@
-"""Findings that every user of pymunk or MuJoCo should know, each dropped where its rows contradict it.
+"""Findings that every user of pymunk or MuJoCo should know; a finding that its rows contradict is left out.
 
-`findings.toml` has their sentences, the rows that these are about, the claims that must hold, and the lines of a small
-picture for telephones. What is no row, releases and answers of scripts, is read by the functions of FURTHER.
+`findings.toml` has the sentences of each finding, the rows that they are about, the claims that must hold, and the
+lines of a small picture. Functions of this module (FURTHER_NAMES) add numbers from releases and from scripts.
 """
 
 from __future__ import annotations
@@ -29,32 +29,32 @@ from reports.plots.looks import colour
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.versions.catalogue import COST_ROSE_IN
 from reports.versions.table import ACCELERATION, Entry, relative_cost, released
-from reports.write.page_tables import COMPARED, advice
-from reports.write.rows import Rows, own_rows
+from reports.write.page_tables import COMPARED_STEP, advice
+from reports.write.rows import Rows, rows_of_pages
 from reports.write.templates import environment, template
 from reports.write.unmeasured import MARK, UNMEASURED
 
-# Inches, 360 pixels of a browser: a telephone shows it unscaled, so that the letters keep their size.
-WIDTH, HEIGHT = 3.75, 2.55
-# Dashes, mark and whether it is filled, by position: lines of one colour, and all of them in grey, differ.
-LOOKS = ((":", "o", False), ("--", "s", True), ("-", "D", True), ("-.", "^", False))
-STEP, CPU, RELEASE = "step [ms]", "CPU time [ms per simulated second]", "release"
-TENTH = 1e-4  # s
+# Size of a picture in inches: 360 pixels wide in a browser, so that a telephone shows it unscaled.
+PICTURE_WIDTH, PICTURE_HEIGHT = 3.75, 2.55
+# (dashes, mark, whether it is filled) of each line by position, so that lines of the same colour differ.
+LINE_STYLES = ((":", "o", False), ("--", "s", True), ("-", "D", True), ("-.", "^", False))
+STEP_AXIS, CPU_AXIS, RELEASE_AXIS = "step [ms]", "CPU time [ms per simulated second]", "release"
+TENTH_OF_MS = 1e-4  # s
 
 
 @dataclass(frozen=True)
 class PlottedLine:
-    """Points (x, y) of one engine under a label that a reader understands; x is a number or a release."""
+    """The points (x, y) of one engine and their label; x is a number or a release."""
 
     label: str
     engine: str
     points: tuple[tuple[Any, float], ...]
 
 
-def of_rows(label: str, rows: Rows, name: str, x: str = STEP) -> PlottedLine:
-    """The errors of a quantity of this name in rows, from coarse to fine, against the step or the CPU time."""
+def of_rows(label: str, rows: Rows, name: str, x: str = STEP_AXIS) -> PlottedLine:
+    """The errors of a quantity against step or CPU time, from coarse to fine."""
     engine = rows[0].engine if rows else ""
-    if x == CPU:
+    if x == CPU_AXIS:
         usable = [row for row in rows.known(name) if row.cpu > 0 and Outcome(row.outcome).comparable]
         return PlottedLine(label, engine, tuple((1e3 * row.cpu, getattr(row, name)) for row in usable))
     return PlottedLine(label, engine, tuple((1e3 * step, error) for step, error in rows.points(name)))
@@ -62,32 +62,34 @@ def of_rows(label: str, rows: Rows, name: str, x: str = STEP) -> PlottedLine:
 
 def of_releases(label: str, entries: Iterable[Entry]) -> PlottedLine:
     """The errors of one scene and method, from the oldest release to the newest."""
-    shown = [entry for entry in entries if entry.comparable and entry.error > 0]
-    return PlottedLine(label, shown[0].engine if shown else "", tuple((entry.version, entry.error) for entry in shown))
+    usable = [entry for entry in entries if entry.comparable and entry.error > 0]
+    engine = usable[0].engine if usable else ""
+    return PlottedLine(label, engine, tuple((entry.version, entry.error) for entry in usable))
 
 
 def draw(lines: Sequence[PlottedLine], x: str, y: str) -> Figure:
-    """Lines against x, both axes logarithmic, but for releases, which stand side by side; an engine has its own colour.
+    """A chart with logarithmic axes, except for releases, which are equally spaced; an engine has its own colour.
 
-    Raises ValueError for more lines than there are looks.
+    Raises ValueError for more lines than LINE_STYLES.
     """
-    if len(lines) > len(LOOKS):
-        raise ValueError(f"a finding's picture has {len(lines)} lines; it must have at most {len(LOOKS)}")
-    with drawing(HEIGHT, width=WIDTH) as figure:
+    if len(lines) > len(LINE_STYLES):
+        raise ValueError(f"a finding's picture has {len(lines)} lines; it must have at most {len(LINE_STYLES)}")
+    with drawing(PICTURE_HEIGHT, width=PICTURE_WIDTH) as figure:
         axes = figure.subplots()
-        for line, (dashes, mark, filled) in zip(lines, LOOKS, strict=False):
+        for line, (dashes, mark, filled) in zip(lines, LINE_STYLES, strict=False):
             if not line.points:
                 continue
             paint = colour(line.engine)
             face = paint if filled else LIGHT.paper
             marks = {"marker": mark, "markersize": 5, "markerfacecolor": face, "markeredgecolor": paint}
-            shown = zip(*line.points, strict=True)
-            axes.plot(*shown, label=line.label, color=paint, linestyle=dashes, linewidth=1.6, **marks)
+            axes.plot(
+                *zip(*line.points, strict=True), label=line.label, color=paint, linestyle=dashes, linewidth=1.6, **marks
+            )
         axes.set_yscale("log")
         axes.set_xlabel(x)
         axes.set_ylabel(y)
         style_axes(axes)
-        if x == RELEASE:
+        if x == RELEASE_AXIS:
             axes.tick_params(axis="x", labelrotation=60, labelsize=7)
         else:
             axes.set_xscale("log")
@@ -103,7 +105,7 @@ def draw(lines: Sequence[PlottedLine], x: str, y: str) -> Figure:
 
 @dataclass(frozen=True)
 class Sources:
-    """The source of findings: rows from coarse to fine, and answers to tasks; the releases' rows are a file's."""
+    """The data of findings: rows from coarse to fine, and answers to tasks. Rows of releases are read from a file."""
 
     rows: Rows
     answers: Mapping[Task, Answer] = field(default_factory=dict)
@@ -111,14 +113,14 @@ class Sources:
     @classmethod
     def of(cls, pages: Mapping[Page, Material]) -> Sources:
         answers = {task: answer for material in pages.values() for task, answer in material.answers.items()}
-        return cls(own_rows(pages), answers)
+        return cls(rows_of_pages(pages), answers)
 
 
 @dataclass(frozen=True)
 class Finding:
-    """`title` and `text`: Markdown, without the link to the page; `lines`, `x`, `y`: of its picture.
+    """A finding with its numbers. title, text: Markdown, without the link to the page. lines, x, y: its picture.
 
-    contradicted: the claims that the rows do not bear out.
+    contradicted: the claims that the rows do not confirm.
     """
 
     name: str
@@ -132,44 +134,44 @@ class Finding:
 
     @property
     def is_sound(self) -> bool:
-        """Whether the rows have its numbers and bear its claims out."""
+        """Whether all its numbers are known and all its claims are confirmed."""
         return not self.contradicted and MARK not in self.text
 
     @property
     def picture(self) -> str:
-        """The name of its file."""
+        """The file name of its picture."""
         return f"finding_{self.name}.svg"
 
     @property
     def alternative(self) -> str:
-        """The picture in words, for who can't see it."""
+        """The alternative text of its picture."""
         return f"{self.y} against {self.x}: {'; '.join(line.label for line in self.lines)}"
 
     def figure(self) -> Figure:
         return draw(self.lines, self.x, self.y)
 
 
-# --- the names of its expressions ---
+# --- names in the expressions of `findings.toml` ---
 
 
 def error_at(rows: Rows, step: float, name: str) -> float:
-    """The error of a quantity at a step [s], of a failed run too; NaN where there is none."""
-    return next((error for taken, error in rows.points(name) if is_step(taken, step)), math.nan)
+    """The error of a quantity at a step [s], also of a failed run; NaN without one."""
+    return next((error for row_step, error in rows.points(name) if is_step(row_step, step)), math.nan)
 
 
 def least(rows: Rows, name: str) -> float:
-    """The least error of a quantity, of failed runs too; NaN where there is none."""
+    """The least error of a quantity, also of failed runs; NaN without one."""
     return min((error for _, error in rows.points(name)), default=math.nan)
 
 
 def duration(rows: Rows) -> float:
-    """How long their scene is [s]; NaN without any."""
+    """The duration of the rows' scene [s]; NaN without rows."""
     return next((row.samples * row.every * row.step for row in rows), math.nan)
 
 
-NAMES: Mapping[str, Any] = {
-    "MS": COMPARED,
-    "TENTH": TENTH,
+EXPRESSION_NAMES: Mapping[str, Any] = {
+    "MS": COMPARED_STEP,
+    "TENTH": TENTH_OF_MS,
     "PLATEAU": Verdict.PLATEAU,
     "UNMEASURED": UNMEASURED,
     "error_at": error_at,
@@ -179,7 +181,7 @@ NAMES: Mapping[str, Any] = {
 
 
 def releases(sources: Sources) -> dict[str, Any]:
-    """The cure of MuJoCo 3.7.0, by the rows of the releases; and how the cost of a step as shipped has grown."""
+    """Errors of stiff loops before and after MuJoCo 3.7.0, and the growth of the cost of a step as shipped."""
     entries, versions = released().of("mujoco"), released().versions("mujoco")
     lines = {
         scene: [entry for entry in entries if (entry.scene, entry.variant) == (scene, "tuned")]
@@ -190,26 +192,33 @@ def releases(sources: Sources) -> dict[str, Any]:
     cost = relative_cost(entries, versions, "default")
     oldest, later = (cost.get(version, math.nan) for version in (versions[0], "3.3.7"))
     numbers = {"old": old, "new": new, "newest": newest, "oldest": oldest, "later": later}
-    plotted = {scene: of_releases(scene, shown) for scene, shown in lines.items()}
+    plotted = {scene: of_releases(scene, of_scene) for scene, of_scene in lines.items()}
     return {**numbers, **plotted, "first": versions[0], "rose_in": COST_ROSE_IN}
 
 
 def trees(sources: Sources) -> dict[str, Any]:
-    """Random trees with loops across, in MuJoCo with the stiffest documented settings and with stiffer rows of ours."""
+    """Random trees with loops in MuJoCo, with the stiffest documented settings and with stiffer rows by our code."""
     newest = released().versions("mujoco")[-1]
     entries = [entry for entry in released().of("mujoco") if entry.quantity == ACCELERATION]
     last = {entry.variant: entry for entry in entries if entry.version == newest}
-    many, _, rest = last["tuned"].sentence.partition(" of ") if "tuned" in last else ("0", "", "")
+    wrong_count, _, rest = last["tuned"].sentence.partition(" of ") if "tuned" in last else ("0", "", "")
     soft, hard = (last[variant].error if variant in last else math.nan for variant in ("tuned", "extended"))
     plotted = {
         variant: of_releases(variant, [entry for entry in entries if entry.variant == variant])
         for variant in ("tuned", "extended")
     }
-    return {"newest": newest, "many": int(many), "all": rest.partition(" ")[0], "soft": soft, "hard": hard, **plotted}
+    return {
+        "newest": newest,
+        "many": int(wrong_count),
+        "all": rest.partition(" ")[0],
+        "soft": soft,
+        "hard": hard,
+        **plotted,
+    }
 
 
-# The fault that each script of the page of faults shows, in a few words.
-FAULTS: Mapping[str, str] = {
+# Script of the page of faults -> the fault that it shows.
+FAULTS_OF_SCRIPTS: Mapping[str, str] = {
     "pymunk_groove": "a `GrooveJoint` off the centre of mass creates velocity across itself",
     "pymunk_kinetic_energy": "`Body.kinetic_energy` is twice the kinetic energy",
     "mujoco_joint_equality": "a curved `equality/joint` lacks its velocity term",
@@ -219,19 +228,19 @@ FAULTS: Mapping[str, str] = {
 
 
 def faults(sources: Sources) -> dict[str, Any]:
-    """Faults of the installed releases at one instant, by the scripts that were run with them."""
+    """Faults of the installed releases, from the answers of their scripts."""
     wrong, missing = [], 0
     for title in ("pymunk", "MuJoCo"):
-        words, release = [], MARK
-        for name, sentence in FAULTS.items():
+        shown, release = [], MARK
+        for name, sentence in FAULTS_OF_SCRIPTS.items():
             if name.startswith(title.lower()):
                 answer = sources.answers.get(SCRIPTS[name])
                 if answer is None or not answer.finished or is_right(answer.number("expected"), answer.number("found")):
                     missing += 1
                 else:
-                    words.append(sentence)
+                    shown.append(sentence)
                     release = str(answer.values["version"])
-        wrong.append(f"{title} {release}: {'; '.join(words)}.")
+        wrong.append(f"{title} {release}: {'; '.join(shown)}.")
     answer = sources.answers.get(OFFSETS)
     across = answer.array("across") if answer is not None and answer.finished else np.array([])
     groove = PlottedLine("", "pymunk", tuple(zip(OFFSETS.offsets, -across, strict=False)))
@@ -239,9 +248,9 @@ def faults(sources: Sources) -> dict[str, Any]:
 
 
 def exact(sources: Sources) -> dict[str, Any]:
-    """CPU times of errors of four sizes: `fine`, of 1e-6 rad by engine; `wins`, whether the judge is cheaper."""
-    found = advice(sources.rows.of("free_four_bar"), "angle")
-    rows = {(each.engine, target): each.row for each in found for target in each.targets}
+    """`fine`: CPU time for an error of 1e-6 rad by engine; `wins`: whether the judge is cheaper, for each target."""
+    settings = advice(sources.rows.of("free_four_bar"), "angle")
+    rows = {(setting.engine, target): setting.row for setting in settings for target in setting.targets}
     cost = {key: row.cpu if row is not None and row.cpu > 0 else math.inf for key, row in rows.items()}
 
     def of(engine: str, target: float) -> float:
@@ -252,7 +261,7 @@ def exact(sources: Sources) -> dict[str, Any]:
     return {"fine": {engine: of(engine, 1e-6) for engine in ("lagrange", "mujoco", "pymunk")}, "wins": wins}
 
 
-FURTHER: Mapping[str, Callable[[Sources], dict[str, Any]]] = {
+FURTHER_NAMES: Mapping[str, Callable[[Sources], dict[str, Any]]] = {
     "releases": releases,
     "trees": trees,
     "faults": faults,
@@ -269,30 +278,31 @@ def _expression(text: str) -> Callable[..., Any]:
 
 
 def finding(name: str, sources: Sources) -> Finding:
-    """The finding of this name with its numbers from these rows."""
+    """The finding of this name with numbers from these rows."""
     plan = FINDINGS[name]
-    names = {**NAMES, **(FURTHER[name](sources) if name in FURTHER else {})}
-    names |= {word: sources.rows.of(*which) for word, which in plan.get("rows", {}).items()}
-    for word, expression in plan.get("let", {}).items():
-        names[word] = _expression(expression)(names)
-    compared, x = plan.get("quantity", "angle"), plan.get("x", STEP)
+    names = {**EXPRESSION_NAMES, **(FURTHER_NAMES[name](sources) if name in FURTHER_NAMES else {})}
+    names |= {rows: sources.rows.of(*selection) for rows, selection in plan.get("rows", {}).items()}
+    for number, expression in plan.get("let", {}).items():
+        names[number] = _expression(expression)(names)
+    compared, x = plan.get("quantity", "angle"), plan.get("x", STEP_AXIS)
     lines = []
-    for label, which in plan["lines"].items():
-        word, shown = (which, compared) if isinstance(which, str) else which
-        rows = names[word]
-        lines.append(of_rows(label, rows, shown, x) if isinstance(rows, Rows) else replace(rows, label=label))
+    for label, line in plan["lines"].items():
+        rows_name, plotted = (line, compared) if isinstance(line, str) else line
+        rows = names[rows_name]
+        lines.append(of_rows(label, rows, plotted, x) if isinstance(rows, Rows) else replace(rows, label=label))
     text = template(" ".join(plan["text"].split())).render(names)
     contradicted = tuple(claim for claim in plan["holds"] if not _expression(claim)(names))
-    y = plan.get("y", quantity(compared).axis)
+    y = plan.get("y", quantity(compared).heading)
     return Finding(name, plan["page"], plan["title"], text, contradicted, tuple(lines), x, y)
 
 
 def findings(pages: Mapping[Page, Material]) -> list[Finding]:
-    """Those that these rows bear out and that one of these pages explains, in the order of `findings.toml`."""
+    """The findings that these rows confirm and one of these pages explains, in the order of `findings.toml`."""
     sources, names = Sources.of(pages), {page.name for page in pages}
-    return [each for name in FINDINGS if (each := finding(name, sources)).is_sound and each.page in names]
+    candidates = (finding(name, sources) for name in FINDINGS)
+    return [candidate for candidate in candidates if candidate.is_sound and candidate.page in names]
 
 
-def pictures(shown: Iterable[Finding]) -> dict[str, str]:
-    """The SVG text of each finding's picture by file name."""
-    return {each.picture: svg(each.figure(), each.title) for each in shown}
+def pictures(sound: Iterable[Finding]) -> dict[str, str]:
+    """The SVG text of each finding's picture, by file name."""
+    return {found.picture: svg(found.figure(), found.title) for found in sound}

@@ -1,31 +1,50 @@
-"""The index of all pages with what users see go wrong, in their words; and the readme's parts."""
+"""The index of all pages: findings, symptoms, all engines compared on one linkage and one skate; and readme's part."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
-from engines import Engine
-from reports.model.cells import USUAL_STEPS
+from engines import Engine, registry
+from reports.model.cells import USUAL_STEPS, is_step
 from reports.model.convergence import judged
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
-from reports.pages import comparison
+from reports.model.quantities import quantity
 from reports.pages.findings import findings
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
+from reports.plots.theme import svg
+from reports.plots.work_precision import ComparedRow, engines_compared
 from reports.write import unmeasured
-from reports.write.columns import BUDGET, equal_cost, equal_error, equal_step
-from reports.write.page_tables import TARGETS
+from reports.write.columns import (
+    CPU_BUDGET,
+    NO_JOINT,
+    NOT_BUILT,
+    Column,
+    EngineLine,
+    absence_reason,
+    describe_inner_runs,
+    engine_lines,
+    equal_cost,
+    equal_error,
+    equal_step,
+    error_by_cost,
+    remarks_of,
+    within_budget,
+)
+from reports.write.page_tables import COMPARED_STEP, TARGETS
 from reports.write.provenance import machine, versions
+from reports.write.tables import NOTHING, error_words, markdown
 from reports.write.templates import environment, inert_page, link, with_part
 
 
 @dataclass(frozen=True)
 class Symptom:
-    """`seen` as a user would say it, a short `answer`, and the page that has the rest, under `heading` if not empty."""
+    """What a user observes, a short `answer`, and the page with the rest, under `heading` if that is not empty."""
 
     seen: str
     answer: str
@@ -41,22 +60,95 @@ def symptoms() -> tuple[Symptom, ...]:
 
 
 def foot(command: str, engines: Iterable[Engine] = ()) -> str:
-    """What the page was made with, its engines that are not registered included."""
+    """The command, versions and machine of a page; `engines`: those of the page beside the registered ones."""
     return f"Made by `{command}` with {versions(engines)}; timings on {machine()}."
 
 
 def engines_of(pages: Iterable[Page]) -> list[Engine]:
-    """Every engine that these pages compare."""
+    """All engines that these pages compare."""
     return list(dict.fromkeys(engine for page in pages for engine in page.engines))
 
 
+# All engines, also the extras, on two scenes: a picture and a table of the index.
+
+COMPARED_PICTURE = "compared.svg"
+COMPARED_SCENES = {"free_four_bar": "four-bar", "sleigh": "skate"}  # name -> title
+COMPARED_COLUMNS = (Column.SHIPPED, Column.SETTINGS, Column.CODE)
+
+
+def compared_lines(pages: Mapping[Page, Material]) -> list[EngineLine]:
+    """A line for each of COMPARED_SCENES and each engine that has rows of it on any page."""
+    lines: list[EngineLine] = []
+    for name in COMPARED_SCENES:
+        for page, scene in [(teaching, scene) for teaching in pages for scene in teaching.scenes if scene.name == name]:
+            rows = {
+                (row.method, row.every): replace(row, purpose="sweep")
+                for material in pages.values()
+                for cell, row in material.rows.items()
+                if cell.scene == scene and cell.samples is None and cell.purpose in ("sweep", "beside")
+            }
+            whole = replace(page, scenes=(scene,), engines=(*page.engines, *registry.OTHERS))
+            lines += engine_lines([(whole, list(rows.values()))])
+    return lines
+
+
+def compared_picture(lines: Sequence[EngineLine]) -> str:
+    """The least error within a CPU time, by scene and kind of method, as SVG; empty without lines."""
+    rows = []
+    for name, title in COMPARED_SCENES.items():
+        of_scene = [line for line in lines if line.scene.name == name]
+        if not of_scene:
+            continue
+        errors: dict[str, dict[str, Any]] = {}
+        absent: dict[str, dict[str, list[str]]] = {}
+        for column in COMPARED_COLUMNS:
+            pairs = [(line, Column.WHOLE if Column.WHOLE in line.columns else column) for line in of_scene]
+            errors[column] = {
+                line.engine: error_by_cost([rows for _, rows in line.columns.get(shown, ())], line.quantity)
+                for line, shown in pairs
+            }
+            if column is not Column.CODE:  # not every engine has a variant with our code
+                absent[column] = {
+                    reason: [line.engine for line, shown in pairs if absence_reason(line, shown) == reason]
+                    for reason in (NO_JOINT, NOT_BUILT)
+                }
+        rows.append(ComparedRow(title, f"largest {quantity(of_scene[0].quantity).heading}", errors, absent))
+    if not rows:
+        return ""
+    return svg(engines_compared(rows), "All engines on a four-bar and on a skate: error against CPU time")
+
+
+def compared_table(lines: Sequence[EngineLine]) -> str:
+    """A line for each engine and scene: the error within CPU_BUDGET and, in brackets, at COMPARED_STEP."""
+    body = []
+    for line in lines:
+        whole = Column.WHOLE in line.columns
+        cells = [
+            _compared_cell(line, Column.WHOLE if whole and column is COMPARED_COLUMNS[-1] else column)
+            for column in COMPARED_COLUMNS
+        ]
+        body.append([COMPARED_SCENES[line.scene.name], line.engine, *cells])
+    return markdown(["scene", "engine", *COMPARED_COLUMNS], body, left=5) if body else ""
+
+
+def _compared_cell(line: EngineLine, column: Column) -> str:
+    if column not in line.columns and (Column.WHOLE in line.columns or column is Column.CODE):
+        return NOTHING  # no variant of this kind
+    if reason := absence_reason(line, column):
+        return f"*{reason}*"
+    engine, rows = line.columns[column][-1]
+    at_step = error_words(next((row for row in rows if is_step(row.step, COMPARED_STEP)), None), line.quantity)
+    runs = describe_inner_runs(engine, line.scene, COMPARED_STEP)
+    return f"{within_budget(line, column)} ({at_step}{'; ' + runs if runs else ''}){remarks_of(line, column)}"
+
+
 def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
-    """The index: findings, symptoms, every scene in a line, every page with its lesson. `files`: what is beside it."""
+    """The index: findings, symptoms, a line for each scene, and each page with its lesson; `files`: the other files."""
     entries = [
         (page, judged([*material.sweep(page.scenes), *material.usual(page.scenes)], page.quantity))
         for page, material in pages.items()
     ]
-    known = {page.name for page in pages}
+    names = {page.name for page in pages}
     text = (
         environment()
         .get_template("index.md")
@@ -64,12 +156,14 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
             pages=list(pages),
             titles={page.name: page.title for page in pages},
             findings=findings(pages),
-            symptoms=[(each, link(each.page, each.heading, files)) for each in symptoms() if each.page in known],
-            compared=comparison.table(comparison.compared_lines(pages)),
+            symptoms=[
+                (symptom, link(symptom.page, symptom.heading, files)) for symptom in symptoms() if symptom.page in names
+            ],
+            compared=compared_table(compared_lines(pages)),
             equal_cost=equal_cost(entries),
             equal_error=equal_error(entries),
             equal_step=equal_step(entries),
-            budget=1e3 * BUDGET,
+            budget=1e3 * CPU_BUDGET,
             targets=TARGETS,
             steps=list(USUAL_STEPS),
             outcomes=list(Outcome),
@@ -81,10 +175,10 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
 
 
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
-    """The readme with the lines of `your_loop` and their errors. Nothing in it depends on timings.
+    """The readme with the lines of `your_loop` and their errors; nothing in this part depends on timings.
 
-    Raises ValueError where the marks of the part are missing.
+    Raises ValueError if a mark of the part is missing.
     """
-    material = next((given for page, given in pages.items() if page.name == YOUR_LOOP.name), Material({}))
-    told = environment().get_template(f"{YOUR_LOOP.name}/readme.md").render(dict(YOUR_LOOP.context(material)))
-    return with_part(text, "loop", unmeasured.without_marks(told).strip())
+    material = next((material for page, material in pages.items() if page.name == YOUR_LOOP.name), Material({}))
+    part = environment().get_template(f"{YOUR_LOOP.name}/readme.md").render(dict(YOUR_LOOP.context(material)))
+    return with_part(text, "loop", unmeasured.without_marks(part).strip())

@@ -1,4 +1,4 @@
-"""A page's material to its files, as texts by file name; nothing here writes."""
+"""Pages and tables as texts by file name, from stored rows and answers; nothing here writes files."""
 
 from __future__ import annotations
 
@@ -16,23 +16,22 @@ from reports.model.cells import Cell
 from reports.model.convergence import judged
 from reports.model.measure import Measurement
 from reports.model.page import Material, Page
-from reports.pages.atlas.subjects import SUBJECTS
-from reports.pages.comparison import PICTURE, compared_lines, picture
+from reports.pages.atlas.subjects import MAPS
 from reports.pages.findings import findings, pictures
-from reports.pages.index import engines_of, render_index
+from reports.pages.index import COMPARED_PICTURE, compared_lines, compared_picture, engines_of, render_index
 from reports.plots import work_precision as charts
 from reports.plots.theme import svg
 from reports.write import page_tables, unmeasured
-from reports.write.columns import holders, runs_of, told_rows
+from reports.write.columns import describe_inner_runs, enforcement_by_method, with_displayed_variants
 from reports.write.csv_files import as_csv, descriptions_csv
-from reports.write.experiments import told_experiment
+from reports.write.experiments import render_experiment
 from reports.write.page_tables import advised_programs
 from reports.write.provenance import machine, row_versions, today, versions
 from reports.write.templates import inert_page, template_of
 
 
-def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Material) -> dict[str, Any]:
-    """The scene's words and tables from the judged rows of its sweep; tables are empty without rows."""
+def scene_context(scene: Scene, rows: list[Measurement], page: Page, material: Material) -> dict[str, Any]:
+    """The tables of a scene for the page's template, from the rows of its sweep; tables are empty without rows."""
     engines = {method_name(engine): engine for engine in page.engines_of(scene)}
 
     def declared(method: str, step: float) -> float:
@@ -40,67 +39,67 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
             return math.nan
         return declared_error(material.answers, scene, engines[method], page.quantity, step)
 
-    held = holders(Cell(scene, engine, 1) for engine in engines.values())
-    exported = held.get("mujoco tuned") == "engine"
-    held = held if set(held.values()) != {"engine"} else {}
+    enforcement = enforcement_by_method(Cell(scene, engine, 1) for engine in engines.values())
+    exported = enforcement.get("mujoco tuned") == "engine"
+    enforcement = enforcement if set(enforcement.values()) != {"engine"} else {}
     featured = [row for row in rows if page.featured(row)]
     step = page_tables.compared_step(rows)
-    runs = {method: told for method, engine in engines.items() if (told := runs_of(engine, scene, step))}
+    inner_runs = {
+        method: runs for method, engine in engines.items() if (runs := describe_inner_runs(engine, scene, step))
+    }
     advice = page_tables.advice(rows, page.quantity, tuple(engines))
+    table = page_tables.scene_table(featured, page.quantity, enforcement, declared, inner_runs) if featured else ""
     return {
         "name": scene.name,
         "missing": not rows,
         "step": step,
-        "table": page_tables.scene_table(featured, page.quantity, held, declared, runs) if featured else "",
-        "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
-        "exported": exported,  # whether a file of settings alone holds the joints
+        "table": table,
+        "advice": page_tables.advice_table(advice, page.quantity, enforcement) if rows else "",
+        "exported": exported,  # whether a model file with settings alone describes the mechanism
         "programs": advised_programs(scene, advice, engines) if scene is page.advised_scene else [],
     }
+
+
+def _charts(page: Page, rows: list[Measurement], material: Material) -> dict[str, str]:
+    """The page's SVG pictures by their short names."""
+    found: dict[str, str] = {}
+    drawable = charts.drawable(rows, page.quantity)
+    if any(row.cpu > 0 for row in drawable):
+        figure = charts.work_precision(rows, page.featured, page.quantity)
+        found["work"] = svg(figure, f"{page.title}: error against CPU time")
+    if any(page.featured(row) for row in drawable):
+        figure = charts.error_against_step(rows, page.featured, page.quantity)
+        found["steps"] = svg(figure, f"{page.title}: error against step")
+    return {**found, **page.figures(material)}
 
 
 def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     """The page's Markdown and its SVG pictures, by file name.
 
-    Raises jinja2.UndefinedError when the template names what the page does not give.
+    Raises jinja2.UndefinedError if the template uses a name that the page does not define.
     """
-    material = replace(material, rows=told_rows(material.rows))
+    material = replace(material, rows=with_displayed_variants(material.rows))
     rows = judged(material.sweep(page.scenes), page.quantity)
-    files: dict[str, str] = {}
-    pictures: dict[str, str] = {}
-
-    def keep(name: str, text: str) -> None:
-        files[f"{page.name}_{name}.svg"] = text
-        pictures[name] = f"{page.name}_{name}.svg"
-
-    drawable = charts.drawable(rows, page.quantity)
-    if any(row.cpu > 0 for row in drawable):
-        keep(
-            "work",
-            svg(charts.work_precision(rows, page.featured, page.quantity), f"{page.title}: error against CPU time"),
-        )
-    if any(page.featured(row) for row in drawable):
-        keep(
-            "steps",
-            svg(charts.error_against_step(rows, page.featured, page.quantity), f"{page.title}: error against step"),
-        )
-    for name, text in page.figures(material).items():
-        keep(name, text)
+    drawings = _charts(page, rows, material)
+    names = {name: f"{page.name}_{name}.svg" for name in drawings}
     scenes = [
-        told_scene(scene, [row for row in rows if row.scene == scene.name], page, material) for scene in page.scenes
+        scene_context(scene, [row for row in rows if row.scene == scene.name], page, material) for scene in page.scenes
     ]
-    files |= {each.file: each.text for scene in scenes for each in scene["programs"] if each.text}
-    given = {
+    context = {
         "page": page,
         "scenes": scenes,
         "advised": next((scenes[i] for i, scene in enumerate(page.scenes) if scene is page.advised_scene), None),
-        "registered": page.name in {each.name for each in catalogue.PAGES},  # else its code is not found by its name
-        "pictures": unmeasured.Known(pictures),
-        "failures": [told_experiment(failure, material) for failure in page.failures],
-        "maps": [subject for subject in SUBJECTS if subject.page == page.name],
+        # A program on the page finds a registered page alone by its name.
+        "registered": page.name in {registered.name for registered in catalogue.PAGES},
+        "pictures": unmeasured.MissingAsNaN(names),
+        "failures": [render_experiment(failure, material) for failure in page.failures],
+        "maps": [stability_map for stability_map in MAPS if stability_map.page == page.name],
         "foot": f"Made by `{command}`. Versions and machine: [index](index.md). Numbers: [errors.csv](errors.csv).",
         **page.context(material),
     }
-    texts = {page.document: template_of(page).render(given)} | dict(page.further(material))
+    texts = {page.document: template_of(page).render(context)} | dict(page.further(material))
+    files = {names[name]: text for name, text in drawings.items()}
+    files |= {program.file: program.text for scene in scenes for program in scene["programs"] if program.text}
     return files | {name: inert_page(unmeasured.without_marks(text)) for name, text in texts.items()}
 
 
@@ -108,31 +107,31 @@ def render_all(
     pages: Mapping[Page, Material],
     command: str,
     further: Mapping[str, str] = MappingProxyType({}),
-    made: Mapping[str, Mapping[str, str]] = MappingProxyType({}),
+    rendered: Mapping[str, Mapping[str, str]] = MappingProxyType({}),
 ) -> dict[str, str]:
     """Every file of the results by name; only timings.csv and the pages' CPU columns differ between machines.
 
-    `further`: files of another kind beside them, which the index may name. `made`: what `render_page` gives, by the
-    names of the pages for which that was done already.
+    `further`: other files, which the index may name. `rendered`: results of `render_page` that are already there, by
+    the pages' names.
     """
     files: dict[str, str] = dict(further)
     rows: dict[str, Measurement] = {}
-    made_by: dict[str, Engine] = {}
+    engines: dict[str, Engine] = {}
     for page, material in pages.items():
-        files.update(made[page.name] if page.name in made else render_page(page, material, command))
-        # What one page takes for an experiment is another's sweep: the file has it there.
+        files.update(rendered[page.name] if page.name in rendered else render_page(page, material, command))
+        # A cell may be an experiment of one page and a sweep of another; errors.csv has it as a sweep.
         rows.update({row.key: row for row in material.rows.values() if row.purpose == "sweep" or row.key not in rows})
-        made_by.update({row.key: cell.engine for cell, row in material.rows.items()})
+        engines.update({row.key: cell.engine for cell, row in material.rows.items()})
     files |= pictures(findings(pages))
-    if compared := picture(compared_lines(pages)):
-        files[PICTURE] = compared
+    if drawing := compared_picture(compared_lines(pages)):
+        files[COMPARED_PICTURE] = drawing
     files["index.md"] = render_index(pages, command, files)
-    # A stored row counts only where the versions are those that it was made with, so these are its own.
-    of_engine = {engine: row_versions(engine) for engine in dict.fromkeys(made_by.values())}
-    own_versions = {key: of_engine[engine] for key, engine in made_by.items()}
-    files["errors.csv"] = as_csv(rows.values(), timings=False, made_with=own_versions)
-    made_with = versions(engines_of(pages))
-    header = f"{today()}\n{machine()}\n{made_with}\n{command}\nCPU seconds: cpu per simulated second; build once"
-    files["descriptions.csv"] = descriptions_csv(rows.values(), own_versions)
+    # Stored rows are valid only with the versions that they were made with, so the installed versions are theirs.
+    by_engine = {engine: row_versions(engine) for engine in dict.fromkeys(engines.values())}
+    made_with = {key: by_engine[engine] for key, engine in engines.items()}
+    files["errors.csv"] = as_csv(rows.values(), timings=False, made_with=made_with)
+    header = f"{today()}\n{machine()}\n{versions(engines_of(pages))}\n{command}\n"
+    header += "CPU seconds: cpu per simulated second; build once"
+    files["descriptions.csv"] = descriptions_csv(rows.values(), made_with)
     files["timings.csv"] = as_csv(rows.values(), timings=True, header=header)
     return files

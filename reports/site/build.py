@@ -27,7 +27,7 @@ from reports.site.live.data import data, first_picture
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED
 from reports.site.markdown import cards, render_html, render_lecture, section, title
 from reports.site.packages import PACKAGES, NotFetched, compile_munk2d, fetch_package
-from reports.write.columns import VARIANTS
+from reports.write.columns import COLUMN_OF_VARIANT
 from reports.write.csv_files import read_lines
 from reports.write.templates import CODE, inert_page
 
@@ -114,7 +114,7 @@ def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
             rows.append([*(row[name] for name in COLUMNS[:4]), settings, float(row["step"]), *finite])
     names = sorted({row[1] for row in rows})
     looks = {name: {"role": role(family_of(name), names), "exact": name == Lagrange.name} for name in names}
-    headings = {name: column.value for name, column in VARIANTS.items()}
+    headings = {name: column.value for name, column in COLUMN_OF_VARIANT.items()}
     return {"columns": [*COLUMNS, *NUMBERS, "cpu"], "rows": rows, "looks": looks, "headings": headings}
 
 

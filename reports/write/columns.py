@@ -1,8 +1,7 @@
-"""Who holds a mechanism's joints in a method, in a few words: a reader must not take our rows for an engine's own.
+"""Tables that compare engines over all scenes: at equal CPU time, at equal error and at equal step.
 
-And what stands in a column of a table of engines, by who holds the joints; and the tables of all scenes.
-
-A method's name does not decide: documented settings are such only where the engine itself holds every joint by them.
+A method's column depends on what enforces the joints, not on the method's name: a method has documented settings only
+where the engine's own solver enforces every joint.
 """
 
 from __future__ import annotations
@@ -31,97 +30,106 @@ from reports.write.tables import NOTHING, error_words, markdown, milliseconds, n
 
 
 class Column(StrEnum):
-    """The columns of a table of engines, and what stands in none."""
+    """The kinds of methods, each with a column in the tables of engines; NAIVE methods are left out of these tables."""
 
     SHIPPED = "as shipped"
     SETTINGS = "documented settings"
     CODE = "with our code"
-    NAIVE = "naive"  # our code alone holds a joint that the engine does not have
-    WHOLE = ""  # of an engine that has no such variants
+    NAIVE = "naive"  # code outside the engine enforces a joint that the engine lacks
+    WHOLE = ""  # all methods of an engine without the variants below
 
 
-VARIANTS = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Column.CODE}
+COLUMN_OF_VARIANT = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Column.CODE}
+ENFORCEMENT_LABELS: Mapping[Enforcement, str] = {
+    "engine": "engine",
+    "engine, our rows": "engine, our equations",
+    "ours": "our code",
+}
 
 
 @cache
 def column_of(scene: Scene, engine: Engine) -> Column:
-    """Where a method stands for a scene; one that is neither as shipped nor extended has settings."""
+    """The column of a method for a scene."""
     mechanism = mechanism_of(scene)
-    held = {engine.enforcement(joint, mechanism) for joint in mechanism.joints}
-    if "ours" in held:
+    enforcement = {engine.enforcement(joint, mechanism) for joint in mechanism.joints}
+    if "ours" in enforcement:
         return Column.NAIVE
-    if "engine, our rows" in held or len(engine.inner_steps(mechanism)) > 1:
+    if "engine, our rows" in enforcement or len(engine.inner_steps(mechanism)) > 1:
         return Column.CODE
-    return VARIANTS.get(engine.variant, Column.SETTINGS)
+    return COLUMN_OF_VARIANT.get(engine.variant, Column.SETTINGS)
 
 
-def told_variant(scene: Scene, engine: Engine) -> str:
-    """The variant as a page names it: an engine's usual name is not lent to a trick of a user's; no two share one."""
-    if engine.variant not in VARIANTS or column_of(scene, engine) is not Column.NAIVE:
+def displayed_variant(scene: Scene, engine: Engine) -> str:
+    """The variant as pages print it: "naive" replaces "default" where code outside the engine enforces a joint."""
+    if engine.variant not in COLUMN_OF_VARIANT or column_of(scene, engine) is not Column.NAIVE:
         return engine.variant
     return str(Column.NAIVE) if engine.variant == "default" else f"{Column.NAIVE}, {engine.variant}"
 
 
-def told_rows(rows: Mapping[Cell, Measurement]) -> dict[Cell, Measurement]:
-    """Rows under the variants that pages name."""
-    return {cell: replace(row, variant=told_variant(cell.scene, cell.engine)) for cell, row in rows.items()}
+def with_displayed_variants(rows: Mapping[Cell, Measurement]) -> dict[Cell, Measurement]:
+    """The rows with their variants as pages print them."""
+    return {cell: replace(row, variant=displayed_variant(cell.scene, cell.engine)) for cell, row in rows.items()}
 
 
-def held_by(engine: Engine, mechanism: Mechanism) -> str:
-    """'engine', 'ours', or 'engine; skate: ours' where joints are held by different ones.
+def describe_enforcement(engine: Engine, mechanism: Mechanism) -> str:
+    """What enforces the joints: 'engine', or 'engine; skate: our code' where it differs between joints.
 
-    Joints are named by kind; where those of one kind differ, by their own names.
+    Joints are named by their kind, and by their own names where joints of one kind differ.
     """
-    holders: list[Enforcement] = [engine.enforcement(joint, mechanism) for joint in mechanism.joints]
-    if len({*holders}) <= 1:
-        return holders[0] if holders else "no joints"
-    kinds: dict[str, set[Enforcement]] = {}
-    for joint, holder in zip(mechanism.joints, holders, strict=True):
-        kinds.setdefault(_kind(joint), set()).add(holder)
-    found: dict[Enforcement, dict[str, None]] = {}
-    for joint, holder in zip(mechanism.joints, holders, strict=True):
-        name = _kind(joint) if len(kinds[_kind(joint)]) == 1 else joint.name
-        found.setdefault(holder, {})[name] = None
-    others = [f"{' and '.join(names)}: {holder}" for holder, names in sorted(found.items()) if holder != "engine"]
-    return "; ".join(["engine", *others] if "engine" in found else others)
+    by_joint = [(joint, engine.enforcement(joint, mechanism)) for joint in mechanism.joints]
+    by_kind: dict[str, set[Enforcement]] = {}
+    for joint, enforcement in by_joint:
+        by_kind.setdefault(_kind(joint), set()).add(enforcement)
+    names: dict[Enforcement, dict[str, None]] = {}
+    for joint, enforcement in by_joint:
+        name = _kind(joint) if len(by_kind[_kind(joint)]) == 1 else joint.name
+        names.setdefault(enforcement, {})[name] = None
+    if len(names) <= 1:
+        return next((ENFORCEMENT_LABELS[enforcement] for enforcement in names), "no joints")
+    others = [
+        f"{' and '.join(joints)}: {ENFORCEMENT_LABELS[enforcement]}"
+        for enforcement, joints in sorted(names.items())
+        if enforcement != "engine"
+    ]
+    return "; ".join(["engine", *others] if "engine" in names else others)
 
 
 def _kind(joint: object) -> str:
     return type(joint).__name__.lower()
 
 
-@cache
-def held_in(scene: Scene, engine: Engine) -> str:
-    """Who holds a scene's joints; kept, because a method asks its whole model about each of a hundred joints."""
-    return held_by(engine, mechanism_of(scene))
+@cache  # a method examines its whole model for each joint, and a scene may have a hundred
+def _describe_enforcement_in(scene: Scene, engine: Engine) -> str:
+    return describe_enforcement(engine, mechanism_of(scene))
 
 
-def holders(cells: Iterable[Cell]) -> dict[str, str]:
-    """Who holds the joints in these cells, by method; several answers where the cells of a method differ."""
+def enforcement_by_method(cells: Iterable[Cell]) -> dict[str, str]:
+    """What enforces the joints in these cells, by method; several descriptions where the cells of a method differ."""
     found: dict[str, dict[str, None]] = {}
     for cell in cells:
-        method = f"{cell.engine.name} {told_variant(cell.scene, cell.engine)}"
-        found.setdefault(method, {}).setdefault(held_in(cell.scene, cell.engine))
-    return {method: " or ".join(told) for method, told in found.items()}
+        method = f"{cell.engine.name} {displayed_variant(cell.scene, cell.engine)}"
+        found.setdefault(method, {}).setdefault(_describe_enforcement_in(cell.scene, cell.engine))
+    return {method: " or ".join(descriptions) for method, descriptions in found.items()}
 
 
-# CPU seconds per simulated second at which methods stand side by side: a hundredth of real time.
-BUDGET = 1e-2
-WITHIN = SAME_COST * BUDGET  # what scatters by less is equal
+# CPU seconds per simulated second within which methods are compared: a hundredth of real time.
+CPU_BUDGET = 1e-2
+# CPU times within the scatter of timings above the budget are accepted.
+ACCEPTED_CPU = SAME_COST * CPU_BUDGET
+
+NO_JOINT, NOT_BUILT, TOO_SLOW = "no such joint", "not built", "too slow"
+SMALLER_STEP_FAILS = "a smaller step fails"
 
 
-NO_JOINT, NOT_BUILT, TOO_DEAR = "no such joint", "not built", "too dear"
-
-
-def runs_of(engine: Engine, scene: Scene, step: float) -> str:
-    """'5 runs, finest 0.125 ms' for steps as told [s]; empty for a single run."""
+def describe_inner_runs(engine: Engine, scene: Scene, step: float) -> str:
+    """'5 runs, finest 0.125 ms' at a step [s]; empty for a method of a single run."""
     steps = engine.inner_steps(mechanism_of(scene))
     return f"{len(steps)} runs, finest {number(1e3 * step * min(steps), 3)} ms" if len(steps) > 1 else ""
 
 
 @dataclass(frozen=True)
-class Line:
-    """The rows of one scene in one engine, by column; a column without methods is one in which the engine has none."""
+class EngineLine:
+    """The rows of one scene in one engine, by column. A column without methods: the engine has none of that kind."""
 
     page: Page
     scene: Scene
@@ -129,110 +137,115 @@ class Line:
     columns: Mapping[Column, tuple[tuple[Engine, tuple[Measurement, ...]], ...]]
 
     @property
-    def name(self) -> str:
+    def quantity(self) -> str:
+        """The name of the quantity by which the page compares methods."""
         return self.page.quantity
 
 
-Entry = tuple[Page, Sequence[Measurement]]  # a page, and the rows of those of its scenes that are to be shown
+PageRows = tuple[Page, Sequence[Measurement]]  # a page, and the rows of its scenes that are compared
 
 
-def lines(entries: Iterable[Entry]) -> list[Line]:
+def engine_lines(entries: Iterable[PageRows]) -> list[EngineLine]:
     """A line for each scene and engine that have rows.
 
-    Where an engine's tuned variant needs our code for a scene, a construction of the page that needs none stands for
-    its documented settings, if there is one.
+    Where an engine's tuned variant needs our code for a scene, a method of the page that needs none takes its place
+    under the documented settings, if there is such a method.
     """
-    found = []
-    for page, rows in entries:
-        usual = usual_variants((engine.name, engine.variant) for engine in page.engines)
-        for scene in page.scenes:
-            own = [row for row in rows if row.scene == scene.name]
-            for name in dict.fromkeys(row.engine for row in own):
-                methods = [engine for engine in page.engines_of(scene) if engine.name == name]
-                columns: dict[Column, list[Engine]] = {}
-                for engine in methods:
-                    if engine.variant in usual[name]:
-                        place = column_of(scene, engine) if VARIANTS.keys() & {*usual[name]} else Column.WHOLE
-                        columns.setdefault(place, []).append(engine)
-                if Column.SETTINGS not in columns and Column.WHOLE not in columns:
-                    others = [each for each in methods if column_of(scene, each) is Column.SETTINGS]
-                    columns |= {Column.SETTINGS: others} if others else {}
-                with_rows = {
-                    place: tuple(
-                        (each, tuple(row for row in own if row.method == method_name(each))) for each in engines
-                    )
-                    for place, engines in columns.items()
-                    if place is not Column.NAIVE
-                }
-                found.append(Line(page, scene, name, with_rows))
-    return found
+    return [
+        _engine_line(page, scene, engine, [row for row in rows if row.scene == scene.name])
+        for page, rows in entries
+        for scene in page.scenes
+        for engine in dict.fromkeys(row.engine for row in rows if row.scene == scene.name)
+    ]
 
 
-Words = Callable[[Line, Column], str]  # of a cell
+def _engine_line(page: Page, scene: Scene, engine_name: str, rows: Sequence[Measurement]) -> EngineLine:
+    usual = usual_variants((engine.name, engine.variant) for engine in page.engines)[engine_name]
+    methods = [engine for engine in page.engines_of(scene) if engine.name == engine_name]
+    columns: dict[Column, list[Engine]] = {}
+    for engine in methods:
+        if engine.variant in usual:
+            column = column_of(scene, engine) if COLUMN_OF_VARIANT.keys() & {*usual} else Column.WHOLE
+            columns.setdefault(column, []).append(engine)
+    if Column.SETTINGS not in columns and Column.WHOLE not in columns:
+        others = [engine for engine in methods if column_of(scene, engine) is Column.SETTINGS]
+        columns |= {Column.SETTINGS: others} if others else {}
+    with_rows = {
+        column: tuple((engine, tuple(row for row in rows if row.method == method_name(engine))) for engine in of_column)
+        for column, of_column in columns.items()
+        if column is not Column.NAIVE
+    }
+    return EngineLine(page, scene, engine_name, with_rows)
 
 
-def empty(line: Line, column: Column) -> str:
-    """Why a cell is empty: the engine has no such joint, or our adapter builds none; '' for one that is not."""
+FormatCell = Callable[[EngineLine, Column], str]
+
+
+def absence_reason(line: EngineLine, column: Column) -> str:
+    """Why there is no method: the engine lacks the joint, or our adapter does not build it; '' where there is one."""
     if column not in line.columns:
         return NO_JOINT
-    rows = [row for _, own in line.columns[column] for row in own]
+    rows = [row for _, of_method in line.columns[column] for row in of_method]
     if not rows or any(row.outcome != Outcome.UNSUPPORTED for row in rows):
         return ""
-    # The engine lacks a thing where the sentence names a place in its documentation.
+    # A sentence with a link names the place in the engine's documentation that says what it lacks.
     return NO_JOINT if any("https://" in row.sentence for row in rows) else NOT_BUILT
 
 
-def _told(line: Line, column: Column, cell: Words) -> str:
-    """A cell: empty, with the reason, where the engine has no such joint or our adapter builds none."""
-    if word := empty(line, column):
-        return f"*{word}*"
-    if not any(own for _, own in line.columns[column]):
+def _format_cell(line: EngineLine, column: Column, format_rows: FormatCell) -> str:
+    if reason := absence_reason(line, column):
+        return f"*{reason}*"
+    if not any(rows for _, rows in line.columns[column]):
         return NOTHING
-    return cell(line, column) + means(line, column)
+    return format_rows(line, column) + remarks_of(line, column)
 
 
-def means(line: Line, column: Column) -> str:
-    """ ", contact" where a contact with friction stands for a joint, and the variant where it has no usual name."""
+def remarks_of(line: EngineLine, column: Column) -> str:
+    """', contact' where contact with friction replaces a joint of the engine, and the names of unusual variants."""
     joints = mechanism_of(line.scene).joints
-    engine_holds = column in (Column.SHIPPED, Column.SETTINGS)
-    contact = engine_holds and any(isinstance(joint, Skate | Roll) for joint in joints)
-    engine_names = [engine.variant for engine, _ in line.columns[column]]
-    unusual = [] if column is Column.WHOLE else [f"*{name}*" for name in engine_names if name not in VARIANTS]
-    return "".join(f", {word}" for word in [*(["contact"] if contact else []), *dict.fromkeys(unusual)])
+    contact = column in (Column.SHIPPED, Column.SETTINGS) and any(isinstance(joint, Skate | Roll) for joint in joints)
+    variants = [engine.variant for engine, _ in line.columns[column]]
+    unusual = [] if column is Column.WHOLE else [f"*{name}*" for name in variants if name not in COLUMN_OF_VARIANT]
+    return "".join(f", {remark}" for remark in [*(["contact"] if contact else []), *dict.fromkeys(unusual)])
 
 
 def _table(
-    found: Sequence[Line],
-    cell: Words,
+    lines: Sequence[EngineLine],
+    format_rows: FormatCell,
     folder: str,
-    both: bool,
     remarks: Mapping[tuple[str, Column], str] = MappingProxyType({}),
-) -> Iterator[tuple[str, str]]:
-    """(engine, table), or one table of all engines under an empty name if `both`; `remarks` stand in the header."""
-    for engine in [""] if both else dict.fromkeys(line.engine for line in found):
-        own = [line for line in found if engine in ("", line.engine)]
-        engines = dict.fromkeys(line.engine for line in own)
-        heads = [
-            (name, place)
-            for name in engines
-            for place in Column
-            if any(line.engine == name and place in line.columns for line in own)
-        ]
-        body = []
-        for scene in dict.fromkeys((line.page.name, line.scene) for line in own):
-            here = {line.engine: line for line in own if (line.page.name, line.scene) == scene}
-            first = next(iter(here.values()))
-            unit = quantity(first.name).unit
-            name = f"[{first.scene.name.replace('_', ' ')}]({folder}{first.page.name}.md), {unit}"
-            body.append([name, *(_told(here[each], place, cell) if each in here else NOTHING for each, place in heads)])
-        names = [f"{each} {place}".strip() + remarks.get((each, place), "") for each, place in heads]
-        yield engine, markdown(["scene", *names], body, len(heads) + 1)
+) -> str:
+    """A line a scene, a column for each engine and kind of method; `remarks` are appended to the headers."""
+    engines = dict.fromkeys(line.engine for line in lines)
+    heads = [
+        (engine, column)
+        for engine in engines
+        for column in Column
+        if any(line.engine == engine and column in line.columns for line in lines)
+    ]
+    body = []
+    for key in dict.fromkeys((line.page.name, line.scene) for line in lines):
+        of_scene = {line.engine: line for line in lines if (line.page.name, line.scene) == key}
+        first = next(iter(of_scene.values()))
+        title = f"[{first.scene.name.replace('_', ' ')}]({folder}{first.page.name}.md), {quantity(first.quantity).unit}"
+        cells = (
+            _format_cell(of_scene[engine], column, format_rows) if engine in of_scene else NOTHING
+            for engine, column in heads
+        )
+        body.append([title, *cells])
+    names = [f"{engine} {column}".strip() + remarks.get((engine, column), "") for engine, column in heads]
+    return markdown(["scene", *names], body, len(heads) + 1)
+
+
+def _by_engine(lines: Sequence[EngineLine]) -> Iterator[tuple[str, list[EngineLine]]]:
+    for engine in dict.fromkeys(line.engine for line in lines):
+        yield engine, [line for line in lines if line.engine == engine]
 
 
 def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
-    """The least error of a method's runs that take no more CPU time than this [s/s]; infinite without one.
+    """The least error of a method's runs that take at most this CPU time [s/s]; infinite without such a run.
 
-    An error counts at a step only if no smaller step has a larger one: else it is luck.
+    An error counts only if no smaller step has a larger one: otherwise two errors cancelled at that step.
     """
     worst, least = 0.0, math.inf
     for row in sorted(rows, key=lambda row: row.step):
@@ -243,96 +256,97 @@ def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
     return least
 
 
-def reached(methods: Iterable[Sequence[Measurement]], name: str) -> list[tuple[float, float]]:
-    """(CPU time [s/s], least error within it) by rising cost: of each run of some methods that brings it down, and of
-    the dearest."""
+def error_by_cost(methods: Iterable[Sequence[Measurement]], name: str) -> list[tuple[float, float]]:
+    """(CPU time [s/s], least error within it) by rising cost, at each cost that lowers it and at the highest cost."""
     methods = list(methods)
     costs = sorted({row.cpu for rows in methods for row in rows if row.cpu > 0})
-    found = [(cost, min(error_within(rows, name, cost) for rows in methods)) for cost in costs]
-    drawn = [(cost, error) for cost, error in found if 0 < error < math.inf]
-    better = [point for before, point in zip([(0.0, math.inf), *drawn], drawn, strict=False) if point[1] < before[1]]
-    return better + [point for point in drawn[-1:] if point not in better]
+    pairs = [(cost, min(error_within(rows, name, cost) for rows in methods)) for cost in costs]
+    pairs = [(cost, error) for cost, error in pairs if 0 < error < math.inf]
+    return [pair for index, pair in enumerate(pairs) if index in (0, len(pairs) - 1) or pair[1] < pairs[index - 1][1]]
 
 
-def equal_cost(entries: Iterable[Entry], folder: str = "") -> str:
-    """One table of all engines: the error that each column reaches within BUDGET."""
-    return next((table for _, table in _table(_swept(entries), within_budget, folder, both=True)), "")
+def equal_cost(entries: Iterable[PageRows], folder: str = "") -> str:
+    """One table of all engines: the least error of each column within CPU_BUDGET; empty without rows."""
+    lines = _swept(entries)
+    return _table(lines, within_budget, folder) if lines else ""
 
 
-def within_budget(line: Line, column: Column) -> str:
-    """The least error of a column within BUDGET, or why there is none."""
+def within_budget(line: EngineLine, column: Column) -> str:
+    """The least error of a column within CPU_BUDGET, or why there is none."""
     methods = [rows for _, rows in line.columns[column]]
-    least = min((error_within(rows, line.name, WITHIN) for rows in methods), default=math.inf)
+    least = min((error_within(rows, line.quantity, ACCEPTED_CPU) for rows in methods), default=math.inf)
     if math.isfinite(least):
         return number(least)
-    cheap = [row for rows in methods for row in rows if 0 < row.cpu <= WITHIN]
+    cheap = [row for rows in methods for row in rows if 0 < row.cpu <= ACCEPTED_CPU]
     failed = dict.fromkeys(row.outcome for row in cheap if not Outcome(row.outcome).comparable)
-    return f"**{', '.join(failed)}**" if failed else "not kept" if cheap else TOO_DEAR
+    return f"**{', '.join(failed)}**" if failed else SMALLER_STEP_FAILS if cheap else TOO_SLOW
 
 
-def equal_error(entries: Iterable[Entry], folder: str = "") -> dict[str, str]:
+def equal_error(entries: Iterable[PageRows], folder: str = "") -> dict[str, str]:
     """Engine -> its table: the least CPU time [ms/s] for an error below each of TARGETS."""
 
-    def cell(line: Line, column: Column) -> str:
+    def least_costs(line: EngineLine, column: Column) -> str:
         costs = [
             min(
-                (row.cpu for _, rows in line.columns[column] for row in reliable(rows, line.name, target)),
+                (row.cpu for _, rows in line.columns[column] for row in reliable(rows, line.quantity, target)),
                 default=math.nan,
             )
             for target in TARGETS
         ]
         return ", ".join(map(milliseconds, costs)) if any(map(math.isfinite, costs)) else NOTHING
 
-    return dict(_table(_swept(entries), cell, folder, both=False))
+    return {engine: _table(lines, least_costs, folder) for engine, lines in _by_engine(_swept(entries))}
 
 
-def _swept(entries: Iterable[Entry]) -> list[Line]:
-    return lines((page, [row for row in rows if row.purpose == "sweep"]) for page, rows in entries)
+def _swept(entries: Iterable[PageRows]) -> list[EngineLine]:
+    return engine_lines((page, [row for row in rows if row.purpose == "sweep"]) for page, rows in entries)
 
 
-def equal_step(entries: Iterable[Entry], steps: Mapping[str, float] = USUAL_STEPS, folder: str = "") -> dict[str, str]:
-    """Engine -> its table: the errors at these steps [s] by name. No cell has a time.
+def equal_step(
+    entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_STEPS, folder: str = ""
+) -> dict[str, str]:
+    """Engine -> its table: the errors at these steps [s], given by name. No cell has a time.
 
-    How many runs an answer takes stands in the heading where it is the same for all scenes.
+    The number of runs of a method is in the header where it is the same for all scenes.
     """
-    last, found = list(steps.values())[-1], lines(entries)
+    last, lines = list(steps.values())[-1], engine_lines(entries)
     runs: dict[tuple[str, Column], set[str]] = {}
-    for line in found:
+    for line in lines:
         for column, methods in line.columns.items():
-            runs.setdefault((line.engine, column), set()).add(runs_of(methods[-1][0], line.scene, last))
-    alike = {place: next(iter(words)) for place, words in runs.items() if len(words) == 1}
+            runs.setdefault((line.engine, column), set()).add(describe_inner_runs(methods[-1][0], line.scene, last))
+    same_runs = {key: next(iter(descriptions)) for key, descriptions in runs.items() if len(descriptions) == 1}
 
-    def cell(line: Line, column: Column) -> str:
-        engine, rows = line.columns[column][-1]  # of our code, what is extended furthest
-        own = "" if (line.engine, column) in alike else runs_of(engine, line.scene, last)
-        return "; ".join(filter(None, (_at_steps(line, engine, rows, steps), own)))
+    def errors_at_steps(line: EngineLine, column: Column) -> str:
+        engine, rows = line.columns[column][-1]  # the last method of a column has the most of our code
+        in_cell = "" if (line.engine, column) in same_runs else describe_inner_runs(engine, line.scene, last)
+        return "; ".join(filter(None, (_errors_at_steps(line, engine, rows, steps), in_cell)))
 
-    remarks = {place: f" ({words})" for place, words in alike.items() if words}
-    return dict(_table(found, cell, folder, both=False, remarks=remarks))
-
-
-def _at_steps(line: Line, engine: Engine, members: Sequence[Measurement], steps: Mapping[str, float]) -> str:
-    """'0.044, 0.01; plateau 0.011', or the outcomes where no step gave an answer."""
-    if not any(Outcome(row.outcome).comparable for row in members):
-        return ", ".join(dict.fromkeys(row.outcome for row in members))
-    asked = [step for name, step in steps.items() if is_run_at(name, engine.name, engine.variant)]
-    sweep = by_method(sweeps(members), line.name).get((line.scene.name, engine.name, engine.variant))
-    at = [next((row for row in members if is_step(row.step, step)), None) for step in asked]
-    errors = [getattr(row, line.name) for row in at if row is not None and Outcome(row.outcome).comparable]
-    words = [error_words(row, line.name) for row in at]
-    told = words if len(set(words)) > 1 else words[:1]  # "saturated" once
-    end = _brought(sweep, members, errors) if sweep else ""
-    return "; ".join(filter(None, (", ".join(told), end)))
+    remarks = {key: f" ({description})" for key, description in same_runs.items() if description}
+    return {engine: _table(of_engine, errors_at_steps, folder, remarks) for engine, of_engine in _by_engine(lines)}
 
 
-def _brought(sweep: Sweep, members: Iterable[Measurement], told: Sequence[float]) -> str:
-    """What a smaller step brings: an order only where the error falls to the finest step."""
-    finest = min((row for row in members if row.purpose == "sweep"), key=lambda row: row.step)
+def _errors_at_steps(line: EngineLine, engine: Engine, rows: Sequence[Measurement], steps: Mapping[str, float]) -> str:
+    """'0.044, 0.01; plateau 0.011', or the outcomes if no step has an error that can be compared."""
+    if not any(Outcome(row.outcome).comparable for row in rows):
+        return ", ".join(dict.fromkeys(row.outcome for row in rows))
+    wanted = [step for name, step in steps.items() if is_run_at(name, engine.name, engine.variant)]
+    sweep = by_method(sweeps(rows), line.quantity).get((line.scene.name, engine.name, engine.variant))
+    chosen = [next((row for row in rows if is_step(row.step, step)), None) for step in wanted]
+    errors = [getattr(row, line.quantity) for row in chosen if row is not None and Outcome(row.outcome).comparable]
+    cells = [error_words(row, line.quantity) for row in chosen]
+    cells = cells if len(set(cells)) > 1 else cells[:1]  # "saturated" once
+    end = _effect_of_smaller_steps(sweep, rows, errors) if sweep else ""
+    return "; ".join(filter(None, (", ".join(cells), end)))
+
+
+def _effect_of_smaller_steps(sweep: Sweep, rows: Iterable[Measurement], errors: Sequence[float]) -> str:
+    """How the error changes below the steps of the table; an order only if the error falls to the finest step."""
+    finest = min((row for row in rows if row.purpose == "sweep"), key=lambda row: row.step)
     if not Outcome(finest.outcome).comparable:
         return f"**{finest.outcome}** at {step_words(finest.step)}"
     match sweep.verdict:
         case Verdict.PLATEAU:
-            luck = " (less is luck)" if any(error < sweep.plateau / 2 for error in told) else ""
+            luck = " (less is luck)" if any(error < sweep.plateau / 2 for error in errors) else ""
             return f"**plateau {number(sweep.plateau)}**{luck}"
         case Verdict.ROUNDING:
             return "to rounding"

@@ -1,4 +1,4 @@
-"""Experiments in which methods fail, as the tables and sentences of a page; and lines on motions."""
+"""Experiments in which methods fail, rendered for a page; and observations on motions."""
 
 from __future__ import annotations
 
@@ -17,84 +17,84 @@ from reports.model.page import Failure, Material, Observation
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Motion, trajectory_of
 from reports.write import tables
-from reports.write.columns import told_variant
+from reports.write.columns import displayed_variant
 from reports.write.rows import Rows
 from reports.write.templates import template
 
 
 @dataclass(frozen=True)
-class ToldExperiment:
-    """An experiment ready for the templates: `observations` and `grid` are tables, empty without rows."""
+class RenderedExperiment:
+    """The texts and tables of an experiment; `observations` and `grid` are empty without rows."""
 
     title: str
     expected: str
     observations: str
     grid: str
     remark: str
-    unrun: bool = False  # whether there is something to run, and nothing of it was
+    unrun: bool = False  # the experiment has cells or tasks, and none of them was run
 
 
-def told_experiment(failure: Failure, material: Material) -> ToldExperiment:
-    """What is said of an experiment from what was run of it."""
-    rows = [compared_only(cell, material.rows[cell]) for cell in failure.cells if cell in material.rows]
-    seen = tuple(failure.observations(material)) if failure.observations else ()
-    run = rows or any(task in material.answers for task in failure.tasks)
-    lines = [[o.method, o.setting, o.outcome] for o in seen]
-    return ToldExperiment(
+def render_experiment(failure: Failure, material: Material) -> RenderedExperiment:
+    """The texts and tables of an experiment from the rows and answers of its run."""
+    rows = [without_incomparable_errors(cell, material.rows[cell]) for cell in failure.cells if cell in material.rows]
+    observations = tuple(failure.observations(material)) if failure.observations else ()
+    was_run = rows or any(task in material.answers for task in failure.tasks)
+    lines = [[seen.method, seen.setting, seen.outcome] for seen in observations]
+    return RenderedExperiment(
         failure.title,
         template(failure.expected).render(**failure.context(material)),
-        tables.markdown(["method", "setting", "outcome"], lines, left=3) if seen else "",
+        tables.markdown(["method", "setting", "outcome"], lines, left=3) if observations else "",
         (tables.cell_table(rows, failure.columns) if failure.columns else tables.outcome_grid(rows)) if rows else "",
-        told_remark(failure, rows, material),
-        unrun=not run and bool(failure.cells or failure.tasks),
+        _render_remark(failure, rows, material),
+        unrun=not was_run and bool(failure.cells or failure.tasks),
     )
 
 
-def told_remark(failure: Failure, rows: Sequence[Measurement], material: Material) -> str:
-    """What the outcomes teach, with its numbers from the rows of the experiment."""
-
-    asked = Rows(rows)
+def _render_remark(failure: Failure, rows: Sequence[Measurement], material: Material) -> str:
+    experiment = Rows(rows)
 
     def at(method: str, step: float) -> Any:
-        return asked.of(method=method, purpose="").near(step)
+        return experiment.of(method=method, purpose="").near(step)
 
-    return template(failure.remark).render(at=at, count=asked.count, **failure.context(material))
+    return template(failure.remark).render(at=at, count=experiment.count, **failure.context(material))
 
 
-def compared_only(cell: Cell, row: Measurement) -> Measurement:
-    """The row without its errors where the scene ends before its first sample: only the start was compared."""
+def without_incomparable_errors(cell: Cell, row: Measurement) -> Measurement:
+    """The row; without errors that need the truth if the scene's comparison ends before its first sample."""
     if cell.scene.comparable_until >= cell.scene.duration / cell.sample_count:
         return row
-    names = {q.name for q in QUANTITIES} - {"gap", "slip"}  # joints are held against themselves, without a truth
-    return replace(row, **dict.fromkeys(names, math.nan))
+    return replace(row, **{quantity.name: math.nan for quantity in QUANTITIES if quantity.needs_truth})
 
 
-def observe(material: Material, cell: Cell, setting: str, say: Callable[[Trajectory], str]) -> tuple[Observation, ...]:
-    """The line of one engine, with what `say` reads from its motion; none where it was not run or has no such joint.
+def observe(
+    material: Material, cell: Cell, setting: str, describe: Callable[[Trajectory], str]
+) -> tuple[Observation, ...]:
+    """The observation on one engine's motion; none if it was not run or has no such joint.
 
-    Whatever else became of the run stands in its line: one engine's fault must not cost the page. `say` reads any
-    finite motion; where it raises, the mistake is ours and passes.
+    A run that failed or is not finite is reported as such, so that the page is rendered. `describe` gets finite motions
+    only; an exception that it raises is an error of this suite and passes through.
     """
     answer = material.answers.get(Motion(cell))
     if answer is None or answer.outcome == Outcome.UNSUPPORTED:
         return ()
-    told = _read(trajectory_of(answer), say) if answer.finished else answer.told
-    return (Observation(f"{cell.engine.name} {told_variant(cell.scene, cell.engine)}", setting, told),)
+    outcome = _describe_finite(trajectory_of(answer), describe) if answer.finished else answer.told
+    method = f"{cell.engine.name} {displayed_variant(cell.scene, cell.engine)}"
+    return (Observation(method, setting, outcome),)
 
 
 def observe_each(
-    material: Material, cells: Iterable[Cell], say: Callable[[Cell, Trajectory], str]
+    material: Material, cells: Iterable[Cell], describe: Callable[[Cell, Trajectory], str]
 ) -> list[Observation]:
-    """The lines of several cells, each under its step."""
+    """The observations on several cells, each with its step."""
     return [
         line
         for cell in cells
-        for line in observe(material, cell, f"step {tables.number(cell.step)} s", partial(say, cell))
+        for line in observe(material, cell, f"step {tables.number(cell.step)} s", partial(describe, cell))
     ]
 
 
-def _read(run: Trajectory, say: Callable[[Trajectory], str]) -> str:
+def _describe_finite(run: Trajectory, describe: Callable[[Trajectory], str]) -> str:
     count = usable_samples(run)
     if count < len(run.t):
         return f"**{Outcome.DIVERGED}**: not finite from {run.t[count]:.4g} s"
-    return say(run)
+    return describe(run)

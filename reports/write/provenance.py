@@ -1,4 +1,4 @@
-"""What a result was made with: versions, processor, date. Printed at the foot of every page."""
+"""Versions, processor and date of a result, for the foot of every page."""
 
 from __future__ import annotations
 
@@ -12,29 +12,28 @@ from pathlib import Path
 
 from engines import Engine, registry
 
-# What every number depends on, whatever the engine: the truth and the errors are made with these.
+# Reference solutions and errors are computed with these, whatever the engine.
 MEASURED_WITH = ("numpy", "scipy")
 
 
 def versions(engines: Iterable[Engine] = ()) -> str:
-    """'Python 3.11.7, numpy 2.4.0, ...' of what the numbers depend on; `engines`: those beside the registered ones."""
+    """'Python 3.11.7, numpy 2.4.0, ...' for all registered engines and these."""
     return row_versions(*registry.ENGINES, *engines)
 
 
 def row_versions(*engines: Engine) -> str:
-    """'Python 3.11.7, numpy 2.4.0, ...' of what the rows of these engines depend on."""
+    """'Python 3.11.7, numpy 2.4.0, ...' for the rows of these engines."""
     names = dict.fromkeys([*MEASURED_WITH, *(name for engine in engines for name in engine.packages)])
     return ", ".join([f"Python {platform.python_version()}", *map(_version, names)])
 
 
-def told_versions(engines: Iterable[Engine]) -> str:
-    """'exudyn 1.13.6, pin 4.1.0, ...' of these engines alone."""
+def engine_versions(engines: Iterable[Engine]) -> str:
+    """'exudyn 1.13.6, pin 4.1.0, ...' of the engines' own packages."""
     return ", ".join(dict.fromkeys(_version(name) for engine in engines for name in engine.packages))
 
 
-@cache
+@cache  # a lookup takes some milliseconds, and every page prints a dozen
 def _version(package: str) -> str:
-    """Looked up once: each costs some milliseconds, and every page tells a dozen."""
     try:
         return f"{package} {metadata.version(package)}"
     except metadata.PackageNotFoundError:
@@ -42,22 +41,22 @@ def _version(package: str) -> str:
 
 
 def still_installed(versions: str) -> bool:
-    """Whether every package of this line is installed in that version; other packages do not count.
+    """Whether every package of such a line is installed in that version; other packages do not matter.
 
-    Python counts by its minor version: a patch changes no number of an engine, and would select the weaker rule.
+    Of Python only the minor version is compared: a patch changes no number of an engine.
     """
     python, *others = versions.split(", ")
-    here = [f"Python {platform.python_version()}", *(_version(line.split(" ", 1)[0]) for line in others)]
-    return [_minor(python), *others] == [_minor(here[0]), *here[1:]]
+    installed = [f"Python {platform.python_version()}", *(_version(line.split(" ", 1)[0]) for line in others)]
+    return [_minor(python), *others] == [_minor(installed[0]), *installed[1:]]
 
 
 def _minor(python: str) -> str:
-    """'Python 3.11' of 'Python 3.11.7'."""
+    """'Python 3.11' for 'Python 3.11.7'."""
     return ".".join(python.split(".")[:2])
 
 
 def machine() -> str:
-    """'x86_64, 2 processors, name of the processor'; never a path or a host's name."""
+    """'x86_64, 2 processors, name of the processor'; without paths and without the host's name."""
     return f"{platform.machine()}, {os.cpu_count()} processors, {_processor()}, {platform.system()}"
 
 

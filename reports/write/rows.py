@@ -1,4 +1,7 @@
-"""Rows that are asked for by scene, method and step. What is not there is UNMEASURED, so that its clause can vanish."""
+"""Selections of rows by scene, method and step.
+
+A missing row is UNMEASURED, so that a template leaves out the clause that needs it.
+"""
 
 from __future__ import annotations
 
@@ -15,29 +18,30 @@ from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.write.unmeasured import UNMEASURED
 
-# Steps of the grids are half a decade apart: one of them is nearer to any step between its ends than this factor.
-ABOUT = 2.0
+# The steps of the grids are half a decade apart, so one of them is nearer than this factor to any step in their range.
+NEAREST_WITHIN = 2.0
 
 
 class Rows(tuple[Measurement, ...]):
-    """Rows in their order; every question about some of them is asked here."""
+    """Rows in their order, with the selections that templates and claims use."""
 
     __slots__ = ()
 
     def of(self, scene: str = "", method: str = "", purpose: str = "sweep") -> Rows:
-        """Those of a scene, of a method ("mujoco tuned") and of a purpose; an empty word leaves it open."""
-        asked = {"scene": scene, "method": method, "purpose": purpose}
-        wanted = {name: value for name, value in asked.items() if value}
-        return Rows(row for row in self if all(getattr(row, name) == value for name, value in wanted.items()))
+        """The rows of a scene, of a method ("mujoco tuned") and of a purpose; an empty text selects all."""
+        wanted = {"scene": scene, "method": method, "purpose": purpose}
+        return Rows(
+            row for row in self if all(not value or getattr(row, name) == value for name, value in wanted.items())
+        )
 
     def known(self, name: str) -> Rows:
-        """Those that have a number for this quantity."""
+        """The rows with a finite value of this quantity."""
         return Rows(row for row in self if math.isfinite(getattr(row, name)))
 
     def near(self, step: float) -> Any:
-        """The row whose step is nearest to this one [s], by ratio, within a factor of ABOUT."""
+        """The row whose step is nearest to this one [s], by ratio, within a factor of NEAREST_WITHIN."""
         row = min(self, key=lambda row: abs(math.log(row.step / step)), default=None)
-        return row if row is not None and max(row.step / step, step / row.step) < ABOUT else UNMEASURED
+        return row if row is not None and max(row.step / step, step / row.step) < NEAREST_WITHIN else UNMEASURED
 
     def at(self, step: float) -> Any:
         """The row at this step [s], if it can be compared."""
@@ -45,7 +49,7 @@ class Rows(tuple[Measurement, ...]):
         return next((row for row in rows if Outcome(row.outcome).comparable), UNMEASURED)
 
     def best(self, name: str = "angle") -> Any:
-        """The row with the least error of those that can be compared."""
+        """The row with the least error among those that can be compared."""
         usable = (row for row in self.known(name) if Outcome(row.outcome).comparable)
         return min(usable, key=lambda row: getattr(row, name), default=UNMEASURED)
 
@@ -54,29 +58,29 @@ class Rows(tuple[Measurement, ...]):
         return min(self, key=lambda row: row.step, default=UNMEASURED)
 
     def sweep(self, name: str = "angle") -> Any:
-        """What an error does as the step goes to zero, of rows of one method in one scene."""
+        """The convergence of an error as the step goes to zero, from rows of one method in one scene."""
         found = by_method(sweeps(self, [quantity(name)]), name)
         return next(iter(found.values()), UNMEASURED)
 
     def outcomes(self) -> list[str]:
-        """What became of them, each once."""
+        """The outcomes of the rows, without repetition."""
         return list(dict.fromkeys(str(row.outcome) for row in self))
 
     def count(self, *outcomes: str) -> Any:
-        """How many ended in one of these ways, or how many there are."""
+        """The number of rows with one of these outcomes; of all rows without an argument."""
         return sum(not outcomes or row.outcome in outcomes for row in self) if self else UNMEASURED
 
     def points(self, name: str) -> list[tuple[float, float]]:
-        """(step [s], error) in their order, of failed runs too where the error is known."""
+        """(step [s], error) of the rows with a positive finite error, also of failed runs."""
         values = ((row.step, getattr(row, name)) for row in self)
         return [(step, error) for step, error in values if 0 < error < math.inf]
 
 
 def lookups(material: Material, scenes: Iterable[Scene]) -> dict[str, Any]:
-    """What templates ask of the sweeps of some scenes.
+    """The functions by which templates look up the sweeps of some scenes.
 
-    `best(scene, engine, variant)`, `sweep(scene, engine, variant, quantity)`, `at(scene, engine, variant, every)`;
-    `ended(scene, engine, variant)`: what became of the method's steps.
+    `best(scene, engine, variant)`, `sweep(scene, engine, variant, quantity)`, `at(scene, engine, variant, every)`, and
+    `ended(scene, engine, variant)`: the outcomes of the method at its steps.
     """
     rows = Rows(material.sweep(scenes))
 
@@ -93,13 +97,13 @@ def lookups(material: Material, scenes: Iterable[Scene]) -> dict[str, Any]:
     }
 
 
-def own_rows(pages: Mapping[Page, Material]) -> Rows:
-    """What was measured in the scenes of the pages, from coarse to fine; scenes with other numbers are left out."""
+def rows_of_pages(pages: Mapping[Page, Material]) -> Rows:
+    """The rows of the pages' scenes, from coarse to fine, without scenes whose numbers a user changed."""
     scenes = {scene.name: scene for page in pages for scene in page.scenes}
-    found = {
+    rows = {
         cell: row
         for material in pages.values()
         for cell, row in material.rows.items()
         if scenes.get(cell.scene.name) == cell.scene
     }
-    return Rows(sorted(found.values(), key=lambda row: -row.step))
+    return Rows(sorted(rows.values(), key=lambda row: -row.step))

@@ -1,4 +1,4 @@
-"""Rows to Markdown tables; pure functions of their arguments."""
+"""Numbers and rows as text: the one number format, the one text table, and Markdown tables."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, quantity
 
 NOTHING = "-"
-HOLDER = "joints held by"
-Held = Mapping[str, str] | None
+ENFORCED_BY = "joints enforced by"
 
 
 def number(value: float, digits: int = 2, unknown: str = NOTHING, infinite: str = "∞") -> str:
-    """A number as text with so many significant digits: 1.3e-4, 1e-3, 0.25, 12.
+    """A number as text with this many significant digits: 1.3e-4, 1e-3, 0.25, 12.
 
-    All of reports prints numbers by this function. Other words for NaN and infinity are passed, not wrapped:
+    All of `reports` formats numbers by this function. A caller passes its own texts for NaN and infinity:
     `number(error, infinite="gave up")` for a run that diverged, `number(value, unknown=MARK)` in a sentence.
     """
     if not math.isfinite(value):
@@ -34,7 +33,7 @@ def number(value: float, digits: int = 2, unknown: str = NOTHING, infinite: str 
 
 
 def words_of(cell: str | float) -> str:
-    """A cell as it is printed: words as they are, a count in full, another number as `number` has it."""
+    """A cell as text: a text unchanged, an integer with all digits, another number by `number`."""
     return cell if isinstance(cell, str) else str(cell) if isinstance(cell, int) else number(cell)
 
 
@@ -77,22 +76,22 @@ def text_table(
 
 
 def display_width(text: str) -> int:
-    """Columns of a terminal that a text takes: two for a wide character, none for a combining one."""
+    """The width of a text on a terminal: two columns for a wide character, none for a combining one."""
     if text.isascii():
         return len(text)
     return sum(0 if combining(char) else 2 if east_asian_width(char) in "WF" else 1 for char in text)
 
 
 def markdown(
-    header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1, held: Mapping[str, str] | None = None
+    header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1, enforcement: Mapping[str, str] | None = None
 ) -> str:
-    """A Markdown table; the first `left` columns are words, the others numbers. A bar in a cell is escaped.
+    """A Markdown table; the first `left` columns are texts, the others numbers. A bar in a cell is escaped.
 
-    `held` says by method who holds the joints: then a column after the first, which has to be the methods', tells it.
+    `enforcement`: what enforces the joints, by method. It becomes a column after the first one, which has the methods.
     """
-    if held:
-        header, left = [header[0], HOLDER, *header[1:]], left + 1
-        rows = [[row[0], held.get(row[0], NOTHING), *row[1:]] for row in rows]
+    if enforcement:
+        header, left = [header[0], ENFORCED_BY, *header[1:]], left + 1
+        rows = [[row[0], enforcement.get(row[0], NOTHING), *row[1:]] for row in rows]
     lines = [_line(header), _line(["---" if i < left else "--:" for i in range(len(header))])]
     return "\n".join(lines + [_line([cell.replace("|", "\\|").replace("\n", " ") for cell in row]) for row in rows])
 
@@ -105,7 +104,7 @@ ERROR_HEADER = ("method", "outcome", "step", *(f"{q.label} [{q.unit}]" for q in 
 
 
 def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
-    """Every quantity's largest error of every cell of one scene, by method and step, under ERROR_HEADER."""
+    """The largest error of each quantity in each cell of one scene, by method and step, for ERROR_HEADER."""
     return [
         [row.method, row.outcome, step_words(row.step)]
         + [number(getattr(row, q.name)) for q in QUANTITIES]
@@ -115,17 +114,19 @@ def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
     ]
 
 
-def order_rows(found: Iterable[Sweep], quantities: Sequence[str]) -> list[list[str]]:
-    """[method, then order and plateau of each quantity in words], a method each."""
-    found = tuple(found)
-    keys = dict.fromkeys((s.scene, s.engine, s.variant) for s in found)
-    columns = [by_method(found, name) for name in quantities]
+def order_rows(swept: Iterable[Sweep], quantities: Sequence[str]) -> list[list[str]]:
+    """A line for each method: its name, then order and plateau of each quantity."""
+    swept = tuple(swept)
+    keys = dict.fromkeys((s.scene, s.engine, s.variant) for s in swept)
+    columns = [by_method(swept, name) for name in quantities]
     return [[f"{e} {v}", *(sweep_words(c[s, e, v]) for c in columns)] for s, e, v in keys]
 
 
 def sweep_words(sweep: Sweep, lost: str = "") -> str:
-    """'1.99 (±0.13, 4 points)', '3.9 (2 points, unchecked), then rounding', 'plateau **2e-5**'; a dash if nothing is
-    known. `lost`: what became of the finest step, if it has no answer."""
+    """'1.99 (±0.13, 4 points)', '3.9 (2 points, unchecked), then rounding', 'plateau **2e-5**', or a dash.
+
+    `lost`: the outcome of the finest step, if that can't be compared.
+    """
     order = ""
     if sweep.points >= 2:
         checked = f"±{sweep.spread:.2g}, {sweep.points} points" if sweep.points >= ENOUGH else "2 points, unchecked"
@@ -145,16 +146,16 @@ def sweep_words(sweep: Sweep, lost: str = "") -> str:
 
 
 def error_words(row: Measurement | None, name: str) -> str:
-    """The error of a run, the outcome where it can't be compared, a dash where there is none."""
+    """The error of a run; its outcome if the run can't be compared; a dash without a run."""
     if row is None:
         return NOTHING
     return number(getattr(row, name)) if Outcome(row.outcome).comparable else str(row.outcome)
 
 
 def outcome_grid(rows: Iterable[Measurement]) -> str:
-    """An experiment at a glance: a line a method, a column a step, the outcome and one number in each.
+    """A table of an experiment: a line for each method, a column for each step, the outcome and a number in each cell.
 
-    Raises ValueError where two rows would stand in one place: only one of them could be seen.
+    Raises ValueError if two rows have the same method and step.
     """
     rows = list(rows)
     steps = sorted({row.step for row in rows}, reverse=True)
@@ -164,12 +165,12 @@ def outcome_grid(rows: Iterable[Measurement]) -> str:
         if row.step in line:
             raise ValueError(f"outcome grid: there are two rows of {row.method!r} at a step of {step_words(row.step)}")
         line[row.step] = _outcome_in_brief(row)
-    body = [[method, *(found.get(step, "") for step in steps)] for method, found in by_method_and_step.items()]
+    body = [[method, *(cells.get(step, "") for step in steps)] for method, cells in by_method_and_step.items()]
     return markdown(["method", *map(step_words, steps)], body, left=len(steps) + 1)
 
 
 def _outcome_in_brief(row: Measurement) -> str:
-    """The outcome with the number that says how bad it is: the gap of a torn loop, else the angle error."""
+    """The outcome with one number: the gap of a torn loop, otherwise the angle error."""
     if Outcome(row.outcome).comparable:
         return f"{number(row.angle)} rad"
     if row.outcome == Outcome.TORN and math.isfinite(row.gap):
@@ -178,20 +179,20 @@ def _outcome_in_brief(row: Measurement) -> str:
 
 
 def cell_table(rows: Iterable[Measurement], columns: Sequence[str]) -> str:
-    """A line a cell: method with an outcome that is no answer, step, the largest errors of these quantities."""
-    told = [quantity(name) for name in columns]
+    """A line for each row: method (with the outcome of a failed run), step, the largest errors of these quantities."""
+    quantities = [quantity(name) for name in columns]
     body = []
     for row in rows:
         failed = "" if Outcome(row.outcome).comparable else f" **{row.outcome}**"
-        body.append([row.method + failed, step_words(row.step), *(number(getattr(row, q.name)) for q in told)])
-    return markdown(["method", "step", *(f"{q.label} [{q.unit}]" for q in told)], body)
+        body.append([row.method + failed, step_words(row.step), *(number(getattr(row, q.name)) for q in quantities)])
+    return markdown(["method", "step", *(f"{q.label} [{q.unit}]" for q in quantities)], body)
 
 
 SUMMARY_HEADER = ("method", "angle error [rad]", "at step", "CPU [ms/s]", "order", "plateau [rad]", "outcomes")
 
 
 def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:
-    """One line a method of one scene, under SUMMARY_HEADER: least angle error, order (and its points), plateau."""
+    """A line for each method of one scene, for SUMMARY_HEADER: least angle error, order (and its points), plateau."""
     rows = list(rows)
     verdicts = by_method(sweeps(rows), "angle")
     out = []

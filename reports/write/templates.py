@@ -1,4 +1,4 @@
-"""The templates of pages and remarks and what all of them may use, links to headings, and parts of documents."""
+"""The Jinja environment of pages and remarks, links to headings, and parts of documents that a report replaces."""
 
 from __future__ import annotations
 
@@ -15,40 +15,43 @@ from reports.model.page import Page
 from reports.write import unmeasured
 
 HEADING = re.compile(r"^#{1,6} (.+)$", re.MULTILINE)
-OWN_LINK = re.compile(r"(?<!!)\[([^\]\n]*(?:\n[^\]\n]*)?)\]\((\w+\.md)(?:#[^)]*)?\)")
-FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
+PAGE_LINK = re.compile(r"(?<!!)\[([^\]\n]*(?:\n[^\]\n]*)?)\]\((\w+\.md)(?:#[^)]*)?\)")
+FENCED_BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 
 
 def anchor(heading: str) -> str:
-    """What a link to a heading ends with: lower case, without punctuation, hyphens for blanks."""
+    """The part of a link after '#' for a heading: lower case, without punctuation, with hyphens for spaces."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def headings(text: str) -> tuple[str, ...]:
-    """The headings of a Markdown text; a comment in a block of code is none."""
-    return tuple(HEADING.findall(FENCED.sub("", text)))
+    """The headings of a Markdown text; lines of code that begin with '#' are not headings."""
+    return tuple(HEADING.findall(FENCED_BLOCK.sub("", text)))
 
 
 def link(page: str, heading: str, files: Mapping[str, str]) -> str:
-    """The address of a heading in a page's file, or in another whose name begins with the page's; else of the page."""
+    """The address of a heading in the page's file or in another file whose name begins with the page's name.
+
+    Without such a heading it is the address of the page.
+    """
     for name in sorted(files, key=lambda name: (name != f"{page}.md", name)):
         if name.startswith(page) and name.endswith(".md") and heading in headings(files[name]):
             return f"{name}#{anchor(heading)}"
     return f"{page}.md"
 
 
-def without_links_to_nothing(text: str, there: Callable[[str], bool]) -> str:
-    """A page whose links to our other pages are words where such a page is not `there`."""
-    return OWN_LINK.sub(lambda found: found[0] if there(found[2]) else found[1], text)
+def without_dead_links(text: str, exists: Callable[[str], bool]) -> str:
+    """The page with plain text in place of links to pages that do not exist."""
+    return PAGE_LINK.sub(lambda match: match[0] if exists(match[2]) else match[1], text)
 
 
 def marks(name: str) -> tuple[str, str]:
-    """The comments that begin and end a part."""
+    """The comments before and after a part of a document."""
     return f"<!-- {name}: written by `crosscheck report` -->", f"<!-- end of {name} -->"
 
 
 def with_part(document: str, name: str, text: str) -> str:
-    """A document with a text as its part of this name; raises ValueError where one of the part's marks is missing."""
+    """The document with this text as its part of this name. Raises ValueError if a mark of the part is missing."""
     first, last = marks(name)
     before, begin, rest = document.partition(first)
     _, end, after = rest.partition(last)
@@ -60,25 +63,26 @@ def with_part(document: str, name: str, text: str) -> str:
 TEMPLATES = Path(__file__).parents[1] / "pages"
 
 CODE = re.compile(r"(^ *```.*?^ *```$|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
-FOREIGN = re.compile(r"<(?=[A-Za-z/!?])(?!/?(?:details|summary)>|!--)")  # of all HTML our pages have these and comments
+# The only HTML in our pages: details, summary and comments.
+FOREIGN_TAG = re.compile(r"<(?=[A-Za-z/!?])(?!/?(?:details|summary)>|!--)")
 
 
 def inert(text: str) -> str:
-    """HTML or Markdown whose tags are words to read, but for those that our pages have: names may hold anything."""
-    return FOREIGN.sub("&lt;", text)
+    """HTML or Markdown with every tag that is not ours escaped, since names of scenes and engines may contain any."""
+    return FOREIGN_TAG.sub("&lt;", text)
 
 
 def inert_page(text: str) -> str:
-    """The same of a whole Markdown page, where code stays as it is."""
+    """A Markdown page with foreign tags escaped outside of code."""
     parts = CODE.split(text)
     return "".join(part if index % 2 else inert(part) for index, part in enumerate(parts))
 
 
 @cache
 def environment(folder: Path = TEMPLATES) -> Environment:
-    """Templates fail loudly on a name that has no value, and print a mark for a number that is not known.
+    """An environment that raises an exception for an undefined name and prints MARK for an unknown number.
 
-    Those of another folder are found as "own/NAME"; so none of them hides "base.md".
+    Templates of another folder have the prefix "own/", so that none of them replaces our "base.md".
     """
     out = Environment(
         loader=ChoiceLoader([FileSystemLoader(TEMPLATES), PrefixLoader({"own": FileSystemLoader(folder)})]),
@@ -100,12 +104,12 @@ def _filter(name: str, *values: Any, **options: Any) -> Any:
 
 @cache
 def template(text: str) -> Template:
-    """A template that stands in the code, like the remark of an experiment; compiled once."""
+    """A compiled template from a text."""
     return environment().from_string(text)
 
 
 def template_of(page: Page) -> Template:
-    """The page's own template, that of its name here, or the generic one."""
+    """The page's own template, or the one of its name in this package, or the generic one."""
     if page.template is not None:
         return environment(page.template.parent).get_template(f"own/{page.template.name}")
     return environment().select_template([f"{page.name}/page.md", "base.md"])

@@ -1,8 +1,8 @@
-"""What a template says where a number is missing: a clause without all its numbers vanishes, and no page breaks.
+"""Missing numbers in templates: a clause that lacks a number is left out, and the page is rendered all the same.
 
-A lookup that finds no row gives `UNMEASURED`, which stands for a row as well as for a number: it is false, it is NaN,
-and each of its attributes is itself. A template that prints it, or any NaN, prints MARK. `{% filter if_measured %}`
-leaves out the text up to `{% endfilter %}` if a mark is in it; `without_marks` makes words of the marks that remain.
+A lookup without a row returns `UNMEASURED`, which replaces the row and each of its numbers: it is false, it is NaN, and
+each of its attributes is itself. Printed, it becomes MARK, as every NaN does. `{% filter if_measured %}` leaves out the
+text up to `{% endfilter %}` if it contains a mark; `without_marks` replaces the marks that remain by a text.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from typing import Any
 
 from reports.write import tables
 
-MARK = "\ue000"  # of Unicode's private characters: no text has it
-WORDS = "(not measured)"
-# A picture alone on its line, whose file is missing.
-PICTURE = re.compile(rf"^!\[[^\n]*\]\({MARK}\)\n", re.MULTILINE)
+MARK = "\ue000"  # a private character of Unicode, which no text contains
+NOT_MEASURED = "(not measured)"
+# A line with nothing but a picture whose file is missing.
+MISSING_PICTURE = re.compile(rf"^!\[[^\n]*\]\({MARK}\)\n", re.MULTILINE)
 
 
 class Unmeasured(float):
-    """The NaN that stands for a row that is not there, and for every number in it."""
+    """NaN in place of a missing row and of every number in it."""
 
     def __new__(cls) -> Unmeasured:
         return super().__new__(cls, "nan")
@@ -43,31 +43,31 @@ class Unmeasured(float):
 UNMEASURED: Any = Unmeasured()
 
 
-class Known(dict[Any, Any]):
-    """What is there by its key; UNMEASURED for any other key."""
+class MissingAsNaN(dict[Any, Any]):
+    """A dictionary that returns UNMEASURED for a missing key."""
 
     def __missing__(self, key: Any) -> Any:
         return UNMEASURED
 
 
 def marked(value: Any) -> Any:
-    """A value as it is printed; MARK for None and NaN."""
+    """The value; MARK for None and NaN."""
     return MARK if value is None or value != value else value
 
 
 def if_measured(clause: str) -> str:
-    """A clause with all its numbers; nothing if one is missing."""
+    """The clause; an empty text if one of its numbers is missing."""
     return "" if MARK in clause else clause
 
 
-# Numbers in sentences, where a dash can't stand for an unknown one.
+# Numbers in sentences, where a dash in place of an unknown number would be read as a sign.
 number = partial(tables.number, unknown=MARK)
 milliseconds = partial(tables.milliseconds, unknown=MARK)
 step = partial(tables.step_words, unknown=MARK)
 
 
 def formatted(pattern: str, *values: Any) -> str:
-    """Values in a pattern of the % operator; MARK if one is unknown."""
+    """The pattern of the % operator with these values; MARK if one is unknown."""
     return MARK if any(marked(value) is MARK for value in values) else pattern % values
 
 
@@ -81,5 +81,5 @@ FILTERS = {
 
 
 def without_marks(text: str) -> str:
-    """A page without pictures whose files are missing, and with WORDS for the numbers that are."""
-    return PICTURE.sub("", text).replace(MARK, WORDS)
+    """The page without pictures whose files are missing, and with NOT_MEASURED for missing numbers."""
+    return MISSING_PICTURE.sub("", text).replace(MARK, NOT_MEASURED)

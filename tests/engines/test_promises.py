@@ -22,7 +22,7 @@ from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.scenes.wheels.vehicles import CarAndTrailer
 from reports.gate.change import Altered
-from reports.write.columns import held_by
+from reports.write.columns import describe_enforcement
 from tests.mechanisms import four_bar
 from tests.toys import Toy
 
@@ -82,7 +82,7 @@ def lines() -> Iterator[str]:
     for engine in dict.fromkeys(ENGINES):
         yield method_name(engine)
         for name, mechanism in MECHANISMS.items():
-            yield f"  {name}: {words(engine, mechanism)}; held by: {held_by(engine, mechanism)}"
+            yield f"  {name}: {words(engine, mechanism)}; held by: {describe_enforcement(engine, mechanism)}"
 
 
 def test_every_method_promises_its_order_and_says_who_holds_each_joint(golden):
@@ -138,4 +138,4 @@ class Divided(Toy):
 
 def test_joints_of_one_kind_that_differ_are_told_by_name():
     others = " and ".join(joint.name for joint in FREE.joints[1:])
-    assert held_by(Divided(), FREE) == f"engine; {others}: engine, our rows"
+    assert describe_enforcement(Divided(), FREE) == f"engine; {others}: engine, our equations"

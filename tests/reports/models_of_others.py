@@ -27,7 +27,7 @@ from engines.mujoco.reading import READER
 from engines.reading import ReadingTerms
 from reference.checks import InvalidMechanism
 from reports.check.judging import refuse_disagreement
-from reports.pages.your_model.page import TABLE
+from reports.pages.your_model.page import TRIED_MODELS
 from tests import ROOT
 
 EXAMPLES = Path(pymunk.__file__).parent / "examples"
@@ -150,7 +150,7 @@ def main() -> int:
     writer = csv.DictWriter(out, list(asdict(rows[0])), lineterminator="\n")
     writer.writeheader()
     writer.writerows(map(asdict, rows))
-    TABLE.write_text(out.getvalue(), encoding="utf-8")
+    TRIED_MODELS.write_text(out.getvalue(), encoding="utf-8")
     return 0
 
 

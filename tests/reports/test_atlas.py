@@ -24,16 +24,16 @@ from reports.pages.atlas import page
 from reports.pages.atlas.columns import (
     FILE,
     NOT_RUN,
-    Column,
-    Line,
+    MapColumn,
+    StoredColumn,
     as_csv,
-    gives_from,
-    line_of,
     read,
     run_columns,
+    stored_column,
+    tearing_step,
 )
 from reports.pages.atlas.page import atlas_map, edges
-from reports.pages.atlas.subjects import SUBJECTS, Subject, rocking, rod_rate, stiffest_hanging
+from reports.pages.atlas.subjects import MAPS, StabilityMap, rocking, rod_rate, stiffest_hanging
 from reports.pages.rendering import render_page
 from reports.plots.looks import SHADES, outcome_colour, shade
 from reports.plots.theme import LIGHT
@@ -42,19 +42,21 @@ from tests.reports.test_command_line import call, one_line
 from tests.toys import Disc, FailingToy, Toy
 
 SHOWN = tuple(engine for engine in VARIANTS if engine.variant in ("default", "tuned"))
-TOYS = Subject(
+TOYS = StabilityMap(
     "toys", "Toys", "rate [rad/s]", lambda rate: Disc(rate=rate), (1.0, 100.0), lambda rate: rate, "the disc"
 )
 
 
-def line(value: float, outcomes: str, engine: str = "toy", gives: float = math.nan, left: float = math.nan) -> Line:
+def line(
+    value: float, outcomes: str, engine: str = "toy", gives: float = math.nan, left: float = math.nan
+) -> StoredColumn:
     counts = tuple(10 * 2**place for place in range(len(outcomes)))
     errors = tuple(-1.5 if letter == "·" else math.nan for letter in outcomes)
-    return Line("toys", engine, "default", value, 0.1, counts, outcomes, errors, gives, left)
+    return StoredColumn("toys", engine, "default", value, 0.1, counts, outcomes, errors, gives, left)
 
 
 def test_every_map_has_scenes_steps_and_a_frequency_over_its_whole_range():
-    for subject in SUBJECTS:
+    for subject in MAPS:
         values, steps = subject.at(40), subject.steps(40)
         assert len(steps) == 40
         assert (values[0], values[-1]) == pytest.approx(subject.values)
@@ -70,7 +72,7 @@ def test_lines_of_the_map_are_rates_that_closed_forms_and_fine_grids_give():
     assert stiffest_hanging(LinkPendulum(links=1)) == pytest.approx(math.sqrt(1.5 * 9.81), rel=1e-12)
     two = LinkPendulum(links=2, length=0.7)
     assert stiffest_hanging(two) == pytest.approx(math.sqrt((3 + 6 / math.sqrt(7)) * 9.81 / 0.7), rel=1e-12)
-    scene = next(each for each in SUBJECTS if each.name == "offset").make(1e-3)
+    scene = next(each for each in MAPS if each.name == "offset").make(1e-3)
     angles = np.linspace(0, 2 * math.pi, 200_001)
     largest = np.abs(scene.shape.rates(angles)[0]).max() * scene.rate  # type: ignore[attr-defined]
     assert rod_rate(1e-3) == pytest.approx(largest, rel=1e-3)
@@ -100,7 +102,7 @@ def test_softness_gives_where_the_gap_of_the_weight_is_a_twentieth_of_the_length
     limit = 10 * 0.1 / (TORN * mechanism.length_scale)
 
     def gives(soft: Soft) -> float:
-        return gives_from(scene, mechanism, soft, 1e-3, 1e-1)  # type: ignore[arg-type]
+        return tearing_step(scene, mechanism, soft, 1e-3, 1e-1)  # type: ignore[arg-type]
 
     assert [gives(Soft(limit * 0.99)), gives(Soft(limit * 1.01))] == [0.0, math.inf]
     # Gives at a step of 1e-2 s, looked for at 81 steps over two decades.
@@ -116,17 +118,17 @@ def test_softness_without_the_velocity_term_gives_where_the_centripetal_accelera
     limit = scene.rate**2 * scene.length / 2 / (TORN * mechanism.length_scale)
     for factor, step in ((0.99, 0.0), (1.01, math.inf)):
         soft = Soft(limit * factor, 0.0, complete=False)
-        assert gives_from(scene, mechanism, soft, 1e-3, 1e-1) == step  # type: ignore[arg-type]
+        assert tearing_step(scene, mechanism, soft, 1e-3, 1e-1) == step  # type: ignore[arg-type]
 
 
 def drawn_of(outcomes: str, stride: int) -> tuple[str, str]:
     """(letters as a column with these outcomes is kept, the letters that are drawn)."""
-    column = Column(TOYS, 1.0, Disc(), Toy(), tuple((10, every) for every in range(1, len(outcomes) + 1)))
+    column = MapColumn(TOYS, 1.0, Disc(), Toy(), tuple((10, every) for every in range(1, len(outcomes) + 1)))
     run = lambda cells: {cell: SimpleNamespace(outcome=outcomes[cell.every - 1]) for cell in cells}  # noqa: E731
     rows: Any = run_columns([column], run, stride)[0]  # type: ignore[arg-type]
     kept = "".join(rows[place].outcome if place in rows else NOT_RUN for place in range(len(outcomes)))
-    assert line(1.0, kept).run == len(rows)
-    return kept, "".join(outcome.letter for outcome in line(1.0, kept).told)
+    assert line(1.0, kept).run_count == len(rows)
+    return kept, "".join(outcome.letter for outcome in line(1.0, kept).outcome_of_steps)
 
 
 def test_borders_are_as_sharp_as_if_every_point_had_been_run():
@@ -145,9 +147,9 @@ def test_borders_are_as_sharp_as_if_every_point_had_been_run():
 
 def test_a_column_keeps_errors_of_answers_and_an_abort_costs_its_own_cells():
     steps = tuple((10, every) for every in range(1, 6))
-    columns = [Column(TOYS, 2.0, Disc(), engine, steps) for engine in (Toy(), FailingToy("abort"))]
+    columns = [MapColumn(TOYS, 2.0, Disc(), engine, steps) for engine in (Toy(), FailingToy("abort"))]
     rows = run_columns(columns, lambda cells: dict(run_items(cells, workers=1)), 4)
-    lines = [line_of(column, some) for column, some in zip(columns, rows, strict=True)]
+    lines = [stored_column(column, some) for column, some in zip(columns, rows, strict=True)]
     assert [one.outcomes for one in lines] == ["·===·", "A===A"]
     assert [math.isnan(error) for error in lines[0].errors] == [letter == NOT_RUN for letter in lines[0].outcomes]
     assert lines[0].errors[0] == pytest.approx(math.log10(rows[0][0].angle), abs=0.05)
@@ -166,7 +168,7 @@ def test_the_file_is_read_as_it_was_written(tmp_path):
     assert sorted(map(str, read(tmp_path / FILE))) == sorted(map(str, LINES))
     assert read(tmp_path / "none.csv") == ()
     (tmp_path / "wrong.csv").write_text("a,b\n1,2\n")
-    with pytest.raises(ValueError, match=r"wrong\.csv: it is no atlas"):
+    with pytest.raises(ValueError, match=r"wrong\.csv: not a file of the atlas"):
         read(tmp_path / "wrong.csv")
 
 
@@ -176,7 +178,7 @@ def test_regions_lie_where_the_cells_of_their_outcome_are():
     across, up = edges([1.0, 10.0], False), edges([0.0125, 0.025, 0.05, 0.1], False)
     painted = [patch for patch in panel.patches if isinstance(patch, PathPatch) and patch.get_fill()]
     for column, own in enumerate(LINES[:2]):
-        for row, end in enumerate(page.ends(own)[::-1]):
+        for row, end in enumerate(page.regions_of_steps(own)[::-1]):
             middle = math.sqrt(across[column] * across[column + 1]), math.sqrt(up[row] * up[row + 1])
             colours = [to_hex(p.get_facecolor()) for p in painted if p.get_path().contains_point(middle)]
             assert colours[0] == (outcome_colour(end, LIGHT) if isinstance(end, Outcome) else getattr(LIGHT, end))
@@ -202,14 +204,14 @@ def test_the_largest_step_is_below_its_bound_at_every_value_and_smaller_step():
 def test_the_page_is_written_without_any_part_and_with_each(monkeypatch):
     def text() -> str:
         files = render_page(page.PAGE, Material({}), "crosscheck report")
-        assert set(files) - {"atlas.md"} == {f"atlas_{name}.svg" for name in {each.name for each in SUBJECTS} & shown}
+        assert set(files) - {"atlas.md"} == {f"atlas_{name}.svg" for name in {each.name for each in MAPS} & shown}
         return files["atlas.md"]
 
     shown: set[str] = set()
-    monkeypatch.setattr(page, "lines", lambda: ())
+    monkeypatch.setattr(page, "stored_columns", lambda: ())
     assert "Nothing was run yet" in text()
     shown = {"coupler"}
-    monkeypatch.setattr(page, "lines", lambda: (replace(LINES[0], subject="coupler", outcomes="·==·"),))
+    monkeypatch.setattr(page, "stored_columns", lambda: (replace(LINES[0], subject="coupler", outcomes="·==·"),))
     for words in (
         "Not run yet: A four-bar driven fast;",
         "2 of 4 points were run",

@@ -19,13 +19,24 @@ from reports.model.page import Material
 from reports.model.tasks import Answer, Task
 from reports.pages import findings as module
 from reports.pages.faults.page import OFFSETS, SCRIPTS
-from reports.pages.findings import CPU, FINDINGS, LOOKS, STEP, PlottedLine, Sources, draw, finding, findings, of_rows
+from reports.pages.findings import (
+    CPU_AXIS,
+    FINDINGS,
+    LINE_STYLES,
+    STEP_AXIS,
+    PlottedLine,
+    Sources,
+    draw,
+    finding,
+    findings,
+    of_rows,
+)
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import symptoms
 from reports.pages.rendering import render_page
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.versions.table import ACCELERATION, Entry, released
-from reports.write.page_tables import COMPARED
+from reports.write.page_tables import COMPARED_STEP
 from reports.write.rows import Rows
 from reports.write.templates import anchor, headings, link
 from reports.write.unmeasured import MARK
@@ -69,7 +80,7 @@ def changes(names):
     yield lambda rows: rows[:1]
     for name in names:
         yield partial(map, partial(falls, name))
-        for factor, step in product((1e-3, 0.5, 2.0, 1e3), (None, COMPARED, module.TENTH)):
+        for factor, step in product((1e-3, 0.5, 2.0, 1e3), (None, COMPARED_STEP, module.TENTH_OF_MS)):
             yield partial(map, partial(times, factor, step, name))
 
 
@@ -124,13 +135,13 @@ def test_findings_that_the_releases_contradict_are_dropped(monkeypatch):
 
 def test_a_findings_picture_has_its_points_and_its_lines_differ_without_colours():
     steps = [of_rows(name, Rows(falling(f"pymunk {name}", (1e-2, 1e-3))), "angle") for name in "abcd"]
-    (axes,) = draw(steps, STEP, "error").axes
+    (axes,) = draw(steps, STEP_AXIS, "error").axes
     assert [np.asarray(line.get_xydata()).tolist() for line in axes.lines] == [[[100.0, 1e-2], [10.0, 1e-3]]] * 4
-    assert len({(line.get_linestyle(), line.get_marker()) for line in axes.lines}) == len(LOOKS)
+    assert len({(line.get_linestyle(), line.get_marker()) for line in axes.lines}) == len(LINE_STYLES)
     assert len({line.get_color() for line in axes.lines}) == 1  # one engine, one colour
     with pytest.raises(ValueError, match="5 lines"):
-        draw([*steps, PlottedLine("e", "pymunk", ())], STEP, "error")
-    dear = of_rows("a", Rows(falling("pymunk a", (1e-2, 1e-3))), "angle", CPU)
+        draw([*steps, PlottedLine("e", "pymunk", ())], STEP_AXIS, "error")
+    dear = of_rows("a", Rows(falling("pymunk a", (1e-2, 1e-3))), "angle", CPU_AXIS)
     assert [x for x, _ in dear.points] == pytest.approx([1.0, 10.0])  # ms a simulated second: `falling` costs step^-1
 
 

@@ -14,7 +14,7 @@ from reports.cli.terminal import print_table, telling
 from reports.model.catalogue import with_scenes
 from reports.model.cells import QUICK
 from reports.model.ending import BadInput, Broken
-from reports.write.templates import without_links_to_nothing
+from reports.write.templates import without_dead_links
 from tests.toys import Disc
 
 HEADER, ROWS = ("scene", "angle [rad]", "steps"), [("disc | a", 1.2e-4, 10), ("disc b", float("nan"), 3)]
@@ -91,5 +91,5 @@ def test_a_small_store_gives_the_pages_that_it_has_rows_of_and_no_link_leads_now
 
 def test_a_link_to_a_page_that_is_not_there_becomes_its_words():
     text = "see [the\npage](skate.md#a), [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"
-    told = without_links_to_nothing(text, lambda name: name == "wheels.md")
+    told = without_dead_links(text, lambda name: name == "wheels.md")
     assert told == "see the\npage, [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"

@@ -18,7 +18,7 @@ from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, s
 from reports.model.measure import repeated_stepping
 from reports.model.outcomes import Outcome
 from reports.pages.scaling.banded import BandedChain
-from reports.pages.scaling.page import LAST, Point, Series, cost_table, crossing, exponent, series_of
+from reports.pages.scaling.page import FIT_POINTS, MethodSeries, SizePoint, cost_table, crossing, exponent, series_of
 from reports.write.rows import Rows
 from tests.rows import row_of, table
 from tests.toys import Disc, Plain, Toy
@@ -48,7 +48,7 @@ def test_a_power_law_is_found_at_the_large_end_only():
     sizes = [1, 10, 100, 200, 400]
     assert exponent(sizes, [0.5 + 1e-3 * n**2.5 for n in sizes])[0] == pytest.approx(2.5, abs=0.05)
     assert exponent(sizes, [n**2 if n < 100 else 1e2 * n for n in sizes]) == (pytest.approx(1.0), 100, 400)
-    assert LAST == 3
+    assert FIT_POINTS == 3
     assert exponent(sizes, [math.nan, 7, math.nan, 14, 0])[1:] == (10, 200)
     assert math.isnan(exponent([1, 2], [math.nan, 1.0])[0])
 
@@ -188,7 +188,7 @@ def test_steps_end_where_the_promised_order_has_divided_the_error_by_1e8(order, 
 
 def test_a_cost_table_is_in_microseconds_and_a_crossing_is_where_the_first_becomes_the_dearer():
     def line(*costs):
-        return Series("e", "v", tuple(Point(10**n, cost, 0.1, "torn") for n, cost in enumerate(costs)))
+        return MethodSeries("e", "v", tuple(SizePoint(10**n, cost, 0.1, "torn") for n, cost in enumerate(costs)))
 
     cells = table(cost_table((line(1e-6, 1e-4, math.nan),)))
     assert cells == [["method", "1", "10", "100"], ["e v", "1", "100", "**torn**"]]

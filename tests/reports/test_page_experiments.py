@@ -134,8 +134,8 @@ def test_a_contact_is_absent_in_the_samples_in_which_it_carries_nothing():
 
 @pytest.mark.parametrize("page", [four_bar, slider_crank, n_four_bar], ids=lambda page: page.PAGE.name)
 def test_a_pages_observations_are_computed_and_have_numbers(page):
-    material = Material({}, {task: answer_to(task) for failure in page.FAILURES for task in failure.tasks})
-    lines = [seen for failure in page.FAILURES if failure.observations for seen in failure.observations(material)]
+    material = Material({}, {task: answer_to(task) for failure in page.PAGE.failures for task in failure.tasks})
+    lines = [seen for failure in page.PAGE.failures if failure.observations for seen in failure.observations(material)]
     assert lines
     assert all(seen.outcome and "nan" not in seen.outcome for seen in lines)
 
@@ -160,7 +160,7 @@ def test_what_is_read_from_motions_of_skates_and_wheels_agrees_with_the_referenc
 
 
 ROWS = [*falling("pymunk a", (8e-2, 4e-2, 1e-2)), *falling("pymunk b", (2e-2, 1.8e-2, 1.7e-2), outcome="torn")]
-SETS = replace(common.cells(four_bar.SCENES[1], [pymunk.DEFAULT], (1,))[0], samples=7)
+SETS = replace(common.cells(four_bar.PAGE.scenes[1], [pymunk.DEFAULT], (1,))[0], samples=7)
 HOLD = (
     'falls("pymunk a", 1.9)',
     'stays("pymunk b")',

@@ -38,19 +38,19 @@ from reports.pages.errata import page as referees
 from reports.pages.faults.page import Offsets
 from reports.pages.findings import findings
 from reports.pages.index import render_index, render_readme
-from reports.pages.pendulum.page import Neighbours
+from reports.pages.pendulum.page import NeighbourGrowth
 from reports.pages.published import experiments as published
 from reports.pages.rendering import render_page
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.skate import experiments as turning_round
 from reports.pages.wheels.page import Folding
 from reports.pages.your_loop.experiments import BeforeAndAfter
-from reports.pages.your_model.page import Walk
+from reports.pages.your_model.page import ModelCheck
 from reports.plots import theme
 from reports.run.store import Store
 from reports.write.experiments import observe
 from reports.write.templates import anchor, environment, headings
-from reports.write.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
+from reports.write.unmeasured import FILTERS, MARK, NOT_MEASURED, UNMEASURED, MissingAsNaN, without_marks
 from tests import ROOT
 from tests.committed_rows import RESULTS, answer_to, page_rows
 from tests.toys import Disc, Toy
@@ -100,7 +100,7 @@ def complaints(page: str, files: Mapping[str, str]) -> list[str]:
     """What a reader would stumble over on a page."""
     text = prose(files[f"{page}.md"])
     sentences = re.sub(r"^\|.*$", "TABLE", text, flags=re.MULTILINE)
-    found = [f"{word} in the text" for word in ("{{", "{%", MARK, WORDS) if word in text]
+    found = [f"{word} in the text" for word in ("{{", "{%", MARK, NOT_MEASURED) if word in text]
     found += [line for line in text.splitlines() if re.search(r"\b(nan|None(?! of)|Undefined|Unmeasured)\b", line)]
     for line in sentences.splitlines():
         if re.search(r"(^|[\s(])[,.;:)](\s|$)", line):
@@ -184,7 +184,7 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
         for failure in page.failures
         if failure.context is not no_context
         for task in failure.tasks
-        if not isinstance(task, Neighbours)  # takes seconds, and any growth makes a sentence
+        if not isinstance(task, NeighbourGrowth)  # takes seconds, and any growth makes a sentence
     )
     material = Material(page_rows(page), answers | {task: answer_to(task) for task in said})
     assert complaints(page.name, render_page(page, material, "the command")) == []
@@ -194,9 +194,9 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
 @pytest.mark.parametrize(
     ("template", "said"),
     [
-        ("{{ row.angle | number }}", WORDS),
-        ("{{ (1e3 * row.step / row.other.step) | number }}", WORDS),
-        ("{{ row }} {{ unknown }} {{ nothing }}", f"{WORDS} {WORDS} {WORDS}"),
+        ("{{ row.angle | number }}", NOT_MEASURED),
+        ("{{ (1e3 * row.step / row.other.step) | number }}", NOT_MEASURED),
+        ("{{ row }} {{ unknown }} {{ nothing }}", f"{NOT_MEASURED} {NOT_MEASURED} {NOT_MEASURED}"),
         ("{% if row %}run{% else %}not run{% endif %}", "not run"),
         ("a{% filter if_measured %}: {{ row.angle | number }} rad{% endfilter %}.", "a."),
         (
@@ -210,10 +210,10 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
 def test_a_forgotten_guard_says_so_and_a_clause_without_its_number_vanishes(template, said):
     given = {
         "row": UNMEASURED,
-        "rows": Known(),
+        "rows": MissingAsNaN(),
         "unknown": math.nan,
         "nothing": None,
-        "pictures": Known(drawn="drawn.svg"),
+        "pictures": MissingAsNaN(drawn="drawn.svg"),
     }
     assert without_marks(environment().from_string(template).render(given)) == said
 
@@ -250,15 +250,17 @@ def still(task: Task, lost: bool = False) -> Answer:
         case Folding():
             mechanism, t = task.scene.mechanism(), np.linspace(0, task.scene.duration, 30)
             values = {"jackknifed": np.asarray(1.0), "t": t, "pose": np.tile(mechanism.pose, (30, 1, 1))}
-        case Neighbours():
+        case NeighbourGrowth():
             values = {"growth": np.ones(len(task.times))}
         case Offsets():
             values = {"across": np.full(len(task.offsets), -0.1)}
         case published.Newton():
-            values = {name: np.full(len(published.NEWTON_STEPS), bound / 2) for name, bound in published.BOUNDS.items()}
-        case published.Acrobot() | published.ByHand():
+            values = {
+                name: np.full(len(published.NEWTON_STEPS), bound / 2) for name, bound in published.NEWTON_BOUNDS.items()
+            }
+        case published.Acrobot() | published.DirectRK4():
             values = dict.fromkeys(("drift", "rounded"), np.full(len(published.ACROBOT_STEPS), 1e-3))
-        case Walk():
+        case ModelCheck():
             values = {"found": json.dumps(WALKED), "shown": SHOWN.as_text()}
         case BeforeAndAfter():
             values = {"gap": np.array([0.1, 0.01]), "angle": np.full(2, 0.1), "iterations": np.asarray(16.0)}

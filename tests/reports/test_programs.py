@@ -13,7 +13,7 @@ from engines import method_name
 from reports.model.convergence import judged
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.write.page_tables import FOLDER, KEPT, Program, advice, advised_programs, file_of, program
+from reports.write.page_tables import PROGRAM_FOLDER, RESULTS, Program, advice, advised_programs, file_of, program
 from tests.committed_rows import page_rows
 from tests.reports.test_pages import MECHANISMS, texts, undrawn
 
@@ -87,7 +87,7 @@ def test_a_pages_block_gives_the_error_of_the_row_of_each_method_without_a_progr
 def test_every_program_of_an_engine_alone_is_of_a_method_of_its_scene():
     scenes = [(page.advised_scene, page.engines) for page in MECHANISMS if page.advised_scene is not None]
     known = {file_of(scene.name, method_name(engine)) for scene, engines in scenes for engine in engines}
-    assert {f"{FOLDER}/{path.name}" for path in KEPT.glob("*.*")} <= known
+    assert {f"{PROGRAM_FOLDER}/{path.name}" for path in (RESULTS / PROGRAM_FOLDER).glob("*.*")} <= known
 
 
 def test_a_program_that_is_wrong_by_a_thousandth_is_noticed():

@@ -14,23 +14,23 @@ from engines.pymunk import TUNED as PYMUNK
 from reports.model.page import Material
 from reports.model.tasks import Answer, answered
 from reports.pages.published.experiments import (
+    ACROBOT_START,
     ACROBOT_STEPS,
-    BOUNDS,
-    FOUR_BAR,
+    NEWTON_BOUNDS,
+    NEWTON_FOUR_BAR,
     NEWTON_STEPS,
     PUBLISHED,
-    START,
     Acrobot,
-    ByHand,
+    DirectRK4,
     Newton,
-    by_hand,
     freudenstein,
+    rk4_drift,
 )
 from reports.pages.published.page import PAGE, bounds, drifts, largest_step
 from reports.pages.rendering import render_page
 from reports.pages.your_model import page as others
+from reports.pages.your_model.page import MODEL_CHECKS
 from reports.pages.your_model.page import PAGE as YOUR_MODEL
-from reports.pages.your_model.page import WALKS
 from tests.reports.models_of_others import models, spaces, unpacked
 
 
@@ -38,17 +38,17 @@ from tests.reports.models_of_others import models, spaces, unpacked
 def answers():
     """Of RK4 by hand, and of three methods."""
     methods = (DEFAULT, TUNED, PYMUNK)
-    tasks = (ByHand(), *map(Acrobot, methods), *map(Newton, methods))
+    tasks = (DirectRK4(), *map(Acrobot, methods), *map(Newton, methods))
     return {task: answered(task) for task in tasks}
 
 
 def test_the_start_of_acrobot_is_the_one_that_loses_what_was_published():
-    assert by_hand(START, ACROBOT_STEPS[0]) == pytest.approx(PUBLISHED[0], rel=1e-7)
-    assert by_hand(START + 1e-3, ACROBOT_STEPS[0]) != pytest.approx(PUBLISHED[0], rel=1e-3)
+    assert rk4_drift(ACROBOT_START, ACROBOT_STEPS[0]) == pytest.approx(PUBLISHED[0], rel=1e-7)
+    assert rk4_drift(ACROBOT_START + 1e-3, ACROBOT_STEPS[0]) != pytest.approx(PUBLISHED[0], rel=1e-3)
 
 
 def test_the_second_published_number_follows_and_the_third_is_rounding(answers):
-    hand = answers[ByHand()]
+    hand = answers[DirectRK4()]
     assert hand.array("drift")[1] == pytest.approx(PUBLISHED[1], rel=0.1)
     assert hand.array("drift")[2] < PUBLISHED[2] / 10
     # Of states in numbers of 32 bits: their rounding is 2^-24 = 6e-8 of each, in parts of the first energy less.
@@ -57,25 +57,25 @@ def test_the_second_published_number_follows_and_the_third_is_rounding(answers):
 
 def test_mujocos_rk4_is_gymnasiums_method(answers):
     """Its hinges are the same two angles; a step of 0.2 s is sampled at every step, the smaller ones at some."""
-    ours, theirs = answers[ByHand()].array("drift"), answers[Acrobot(TUNED)].array("drift")
+    ours, theirs = answers[DirectRK4()].array("drift"), answers[Acrobot(TUNED)].array("drift")
     assert theirs[0] == pytest.approx(ours[0], rel=1e-9)
     np.testing.assert_allclose(theirs, ours, rtol=1e-2)
 
 
 def test_freudensteins_rocker_is_the_scenes():
-    t = np.linspace(0.0, FOUR_BAR.duration, 50)
-    truth = FOUR_BAR.motion(t).pose[..., 2]
+    t = np.linspace(0.0, NEWTON_FOUR_BAR.duration, 50)
+    truth = NEWTON_FOUR_BAR.motion(t).pose[..., 2]
     off = (truth[:, 2] - freudenstein(truth[:, 0]) + np.pi) % (2 * np.pi) - np.pi
     assert np.abs(off).max() < 1e-12
 
 
 def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none():
     told = answered(Newton(TRUTH))
-    assert all(largest_step(told, name) == max(NEWTON_STEPS) for name in BOUNDS)
+    assert all(largest_step(told, name) == max(NEWTON_STEPS) for name in NEWTON_BOUNDS)
     # What is left of the period's measure is the cosine: a swing by 0.05 rad is slower by 0.05^2/16 than a small one.
     assert told.array("period") == pytest.approx(1.1e-3, rel=0.05)
-    wrong = np.degrees(freudenstein(np.zeros(1)) - FOUR_BAR.motion([0.0]).pose[0, 2, 2] + 0.01)
-    assert np.abs(wrong) > BOUNDS["angle"]
+    wrong = np.degrees(freudenstein(np.zeros(1)) - NEWTON_FOUR_BAR.motion([0.0]).pose[0, 2, 2] + 0.01)
+    assert np.abs(wrong) > NEWTON_BOUNDS["angle"]
 
 
 def test_the_bounds_tell_the_default_from_the_tuned(answers):
@@ -98,7 +98,7 @@ def test_the_page_has_a_line_for_each_method_and_leaves_out_what_was_not_run(ans
 @pytest.fixture(scope="module")
 def checks():
     """The checks of shorter motions, which take a moment each, under the names of the page's own."""
-    return {walk: answered(replace(walk, duration=0.3)) for walk in WALKS}
+    return {walk: answered(replace(walk, duration=0.3)) for walk in MODEL_CHECKS}
 
 
 def found(answer: Answer):
@@ -112,7 +112,7 @@ def test_the_page_tells_what_was_found(checks):
         advised = found(answer)["advised"]
         assert all(words in text for words in (walk.text.strip(), advised["words"], *advised["lines"]))
     assert text.count(".svg)") == 6
-    soft, hard, swing = (found(checks[walk])["parts"] for walk in WALKS)  # as their titles claim
+    soft, hard, swing = (found(checks[walk])["parts"] for walk in MODEL_CHECKS)  # as their titles claim
     assert soft["softness"] > 1e-4
     assert (hard["softness"], hard["falling"], swing["divided"]) == (0, True, False)
     assert render_page(YOUR_MODEL, Material({}), "the command")["your_model.md"].count("was not checked yet") == 3

@@ -22,10 +22,10 @@ from reports.model.measure import measure
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation, Page
 from reports.model.tasks import Answer, Task
-from reports.pages.four_bar.page import MOVED, MOVING
+from reports.pages.four_bar.page import MOVING_METHODS, MOVING_TASKS
 from reports.pages.index import render_readme
 from reports.pages.rendering import render_all, render_page
-from reports.pages.your_loop.page import ASKED, FRESH
+from reports.pages.your_loop.page import FRESH, PASTED_CELLS
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.plots.theme import DARK
 from reports.write.rows import lookups
@@ -169,7 +169,7 @@ def test_a_page_judges_by_the_quantity_that_it_compares():
 
 def test_the_readme_has_medians_of_fresh_mechanisms_and_is_the_same_after_a_run_that_took_another_time():
     def readme(median: float, cpu: float) -> list[str]:
-        rows = {each: row_of("mujoco tuned", angle=3.4e-7, cpu=cpu) for each in ASKED}
+        rows = {each: row_of("mujoco tuned", angle=3.4e-7, cpu=cpu) for each in PASTED_CELLS}
         error = {"error": np.array([1e-9, median, 0.3])}
         answers: dict[Task, Answer] = {task: Answer(Outcome.FINISHED, values=error) for task in FRESH}
         return render_readme(README, {YOUR_LOOP: Material(rows, answers)}).split()
@@ -208,11 +208,11 @@ def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
 
 
 def test_the_moving_picture_of_the_readme_is_small_and_stands_still_for_who_asks():
-    answers: dict[Task, Answer] = {task: Answer(Outcome.FINISHED, "", task.run()) for task in MOVED}
+    answers: dict[Task, Answer] = {task: Answer(Outcome.FINISHED, "", task.run()) for task in MOVING_TASKS}
     (text,) = moving_picture([Material({}), Material({}, answers)]).values()
     assert len(text.encode()) < 300_000
     still, moves = text.split("@media (prefers-reduced-motion: no-preference) {")
     assert ("@keyframes" in still, "(prefers-color-scheme: dark)" in still) == (False, True)
     # Three engines and the truth, three bars each.
-    assert len(re.findall(r"@keyframes m\d+b\d+\{", moves)) == 3 * (len(MOVING) + 1)
+    assert len(re.findall(r"@keyframes m\d+b\d+\{", moves)) == 3 * (len(MOVING_METHODS) + 1)
     assert moving_picture([Material({}, dict(list(answers.items())[1:]))]) == {}

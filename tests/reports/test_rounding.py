@@ -16,8 +16,17 @@ from reports.model.cells import Cell
 from reports.model.ending import BadInput
 from reports.model.outcomes import Outcome
 from reports.model.quantities import OF, QUANTITIES, agrees, quantity
-from reports.write.csv_files import ERRORS, IDENTITY, NOISE, Published, as_csv, as_published, kept, read_published
-from reports.write.csv_files import told as cell_text
+from reports.write.csv_files import (
+    ERROR_COLUMNS,
+    IDENTITY_COLUMNS,
+    TIMING_NOISE,
+    Published,
+    as_csv,
+    as_published,
+    cell_text,
+    read_published,
+    with_published_numbers,
+)
 from reports.write.provenance import machine
 from tests.rows import ROW
 from tests.toys import Disc, Toy
@@ -58,28 +67,31 @@ def before(tmp_path: Path) -> dict[str, str]:
     return dict(texts)
 
 
-@pytest.mark.parametrize("name", ERRORS)
+@pytest.mark.parametrize("name", ERROR_COLUMNS)
 def test_an_error_keeps_its_text_within_rounding_alone(name, before):
     published, rounding = getattr(ROW, name), quantity(OF.get(name, name)).rounding
-    assert getattr(kept(replace(ROW, **{name: published + 0.9 * rounding}), before, True), name) == published
-    changed = getattr(kept(replace(ROW, **{name: published * 1.0123456}), before, True), name)
+    assert (
+        getattr(with_published_numbers(replace(ROW, **{name: published + 0.9 * rounding}), before, True), name)
+        == published
+    )
+    changed = getattr(with_published_numbers(replace(ROW, **{name: published * 1.0123456}), before, True), name)
     assert changed == float(f"{published * 1.0123456:.4g}") != published
 
 
-@pytest.mark.parametrize(("name", "noise"), NOISE.items())
+@pytest.mark.parametrize(("name", "noise"), TIMING_NOISE.items())
 def test_a_time_is_kept_within_noise_and_on_the_same_machine(name, noise, before):
     published = getattr(ROW, name)
     within, beyond = (replace(ROW, **{name: published * factor}) for factor in (0.99 * noise, 1.01 * noise))
     for where, same in ((machine(), True), ("another machine", False)):
-        of_run = Published({tuple(cell_text(ROW, column) for column in IDENTITY): before}, where)
+        of_run = Published({tuple(cell_text(ROW, column) for column in IDENTITY_COLUMNS): before}, where)
         assert (getattr(as_published({CELL: within}, of_run)[CELL], name) == published) == same
-    assert getattr(kept(beyond, before, True), name) != published
+    assert getattr(with_published_numbers(beyond, before, True), name) != published
 
 
 def test_nothing_is_kept_of_another_outcome_or_of_a_row_that_is_new(before):
     moved = replace(ROW, position=ROW.position * (1 + 1e-12), cpu=1.01 * ROW.cpu)
-    torn = kept(replace(moved, outcome=Outcome.TORN), before, True)
-    assert torn.cpu == kept(moved, {}, True).cpu == float(f"{1.01 * ROW.cpu:.4g}")
+    torn = with_published_numbers(replace(moved, outcome=Outcome.TORN), before, True)
+    assert torn.cpu == with_published_numbers(moved, {}, True).cpu == float(f"{1.01 * ROW.cpu:.4g}")
     assert torn.outcome == Outcome.TORN
 
 

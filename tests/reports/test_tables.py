@@ -37,18 +37,18 @@ from reports.write import csv_files, provenance, tables
 from reports.write.columns import (
     Column,
     column_of,
+    displayed_variant,
+    enforcement_by_method,
+    engine_lines,
     equal_cost,
     equal_error,
     equal_step,
+    error_by_cost,
     error_within,
-    holders,
-    lines,
-    means,
-    reached,
-    told_rows,
-    told_variant,
+    remarks_of,
+    with_displayed_variants,
 )
-from reports.write.experiments import compared_only, told_experiment
+from reports.write.experiments import render_experiment, without_incomparable_errors
 from reports.write.page_tables import advice, advice_table, compared_step, reliable, scene_table
 from reports.write.provenance import machine, still_installed, versions
 from tests.present import present
@@ -169,12 +169,12 @@ def printed() -> Iterator[str]:
         row_of("toy lost", outcome=Outcome.DIVERGED),
     ]
     yield tables.markdown(tables.SUMMARY_HEADER, tables.summary_rows(rows))
-    yield "## Scenes: plain, with holders, with what is declared (2e-5 of a, 1e-6 of b: marked)"
+    yield "## Scenes: plain, with the enforcement of joints, with what is declared (2e-5 of a, 1e-6 of b: marked)"
     known: dict[str, Any] = {"gap": 1.7e-3, "slip": NAN, "reaction": NAN}
     rows = [*falling("a x", POWER, **known), *falling("b y", (1e-2, 3e-5, 3e-5, 3e-5), **known)]
     rows += [row_of("c z", step=1e-3, outcome=Outcome.TORN, **known)]
     yield scene_table(rows, "angle")
-    yield scene_table(rows, "angle", {"a x": "engine", "b y": "ours"})
+    yield scene_table(rows, "angle", {"a x": "engine", "b y": "our code"})
     rows = [*falling("a soft", (1e-2, 3e-5, 3e-5, 3e-5)), *falling("b wrong", (1e-2, 3e-5, 3e-5, 3e-5))]
     yield scene_table(rows, "angle", declared=lambda method, step: 2e-5 if method == "a soft" else 1e-6)
     yield "## Advice: the second method costs three times as much"
@@ -183,7 +183,7 @@ def printed() -> Iterator[str]:
         *[replace(row, cpu=3 * row.cpu) for row in falling("a fast", (1e-5, 1e-7, 1e-10))],
         *falling("b only", (1e-1, 1e-2, 5e-3)),
     ]
-    yield advice_table(advice(rows, "angle"), "angle", {"a fast": "ours"})
+    yield advice_table(advice(rows, "angle"), "angle", {"a fast": "our code"})
     yield "## Cells at equal step"
     yield "\n".join(f"- {cell_of(rows)}" for rows in at_steps())
     yield "## Each engine its table, each column its method, each line its scene: another error in each of twelve cells"
@@ -296,26 +296,26 @@ def test_who_holds_the_joints_decides_in_which_column_a_method_stands():
         Cell(FREE, HeldBy("x"), 1),
         Cell(FREE, HeldBy("x", by="ours"), 10),
     ]
-    assert holders(cells) == {"toy x": "ours or engine"}
+    assert enforcement_by_method(cells) == {"toy x": "our code or engine"}
 
 
 def test_a_users_trick_does_not_bear_the_usual_name_of_an_engine_on_any_page():
-    assert [told_variant(scene, pymunk.DEFAULT) for scene in (FREE, SLEIGH)] == ["default", "naive"]
-    assert told_variant(SLEIGH, mujoco.DEFAULT) == "default"  # a contact of its own
-    tricks = [told_variant(SLEIGH, HeldBy(variant, by="ours")) for variant in ("default", "tuned")]
+    assert [displayed_variant(scene, pymunk.DEFAULT) for scene in (FREE, SLEIGH)] == ["default", "naive"]
+    assert displayed_variant(SLEIGH, mujoco.DEFAULT) == "default"  # a contact of its own
+    tricks = [displayed_variant(SLEIGH, HeldBy(variant, by="ours")) for variant in ("default", "tuned")]
     assert tricks == ["naive", "naive, tuned"]  # rows of one name would be taken for one method
-    assert told_variant(SLEIGH, SKATE_POINT) == SKATE_POINT.variant
+    assert displayed_variant(SLEIGH, SKATE_POINT) == SKATE_POINT.variant
     cell = Cell(SLEIGH, pymunk.DEFAULT, 1)
-    assert told_rows({cell: row_of("pymunk default")})[cell].method == "pymunk naive"
+    assert with_displayed_variants({cell: row_of("pymunk default")})[cell].method == "pymunk naive"
     # A stand-in for documented settings is named, and a usual variant is not.
     (line,) = (
         line
-        for line in lines([(SKATE, falling("mujoco default", POWER, "position", scene="sleigh"))])
+        for line in engine_lines([(SKATE, falling("mujoco default", POWER, "position", scene="sleigh"))])
         if line.engine == "mujoco"
     )
-    assert means(line, Column.SETTINGS) == ", contact, *friction blade*"
-    assert means(line, Column.SHIPPED) == ", contact"
-    assert means(line, Column.CODE) == ""
+    assert remarks_of(line, Column.SETTINGS) == ", contact, *friction blade*"
+    assert remarks_of(line, Column.SHIPPED) == ", contact"
+    assert remarks_of(line, Column.CODE) == ""
 
 
 def test_within_a_cpu_time_the_least_error_counts_that_no_smaller_step_exceeds():
@@ -329,7 +329,7 @@ def test_within_a_cpu_time_the_least_error_counts_that_no_smaller_step_exceeds()
 def test_a_line_of_the_picture_never_runs_backwards():
     rough = falling("mujoco extended", (1e-2, 1e-5, 1e-7))
     rough[0] = replace(rough[0], cpu=0.05)  # a rough run made the largest step dearer than the next
-    points = reached([rough, falling("mujoco tuned", (1e-1, 1e-3, 1e-3))], "angle")
+    points = error_by_cost([rough, falling("mujoco tuned", (1e-1, 1e-3, 1e-3))], "angle")
     assert points == sorted(points)
     assert [error for _, error in points] == sorted((error for _, error in points), reverse=True)
     assert min(error for _, error in points) == 1e-7
@@ -366,10 +366,10 @@ def test_an_experiment_in_which_nothing_was_compared_says_so():
 
     cell = Cell(Ended(), Toy(), 1, "failure")
     row = row_of("toy default", angle=0.0)
-    assert math.isnan(compared_only(cell, row).angle)
-    assert compared_only(cell, row).gap == row.gap
-    assert compared_only(replace(cell, scene=Disc()), row) == row
-    told = told_experiment(Failure("T", "E", (cell,)), Material({cell: row}))
+    assert math.isnan(without_incomparable_errors(cell, row).angle)
+    assert without_incomparable_errors(cell, row).gap == row.gap
+    assert without_incomparable_errors(replace(cell, scene=Disc()), row) == row
+    told = render_experiment(Failure("T", "E", (cell,)), Material({cell: row}))
     assert "- rad" in told.grid
     assert "0 rad" not in told.grid
 

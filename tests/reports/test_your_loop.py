@@ -18,17 +18,17 @@ from pymunk.constraints import RotaryLimitJoint
 from engines.mujoco.writers import MJCF
 from engines.pymunk.written_script import SCRIPT
 from reference.scene import Scene
-from reports.pages.your_loop.experiments import EVERY, Fresh, draw, run_lines
+from reports.pages.your_loop.experiments import STEPS_PER_SAMPLE, Fresh, draw, run_lines
 from reports.pages.your_loop.linkages import LINKAGES
 from reports.pages.your_loop.page import (
     BUILT,
     CHAIN,
     DISC,
-    LINES,
+    LINE_FILES,
     LOOP,
-    MUJOCO,
-    PASTED,
-    PYMUNK,
+    MUJOCO_CASES,
+    PYMUNK_CASES,
+    PYMUNK_LINES,
     SLIDER,
     cell,
 )
@@ -38,7 +38,7 @@ STEP = 1e-3
 
 
 def lines(name: str) -> str:
-    return (LINES / f"{name}.txt").read_text(encoding="utf-8")
+    return (LINE_FILES / f"{name}.txt").read_text(encoding="utf-8")
 
 
 def error_of(scene: Scene, poses: Callable[[], list[tuple[float, float, float]]], advance: Callable[[], None]) -> float:
@@ -69,7 +69,7 @@ def in_mujoco(scene: Scene, text: str, pasted: str = "") -> float:
         return found
 
     assert model.opt.timestep == pytest.approx(STEP)
-    return error_of(scene, poses, lambda: mujoco.mj_step(model, data, nstep=EVERY))
+    return error_of(scene, poses, lambda: mujoco.mj_step(model, data, nstep=STEPS_PER_SAMPLE))
 
 
 def in_pymunk(scene: Scene, pasted: str) -> float:
@@ -81,7 +81,7 @@ def in_pymunk(scene: Scene, pasted: str) -> float:
     ordered = [by_name[body.name] for body in scene.mechanism().bodies]
 
     def advance() -> None:
-        for _ in range(EVERY):
+        for _ in range(STEPS_PER_SAMPLE):
             space.step(STEP)
 
     return error_of(scene, lambda: [(*body.position, body.angle) for body in ordered], advance)
@@ -92,7 +92,7 @@ def row(case, engine) -> float:
     return found.angle
 
 
-CASES = {case.scene.name: (case, other) for case, other in zip(MUJOCO, PYMUNK, strict=True)}
+CASES = {case.scene.name: (case, other) for case, other in zip(MUJOCO_CASES, PYMUNK_CASES, strict=True)}
 
 
 @pytest.mark.parametrize("scene", [LOOP, SLIDER, CHAIN], ids=lambda scene: scene.name)
@@ -123,7 +123,7 @@ def test_the_pair_of_a_rolling_disc_gives_the_error_of_the_page():
 @pytest.mark.parametrize("scene", [LOOP, SLIDER, CHAIN], ids=lambda scene: scene.name)
 def test_the_lines_for_pymunk_give_the_error_of_the_page(scene):
     _, case = CASES[scene.name]
-    shipped, closed = in_pymunk(scene, ""), in_pymunk(scene, PASTED)
+    shipped, closed = in_pymunk(scene, ""), in_pymunk(scene, PYMUNK_LINES)
     # The row counts iterations by contraction, `choose` by trial: what either leaves is a part of the error.
     assert closed == pytest.approx(row(case, case.after), rel=0.2)
     assert closed < shipped / 8
@@ -147,7 +147,7 @@ def worst_gap(space: pymunk.Space, gaps: Callable, step: float, seconds: float =
 def test_with_the_lines_no_linkage_opens_more_than_as_shipped(linkage, step):
     make = LINKAGES[linkage]
     space = make()
-    names = run_lines(space, PASTED.replace("1e-3", repr(step)))
+    names = run_lines(space, PYMUNK_LINES.replace("1e-3", repr(step)))
     if names["choose"](make(), step) is None:
         assert state(space) == state(make())
     else:
@@ -158,7 +158,7 @@ def test_with_the_lines_no_linkage_opens_more_than_as_shipped(linkage, step):
 def test_eight_iterations_tear_a_walking_linkage_which_the_lines_see():
     step, jansen = 1e-3, LINKAGES["two legs of Jansen on a crank"]
     torn = jansen()
-    names = run_lines(jansen(), PASTED.replace("print(choose(space, 1e-3))", ""))
+    names = run_lines(jansen(), PYMUNK_LINES.replace("print(choose(space, 1e-3))", ""))
     names["close"](torn, step, 8)
     shipped = worst_gap(jansen(), names["gaps"], step, 1.0)
     assert worst_gap(torn, names["gaps"], step, 1.0) > 100 * shipped
@@ -176,30 +176,30 @@ def test_a_linkage_that_starts_open_or_can_not_be_copied_is_left_as_it_is():
     next(iter(opened.bodies)).position += (0.05, 0)
     next(iter(pictured.bodies)).picture = Picture()
     before = state(opened), state(pictured)
-    assert run_lines(opened, PASTED)["choose"](opened, 1e-3) is None
+    assert run_lines(opened, PYMUNK_LINES)["choose"](opened, 1e-3) is None
     with pytest.raises(TypeError, match="picture"):
-        run_lines(pictured, PASTED)
+        run_lines(pictured, PYMUNK_LINES)
     assert (state(opened), state(pictured)) == before
 
 
 def test_bodies_off_their_centre_of_gravity_and_limits_are_kept():
     space = LINKAGES["ragdoll that hangs by a hand"]()
     limits = [joint.error_bias for joint in space.constraints if isinstance(joint, RotaryLimitJoint)]
-    run_lines(space, PASTED)
+    run_lines(space, PYMUNK_LINES)
     assert [j.error_bias for j in space.constraints if isinstance(j, RotaryLimitJoint)] == limits
     off = pymunk.Space()
     body = pymunk.Body(1, 1)
     body.center_of_gravity, body.angle, body.position = (3, 1), 0.7, (5, 2)
     body.velocity, body.angular_velocity = (2, 1), 3
     off.add(body)
-    run_lines(pymunk.Space(), PASTED)["close"](off, 1e-2, 16)
+    run_lines(pymunk.Space(), PYMUNK_LINES)["close"](off, 1e-2, 16)
     assert (*body.position, body.angle) == pytest.approx((5, 2, 0.7), abs=1e-14)
 
 
 def test_fresh_mechanisms_are_the_same_each_time_and_differ():
     first, again, other = draw(LOOP, 0), draw(LOOP, 0), draw(LOOP, 1)
     assert first == again != other
-    before, after = PYMUNK[0].engines
+    before, after = PYMUNK_CASES[0].engines
     assert Fresh(after, LOOP).error(0) < Fresh(before, LOOP).error(0)
 
 

@@ -19,9 +19,9 @@ import pytest
 
 from reports.cli.commands import COMMANDS, command
 from reports.model.catalogue import PAGES
-from reports.pages.comparison import PICTURE
 from reports.pages.four_bar.page import MOVING_PICTURE
-from reports.pages.your_loop.page import LINES
+from reports.pages.index import COMPARED_PICTURE
+from reports.pages.your_loop.page import LINE_FILES
 from tests import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -44,13 +44,13 @@ def test_the_readme_is_short_and_leads_to_the_lines_to_paste_to_the_lecture_and_
     first = "\n".join(lines[: len(lines) // 3])
     assert "](lecture.ipynb)" in first
     assert "`crosscheck site" in first
-    written = {"index.md", PICTURE, MOVING_PICTURE, *(f"{page.name}.md" for page in PAGES)}
+    written = {"index.md", COMPARED_PICTURE, MOVING_PICTURE, *(f"{page.name}.md" for page in PAGES)}
     local = {link.partition("#")[0] for link in links if "://" not in link}
     assert [
         link for link in local - {f"reports/results/{name}" for name in written} if not (ROOT / link).exists()
     ] == []
     for name in ("options", "close", "choose"):  # the lines that a test pastes
-        assert (LINES / f"{name}.txt").read_text(encoding="utf-8").strip() in README
+        assert (LINE_FILES / f"{name}.txt").read_text(encoding="utf-8").strip() in README
 
 
 @pytest.mark.parametrize("file", ["action.yml", "try.sh"])

@@ -1,5 +1,7 @@
-"""The maps of the atlas, whose texts and ranges are in `subjects.toml`: a scene, the parameter that breaks it, and the
-frequency of the motion that explains it."""
+"""The maps of the atlas: a scene, the parameter that is varied, and the frequency that predicts where methods fail.
+
+Texts and ranges are in `subjects.toml`.
+"""
 
 from __future__ import annotations
 
@@ -22,14 +24,14 @@ from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.scenes.wheels.vehicles import CarAndTrailer
 
-FEWEST = 10  # steps of a run: the largest step is a tenth of the duration
+MIN_STEPS = 10  # of a run: the largest step is a tenth of the duration
 
 
 @dataclass(frozen=True)
-class Subject:
-    """A picture of the atlas; `subjects.toml` explains its fields.
+class StabilityMap:
+    """A map of outcomes over step and parameter; `subjects.toml` explains the other fields.
 
-    make: the scene at a value of the parameter. frequency: that of the fastest motion there [rad/s].
+    make: parameter value -> scene. frequency: parameter value -> frequency of the fastest motion [rad/s].
     """
 
     name: str
@@ -45,23 +47,23 @@ class Subject:
     remark: str = ""
 
     def at(self, points: int) -> tuple[float, ...]:
-        """So many values, evenly in their logarithm; whole ones evenly, as many as there are."""
+        """Values that are equally spaced in their logarithm; integers are equally spaced, and may be fewer."""
         low, high = self.values
         if self.whole:
             return tuple(map(float, dict.fromkeys(np.linspace(low, high, points).round().tolist())))
         return tuple(float(f"{value:.4g}") for value in np.geomspace(low, high, points))
 
     def steps(self, points: int) -> tuple[tuple[int, int], ...]:
-        """(samples, steps a sample) of about so many steps, evenly in their logarithm, the largest first.
+        """(samples, steps per sample) for about this many steps, equally spaced in their logarithm, the largest first.
 
-        Only ten numbers of samples are used, so that few instants have to be known of the truth.
+        Only ten numbers of samples occur, so that the reference solution is needed at few instants.
         """
-        found: dict[int, tuple[int, int]] = {}
+        by_count: dict[int, tuple[int, int]] = {}
         for doubling in np.linspace(0.0, self.doublings, points):
             every = 2 ** int(doubling)
-            samples = round(FEWEST * 2 ** (doubling - int(doubling)))
-            found[samples * every] = (samples, every)
-        return tuple(found[count] for count in sorted(found))
+            samples = round(MIN_STEPS * 2 ** (doubling - int(doubling)))
+            by_count[samples * every] = (samples, every)
+        return tuple(by_count[count] for count in sorted(by_count))
 
 
 def coupler(ratio: float) -> FreeFourBar:
@@ -85,15 +87,15 @@ def heavy_tip(ratio: float) -> LinkPendulum:
 
 
 def chain_of(links: float) -> LinkPendulum:
-    """A metre of chain, for half a second: it has come down, and has not yet lost the digits that chaos takes."""
+    """A chain of one metre for half a second: it has fallen, and chaos has not yet amplified errors much."""
     return LinkPendulum(links=round(links), length=1 / round(links), duration=0.5, horizon=0.5)
 
 
 def stiffest_hanging(scene: LinkPendulum) -> float:
-    """The highest frequency of small swings about the links that hang at rest [rad/s].
+    """The highest frequency of small oscillations about the hanging equilibrium [rad/s].
 
-    In absolute angles M a + K angle = 0. A bar's middle, half of its own length and all of those above it, has its
-    mass; M_ij sums m l_i l_j of all middles that both angles move, and K_ii the weight that each angle lifts.
+    M angle'' + K angle = 0 in absolute angles. Link j moves the centre of mass of link i by the arm L_ij: the length of
+    link j for j < i, half of it for j = i, else 0. M = L^T diag(m) L + diag(I), and K = g diag(L^T m).
     """
     chain = scene.chain
     lengths, masses = np.array(chain.lengths), np.array(chain.masses)
@@ -104,43 +106,43 @@ def stiffest_hanging(scene: LinkPendulum) -> float:
 
 
 def near_the_largest_offset(gap: float) -> DrivenSliderCrank:
-    """Driven, the slot short of the largest offset by this part of it, so that the rod nearly stands up once a turn."""
+    """A driven slider-crank with the offset (1 - gap) times the largest: the rod is nearly upright once a turn."""
     plain = DrivenSliderCrank()
     return replace(plain, offset=(1 - gap) * (plain.rod - plain.crank), angle=math.pi / 2)
 
 
 def rod_rate(gap: float) -> float:
-    """The largest rate of that rod [rad/s], over a whole turn of the crank."""
+    """The largest rate of that rod over a turn of the crank [rad/s]."""
     scene = near_the_largest_offset(gap)
     angles = np.concatenate([np.linspace(0, 2 * math.pi, 721), math.pi / 2 * 3 + np.geomspace(1e-7, 0.1, 200)])
     return float(scene.rate * np.abs(scene.shape.rates(angles)[0]).max())
 
 
 def driven(rate: float) -> DrivenFourBar:
-    """For half a second, whatever the rate."""
+    """The driven four-bar for half a second at any rate [rad/s]."""
     return DrivenFourBar(rate=rate, revolutions=rate * 0.5 / (2 * math.pi))
 
 
 def short_trailer(length: float) -> CarAndTrailer:
-    """A drawbar of this length, with the trailer's mass over its axle and a straight car."""
+    """A drawbar of this length [m], with the trailer's centre of mass on its axle."""
     plain = CarAndTrailer()
     return replace(plain, length=length, centres=(plain.centres[0], 0.0), duration=2.0, horizon=2.0)
 
 
 def ellipse(ratio: float) -> RollingEllipse:
-    """On its flat side, slowly enough to stay on the ground."""
+    """An ellipse that starts on its flat side, slowly enough to keep contact."""
     plain = RollingEllipse()
     return replace(plain, along_y=plain.along_x * ratio, start_rate=1.0, duration=1.0)
 
 
 def rocking(ratio: float) -> float:
-    """Of small swings about that side [rad/s]."""
+    """The frequency of small oscillations about the flat side [rad/s]."""
     law = ellipse(ratio).motion_law
     return law.small_frequency(law.rolling.theta)
 
 
-# By the map's name: the scene at a value, and the frequency [rad/s] of the motion that the map names.
-MOTIONS: Mapping[str, tuple[Callable[[float], Scene], Callable[[float], float]]] = {
+# Map name -> (scene at a parameter value, frequency [rad/s] of the motion that the map names).
+SCENES_AND_FREQUENCIES: Mapping[str, tuple[Callable[[float], Scene], Callable[[float], float]]] = {
     "coupler": (coupler, lambda ratio: 1 / coupler(ratio).mechanism().time_scale),
     "rate": (driven, lambda rate: rate),
     "tip": (heavy_tip, lambda ratio: stiffest_hanging(heavy_tip(ratio))),
@@ -154,12 +156,12 @@ MOTIONS: Mapping[str, tuple[Callable[[float], Scene], Callable[[float], float]]]
 }
 
 
-def _read() -> Iterator[Subject]:
+def _read() -> Iterator[StabilityMap]:
     plans = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
     for name, plan in plans.items():
-        make, frequency = MOTIONS[name]
+        make, frequency = SCENES_AND_FREQUENCIES[name]
         plan |= {"values": tuple(plan["values"]), "remark": " ".join(plan.get("remark", "").split())}
-        yield Subject(name, make=make, frequency=frequency, **plan)
+        yield StabilityMap(name, make=make, frequency=frequency, **plan)
 
 
-SUBJECTS: tuple[Subject, ...] = tuple(_read())
+MAPS: tuple[StabilityMap, ...] = tuple(_read())

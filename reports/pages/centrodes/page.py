@@ -1,4 +1,4 @@
-"""The page of centrodes: a four-bar's coupler as rolling, and the instant centre as a measure of engines."""
+"""The page of centrodes: the coupler of a four-bar as rolling, and the instant centre as a measure of engines."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from reports.plots.mechanisms import draw_ground, draw_pose
 from reports.plots.theme import LIGHT, bare, drawing, note, style_axes, svg
 from reports.write.tables import markdown, number
 
-CHECKED = 101  # places looked at: enough to meet the largest error of smooth curves, few enough to wait for
+MAX_POSES_CHECKED = 101  # enough to find the largest error of smooth curves, and fast
 
 
 def returned(curves: Centrodes) -> tuple[float, float]:
-    """(largest distance [m] between the poses and those of the curves' rolling, rotation [rad] looked at).
+    """(largest distance [m] between the poses and those of the rolling curves, range of rotation checked [rad]).
 
     Raises InvalidMechanism where the curves can't roll on each other.
     """
@@ -42,22 +42,22 @@ def returned(curves: Centrodes) -> tuple[float, float]:
     inside = np.flatnonzero((curves.theta >= low) & (curves.theta <= high))
     if not inside.size:
         raise InvalidMechanism("round trip: no pose lies within the rotations at which the curves touch")
-    inside = inside[:: max(1, len(inside) // CHECKED)]
+    inside = inside[:: max(1, len(inside) // MAX_POSES_CHECKED)]
     pose: Array = curves.pose[inside]
     distance = np.linalg.norm(rolling.pose(pose[:, 2])[:, :2] - pose[:, :2], axis=-1)
     return float(distance.max()), float(np.ptp(pose[:, 2]))
 
 
 def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indices: Sequence[int], body: int) -> Figure:
-    """A panel for each index into the samples (of poses (samples, bodies, 3) and of the curves, in one order)."""
+    """A panel for each of these samples, which poses (samples, bodies, 3) and curves have in the same order."""
     with drawing(4.4) as figure:
         for panel, index in zip(figure.subplots(1, len(indices), sharex=True, sharey=True), indices, strict=True):
             bare(panel, "")
             pose, centre = poses[index], curves.space[index]
-            joints = mechanism.bodies[body].name
+            coupler = mechanism.bodies[body].name
             for joint in mechanism.joints:
-                # The lines of crank and rocker, produced to the centre.
-                if isinstance(joint, Pin) and joint.first is None and joint.second != joints:
+                # The lines of crank and rocker, extended to the instant centre.
+                if isinstance(joint, Pin) and joint.first is None and joint.second != coupler:
                     line = np.stack([np.asarray(joint.first_point), centre])
                     panel.plot(*line.T, color=LIGHT.grid, linewidth=1.2, zorder=0)
             panel.plot(*curves.space.T, color=LIGHT.first, linewidth=2, zorder=1)
@@ -78,82 +78,83 @@ def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indice
 
 
 def _letters(panel: Axes, mechanism: Mechanism, pose: Array) -> None:
-    """The pins' names: beyond the end of a bar on the ground, of the others away from the middle of all pins."""
-    places, bars = {}, {}
+    """The names of the pins: at the ground beyond the end of the bar, elsewhere away from the middle of all pins."""
+    pins, bars = {}, {}
     for joint in mechanism.joints:
         if isinstance(joint, Pin) and joint.second is not None:
-            own = pose[mechanism.body_index(joint.second)]
-            bars[joint], places[joint] = own[:2], rotated(own[2], np.asarray(joint.second_point)) + own[:2]
-    middle = np.mean(list(places.values()), axis=0)
-    for joint, place in places.items():
-        away = place - (middle if joint.first is not None else bars[joint])
-        away = away if np.any(away) else np.array([0.0, 1.0])
-        x, y = 11 * away / np.linalg.norm(away)
+            x, y, angle = pose[mechanism.body_index(joint.second)]
+            bars[joint] = np.array([x, y])
+            pins[joint] = rotated(angle, np.asarray(joint.second_point)) + bars[joint]
+    middle = np.mean(list(pins.values()), axis=0)
+    for joint, point in pins.items():
+        direction = point - (middle if joint.first is not None else bars[joint])
+        direction = direction if np.any(direction) else np.array([0.0, 1.0])
+        offset_x, offset_y = 11 * direction / np.linalg.norm(direction)
         box = {"facecolor": LIGHT.paper, "edgecolor": "none", "pad": 0.0}
-        note(panel, joint.name, place, (x, y), LIGHT.ink, ha="center", va="center", zorder=5, bbox=box)
+        note(panel, joint.name, point, (offset_x, offset_y), LIGHT.ink, ha="center", va="center", zorder=5, bbox=box)
 
 
 def draw_rate(curves: Centrodes) -> Figure:
-    """ds/dtheta from the way of the centre and from the curvatures, with their relative difference below."""
+    """ds/dtheta from the path of the centre and from the curvatures, and their relative difference."""
     total = 1 / (curves.space_curvature + curves.body_curvature)
     degrees = np.degrees(curves.theta)
     with drawing(4.0) as figure:
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
-        above.plot(degrees, curves.rate, color=LIGHT.first, linewidth=4, alpha=0.5, label="ds/dθ, way of the centre")
+        above.plot(degrees, curves.rate, color=LIGHT.first, linewidth=4, alpha=0.5, label="ds/dθ, path of the centre")
         above.plot(degrees, total, color=LIGHT.ink, linewidth=1.2, label="1/($\\kappa_A+\\kappa_B$), both curvatures")
         below.semilogy(degrees, np.maximum(np.abs(total / curves.rate - 1), 1e-17), color=LIGHT.ink, linewidth=1)
-        for panel, up in ((above, "m/rad"), (below, "relative\ndifference")):
+        for panel, label in ((above, "m/rad"), (below, "relative\ndifference")):
             style_axes(panel)
-            panel.set_ylabel(up)
+            panel.set_ylabel(label)
         above.legend()
         below.set_xlabel("angle of the coupler [degrees]")
     return figure
 
 
-COUPLER = 1  # its place among the bodies
-# Crank angles [rad] between which the coupler turns one way, and well: its rate vanishes at 2.80 and 5.94 rad.
+COUPLER_INDEX = 1  # among the bodies
+# Crank angles [rad] between which the coupler turns one way; its rate vanishes at 2.80 and 5.94 rad.
 ARC = (3.5, 5.5)
-SAMPLES = 401
-# Away from the arc's ends, where a spline's second derivative loses most.
+ARC_SAMPLES = 401
+# The samples away from the ends of the arc, where the second derivative of a spline is least accurate.
 INNER = slice(20, -20)
-STEPS = (1, 10)  # per sample of the scene
-CELLS = tuple(Cell(DrivenFourBar(), engine, every) for engine in VARIANTS for every in STEPS)
+CENTRODE_STEPS = (1, 10)  # steps between samples of the scene
+CENTRODE_CELLS = tuple(Cell(DrivenFourBar(), engine, every) for engine in VARIANTS for every in CENTRODE_STEPS)
 
 
 def times(count: int) -> np.ndarray:
-    """Times (count,) [s] at which the crank passes the arc."""
+    """Equally spaced times (count,) [s] while the crank passes ARC."""
     scene = DrivenFourBar()
     return np.linspace((ARC[0] - scene.start) / scene.rate, (ARC[1] - scene.start) / scene.rate, count)
 
 
 @cache
 def exact() -> tuple[Trajectory, Centrodes]:
-    """The motion over the arc and both curves of the coupler."""
-    truth = freeze(DrivenFourBar().motion(times(SAMPLES)))
-    return truth, centrodes(truth.t, truth.pose[:, COUPLER], truth.twist[:, COUPLER])
+    """The reference motion over the arc, and both centrodes of the coupler."""
+    truth = freeze(DrivenFourBar().motion(times(ARC_SAMPLES)))
+    return truth, centrodes(truth.t, truth.pose[:, COUPLER_INDEX], truth.twist[:, COUPLER_INDEX])
 
 
 def figures(material: Material) -> dict[str, str]:
-    """The mechanism with both curves, and how far the centre runs in a radian."""
+    """The mechanism with both centrodes, and ds/dtheta."""
     truth, curves = exact()
     mechanism = DrivenFourBar().mechanism()
-    # The curves run by growing rotation; so must the poses beside them.
-    poses = truth.pose if truth.pose[-1, COUPLER, 2] > truth.pose[0, COUPLER, 2] else truth.pose[::-1]
-    drawn = draw_centrodes(mechanism, poses, curves, (SAMPLES // 4, 3 * SAMPLES // 4), COUPLER)
+    # The curves are sorted by rotation; the poses must have the same order.
+    poses = truth.pose if truth.pose[-1, COUPLER_INDEX, 2] > truth.pose[0, COUPLER_INDEX, 2] else truth.pose[::-1]
+    drawn = draw_centrodes(mechanism, poses, curves, (ARC_SAMPLES // 4, 3 * ARC_SAMPLES // 4), COUPLER_INDEX)
     return {
         "mechanism": svg(drawn, "The four-bar with the centrodes of its coupler"),
-        "rate": svg(draw_rate(curves), "How far the instant centre runs in a radian"),
+        "rate": svg(draw_rate(curves), "How far the instant centre moves in a radian"),
     }
 
 
 def round_trip(curves: Centrodes) -> float:
-    """How far rolling the curves is from the exact motion, between the samples they were made of [m]."""
-    between = DrivenFourBar().motion(times(2 * SAMPLES)[1:-1]).pose[:, COUPLER]
+    """The largest distance [m] between the motion of the rolling curves and the exact one, between the samples."""
+    between = DrivenFourBar().motion(times(2 * ARC_SAMPLES)[1:-1]).pose[:, COUPLER_INDEX]
     rolling = curves.rolling()
     low, high = rolling.limits
     between = between[(between[:, 2] > low) & (between[:, 2] < high)]
-    apart = rolling.pose(between[:, 2]) - between
-    return float(np.linalg.norm(apart[:, :2], axis=-1).max())
+    difference = rolling.pose(between[:, 2]) - between
+    return float(np.linalg.norm(difference[:, :2], axis=-1).max())
 
 
 def agreement(curves: Centrodes) -> float:
@@ -163,29 +164,29 @@ def agreement(curves: Centrodes) -> float:
 
 
 def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
-    """(cell, centre error [m], angle error [rad], rate error [rad/s]) of each method, where it ran."""
+    """(cell, centre error [m], angle error [rad], rate error [rad/s]) of each method that was run."""
     low, high = times(2)
     rows = []
-    for cell, run in material.motions(CELLS).items():
+    for cell, run in material.motions(CENTRODE_CELLS).items():
         truth, within = DrivenFourBar().motion(run.t), (run.t >= low) & (run.t <= high)
         angle, rate = (
-            np.abs(ours - exact)[within, COUPLER, 2]
+            np.abs(ours - exact)[within, COUPLER_INDEX, 2]
             for ours, exact in ((run.pose, truth.pose), (run.twist, truth.twist))
         )
-        centre = centrode_error(truth, run, COUPLER)[within]
-        # Where a body hardly turns its centre is not defined; where a run broke off, nothing is.
+        centre = centrode_error(truth, run, COUPLER_INDEX)[within]
+        # The centre of a body that hardly turns is not defined, and a run that broke off has NaN.
         rows.append((cell, largest(centre[np.isfinite(centre)]), largest(angle), largest(rate)))
     return rows
 
 
 def largest(values: np.ndarray) -> float:
-    """NaN if there is none, or one is NaN."""
+    """The largest value; NaN without values, or if one is NaN."""
     return float(values.max()) if values.size else math.nan
 
 
 def context(material: Material) -> Mapping[str, Any]:
     truth, curves = exact()
-    position, table = round_trip(curves), round_trip(from_poses(truth.t, truth.pose[:, COUPLER]))
+    position, table = round_trip(curves), round_trip(from_poses(truth.t, truth.pose[:, COUPLER_INDEX]))
     rows = measured(material)
     body = [
         [method_name(cell.engine), *map(number, (cell.step, centre, angle, rate))] for cell, centre, angle, rate in rows
@@ -193,7 +194,7 @@ def context(material: Material) -> Mapping[str, Any]:
     header = ["method", "step [s]", "centre off by [m]", "angle [rad]", "rate [rad/s]"]
     return {
         "arc": ARC,
-        "samples": SAMPLES,
+        "samples": ARC_SAMPLES,
         "agreement": agreement(curves),
         "returned": {"position": position, "table": table},
         "table": markdown(header, body) if rows else "Nothing ran.",
@@ -202,7 +203,7 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def _lesson(rows: list[tuple[Cell, float, float, float]]) -> str:
-    """The method whose angle flatters it most: that with the largest ratio of centre error to angle error."""
+    """A sentence on the method with the largest ratio of centre error to angle error."""
     known = [(centre / angle, row) for row in rows if (angle := row[2]) > 0 and math.isfinite(centre := row[1])]
     if not known:
         return ""
@@ -220,5 +221,5 @@ PAGE = Page(
     companions=(DrivenFourBar(),),
     figures=figures,
     context=context,
-    tasks=tuple(map(Motion, CELLS)),
+    tasks=tuple(map(Motion, CENTRODE_CELLS)),
 )

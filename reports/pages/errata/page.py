@@ -1,10 +1,9 @@
-"""The errata's page: every slip of the chapter by number, the derivative that decides, and the motions of engines.
+"""The page of errata: each slip of the chapter, the derivative that decides, and motions of engines.
 
-A slip is a document, slips/NUMBER.md, with the printed formula, the right one, and a script whose numbers decide.
+A slip is a document, slips/NUMBER.md, with the printed formula, the right one, and a script that computes both.
 
-Engines are referees: they know bodies, joints and forces and none of the chapter's formulas. Each runs a mechanism for
-a while; its accelerations are differences of its own velocities. Only linear relations of positions are put in: the
-end of a bar is twice as far from its pin as its centre.
+Engines decide independently of the chapter's formulas: each runs a mechanism, and accelerations are differences of its
+velocities. Only linear relations of positions are assumed: the end of a bar is twice as far from its pin as its centre.
 """
 
 from __future__ import annotations
@@ -42,24 +41,25 @@ from reports.write.tables import number
 
 REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 
-# 1 ms: the differences of order eight below, and the rounding that they magnify, are then far below an engine's errors.
-SPACING = 1e-3
-SAMPLES = 300  # the motion is well away from its start
-FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
-SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
-POINTS, MIDDLE = len(FIRST), len(FIRST) // 2
+# s: the truncation error of the differences below (order eight) and their rounding are then far below engines' errors.
+SAMPLE_SPACING = 1e-3
+SAMPLE_COUNT = 300  # of a run; the last POINTS are used, well away from the start
+# Weights of the first and second derivatives at the middle of nine points.
+FIRST_DERIVATIVE = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
+SECOND_DERIVATIVE = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
+POINTS, MIDDLE = len(FIRST_DERIVATIVE), len(FIRST_DERIVATIVE) // 2
 
 
 @dataclass(frozen=True)
 class SampleWindow:
-    """POINTS samples in a row of one engine's motion; formulas are evaluated at the middle one."""
+    """POINTS successive samples of one engine's motion; formulas are evaluated at the middle one."""
 
     pose: Array  # (POINTS, bodies, 3)
     twist: Array  # (POINTS, bodies, 3)
 
     def change(self, values: Array) -> Array:
-        """The derivative in time of values (POINTS, ...) at the middle one, per second."""
-        return np.tensordot(FIRST, values, axes=1) / SPACING
+        """The time derivative [1/s] of values (POINTS, ...) at the middle sample."""
+        return np.tensordot(FIRST_DERIVATIVE, values, axes=1) / SAMPLE_SPACING
 
 
 HILL, SLEIGH = RollingOnCircle(), ChaplyginSleigh()
@@ -67,7 +67,7 @@ CONFIRMED = 0  # the key of (18.70) and (18.71), which are right as printed
 
 
 def double_pendulum() -> Mechanism:
-    """Two uniform bars of the errata's lengths, angles and rates, 1 kg each, under gravity."""
+    """Two uniform bars of 1 kg with the lengths, angles and rates of the errata, under gravity."""
     chain = Chain((errata.BAR,) * 2, (1.0, 1.0))
     angle, rate = np.array(errata.PHI), np.array(errata.PHI_RATE)
     pose, twist, _ = chain.placement(angle, rate, np.zeros(2))
@@ -81,22 +81,22 @@ def double_pendulum() -> Mechanism:
 
 
 def _pendulum(window: SampleWindow) -> dict[int, Values]:
-    """r_A = 2 r_G1 and r_B/A = 2 (r_G2 - r_A): linear, so the accelerations of the ends follow without a formula."""
+    """By r_A = 2 r_G1 and r_B/A = 2 (r_G2 - r_A) the accelerations of the ends follow from those of the centres."""
     velocity = window.twist[:, :, :2]
     ends = np.stack([2 * velocity[:, 0], 2 * (velocity[:, 1] - 2 * velocity[:, 0])], axis=1)
     measured, turning = window.change(ends), window.change(window.twist[:, :, 2])
     angle, rate = window.pose[MIDDLE, :, 2] + math.pi / 2, window.twist[MIDDLE, :, 2]  # a bar's x axis points down it
-    # The right side of the note is phi1'' itself; the angles, differentiated twice, decide.
-    twice = np.atleast_1d(SECOND @ window.pose[:, 0, 2]) / SPACING**2
-    found = {24: Values(rate[:1], turning[:1], twice)}
+    # The right-hand side of the note is phi1'' itself, so the second derivative of the angle decides.
+    twice = np.atleast_1d(SECOND_DERIVATIVE @ window.pose[:, 0, 2]) / SAMPLE_SPACING**2
+    values = {24: Values(rate[:1], turning[:1], twice)}
     for slip, (bar, printed) in errata.PENDULUM_SLIPS.items():
         state = errata.BarState(errata.BAR, float(angle[bar]), float(rate[bar]), float(turning[bar]))
-        found[slip] = Values(printed(state), errata.right(state), measured[bar])
-    return found
+        values[slip] = Values(printed(state), errata.right(state), measured[bar])
+    return values
 
 
 def _rolling(window: SampleWindow) -> dict[int, Values]:
-    """The disc's centre lies on the contact's normal, so the contact is where the ray to it meets the hill."""
+    """The disc's centre is on the contact's normal, so the contact is where the ray to the centre meets the hill."""
     pose, twist = window.pose[:, 0], window.twist[:, 0]
     arm = HILL.eccentricity * np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
     centre = pose[:, :2] + arm
@@ -106,7 +106,7 @@ def _rolling(window: SampleWindow) -> dict[int, Values]:
     tangent = perpendicular(normal)
     advance = HILL.hill * (math.atan2(normal[1], normal[0]) - math.pi / 2)  # s; arc 0 is at the top
     speed = rate / (1 / HILL.hill + 1 / HILL.radius)
-    # A pole is a point of the body without velocity: the origin of the ground is not, the contact is.
+    # A pole is a point of the body without velocity: the contact is one, the origin of the ground is not.
     at_origin, at_contact = (
         twist[MIDDLE, :2] + rotation_velocity(rate, point - pose[MIDDLE, :2]) for point in (0.0, contact[MIDDLE])
     )
@@ -119,7 +119,7 @@ def _rolling(window: SampleWindow) -> dict[int, Values]:
 def _skate(window: SampleWindow) -> dict[int, Values]:
     pose, twist = window.pose[:, 0], window.twist[:, 0]
     along = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
-    speed = np.sum(twist[:, :2] * along, axis=-1)  # of C too: G is straight ahead of it
+    speed = np.sum(twist[:, :2] * along, axis=-1)  # of C as well, because G is straight ahead of C
     push, turning = (float(window.change(values)) for values in (speed, twist[:, 2]))
     state = (float(pose[MIDDLE, 2]), float(speed[MIDDLE]), push, float(twist[MIDDLE, 2]), turning, (SLEIGH.offset, 0.0))
     return {11: Values(*acceleration_of_g(*state), window.change(twist[:, :2]))}
@@ -136,14 +136,14 @@ def _four_bar(window: SampleWindow) -> dict[int, Values]:
 
 
 class DecidingMotion(NamedTuple):
-    """The mechanism whose motion decides, and what the motion says of which slips."""
+    """A mechanism whose motion decides, and the function that reads the values of each slip from a motion."""
 
     mechanism: Callable[[], Mechanism]
     read: Callable[[SampleWindow], dict[int, Values]]
 
 
 COMPANIONS: tuple[Scene, ...] = (HILL, SLEIGH, DrivenFourBar(), LinkPendulum())
-# By the motion.
+# Description of the motion -> the motion.
 QUESTIONS: dict[str, DecidingMotion] = {
     "a disc rolls off a round hill": DecidingMotion(HILL.mechanism, _rolling),
     "a sleigh on one skate coasts": DecidingMotion(SLEIGH.mechanism, _skate),
@@ -154,14 +154,14 @@ QUESTIONS: dict[str, DecidingMotion] = {
 
 @dataclass(frozen=True)
 class Refereed(OfMethod):
-    """The last POINTS samples of an engine's motion of the mechanism of a question."""
+    """The last POINTS samples of an engine's motion of the mechanism of one question."""
 
     question: str
     what: ClassVar[str] = "{0.question}"
     seconds: ClassVar[float] = 0.2
 
     def run(self) -> Kept:
-        motion = self.method.build(QUESTIONS[self.question].mechanism(), SPACING)(SAMPLES, 1)
+        motion = self.method.build(QUESTIONS[self.question].mechanism(), SAMPLE_SPACING)(SAMPLE_COUNT, 1)
         return {"pose": motion.pose[-POINTS:], "twist": motion.twist[-POINTS:]}
 
 
@@ -170,7 +170,7 @@ TASKS = tuple(Refereed(engine, question) for question in QUESTIONS for engine in
 
 @dataclass(frozen=True)
 class Ruling:
-    """One engine's decision on one slip: `values.decides` is from its own motion; after 0.3 s of `about`."""
+    """One engine's values for one slip: `values.decides` is from its motion after 0.3 s of `about`."""
 
     number: int
     method: str
@@ -179,34 +179,34 @@ class Ruling:
 
 
 def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...], list[str]]:
-    """(the ruling of each referee on each slip, by number; sentences on engines that failed).
+    """(rulings of the engines, by the slip's number; messages about engines that failed).
 
-    An engine that has no such joint has no ruling.
+    An engine that lacks a joint has no ruling.
     """
-    found: list[Ruling] = []
-    lost: list[str] = []
+    decided: list[Ruling] = []
+    failed: list[str] = []
     for task, answer in answers:
         if not isinstance(task, Refereed) or answer.outcome == Outcome.UNSUPPORTED:
             continue
         method = method_name(task.method)
         if not answer.finished:
-            lost.append(f"{method} where {task.question}: {answer.told}")
+            failed.append(f"{method} where {task.question}: {answer.told}")
             continue
         window = SampleWindow(answer.array("pose"), answer.array("twist"))
         if not (np.isfinite(window.pose).all() and np.isfinite(window.twist).all()):
-            lost.append(f"{method} where {task.question}: its motion is not finite")
+            failed.append(f"{method} where {task.question}: its motion is not finite")
             continue
-        read = QUESTIONS[task.question].read(window)
-        found += [Ruling(slip, method, task.question, values) for slip, values in read.items()]
-    return tuple(sorted(found, key=lambda ruling: ruling.number)), lost
+        values_by_slip = QUESTIONS[task.question].read(window)
+        decided += [Ruling(slip, method, task.question, values) for slip, values in values_by_slip.items()]
+    return tuple(sorted(decided, key=lambda ruling: ruling.number)), failed
 
 
 @dataclass(frozen=True)
 class Erratum:
-    """One slip of the chapter. printed, right: both formulas in a line; quoted, corrected: the same in LaTeX.
+    """One slip of the chapter. printed, right: both formulas in one line. quoted, corrected: both formulas in LaTeX.
 
-    deciding: the derivative that decides, in words. dimensions: whether they alone show the slip; the size of the miss
-    then depends on the units. script: computes the values; a slip in words has none.
+    deciding: a description of the derivative that decides. dimensions: whether the physical dimensions alone show the
+    slip; the size of its error then depends on the units. script: computes the values; empty for a slip of wording.
     """
 
     number: int
@@ -223,17 +223,17 @@ class Erratum:
 
     @cached_property
     def names(self) -> Mapping[str, Any]:
-        """What the script computes, by name."""
+        """The global names of the script after its run."""
         return run_script(f"slip {self.number}", self.script)
 
     @property
     def values(self) -> Values:
-        """As printed, as it must be, and by what decides."""
+        """The values of the printed formula, of the right one and of the derivative that decides."""
         return Values(self.names["printed"], self.names["right"], self.names["measured"])
 
     @property
     def by_tolerance(self) -> Mapping[float, float]:
-        """The miss of a method whose tolerance the chapter does not state, at tolerances of ours; else empty."""
+        """Tolerance -> error of a method for which the chapter states no tolerance; empty for other slips."""
         return self.names.get("by_tolerance", {})
 
 
@@ -244,9 +244,9 @@ def read_slip(path: Path) -> Erratum:
     quoted, corrected = re.findall(r"```math\n(.*?)\n```", text, re.DOTALL) or ("", "")
     (script,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL) or ("",)
     where, dimensions = text.splitlines()[0].partition(": ")[2], fields.get("shown by") == "dimensions"
-    words = {name: fields.get(name, "") for name in ("printed", "right", "reason", "unit", "deciding")}
+    texts = {name: fields.get(name, "") for name in ("printed", "right", "reason", "unit", "deciding")}
     return Erratum(
-        int(path.stem), where, **words, dimensions=dimensions, quoted=quoted, corrected=corrected, script=script
+        int(path.stem), where, **texts, dimensions=dimensions, quoted=quoted, corrected=corrected, script=script
     )
 
 
@@ -256,18 +256,19 @@ WORD_SLIPS = tuple(slip for slip in SLIPS_OF_CHAPTER if not slip.script)
 
 
 def digits(values: Iterable[float]) -> str:
-    """'(-2.2203, 1.5005)': a vector as it is printed; a single number without brackets."""
-    told = [f"{value:.5g}" for value in np.where(np.abs(list(values)) < 1e-12, 0.0, list(values))]
-    return f"({', '.join(told)})" if len(told) > 1 else told[0]
+    """A vector as '(-2.2203, 1.5005)'; a single number without brackets."""
+    numbers = [f"{value:.5g}" for value in np.where(np.abs(list(values)) < 1e-12, 0.0, list(values))]
+    return f"({', '.join(numbers)})" if len(numbers) > 1 else numbers[0]
 
 
 def missed(erratum: Erratum, pattern: str, between: str) -> str:
-    """By how much an integration misses at each of its tolerances; `pattern` has a miss and a tolerance."""
-    return between.join(pattern.format(number(miss), number(each)) for each, miss in erratum.by_tolerance.items())
+    """The error of an integration at each of its tolerances; `pattern` formats an error and a tolerance."""
+    errors = erratum.by_tolerance.items()
+    return between.join(pattern.format(number(error), number(tolerance)) for tolerance, error in errors)
 
 
 def verdict(erratum: Erratum, values: Values, ruled: Sequence[Ruling]) -> str:
-    """By how much the printed and the right formula miss the derivative that decides, and each engine's own motion."""
+    """The errors of the printed and of the right formula, against the derivative that decides and against engines."""
     right = number(values.agreement)
     misses = f"The printed formula misses it by {number(values.miss)}, the right one by {right}."
     pattern = "the printed one misses their motion by {0} or more, the right one by {1} at most."
@@ -287,42 +288,42 @@ def verdict(erratum: Erratum, values: Values, ruled: Sequence[Ruling]) -> str:
 
 
 def slip_rows() -> list[tuple[str, ...]]:
-    """A row a slip by number: where, both formulas with their values, the derivative, the verdict."""
+    """A row for each slip: number, place, both formulas with their values, the derivative, the verdict."""
     rows = []
     for slip in SLIPS_OF_CHAPTER:
-        formulas, decided, told = (slip.printed, slip.right), "-", f"words: {slip.reason}"
+        formulas, decided, verdict_text = (slip.printed, slip.right), "-", f"words: {slip.reason}"
         if slip.script:
             values, right = slip.values, number(slip.values.agreement)
             formulas = f"{slip.printed}\n= {digits(values.printed)}", f"{slip.right}\n= {digits(values.right)}"
             decided = f"{digits(values.decides)}\n{slip.unit}"
-            told = f"off by {number(values.miss)}, right by {right}"
+            verdict_text = f"off by {number(values.miss)}, right by {right}"
             if slip.by_tolerance:
                 integration = missed(slip, "{} at rtol {}", ", ")
-                told = f"the claim; integration off by {integration} (ours); formula by {right}"
-            told += "; dimensions show it" if slip.dimensions else "; only numbers show it"
-        rows.append((str(slip.number), slip.where, *formulas, decided, told))
+                verdict_text = f"the claim; integration off by {integration} (ours); formula by {right}"
+            verdict_text += "; dimensions show it" if slip.dimensions else "; only numbers show it"
+        rows.append((str(slip.number), slip.where, *formulas, decided, verdict_text))
     return rows
 
 
 def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
-    """(a row a slip and engine: both formulas' misses of its motion; sentences on engines that failed)."""
+    """(a row for each slip and engine with the errors of both formulas; messages about engines that failed)."""
     units, answers = {slip.number: slip.unit for slip in ERRATA}, dict(run_items(TASKS))
-    found, lost = rulings((task, answers[task]) for task in TASKS)
+    decided, failed = rulings((task, answers[task]) for task in TASKS)
     return [
         (str(r.number), r.method, r.about, units[r.number], number(r.values.miss), number(r.values.agreement))
-        for r in found
+        for r in decided
         if r.number in units
-    ], lost
+    ], failed
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Values of the formulas, which are computed at once, and decisions of engines, from their stored motions."""
-    found, lost = rulings(material.answers.items())
+    """Values of the formulas, which are computed now, and decisions of engines, from their stored motions."""
+    decided, failed = rulings(material.answers.items())
     slips = [
         {
             "erratum": erratum,
             "verdict": verdict(
-                erratum, erratum.values, [ruling for ruling in found if ruling.number == erratum.number]
+                erratum, erratum.values, [ruling for ruling in decided if ruling.number == erratum.number]
             ),
             "script": f"reports/pages/errata/slips/{erratum.number:02}.md",
         }
@@ -333,8 +334,8 @@ def context(material: Material) -> Mapping[str, Any]:
         "word_slips": WORD_SLIPS,
         "blind": [erratum.number for erratum in ERRATA if not erratum.dimensions],
         "seen": [erratum.number for erratum in ERRATA if erratum.dimensions],
-        "rates": [(r.method, r.values.agreement) for r in found if r.number == CONFIRMED],
-        "lost": lost,
+        "rates": [(r.method, r.values.agreement) for r in decided if r.number == CONFIRMED],
+        "lost": failed,
         "rolling": rolling_acceleration(),
     }
 

@@ -1,7 +1,7 @@
-"""Faults of released engines: page.md and upstream/NAME.md are documents written once, with the scripts that show them.
+"""Faults of released engines: page.md and upstream/NAME.md are documents written once, with scripts that show them.
 
-The scripts stand in the documents alone. Those of SCRIPTS are tasks of the grid, so that a finding disappears with the
-release that mends its fault; a test runs every script and compares what it prints with what its document says.
+The scripts are in the documents only. Those of SCRIPTS are run with every full grid, so that a finding disappears with
+the release that repairs its fault. A test runs every script and compares its output with its document.
 """
 
 from __future__ import annotations
@@ -29,29 +29,33 @@ from reports.model.tasks import Task, Values
 from reports.pages.common import run_script
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 
-UPSTREAM = Path(__file__).parent / "upstream"  # a file to paste into a tracker, for each fault
-SCRIPT = re.compile(r"(?:## `|<summary>)(\w+)\.py(?:`|</summary>)\n\n```python\n(.*?)```", re.DOTALL)
-RESULT = re.compile(r"expected (\S+), found (\S+)$")  # the end of the line that a script of SCRIPTS prints
+UPSTREAM = Path(__file__).parent / "upstream"  # for each fault a text for the engine's issue tracker
+SCRIPT_BLOCK = re.compile(r"(?:## `|<summary>)(\w+)\.py(?:`|</summary>)\n\n```python\n(.*?)```", re.DOTALL)
+RESULT = re.compile(r"expected (\S+), found (\S+)$")  # ends the line that a script of SCRIPTS prints
 
 
 @cache
 def scripts() -> Mapping[str, str]:
-    """The text of each script by its name."""
-    return {name: text for path in sorted(UPSTREAM.iterdir()) for name, text in SCRIPT.findall(path.read_text("utf-8"))}
+    """Script name -> its text."""
+    return {
+        name: text
+        for path in sorted(UPSTREAM.iterdir())
+        for name, text in SCRIPT_BLOCK.findall(path.read_text("utf-8"))
+    }
 
 
 def printed_apart(name: str) -> str:
-    """What a script prints in a process of its own. Raises RuntimeError with its last line if it fails."""
+    """The output of a script in a separate process. Raises RuntimeError with its last line if it fails."""
     run = subprocess.run([sys.executable, "-c", scripts()[name]], capture_output=True, text=True)
     if run.returncode:
         raise RuntimeError((run.stderr or run.stdout).strip().splitlines()[-1])
-    # MJX prints a line about Warp, which is not used.
+    # Without the line that MJX prints about Warp, which is not used.
     return "\n".join(line for line in run.stdout.splitlines() if not line.startswith("Failed to import"))
 
 
 @dataclass(frozen=True)
-class Script(Task):
-    """A script with the engine that is installed; `digest` is that of its text, so that an edited one is run again."""
+class FaultScript(Task):
+    """A script, run with the installed engine; `digest`: of its text, so that an edited script is run again."""
 
     name: str
     digest: str
@@ -66,11 +70,11 @@ class Script(Task):
         return DEFAULT if self.name.startswith("mjx") else None
 
     def run(self) -> Values:
-        """`expected` and `found`, in the unit that the script says, and `version` of the engine's package.
+        """`expected` and `found`, in the unit of the script, and `version` of the engine's package.
 
-        Raises Unsupported where the script's package is an extra that is not installed.
+        Raises Unsupported if the script's package is an extra that is not installed.
         """
-        if self.engine is not None:  # JAX takes its settings from whoever imports it first, so it is not imported here
+        if self.engine is not None:  # JAX has the settings of its first import, so it is imported in another process
             DEFAULT.require()
             try:
                 match = RESULT.search(printed_apart(self.name))
@@ -92,12 +96,12 @@ def _values(expected: Any, found: Any) -> dict[str, np.ndarray]:
 
 
 def is_right(expected: float, found: float) -> bool:
-    """Within what MuJoCo's softness costs at the stiffest setting, 1e-4."""
+    """Whether they agree within the error of MuJoCo's regularisation at its stiffest setting, 1e-4."""
     return abs(found - expected) <= 2e-4 * max(1.0, abs(expected))
 
 
-SCRIPTS: Mapping[str, Script] = {
-    name: Script(name, digest(scripts()[name]))
+SCRIPTS: Mapping[str, FaultScript] = {
+    name: FaultScript(name, digest(scripts()[name]))
     for name in (
         *("mujoco_loop", "mujoco_sparse", "mujoco_joint_equality", "mujoco_tendon_equality"),
         *("mujoco_site_near_origin", "pymunk_groove", "pymunk_groove_moving", "pymunk_kinetic_energy", "mjx_loop"),
@@ -107,10 +111,10 @@ SCRIPTS: Mapping[str, Script] = {
 
 @dataclass(frozen=True)
 class Offsets(Task):
-    """The velocity that pymunk's GrooveJoint makes across itself, with the anchor at several offsets [m].
+    """The velocity across the groove that pymunk's GrooveJoint creates, for several offsets of its anchor [m].
 
-    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground; its anchor lies at the offset from the
-    centre of mass, half along and half across the groove.
+    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The anchor is at this distance from the
+    centre of mass, at 45 degrees to the groove.
     """
 
     offsets: tuple[float, ...]
@@ -140,7 +144,7 @@ def measured_across(offset: float) -> float:
 
 
 def predicted_across(offset: Any) -> Any:
-    """The same by cpGrooveJoint's law, an impulse n (n.K^-1 v) along the normal n instead of n (n.v) / (n.K n).
+    """That velocity by cpGrooveJoint's formula: the impulse n (n.K^-1 v) instead of n (n.v) / (n.K n), n the normal.
 
     K = J M^-1 J^T of the two anchors held together, v their relative velocity: here K = [[1 + q, -q], [-q, 1 + q]] with
     q = offset^2 / 2, v = (1, 0) and n = (0, 1), so that the impulse is -q / (1 + 2 q).
@@ -150,7 +154,7 @@ def predicted_across(offset: Any) -> Any:
 
 
 def draw_offsets(measured: np.ndarray) -> Figure:
-    """What the groove makes of a body that slides along it, against the offset of its anchor."""
+    """The velocity across the groove against the offset of the anchor, measured and by the wrong formula."""
     with drawing(3.4, width=6.4) as figure:
         axes = figure.subplots()
         fine = np.geomspace(OFFSETS.offsets[0], OFFSETS.offsets[-1], 200)
@@ -164,7 +168,7 @@ def draw_offsets(measured: np.ndarray) -> Figure:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """The groove's chart, if it was measured."""
+    """The chart of the groove, if it was measured."""
     answer = material.finished(OFFSETS)
     title = "Velocity that a groove creates across itself, against its anchor's offset"
     return {"groove": svg(draw_offsets(answer.array("across")), title)} if answer else {}

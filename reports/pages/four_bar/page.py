@@ -1,4 +1,4 @@
-"""The four-bar's page: its scenes, its failure experiments, and the nine configurations of Fig. 18.66."""
+"""The page of the four-bar: its scenes, its experiments, and the nine configurations of Fig. 18.66."""
 
 from __future__ import annotations
 
@@ -20,22 +20,21 @@ from reference.scenes.four_bar.scenes import (
     SpinningFourBar,
 )
 from reports.model.cells import Cell
-from reports.model.page import Failure, Material, Observation, Page
+from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Answer, Motion, Task, Values
-from reports.pages.common import ALL, cells, described, deviations, read_answers, refusals
+from reports.pages.common import ALL, cells, described, read_answers, refusals, scene_page
 from reports.plots import mechanisms as drawings
 from reports.plots.theme import svg
 from reports.versions.table import released
-from reports.write.rows import lookups
 from reports.write.tables import markdown, number, step_words
 from reports.write.unmeasured import UNMEASURED
 
-SAMPLES = 50  # a revolution
+SAMPLES_PER_REVOLUTION = 50
 
 
 @dataclass(frozen=True)
 class PrintedRates(Task):
-    """(18.70) and (18.71) under RK45 at a relative tolerance, the absolute one a thousandth of it."""
+    """Equations (18.70) and (18.71) integrated by RK45; the absolute tolerance is a thousandth of the relative one."""
 
     revolutions: int
     tolerance: float
@@ -43,23 +42,23 @@ class PrintedRates(Task):
     words: ClassVar[str] = "printed rates over {0.revolutions} revolutions at {0.tolerance:g}"
 
     def run(self) -> Values:
-        """`error`: the largest of beta [rad]; `evaluations` of the rates; `stopped`: why, if before the end."""
+        """`error`: the largest error of beta [rad]; `evaluations` of the rates; `stopped`: why it ended early."""
         scene = DrivenFourBar()
-        t = np.linspace(0, self.revolutions * scene.duration, SAMPLES * self.revolutions + 1)
+        t = np.linspace(0, self.revolutions * scene.duration, SAMPLES_PER_REVOLUTION * self.revolutions + 1)
         beta, _ = scene.four_bar.angles(scene.start + scene.rate * t)
-        found = scene.four_bar.integrate_rates(
+        integrated = scene.four_bar.integrate_rates(
             t, scene.rate, scene.start, rtol=self.tolerance, atol=self.tolerance * 1e-3
         )
-        alive = np.isfinite(found.beta)
+        finite = np.isfinite(integrated.beta)
         return {
-            "error": np.max(np.abs(found.beta - beta)[alive]),
-            "evaluations": np.asarray(float(found.evaluations)),
-            "stopped": found.stopped or "",
+            "error": np.max(np.abs(integrated.beta - beta)[finite]),
+            "evaluations": np.asarray(float(integrated.evaluations)),
+            "stopped": integrated.stopped or "",
         }
 
 
-EVERY: tuple[Engine, ...] = (*ALL, Lagrange("rk4", "projection"))
-# The first tolerance is the default of solve_ivp.
+WITH_EXACT: tuple[Engine, ...] = (*ALL, Lagrange("rk4", "projection"))
+# The first tolerance is the default of scipy's solve_ivp.
 DRIFTS = tuple(PrintedRates(revolutions, tolerance) for revolutions in (1, 100) for tolerance in (1e-3, 1e-6, 1e-9))
 
 
@@ -76,78 +75,53 @@ def rates_drift(material: Material) -> list[Observation]:
 
 
 def refusal(material: Material) -> list[Observation]:
-    """The reference's sentence on a crank that is driven beyond its limit."""
+    """The reference's error message for a crank that is driven beyond its limit."""
     scene = OverdrivenFourBar()
     return refusals({f"{scene.duration:.3g} s": lambda: scene.motion([scene.duration])})
 
 
-SWEEPS = tuple(
+FEW_ITERATIONS = tuple(
     replace(pymunk.TUNED, variant=f"tuned, {count} sweep{'s' if count > 1 else ''}", iterations=count, error_bias=0.0)
     for count in (1, 2, 5, 20)
 )
 
-# The drive by overwriting with the tuned loop, beside `mujoco.DRIVES`, which has it with the loop as shipped.
-OVERWRITTEN = replace(mujoco.TUNED, variant="tuned, overwritten crank", drive="overwrite")
-
-FAILURES = described(
-    __file__,
-    Failure("Rates without feedback", tasks=DRIFTS, observations=rates_drift),
-    Failure(
-        "A parallelogram through its change points",
-        cells=cells(Parallelogram(), EVERY[:-1], (1, 10, 100)) + cells(Parallelogram(), EVERY[-1:], (1, 10)),
-    ),
-    Failure("A crank driven into its limit", cells=cells(OverdrivenFourBar(), EVERY, (1, 10)), observations=refusal),
-    Failure(
-        "Five ways to drive a crank",
-        cells=cells(DrivenFourBar(), (mujoco.TUNED, *mujoco.DRIVES, pymunk.TUNED, OVERWRITTEN), (1, 10, 100)),
-    ),
-    Failure(
-        "Steps far too large",
-        cells=tuple(cell for samples in (20, 10, 5) for cell in cells(SpinningFourBar(), EVERY, (1,), samples)),
-    ),
-    Failure("Too few iterations", cells=cells(SpinningFourBar(), SWEEPS, (1, 10, 100))),
-    Failure(
-        "Worse as the step shrinks", cells=cells(SpinningFourBar(), (mujoco.DEFAULT, mujoco.TUNED), (1, 10, 100, 1000))
-    ),
-    stops=f"{OverdrivenFourBar().stopping_time:.4f}",
-)
+# The crank's state is overwritten after each step; `mujoco.DRIVES` has the same with the loop as shipped.
+OVERWRITTEN_STIFF = replace(mujoco.TUNED, variant="tuned, overwritten crank", drive="overwrite")
 
 
-SCENES = (DrivenFourBar(), FreeFourBar(), SpinningFourBar())
-ADVISED = "free_four_bar"
+RECOMMENDED = "free_four_bar"
 
-# The nine poses of Fig. 18.66 stand at the ends of eight equal parts: the last is the first again.
-PARTS = 8
-SAMPLES_A_PART = 8  # so that the engines' step is about 1e-2 s
-OVERLAID = {"pymunk default": ("first", "--"), "mujoco default": ("second", ":")}
+# The nine poses of Fig. 18.66 are at the ends of eight equal intervals: the last pose is the first one again.
+INTERVALS = 8
+SAMPLES_PER_INTERVAL = 8  # the engines' step is then about 1e-2 s
+DRAWN_OVER_TRUTH = {"pymunk default": ("first", "--"), "mujoco default": ("second", ":")}
 
-
-# The moving picture of README, over the exact motion, at this many steps between samples: a millisecond.
+# The animation of README: these methods over the exact motion, with steps of a millisecond.
 MOVING_PICTURE = "moving.svg"
-MOVING_EVERY = 10
-MOVING = {
+MOVING_EVERY = 10  # steps between samples
+MOVING_METHODS = {
     "pymunk as shipped": pymunk.DEFAULT,
     "MuJoCo as shipped": mujoco.DEFAULT,
     "MuJoCo with the lines below": mujoco.TUNED,
 }
-MOVED = tuple(Motion(Cell(FreeFourBar(), engine, MOVING_EVERY, "failure")) for engine in MOVING.values())
+MOVING_TASKS = tuple(Motion(Cell(FreeFourBar(), engine, MOVING_EVERY, "failure")) for engine in MOVING_METHODS.values())
 
 POSED = {
-    method_name(engine): Cell(DrivenFourBar(), engine, 1, samples=PARTS * SAMPLES_A_PART)
+    method_name(engine): Cell(DrivenFourBar(), engine, 1, samples=INTERVALS * SAMPLES_PER_INTERVAL)
     for engine in ENGINES
-    if method_name(engine) in OVERLAID
+    if method_name(engine) in DRAWN_OVER_TRUTH
 }
 
 
 def figures(material: Material) -> dict[str, str]:
-    """The nine configurations, with each engine as shipped overlaid where it differs visibly."""
+    """The nine configurations; each engine as shipped is drawn over them where it differs visibly."""
     scene = DrivenFourBar()
-    found = material.motions(POSED.values())
-    truth = scene.motion(np.arange(PARTS + 1) * scene.duration / PARTS)
+    motions = material.motions(POSED.values())
+    truth = scene.motion(np.arange(INTERVALS + 1) * scene.duration / INTERVALS)
     others = {
-        f"{name}, step {step_words(cell.step)}": (found[cell].pose[::SAMPLES_A_PART], *OVERLAID[name])
+        f"{name}, step {step_words(cell.step)}": (motions[cell].pose[::SAMPLES_PER_INTERVAL], *DRAWN_OVER_TRUTH[name])
         for name, cell in POSED.items()
-        if cell in found
+        if cell in motions
     }
     titles = [f"$t_{i}$ = {t:.3f} s" for i, t in enumerate(truth.t)]
     figure = drawings.configurations(scene.mechanism(), truth.pose, titles, others, columns=5)
@@ -155,7 +129,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def assemblies() -> str:
-    """Both positions of the sample's loop at its first crank angle, each with the gap that is left at C."""
+    """Both assemblies of the sample's loop at its first crank angle, and the gap at C of each."""
     scene = DrivenFourBar()
     bars, theta = scene.four_bar, scene.start
     b = bars.crank * np.exp(1j * theta)
@@ -168,13 +142,12 @@ def assemblies() -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Rows and sweeps by method, for sentences; what MuJoCo's regularisation yields, and how pymunk closes a gap."""
+    """Numbers of the sentences: how far MuJoCo's regularisation yields, and the share of a gap that pymunk closes."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
     before = [
         e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", "free_four_bar", "tuned")
     ]
     return {
-        **lookups(material, SCENES),
         "assemblies": assemblies(),
         "soft_share": [1 / d - 1 for d in soft[:2]],  # with a closed gap, and with one of a millimetre or more
         "stiff_share": 1 / hard[0] - 1,
@@ -184,21 +157,49 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
-    """Methods between the variants on the advised scene alone: what each setting buys is the same in all three."""
-    return engine in VARIANTS or engine not in ENGINES or scene.name == ADVISED
+    """Methods between the usual variants are run in one scene alone: the gain of each setting is the same in all."""
+    return engine in VARIANTS or engine not in ENGINES or scene.name == RECOMMENDED
 
 
-PAGE = Page(
-    name="four_bar",
+PAGE = scene_page(
+    "four_bar",
     title="The four-bar linkage",
     lesson="Three bars and four pins: the loop that the chapter closes exactly and an engine closes by forces.",
-    scenes=SCENES,
-    advised=ADVISED,
+    scenes=(DrivenFourBar(), FreeFourBar(), SpinningFourBar()),
+    advised=RECOMMENDED,
     engines=ENGINES,
     compared=compared,
-    failures=FAILURES,
+    failures=described(
+        __file__,
+        Failure("Rates without feedback", tasks=DRIFTS, observations=rates_drift),
+        Failure(
+            "A parallelogram through its change points",
+            cells=cells(Parallelogram(), WITH_EXACT[:-1], (1, 10, 100))
+            + cells(Parallelogram(), WITH_EXACT[-1:], (1, 10)),
+        ),
+        Failure(
+            "A crank driven into its limit",
+            cells=cells(OverdrivenFourBar(), WITH_EXACT, (1, 10)),
+            observations=refusal,
+        ),
+        Failure(
+            "Five ways to drive a crank",
+            cells=cells(DrivenFourBar(), (mujoco.TUNED, *mujoco.DRIVES, pymunk.TUNED, OVERWRITTEN_STIFF), (1, 10, 100)),
+        ),
+        Failure(
+            "Steps far too large",
+            cells=tuple(
+                cell for samples in (20, 10, 5) for cell in cells(SpinningFourBar(), WITH_EXACT, (1,), samples)
+            ),
+        ),
+        Failure("Too few iterations", cells=cells(SpinningFourBar(), FEW_ITERATIONS, (1, 10, 100))),
+        Failure(
+            "Worse as the step shrinks",
+            cells=cells(SpinningFourBar(), (mujoco.DEFAULT, mujoco.TUNED), (1, 10, 100, 1000)),
+        ),
+        stops=f"{OverdrivenFourBar().stopping_time:.4f}",
+    ),
     figures=figures,
     context=context,
-    known=deviations("four_bar"),
-    tasks=(*map(Motion, POSED.values()), *MOVED),
+    tasks=(*map(Motion, POSED.values()), *MOVING_TASKS),
 )

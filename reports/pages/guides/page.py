@@ -1,4 +1,4 @@
-"""Guides without scenes of their own: the words, and which settings to take; their numbers are stored rows."""
+"""Guides without scenes of their own: the glossary and the page on settings, with numbers from stored rows."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.write.rows import lookups
 from reports.write.tables import markdown, number
 
-FOLDER = Path(__file__).parent
-FOUR_BAR = FreeFourBar()
-# The scene's samples are 1e-2 s apart, so that this many steps a sample make steps of a millisecond.
-EVERY = 10
-ENGINES: tuple[Engine, ...] = tuple(dict.fromkeys([*mujoco.METHODS, *pymunk.METHODS, *lagrange.VARIANTS]))
+GUIDES = Path(__file__).parent
+LOOP = FreeFourBar()
+# Steps between samples: the scene's samples are 1e-2 s apart, so the step is a millisecond.
+STEPS_PER_SAMPLE = 10
+LOOP_METHODS: tuple[Engine, ...] = tuple(dict.fromkeys([*mujoco.METHODS, *pymunk.METHODS, *lagrange.VARIANTS]))
 
 
 def table(material: Material) -> str:
     """Errors, order, plateau and cost of each method that has a row at a millisecond; empty if none has."""
-    known = lookups(material, (FOUR_BAR,))
+    look_up = lookups(material, (LOOP,))
     body = []
-    for engine in ENGINES:
-        asked = (FOUR_BAR.name, engine.name, engine.variant)
-        row, sweep = known["at"](*asked, EVERY), known["sweep"](*asked)
+    for engine in LOOP_METHODS:
+        method = (LOOP.name, engine.name, engine.variant)
+        row, sweep = look_up["at"](*method, STEPS_PER_SAMPLE), look_up["sweep"](*method)
         if row:
             numbers = (row.angle, sweep.order, sweep.plateau, row.reaction, 1e3 * row.cpu)
             body.append([method_name(engine), *map(number, numbers)])
@@ -37,24 +37,24 @@ def table(material: Material) -> str:
 
 def context(material: Material) -> Mapping[str, Any]:
     """The table, and the functions that look up single rows."""
-    return {**lookups(material, (FOUR_BAR,)), "table": table(material)}
+    return {**lookups(material, (LOOP,)), "table": table(material)}
 
 
 PAGES = (
     Page(
         name="glossary",
         title="Glossary",
-        lesson="The words of these pages, each in a sentence or two, and how to read their charts and tables.",
-        template=FOLDER / "glossary.md",
+        lesson="The terms of these pages, each in a sentence or two, and how to read their charts and tables.",
+        template=GUIDES / "glossary.md",
     ),
     YOUR_LOOP,
     Page(
         name="settings",
         title="Settings",
         lesson="Which integrator, how stiff a loop, and how to read a reaction.",
-        engines=ENGINES,
-        borrowed=sweep_cells((FOUR_BAR,), ENGINES, FULL),
-        template=FOLDER / "settings.md",
+        engines=LOOP_METHODS,
+        borrowed=sweep_cells((LOOP,), LOOP_METHODS, FULL),
+        template=GUIDES / "settings.md",
         context=context,
     ),
 )

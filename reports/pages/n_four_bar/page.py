@@ -1,4 +1,4 @@
-"""The N-four-bar's page: a chain whose one freedom becomes N + 1 twice a turn."""
+"""The page of the N-four-bar: a linkage whose one degree of freedom becomes N + 1 twice a turn."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from engines.lagrange import Lagrange
 from engines.registry import VARIANTS
 from reference.scenes.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reports.model.outcomes import Outcome
-from reports.model.page import Failure, Material, Observation, Page
-from reports.pages.common import ALL, cells, described, deviations
+from reports.model.page import Failure, Material, Observation
+from reports.pages.common import ALL, cells, described, scene_page
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.rows import lookups
@@ -23,42 +23,28 @@ from reports.write.unmeasured import UNMEASURED
 SHIPPED_RK4 = replace(mujoco.DEFAULT, variant="RK4 alone", integrator="RK4")
 
 
-SOFT = cells(NFourBar(), (mujoco.DEFAULT, SHIPPED_RK4), (1, 3, 10, 30))
-ONCE = NFourBar(duration=1.2, horizon=1.2)  # one singular position, not yet the second
+SOFT_LOOPS = cells(NFourBar(), (mujoco.DEFAULT, SHIPPED_RK4), (1, 3, 10, 30))
+ONCE = NFourBar(duration=1.2, horizon=1.2)  # passes the first singular position and not the second
 
 
 def forces_without_a_limit(material: Material) -> list[Observation]:
-    """How the largest reaction grows towards a singular position, with how little the loops are still open."""
+    """The largest reaction at instants that approach a singular position."""
     scene = NFourBar()
-    first = scene.singular_times(5.0)[0]
-    found = []
-    for before in (1e-1, 1e-2, 1e-3, 1e-4):
-        reaction = abs(scene.motion([first - before]).reaction).max()
-        found.append(
-            Observation("the reference", f"{number(before, 1)} s before", f"largest reaction {reaction:.3g} N")
+    singular = scene.singular_times(5.0)[0]
+    observations = []
+    for interval in (1e-1, 1e-2, 1e-3, 1e-4):
+        reaction = abs(scene.motion([singular - interval]).reaction).max()
+        observations.append(
+            Observation("the reference", f"{number(interval, 1)} s before", f"largest reaction {reaction:.3g} N")
         )
-    return found
+    return observations
 
 
-FAILURES = described(
-    __file__,
-    Failure("Through the singular position, as shipped", cells=SOFT),
-    Failure("Forces that have no limit", cells=cells(ONCE, ALL, (1, 10, 100)), observations=forces_without_a_limit),
-    Failure(
-        "Exact multipliers at a singular position",
-        cells=cells(
-            ONCE, (Lagrange("rk4", "none"), Lagrange("rk4", "baumgarte"), Lagrange("rk4", "projection")), (1, 3, 10)
-        ),
-    ),
-    first=f"{NFourBar().singular_times(5.0)[0]:.4f}",
-)
-
-
-SCENES = (NFourBar(), TenFourBars(), FortyFourBars())
+LINKAGES_IN_A_ROW = (NFourBar(), TenFourBars(), FortyFourBars())
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Stroboscopic pictures of the truth: two loops and ten from upright, and two through the singular position."""
+    """Stroboscopic pictures of reference motions: two and ten loops, and two through the singular position."""
     two, ten = NFourBar(), TenFourBars()
     line = float(two.singular_times(5.0)[0])
     strips = (
@@ -70,37 +56,49 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Rows, the exact instants of each scene, `failed`: how a method without a best row ended, and `soft`: errors of
-    soft loops, UNMEASURED unless all that was run of them left the branch, as the sentence says.
+    """Numbers of the sentences.
+
+    exact: period and singular instants [s] by scene. failed: the outcomes of a method without a best row. soft: errors
+    of soft loops; UNMEASURED unless all of their runs left the branch, as the sentence claims.
     """
-    asked = lookups(material, SCENES)
+    look_up = lookups(material, LINKAGES_IN_A_ROW)
 
     def failed(scene: str, engine: str, variant: str) -> Any:
-        outcomes = asked["ended"](scene, engine, variant)
+        outcomes = look_up["ended"](scene, engine, variant)
         if not outcomes:
             return UNMEASURED
         wrong = all(Outcome(outcome).wrong for outcome in outcomes)
         return "stays on the branch" if wrong else f"can be compared: {', '.join(outcomes)}"
 
-    rows = material.of(SOFT)
+    rows = material.of(SOFT_LOOPS)
     angles = [row.angle for row in rows if Outcome(row.outcome).wrong and math.isfinite(row.angle)]
-    whole = rows and len(angles) == len(rows)
-    soft = {"count": len(rows), "least": min(angles), "most": max(angles)} if whole else UNMEASURED
+    all_left = rows and len(angles) == len(rows)
+    soft = {"count": len(rows), "least": min(angles), "most": max(angles)} if all_left else UNMEASURED
     exact = {
         scene.name: {"period": scene.period, "singular": [float(t) for t in scene.singular_times(scene.period)]}
-        for scene in (NFourBar(), TenFourBars(), FortyFourBars())
+        for scene in LINKAGES_IN_A_ROW
     }
-    return {**asked, "failed": failed, "soft": soft, "exact": exact}
+    return {"failed": failed, "soft": soft, "exact": exact}
 
 
-PAGE = Page(
-    name="n_four_bar",
+PAGE = scene_page(
+    "n_four_bar",
     title="N four-bars side by side",
     lesson="Twice a turn all bars lie in one line and one freedom becomes $N + 1$: there an engine may go on wrongly.",
-    scenes=SCENES,
+    scenes=LINKAGES_IN_A_ROW,
     engines=VARIANTS,
-    failures=FAILURES,
+    failures=described(
+        __file__,
+        Failure("Through the singular position, as shipped", cells=SOFT_LOOPS),
+        Failure("Forces that have no limit", cells=cells(ONCE, ALL, (1, 10, 100)), observations=forces_without_a_limit),
+        Failure(
+            "Exact multipliers at a singular position",
+            cells=cells(
+                ONCE, (Lagrange("rk4", "none"), Lagrange("rk4", "baumgarte"), Lagrange("rk4", "projection")), (1, 3, 10)
+            ),
+        ),
+        first=f"{NFourBar().singular_times(5.0)[0]:.4f}",
+    ),
     figures=figures,
     context=context,
-    known=deviations("n_four_bar"),
 )

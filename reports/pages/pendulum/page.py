@@ -1,4 +1,4 @@
-"""The pendulums' page: one link to a hundred, as a tree and with every joint a constraint."""
+"""The page of pendulums of 1 to 100 links, in reduced coordinates and with every joint a constraint."""
 
 from __future__ import annotations
 
@@ -15,49 +15,48 @@ from reference.chapter import errata
 from reference.numerics.calculus import derivative
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, SpinningRing, TenLinks
-from reports.model.page import FEATURED, Failure, Material, Observation, Page
+from reports.model.page import FEATURED, Failure, Material, Observation
 from reports.model.tasks import Task, Values
-from reports.pages.common import ALL, PUBLIC, cells, described, deviations, sweeps
+from reports.pages.common import ALL, PUBLIC, cells, described, scene_page, sweeps
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
-from reports.write.rows import lookups
 from reports.write.tables import markdown, number
 from reports.write.unmeasured import UNMEASURED
 
 
 @dataclass(frozen=True)
-class Neighbours(Task):
-    """A chain that starts at one angle and rate for all links, looked at at times [s]."""
+class NeighbourGrowth(Task):
+    """The divergence of neighbouring motions of a chain at these times [s]."""
 
     scene: LinkPendulum
     times: tuple[float, ...]
-    seconds: ClassVar[float] = 4.0  # measured on two links: three neighbours and the motion itself, for 12 s
+    seconds: ClassVar[float] = 4.0  # measured with two links: four motions of 12 s
     words: ClassVar[str] = "neighbouring starts of {0.scene.name}"
 
     def run(self) -> Values:
-        """`growth` (times,): how many times larger a small difference of the start has become."""
+        """`growth` (times,): the factor by which a small difference at the start has grown."""
         scene = self.scene
         start, rate = np.full(scene.links, scene.angle), np.full(scene.links, scene.rate)
         return {"growth": scene.chain.divergence(start, rate, np.array(self.times))}
 
 
 BEYOND = LinkPendulum(duration=12.0, horizon=12.0)
-PARTING = Neighbours(BEYOND, (1.0, LinkPendulum().horizon, 6.0, 9.0, BEYOND.duration))
+DIVERGENCE = NeighbourGrowth(BEYOND, (1.0, LinkPendulum().horizon, 6.0, 9.0, BEYOND.duration))
 
 
 def divergence(material: Material) -> list[Observation]:
-    """How much a difference of the start has grown, measured on neighbours of the double pendulum."""
+    """The growth of a difference at the start, measured on neighbouring motions of the double pendulum."""
     method = "the reference, by neighbouring starts"
-    answer = material.answers.get(PARTING)
+    answer = material.answers.get(DIVERGENCE)
     if answer is None or not answer.finished:
         return [Observation(method, "", answer.told)] if answer else []
     return [
         Observation(method, f"{t:.3g} s", f"{number(growth)} times the difference at 0 s")
-        for t, growth in zip(PARTING.times, answer.array("growth"), strict=True)
+        for t, growth in zip(DIVERGENCE.times, answer.array("growth"), strict=True)
     ]
 
 
-SOLVED = replace(
+SPARSE_NEWTON = replace(
     mujoco.EXTENDED,
     variant="extended, free, sparse Newton",
     coordinates="free",
@@ -66,21 +65,21 @@ SOLVED = replace(
     tolerance=1e-20,
     jacobian="sparse",
 )
-RING = (mujoco.DEFAULT, mujoco.TUNED, mujoco.EXTENDED, pymunk.TUNED)
-HEAVY = (*ALL, sweeps(10), sweeps(1000), SOLVED)
+RING_METHODS = (mujoco.DEFAULT, mujoco.TUNED, mujoco.EXTENDED, pymunk.TUNED)
+HEAVY_TIP_METHODS = (*ALL, sweeps(10), sweeps(1000), SPARSE_NEWTON)
 
 
 def tip(ratio: float) -> LinkPendulum:
-    """Three links of which the last is `ratio` times as heavy, for one second."""
+    """Three links for one second; the last has `ratio` times the mass of the others."""
     return LinkPendulum(links=3, tip=ratio, duration=1.0, horizon=1.0)
 
 
-# Extrapolated, a smaller step takes up to six seconds, and is lost as the larger one is.
+# Extrapolated variants are run at the largest step alone: at smaller ones they take six seconds and fail as well.
 PHASE = cells(PointPendulum(), PUBLIC, (10, 50, 150)) + cells(
     PointPendulum(), (pymunk.EXTENDED, mujoco.EXTENDED), (10,)
 )
 
-LATE = cells(BEYOND, (*ALL, Lagrange("rk4", "projection")), (1, 10))
+BEYOND_HORIZON = cells(BEYOND, (*ALL, Lagrange("rk4", "projection")), (1, 10))
 HIGHER_ORDER = (mujoco.TUNED, pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 LARGE_STEPS = tuple(
     cell
@@ -90,18 +89,18 @@ LARGE_STEPS = tuple(
 
 
 def beyond_the_horizon(material: Material) -> dict[str, Any]:
-    """`worst` [rad]: the largest angle error of the methods of higher order at the smaller step."""
-    rows = material.of(cell for cell in LATE if cell.engine in HIGHER_ORDER and cell.every > 1)
+    """`worst`: the largest angle error [rad] of the methods of higher order at the smaller step."""
+    rows = material.of(cell for cell in BEYOND_HORIZON if cell.engine in HIGHER_ORDER and cell.every > 1)
     return {"worst": np.max([row.angle for row in rows]) if rows else UNMEASURED}
 
 
 def fastest(scene: LinkPendulum) -> float:
-    """The highest frequency of small oscillations about hanging [rad/s]."""
+    """The highest frequency of small oscillations about the hanging equilibrium [rad/s]."""
     return float(scene.chain.modes()[0][-1])
 
 
 def opened_joints(material: Material) -> dict[str, Any]:
-    """`opened`: how far joints of pymunk opened at most, over a link's length; `fastest` [rad/s], the chain's mode."""
+    """`opened`: the largest gap of pymunk's joints, in link lengths; `fastest`: the chain's fastest mode [rad/s]."""
     rows = material.of(cell for cell in LARGE_STEPS if cell.engine in (pymunk.DEFAULT, pymunk.TUNED))
     opened = np.max([row.gap for row in rows]) / HundredLinks().length if rows else UNMEASURED
     return {"opened": opened, "fastest": fastest(HundredLinks())}
@@ -109,39 +108,14 @@ def opened_joints(material: Material) -> dict[str, Any]:
 
 PERIOD = PointPendulum().pendulum.period  # s
 
-FAILURES = described(
-    __file__,
-    Failure("Two thousand seconds of a point pendulum", cells=PHASE, columns=("angle", "rate", "gap", "energy")),
-    Failure(
-        "A light chain with a heavy tip",
-        # A run of pymunk extended at the smaller steps takes half a minute and four minutes.
-        cells=cells(tip(1e4), [engine for engine in HEAVY if engine != pymunk.EXTENDED], (1, 10, 100))
-        + cells(tip(1e4), (pymunk.EXTENDED,), (1,)),
-    ),
-    Failure("A ring of a hundred links, closed by one joint", cells=cells(SpinningRing(), RING, (1, 10))),
-    Failure(
-        "Beyond the horizon of the double pendulum",
-        cells=LATE,
-        tasks=(PARTING,),
-        context=beyond_the_horizon,
-        observations=divergence,
-    ),
-    Failure("A hundred links at large steps", cells=LARGE_STEPS, context=opened_joints),
-    period=f"{PERIOD:.7f}",
-    swings=f"{PointPendulum().duration / PERIOD:.1f}",
-    oscillates=number(fastest(tip(1e4))),
-)
 
-
-SCENES = (BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks(), PointPendulum())
-
-# Every joint an equality on bodies that are free in the plane: what the coordinates alone are worth.
-FREE = (replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free"), SOLVED)
-SHOWN = (*FEATURED, *(engine.variant for engine in FREE))
+# MuJoCo with bodies that are free in the plane and every joint an equality, to show the effect of coordinates alone.
+FREE_COORDINATES = (replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free"), SPARSE_NEWTON)
+FEATURED_VARIANTS = (*FEATURED, *(engine.variant for engine in FREE_COORDINATES))
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Stroboscopic pictures of the truth."""
+    """Stroboscopic pictures of the reference motions."""
     one, two, ten, hundred = BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks()
     end = ((one.length / 2, 0.0),)
     strips = (
@@ -154,38 +128,58 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def answers() -> str:
-    """Problems 18.5.1 and 18.5.2 at the errata's numbers: by the formula, and by the derivative of a position."""
+    """The answers to problems 18.5.1 and 18.5.2 for the errata's numbers, and their difference to a derivative."""
     length, angles, rates, turning = errata.BAR, errata.PHI, errata.PHI_RATE, errata.PHI_ACCELERATION
     first = errata.velocities(length, angles, rates)
     second = errata.accelerations(length, angles, rates, turning)
     a, b_relative_to_a = ((lambda t, bar=bar: errata.bar_end(t, bar)) for bar in (0, 1))
     positions = {"a": a, "b_relative_to_a": b_relative_to_a, "b": lambda t: a(t) + b_relative_to_a(t)}
     body = []
-    for problem, found, order, unit in (("18.5.1", first, 1, "m/s"), ("18.5.2", second, 2, "m/s²")):
+    for problem, solution, order, unit in (("18.5.1", first, 1, "m/s"), ("18.5.2", second, 2, "m/s²")):
         for part, (name, position) in zip("abc", positions.items(), strict=True):
-            answer = getattr(found, name)
+            answer = getattr(solution, name)
             miss = np.abs(answer - derivative(position, 0.0, order)).max()
             body.append([f"{problem} {part}", f"({answer[0]:.5f}, {answer[1]:.5f}) {unit}", number(float(miss))])
     return markdown(["problem", "answer", "off the derivative by"], body, left=2)
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Rows by method, and the answers to the chapter's problems."""
+    """The answers to the chapter's problems, and their numbers."""
     numbers = (errata.BAR, *errata.PHI, *errata.PHI_RATE, *errata.PHI_ACCELERATION)
-    return {**lookups(material, SCENES), "answers": answers(), "numbers": numbers}
+    return {"answers": answers(), "numbers": numbers}
 
 
-PAGE = Page(
-    name="pendulum",
+PAGE = scene_page(
+    "pendulum",
     title="Pendulums of 1, 2, 10 and 100 links",
     lesson="Open chains: in a tree of coordinates the joints are exact, and pymunk finds their impulses by iteration.",
-    scenes=SCENES,
+    scenes=(BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks(), PointPendulum()),
     advised="pendulum_2",
-    engines=(*VARIANTS, *FREE),
-    compared=lambda scene, engine: engine not in FREE or scene.name != PointPendulum.name,
-    failures=FAILURES,
-    featured=lambda row: row.variant in SHOWN,
+    engines=(*VARIANTS, *FREE_COORDINATES),
+    compared=lambda scene, engine: engine not in FREE_COORDINATES or scene.name != PointPendulum.name,
+    failures=described(
+        __file__,
+        Failure("Two thousand seconds of a point pendulum", cells=PHASE, columns=("angle", "rate", "gap", "energy")),
+        Failure(
+            "A light chain with a heavy tip",
+            # pymunk extended is run at the largest step alone: the others take half a minute and four minutes.
+            cells=cells(tip(1e4), [engine for engine in HEAVY_TIP_METHODS if engine != pymunk.EXTENDED], (1, 10, 100))
+            + cells(tip(1e4), (pymunk.EXTENDED,), (1,)),
+        ),
+        Failure("A ring of a hundred links, closed by one joint", cells=cells(SpinningRing(), RING_METHODS, (1, 10))),
+        Failure(
+            "Beyond the horizon of the double pendulum",
+            cells=BEYOND_HORIZON,
+            tasks=(DIVERGENCE,),
+            context=beyond_the_horizon,
+            observations=divergence,
+        ),
+        Failure("A hundred links at large steps", cells=LARGE_STEPS, context=opened_joints),
+        period=f"{PERIOD:.7f}",
+        swings=f"{PointPendulum().duration / PERIOD:.1f}",
+        oscillates=number(fastest(tip(1e4))),
+    ),
+    featured=lambda row: row.variant in FEATURED_VARIANTS,
     figures=figures,
     context=context,
-    known=deviations("pendulum"),
 )

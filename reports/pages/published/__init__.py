@@ -1,1 +1,1 @@
-"""Problems that others published, with answers that nobody here wrote."""
+"""Problems and results that others published."""

@@ -1,4 +1,4 @@
-"""Bodies that roll, drawn from the reference: roulettes, the contact with its directions, elliptic gears."""
+"""Drawings of rolling bodies: roulettes, the contact and its directions, elliptic gears, acceleration, friction."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingScene
 from reports.plots.theme import LIGHT, bare, drawing, note, style_axes
 
-POINTS = 241
+POINTS_PER_CURVE = 241
 
 
 @dataclass(frozen=True)
 class Roulette:
-    """What one panel shows: a body at some rotations [rad], and the path of one of its points [m] over all of them."""
+    """One panel: a body at some rotations [rad], and the path of one of its points [m]."""
 
     title: str
     rolling: Rolling
@@ -37,13 +37,13 @@ class Roulette:
 
 
 def roulettes() -> tuple[Roulette, ...]:
-    """Six that the chapter or its classics know by name."""
+    """Six roulettes with names in the chapter or in the classics."""
     turn, focus, ring = 2 * math.pi, (0.4, 0.0), Ring(0.6)
     disc, ellipse = Circle(0.4), Ellipse(0.5, 0.3)
     on_line = ((-turn, 0.0), (-turn, -4.2, -2.1, 0.0), (-2.9, 0.4))
     twins = Rolling.at_arcs(ellipse, Placed(ellipse, turn=math.pi / 2), 0.0, 0.0)
     inside = Rolling.at_arcs(Circle(0.45), ring)
-    # Its material is above it; turned over it rolls on the line along its outside.
+    # The material of a parabola is above it; turned over, it rolls on the line along its outside.
     parabola = Rolling.at_arcs(Parabola(0.3), Line())
     low, high, few = parabola.theta - 1.1, parabola.theta + 1.1, parabola.theta + np.array([-0.8, 0.0, 0.8])
     square, eighth = Rolling.at_arcs(Side(1.0), Placed(Catenary(0.5), turn=math.pi)), math.pi / 4
@@ -64,41 +64,41 @@ def roulettes() -> tuple[Roulette, ...]:
 
 
 def outline(curve: Curve, arcs: tuple[float, float] | None = None) -> Array:
-    """Points (n, 2) [m] along a boundary; a square is closed."""
+    """Points (n, 2) [m] along a boundary; the boundary of a square is closed."""
     if isinstance(curve, Side) and arcs is None:
         half = curve.side / 2
         return half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]], dtype=float)
     low, high = arcs or (0.0, curve.length)
-    return curve.point(np.linspace(low, high, POINTS))
+    return curve.point(np.linspace(low, high, POINTS_PER_CURVE))
 
 
 def placed(points: Array, pose: Array) -> Array:
-    """Points (n, 2) of a body in the world, for one pose (3,)."""
+    """The world points (n, 2) of a body's points (n, 2) [m] at one pose (3,)."""
     return rotated(np.asarray(pose[2]), points) + pose[:2]
 
 
 def draw_roulettes(chosen: Sequence[Roulette], columns: int = 2) -> Figure:
-    """A panel each."""
+    """A panel for each roulette."""
     rows = -(-len(chosen) // columns)
     with drawing(2.75 * rows) as figure:
-        for panel, one in zip(figure.subplots(rows, columns, squeeze=False).ravel(), chosen, strict=False):
-            bare(panel, one.title)
-            ground = outline(one.rolling.ground, one.ground)
+        for panel, roulette in zip(figure.subplots(rows, columns, squeeze=False).ravel(), chosen, strict=False):
+            bare(panel, roulette.title)
+            ground = outline(roulette.rolling.ground, roulette.ground)
             panel.plot(*ground.T, color=LIGHT.ink, linewidth=1.8)
-            body = outline(one.rolling.body, one.body)
-            for theta in one.shown:
-                pose = one.rolling.pose(theta)
+            body = outline(roulette.rolling.body, roulette.body)
+            for theta in roulette.shown:
+                pose = roulette.rolling.pose(theta)
                 panel.plot(*placed(body, pose).T, color=LIGHT.quiet, linewidth=1.0)
-                arm = one.rolling.position(theta, one.point)
-                panel.plot(*np.stack([one.rolling.contact(theta).point, arm]).T, color=LIGHT.quiet, linewidth=0.8)
+                arm = roulette.rolling.position(theta, roulette.point)
+                panel.plot(*np.stack([roulette.rolling.contact(theta).point, arm]).T, color=LIGHT.quiet, linewidth=0.8)
                 panel.plot(*arm, "o", color=LIGHT.first, markersize=4.5, zorder=4)
-            path = one.rolling.position(np.linspace(*one.path, 2 * POINTS), one.point)
+            path = roulette.rolling.position(np.linspace(*roulette.path, 2 * POINTS_PER_CURVE), roulette.point)
             panel.plot(*path.T, color=LIGHT.first, linewidth=2.0, zorder=3)
     return figure
 
 
 def draw_contact() -> Figure:
-    """A body on a hill, on flat ground and in a hole: the contact C, e_t, e_n, and the circles of curvature."""
+    """A body on a hill, on flat ground and in a hole, with contact C, e_t, e_n and circle of curvature."""
     body = Ellipse(0.5, 0.3)
     hill, hole = Placed(Circle(0.8), turn=math.pi / 2), Placed(Ring(1.1), turn=-math.pi / 2)
     grounds: tuple[tuple[str, Curve], ...] = (("on a hill", hill), ("on flat ground", Line()), ("in a hole", hole))
@@ -110,11 +110,11 @@ def draw_contact() -> Figure:
             a, b = float(contact.ground_curvature), float(contact.body_curvature)
             curvatures = f"$\\kappa_A$ = {a:.2f}, $\\kappa_B$ = {b:.2f} 1/m"
             bare(panel, f"{where}: {curvatures}\n$ds/d\\theta$ = {contact.rate:.3f} m/rad")
-            near = np.linspace(-0.75, 0.75, POINTS) + float(contact.ground_arc)
+            near = np.linspace(-0.75, 0.75, POINTS_PER_CURVE) + float(contact.ground_arc)
             panel.plot(*ground.point(near).T, color=LIGHT.ink, linewidth=2.0)
             panel.plot(*placed(outline(body), rolling.pose(theta)).T, color=LIGHT.quiet, linewidth=1.6)
             point, tangent, normal = contact.point, contact.tangent, contact.normal
-            turn = np.linspace(0, 2 * math.pi, POINTS)
+            turn = np.linspace(0, 2 * math.pi, POINTS_PER_CURVE)
             circle = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
             panel.plot(*(point + normal / b + circle / b).T, color=LIGHT.fourth, linewidth=1.2, linestyle=":")
             for vector, name, colour in ((tangent, "$e_t$", LIGHT.first), (normal, "$e_n$", LIGHT.second)):
@@ -138,7 +138,7 @@ def draw_contact() -> Figure:
 
 
 def draw_gears(scene: EllipticGears) -> Figure:
-    """The gears at four instants, and how fast the second turns."""
+    """The gears at four instants, and their rates over time."""
     turn = 2 * math.pi / scene.turning_rate
     times = (0.15 + np.arange(4)) * turn / 4
     with drawing(4.6) as figure:
@@ -172,11 +172,11 @@ def draw_gears(scene: EllipticGears) -> Figure:
     return figure
 
 
-COEFFICIENTS = (0.2, 0.5, 1.0)
+COEFFICIENTS = (0.2, 0.5, 1.0)  # of friction, in the diagram
 
 
 def draw_acceleration() -> Figure:
-    """The rolling term beside that of a body pinned at C: over an ellipse's turn, and against how well curves fit."""
+    """The rolling term and the term of a body pinned at C, over a turn of an ellipse and over the fit of the curves."""
     with drawing(3.6) as figure:
         left, right = figure.subplots(1, 2)
         rolling = Rolling.at_angle(Ellipse(0.5, 0.3), Line())
@@ -208,7 +208,7 @@ def draw_acceleration() -> Figure:
 
 
 def draw_friction(scenes: Sequence[RollingScene]) -> Figure:
-    """|T|/N over time, the coefficients that would do, and the instants at which a real contact slips or hops."""
+    """|T|/N over time, three coefficients of friction, and the instants at which a real contact slips or hops."""
     with drawing(3.6) as figure:
         for index, (panel, scene) in enumerate(zip(figure.subplots(1, len(scenes), sharey=True), scenes, strict=True)):
             law, end = scene.motion_law, scene.hop or scene.duration
@@ -216,7 +216,7 @@ def draw_friction(scenes: Sequence[RollingScene]) -> Figure:
             panel.plot(t, law.required_friction(t), color=LIGHT.ink, linewidth=1.8)
             for friction in COEFFICIENTS:
                 panel.axhline(friction, color=LIGHT.second, linewidth=1.0, linestyle="--")
-                # Beside the panel: within it, the curve crosses these lines anywhere.
+                # The label is beside the panel, because within it the curve may cross the line anywhere.
                 beside = {"xycoords": ("axes fraction", "data"), "va": "center", "annotation_clip": False}
                 note(panel, f"$\\mu$ = {friction:g}", (1.0, friction), (3, 0), LIGHT.second, fontsize=8, **beside)
                 if (slip := law.slip(friction, scene.duration)) is not None:

@@ -1,6 +1,4 @@
-"""The page of rolling: bodies that are not round, by contact and by constraint, two elliptic gears, and where methods
-fail: contacts and constraints apart, how discs part from a hill and chatter on it.
-"""
+"""The page of rolling bodies that are not round, by contact and by constraint, and of two elliptic gears."""
 
 from __future__ import annotations
 
@@ -30,84 +28,77 @@ from reference.scenes.rolling.scenes import (
 )
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
-from reports.model.page import Failure, Material, Observation, Page
+from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
-from reports.pages.common import PUBLIC, cells, described, deviations, refusals
+from reports.pages.common import PUBLIC, cells, described, refusals, scene_page
 from reports.pages.rolling import drawings
 from reports.plots.theme import svg
 from reports.write.experiments import observe_each
-from reports.write.rows import Rows, lookups
+from reports.write.rows import Rows
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
-CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED)
-
-
-ROLLER = 0  # the only body's index
+ROLL_CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED)
 
 
 def hill_cells(engines: Iterable[Engine]) -> tuple[Cell, ...]:
-    """Whole motions on the hill, beyond where they may be compared."""
+    """Whole motions on the hill, also after the end of the comparison."""
     return tuple(Cell(RollingOnCircle(), engine, every) for engine in engines for every in (10, 100))
 
 
-STIFF = tuple(method for method in mujoco_methods.ROLLS if "stiff" in method.variant)
+BEYOND_FRICTION = hill_cells((pymunk.TUNED, mujoco.TUNED, mujoco.EXTENDED))
+STIFF_CONTACTS = tuple(method for method in mujoco_methods.ROLLS if "stiff" in method.variant)
+CHATTERING = hill_cells((*PUBLIC, *STIFF_CONTACTS))
 
 
-PARTINGS = hill_cells((pymunk.TUNED, mujoco.TUNED, mujoco.EXTENDED))
+def position_errors(cell: Cell, run: Trajectory) -> tuple[float, float]:
+    """The largest position error [m] of the only body while the motion can be compared, and the error at the end."""
+    truth = cell.scene.motion(run.t)
+    error = np.linalg.norm((run.pose - truth.pose)[:, 0, :2], axis=-1)
+    comparable = run.t <= cell.scene.comparable_until * (1 + 1e-12)
+    return float(error[comparable].max()), float(error[-1])
 
 
-CHATTERING = hill_cells((*PUBLIC, *STIFF))
+def beyond_friction(material: Material) -> list[Observation]:
+    """Position errors before and after the instant at which ideal rolling ends."""
 
-
-def parting(cell: Cell, found: Trajectory) -> tuple[float, float]:
-    """How far a body is from the ideal motion [m]: largest up to the last comparable sample, and at the end."""
-    truth = cell.scene.motion(found.t)
-    apart = np.linalg.norm((found.pose - truth.pose)[:, ROLLER, :2], axis=-1)
-    within = found.t <= cell.scene.comparable_until * (1 + 1e-12)
-    return float(apart[within].max()), float(apart[-1])
-
-
-def partings(material: Material) -> list[Observation]:
-    """How far contact is from the ideal motion before and after the instant at which ideal rolling ends."""
-
-    def told(cell: Cell, run: Trajectory) -> str:
-        before, after = parting(cell, run)
+    def describe(cell: Cell, run: Trajectory) -> str:
+        earlier, last = position_errors(cell, run)
         until = cell.scene.comparable_until
-        return f"off by {number(before)} m up to {until:.3f} s, by {number(after)} m at {cell.scene.duration:g} s"
+        return f"off by {number(earlier)} m up to {until:.3f} s, by {number(last)} m at {cell.scene.duration:g} s"
 
-    return observe_each(material, PARTINGS, told)
+    return observe_each(material, BEYOND_FRICTION, describe)
 
 
-def after_parting(material: Material) -> dict[str, Any]:
-    """`least`: how many times a contact's error at the end is its largest before they part, in the best of the runs;
-    `slips`, `hops`: when a real contact does so [s].
+def after_friction(material: Material) -> dict[str, Any]:
+    """`least`: the smallest ratio of a contact's error at the end to its largest error while rolling is possible;
+    `slips`, `hops`: the instants at which a real contact does so [s].
     """
     scene = RollingOnCircle()
-    contacts = [cell for cell in PARTINGS if cell.engine in PUBLIC]
-    found = [parting(cell, run) for cell, run in material.motions(contacts).items()]
-    least = np.min([after / before for before, after in found]) if found else UNMEASURED
+    contacts = [cell for cell in BEYOND_FRICTION if cell.engine in PUBLIC]
+    errors = [position_errors(cell, run) for cell, run in material.motions(contacts).items()]
+    least = np.min([last / earlier for earlier, last in errors]) if errors else UNMEASURED
     return {"least": least, "slips": scene.comparable_until, "hops": scene.hop}
 
 
-def absent_contact(cell: Cell, found: Trajectory) -> float:
-    """The share of samples before the slip at which a contact carries nothing, though it must carry N (one roller)."""
-    # The first sample has no step before it.
-    within = (found.t <= cell.scene.comparable_until) & (found.t > 0)
+def absent_contact(cell: Cell, run: Trajectory) -> float:
+    """The share of samples before the slip at which the contact has no normal force, although it must have one."""
+    # The first sample is left out: no step precedes it.
+    rolling = (run.t <= cell.scene.comparable_until) & (run.t > 0)
     mechanism = cell.scene.mechanism()
-    weight = mechanism.bodies[ROLLER].mass * float(np.hypot(*mechanism.gravity))
-    return float(np.mean(np.abs(found.reaction[within, 1]) < 1e-3 * weight))
+    weight = mechanism.bodies[0].mass * float(np.hypot(*mechanism.gravity))
+    return float(np.mean(np.abs(run.reaction[rolling, 1]) < 1e-3 * weight))
 
 
 def chatter(material: Material) -> list[Observation]:
-    """How often the contact on the hill is absent while it should press."""
+    """The share of samples without a normal force on the hill."""
     return observe_each(
         material, CHATTERING, lambda cell, run: f"absent in {100 * absent_contact(cell, run):.0f} % of samples"
     )
 
 
 def absence(material: Material) -> dict[str, Any]:
-    """`absent`: the least share of samples without a contact, of all runs on the hill."""
+    """`absent`: the smallest share of samples without a normal force among all runs on the hill."""
     shares = [absent_contact(cell, run) for cell, run in material.motions(CHATTERING).items()]
     return {"absent": min(shares, default=UNMEASURED)}
 
@@ -116,52 +107,18 @@ TOO_LARGE = tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(), PUB
 
 
 def least_opening(material: Material) -> dict[str, Any]:
-    """`least` [m]: the smallest gap of a contact at steps far too large."""
+    """`least`: the smallest gap of a contact [m] at steps far too large."""
     rows = material.of(TOO_LARGE)
     return {"least": np.min([row.gap for row in rows]) if rows else UNMEASURED}
 
 
 def refused(scene: RollingScene, setting: str) -> Callable[[Material], list[Observation]]:
-    """The reference's sentence on a motion that can't be."""
+    """The reference's error message for an impossible motion."""
     refusal = cache(lambda: refusals({setting: lambda: scene.motion([scene.duration])}))
     return lambda material: refusal()
 
 
-FAILURES = described(
-    __file__,
-    *(
-        Failure(f"A contact as shipped, under {body}", cells=cells(scene, (mujoco.DEFAULT,), (1, 10, 100, 1000)))
-        for body, scene in (("an ellipse", RollingEllipse()), ("an eccentric disc", RollingDisc()))
-    ),
-    Failure("Softer and stiffer contacts"),
-    Failure("Polygons"),
-    *(
-        Failure(
-            f"Nearly conformal curves: a hole larger by {clearance:g} of its radius",
-            cells=cells(DiscInHole(clearance=clearance), CONSTRAINTS, (1, 10, 100)),
-            observations=refused(DiscInHole(clearance=1e-10), "clearance 1e-10") if clearance == 1e-3 else None,
-        )
-        for clearance in (0.1, 0.01, 1e-3)
-    ),
-    Failure(
-        "A corner",
-        cells=cells(SquareOnCatenaries(), (*CONSTRAINTS, Lagrange("rk4", "projection")), (1, 10)),
-        observations=refused(SquareOnCatenaries(), "beyond the corner"),
-    ),
-    Failure(
-        "Beyond the hop, and beyond the friction",
-        cells=cells(RollingOnCircle(), (*PUBLIC, mujoco.EXTENDED), (10, 100)),
-        tasks=tuple(map(Motion, PARTINGS)),
-        observations=partings,
-        context=after_parting,
-    ),
-    Failure("Chatter on curved ground", tasks=tuple(map(Motion, CHATTERING)), observations=chatter, context=absence),
-    Failure("Steps far too large", cells=TOO_LARGE, context=least_opening),
-    corner=f"{SquareOnCatenaries().corner:.4f}",
-)
-
-
-SCENES = (
+ROLLING_SCENES = (
     RollingEllipse(),
     RollingDisc(),
     RollingCam(),
@@ -170,24 +127,26 @@ SCENES = (
     RollingOnCircle(),
     EllipticGears(),
 )
-# Ideal constraints under Euler say nothing here that Runge-Kutta's don't, and finding a contact is what costs.
-COMPARED = tuple(engine for engine in VARIANTS if engine.variant != "euler projection")
-CONSTRUCTIONS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, *mujoco_methods.ROLLS)
+# Exact multipliers with Euler are left out: they cost as much as with Runge-Kutta, and show nothing else.
+COMPARED_ENGINES = tuple(engine for engine in VARIANTS if engine.variant != "euler projection")
+ROLL_CONSTRUCTIONS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, *mujoco_methods.ROLLS)
 
-HILL = RollingOnCircle()  # kept: it works out once until when it can be compared
+HILL_SCENE = RollingOnCircle()  # one object, because it computes the end of its comparison once
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
-    """All but exact multipliers where each contact is a search within a search: the tests hold those to the truth.
-    What is compared beside the variants is compared on the ellipse alone.
+    """Whether a method is run in a scene.
+
+    Exact multipliers are left out where finding each contact takes nested searches; tests compare those with the
+    reference. Constructions beside the usual variants are run on the ellipse alone.
     """
-    if engine in CONSTRUCTIONS:
+    if engine in ROLL_CONSTRUCTIONS:
         return scene.name == RollingEllipse.name
     return not (engine.name == "lagrange" and scene.name in (EllipticGears.name, RollingInRing.name))
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Drawings from the reference."""
+    """Drawings of the reference motions."""
     demanding = (RollingEllipse(), RollingOnCircle())
     return {
         "roulettes": svg(drawings.draw_roulettes(drawings.roulettes()), "Six bodies that roll, and what a point draws"),
@@ -199,25 +158,56 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Rows and sweeps by method, for sentences; `at` takes a method in one word, and a step."""
-    rows = Rows(material.sweep(SCENES))
+    """`at(scene, method, step)`: the row of a method ("mujoco tuned") nearest to a step [s]."""
+    rows = Rows(material.sweep(ROLLING_SCENES))
 
     def at(scene: str, method: str, step: float) -> Any:
-        """The row of a method ("mujoco tuned") at about a step [s]."""
         return rows.of(scene, method).near(step)
 
-    return {**lookups(material, SCENES), "at": at, "hill": HILL}
+    return {"at": at, "hill": HILL_SCENE}
 
 
-PAGE = Page(
-    name="rolling",
+PAGE = scene_page(
+    "rolling",
     title="Rolling of bodies that are not round",
     lesson="The contact runs along both curves. That motion adds to accelerations, and MuJoCo's contacts leave it out.",
-    scenes=SCENES,
-    engines=(*COMPARED, *CONSTRUCTIONS),
-    failures=FAILURES,
+    scenes=ROLLING_SCENES,
+    engines=(*COMPARED_ENGINES, *ROLL_CONSTRUCTIONS),
+    failures=described(
+        __file__,
+        *(
+            Failure(f"A contact as shipped, under {body}", cells=cells(scene, (mujoco.DEFAULT,), (1, 10, 100, 1000)))
+            for body, scene in (("an ellipse", RollingEllipse()), ("an eccentric disc", RollingDisc()))
+        ),
+        Failure("Softer and stiffer contacts"),
+        Failure("Polygons"),
+        *(
+            Failure(
+                f"Nearly conformal curves: a hole larger by {clearance:g} of its radius",
+                cells=cells(DiscInHole(clearance=clearance), ROLL_CONSTRAINTS, (1, 10, 100)),
+                observations=refused(DiscInHole(clearance=1e-10), "clearance 1e-10") if clearance == 1e-3 else None,
+            )
+            for clearance in (0.1, 0.01, 1e-3)
+        ),
+        Failure(
+            "A corner",
+            cells=cells(SquareOnCatenaries(), (*ROLL_CONSTRAINTS, Lagrange("rk4", "projection")), (1, 10)),
+            observations=refused(SquareOnCatenaries(), "beyond the corner"),
+        ),
+        Failure(
+            "Beyond the hop, and beyond the friction",
+            cells=cells(RollingOnCircle(), (*PUBLIC, mujoco.EXTENDED), (10, 100)),
+            tasks=tuple(map(Motion, BEYOND_FRICTION)),
+            observations=beyond_friction,
+            context=after_friction,
+        ),
+        Failure(
+            "Chatter on curved ground", tasks=tuple(map(Motion, CHATTERING)), observations=chatter, context=absence
+        ),
+        Failure("Steps far too large", cells=TOO_LARGE, context=least_opening),
+        corner=f"{SquareOnCatenaries().corner:.4f}",
+    ),
     compared=compared,
     figures=figures,
     context=context,
-    known=deviations("rolling"),
 )

@@ -1,6 +1,6 @@
-"""The reference's own banded solve for a chain's joint forces, under RK4, as an engine among others.
+"""The reference's banded solver for the joint forces of a chain, with RK4, as an engine.
 
-It takes the mechanism of a LongPendulum and no other, and shows how little an evaluation needs to cost.
+It builds the mechanism of a LongPendulum only, and shows how cheap an evaluation can be.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from reference.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class BandedChain(Engine):
-    """An engine in the sense of `engines.Engine`, for a pendulum of uniform bars alone."""
+    """An engine for pendulums of uniform bars only."""
 
     name = "reference"
     variant = "banded rk4"
@@ -30,12 +30,12 @@ class BandedChain(Engine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """Runge-Kutta's, of angles between which no pin can part."""
+        """Order 4 of Runge-Kutta; pins are exact, because angles are the coordinates."""
         return ConvergenceOrder(4, gap=EXACT, slip=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """About what a step takes [s]: most of it is numpy's calls, as many for any chain."""
+        """An estimate of the CPU time of a step [s]: mostly numpy's calls, as many for any chain."""
         return 50e-6 * max(1.0, len(mechanism.bodies) / 3)
 
     @validated
@@ -48,7 +48,7 @@ class BandedChain(Engine):
 
 
 def chain_of(mechanism: Mechanism) -> Chain:
-    """The chain that a mechanism is; raises Unsupported for any but that of a LongPendulum."""
+    """The chain of a mechanism. Raises Unsupported for any mechanism but that of a LongPendulum."""
     if not isinstance(mechanism, OpenChain):
         raise Unsupported("the reference's chain is that of a LongPendulum alone")
     lengths = tuple(-2 * joint.second_point[0] for joint in mechanism.joints if isinstance(joint, Pin))
@@ -56,7 +56,7 @@ def chain_of(mechanism: Mechanism) -> Chain:
 
 
 class BandedRun:
-    """A chain at its start; see `engines.Run`."""
+    """A run of a chain; see `engines.Run`."""
 
     def __init__(self, mechanism: Mechanism, chain: Chain, dt: float) -> None:
         self._mechanism, self._chain, self._dt = mechanism, chain, dt

@@ -1,4 +1,4 @@
-"""The page on scaling: the cost of a step and the error as a pendulum grows from one link to a thousand."""
+"""The page on scaling: the cost of a step and the error of pendulums of 1 to 1000 links."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from reports.write.unmeasured import UNMEASURED
 
 @dataclass(frozen=True)
 class TruthError(Task):
-    """The truth of a long chain at the end of its run."""
+    """The error of the reference motion of a long chain at the end of its run."""
 
     scene: LongPendulum
 
@@ -41,15 +41,15 @@ class TruthError(Task):
     words: ClassVar[str] = "error of the truth of {0.scene.links} links"
 
     def run(self) -> Values:
-        """`error`: the largest of an angle [rad]."""
+        """`error`: the largest error of an angle [rad]."""
         return {"error": self.scene.truth_error([self.scene.duration])[0]}
 
 
-LAST = 3  # points of a fit: a growth law is seen at the large end, where what is paid in any case no longer counts
+FIT_POINTS = 3  # the largest sizes: there constant costs are small beside those that grow
 
 
 @dataclass(frozen=True)
-class Point:
+class SizePoint:
     """One method at one size: CPU seconds of a step, and the largest angle error [rad] (NaN where only timed)."""
 
     size: int
@@ -59,36 +59,39 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Series:
-    """One method over all sizes, small to large."""
+class MethodSeries:
+    """One method at all sizes, from small to large."""
 
     engine: str
     variant: str
-    points: tuple[Point, ...]
+    points: tuple[SizePoint, ...]
 
     @property
     def method(self) -> str:
         return f"{self.engine} {self.variant}"
 
     def at(self, size: int) -> Any:
-        """The point of this size; UNMEASURED where there is none."""
+        """The point of this size; UNMEASURED without one."""
         return next((point for point in self.points if point.size == size), UNMEASURED)
 
 
-def series_of(rows: Mapping[Cell, Measurement], timed: float) -> tuple[Series, ...]:
-    """The rows of pendulums by method; cells that ran for less than `timed` seconds count for their cost alone."""
-    found: dict[tuple[str, str], list[Point]] = {}
+def series_of(rows: Mapping[Cell, Measurement], timed: float) -> tuple[MethodSeries, ...]:
+    """The rows of pendulums by method; cells that last less than `timed` seconds give costs and no errors."""
+    points_by_method: dict[tuple[str, str], list[SizePoint]] = {}
     for cell, row in rows.items():
         comparable, whole = Outcome(row.outcome).comparable, cell.scene.duration >= timed * (1 - 1e-9)
         cost = row.cpu * cell.step if comparable or not whole else math.nan
         error = row.angle if whole and comparable else math.nan
-        point = Point(int(getattr(cell.scene, "links", 0)), cost, error, str(row.outcome))
-        found.setdefault((row.engine, row.variant), []).append(point)
-    return tuple(Series(*method, tuple(sorted(points, key=lambda p: p.size))) for method, points in found.items())
+        point = SizePoint(int(getattr(cell.scene, "links", 0)), cost, error, str(row.outcome))
+        points_by_method.setdefault((row.engine, row.variant), []).append(point)
+    return tuple(
+        MethodSeries(*method, tuple(sorted(points, key=lambda p: p.size)))
+        for method, points in points_by_method.items()
+    )
 
 
-def exponent(sizes: Iterable[float], values: Iterable[float], last: int = LAST) -> tuple[float, int, int]:
-    """(slope of log value over log size at the `last` finite points, first and last size of the fit).
+def exponent(sizes: Iterable[float], values: Iterable[float], last: int = FIT_POINTS) -> tuple[float, int, int]:
+    """(slope of log value over log size for the `last` finite points, smallest and largest size of the fit).
 
     NaN and zeros with fewer than two points.
     """
@@ -100,10 +103,10 @@ def exponent(sizes: Iterable[float], values: Iterable[float], last: int = LAST) 
 
 
 TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-FURTHER = ("X", "v")
+FURTHER_MARKS = ("X", "v")
 
 
-def scaling_chart(found: Sequence[Series]) -> Figure:
+def scaling_chart(found: Sequence[MethodSeries]) -> Figure:
     """Two panels side by side: CPU time of a step [µs], and the largest angle error after the whole run [rad]."""
     variants: dict[str, list[str]] = {}
     for series in found:
@@ -140,32 +143,33 @@ def scaling_chart(found: Sequence[Series]) -> Figure:
     return figure
 
 
-def _look(series: Series, variants: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-    """As in all charts; a fourth and fifth method of an engine, whose half-filled marks are too alike, get others."""
+def _look(series: MethodSeries, variants: Mapping[str, Sequence[str]]) -> dict[str, Any]:
+    """The look of all charts, with other marks for a fourth and fifth method of an engine, to tell them apart."""
     index = variants[series.engine].index(series.variant)
-    further = {"marker": FURTHER[index - 3], "fillstyle": "full"} if index in (3, 4) else {}
+    further = {"marker": FURTHER_MARKS[index - 3], "fillstyle": "full"} if index in (3, 4) else {}
     return look(series.engine, series.variant, variants) | further
 
 
-def fitted(series: Series) -> str:
-    """'1.0 (50 to 1000)': the exponent of its cost at the sizes at which the method is one and the same."""
-    least, most = ALIKE.get(series.method, (0, math.inf))
+def fitted(series: MethodSeries) -> str:
+    """'1.0 (50 to 1000)': the exponent of the cost over the sizes at which the method does not change."""
+    least, most = SIZES_OF_FIT.get(series.method, (0, math.inf))
     points = [point for point in series.points if least <= point.size <= most]
     slope, first, last = exponent([p.size for p in points], [p.step for p in points])
     return f"{slope:.1f} ({first} to {last})" if last else NOTHING
 
 
-STEP = 5e-3  # s, the same for all: about the longest at which a reduced-coordinate Euler step still follows 200 links
-SMALL = (1, 3, 10, 20)
-LARGE = (50, 100)
-COSTLY = (300, 1000)  # a few steps only, for their cost
-SAMPLES = 5
-FEW, MORE = 4, 40  # steps; a cheap one would else show little but how the first step fills the caches
+FIXED_STEP = 5e-3  # s: about the largest at which Euler steps in reduced coordinates still follow 200 links
+SMALL_SIZES = (1, 3, 10, 20)
+LARGE_SIZES = (50, 100)
+COSTLY_SIZES = (300, 1000)  # a few steps only, for their cost
+SAMPLE_COUNT = 5
+FEW_STEPS = 4  # of expensive methods at costly sizes
+MORE_STEPS = 40  # of cheap methods, so that the first step, which fills caches, is a small part
 
-FREE = replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free")
-# What a step costs: the runs behind an estimate would be counted with it.
+FREE_DEFAULT = replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free")
+# Without error estimates, whose runs would count as cost of a step.
 PLAIN = replace(mujoco.EXTENDED, coordinates="free", estimates=False)
-SPARSE = replace(
+SPARSE_NEWTON = replace(
     PLAIN,
     variant="extended, free, sparse Newton, no estimate",
     solvers=("Newton",),
@@ -173,51 +177,54 @@ SPARSE = replace(
     tolerance=1e-20,
     jacobian="sparse",
 )
-SWEPT = replace(PLAIN, variant="extended, free, PGS sweeps, no estimate", solvers=("PGS",))
+PGS = replace(PLAIN, variant="extended, free, PGS sweeps, no estimate", solvers=("PGS",))
 EULER, RUNGE_KUTTA = Lagrange("euler", "projection"), Lagrange("rk4", "projection")
 
-METHODS: tuple[Engine, ...] = (
+SCALING_METHODS: tuple[Engine, ...] = (
     *(pymunk.DEFAULT, pymunk.TUNED, pymunk.EXTENDED, mujoco.DEFAULT, mujoco.TUNED),
-    *(FREE, SPARSE, SWEPT, EULER, RUNGE_KUTTA, BandedChain()),
+    *(FREE_DEFAULT, SPARSE_NEWTON, PGS, EULER, RUNGE_KUTTA, BandedChain()),
 )
-# They take seconds for a step of a longer chain.
-AT_MOST_300 = (pymunk.EXTENDED, SWEPT, EULER, RUNGE_KUTTA)
-CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE, SPARSE, BandedChain())
+# Methods that take seconds for a step of a longer chain.
+AT_MOST_300 = (pymunk.EXTENDED, PGS, EULER, RUNGE_KUTTA)
+CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SPARSE_NEWTON, BandedChain())
 
-# Equal links: a sweep leaves 1 - pi^2/(4 N^2) of the slowest mode, and the sweeps of a step shall leave LEFT of it.
+# With equal links an iteration leaves 1 - pi^2/(4 N^2) of the slowest mode; those of a step have to leave LEFT of it.
 SWEEPS_OVER_SQUARE = -4 * log(LEFT) / pi**2
 CAPPED = ceil(sqrt(MOST / SWEEPS_OVER_SQUARE))
 
-# No fit goes across sizes at which a method is another one: by its sweeps, which have a limit, and at COSTLY
-# sizes, where the first steps, which are swept longer, are a large part of a few steps.
-ALIKE: Mapping[str, tuple[float, float]] = {"pymunk tuned": (CAPPED, max(LARGE)), "pymunk extended": (0, max(LARGE))}
+# Sizes (smallest, largest) of the fits of methods that change: the iterations of pymunk tuned have an upper limit, and
+# at COSTLY_SIZES its first steps, which have more iterations, are a large part of the few steps.
+SIZES_OF_FIT: Mapping[str, tuple[float, float]] = {
+    "pymunk tuned": (CAPPED, max(LARGE_SIZES)),
+    "pymunk extended": (0, max(LARGE_SIZES)),
+}
 
 
 def cells() -> tuple[Cell, ...]:
-    """Every method at every size; the purpose "growth" runs always, "large" in a full run only."""
-    found = []
-    for engine in METHODS:
-        for links in (*SMALL, *LARGE, *COSTLY):
+    """Each method at each size; the purpose "growth" is run always, "large" in a full run only."""
+    chosen = []
+    for engine in SCALING_METHODS:
+        for links in (*SMALL_SIZES, *LARGE_SIZES, *COSTLY_SIZES):
             if links > 300 and engine in AT_MOST_300:
                 continue
-            if links in COSTLY:
-                steps = MORE if engine in CHEAP else FEW
-                scene = LongPendulum(links, duration=steps * STEP, horizon=steps * STEP)
-                found.append(Cell(scene, engine, steps, "large", 1))
+            if links in COSTLY_SIZES:
+                steps = MORE_STEPS if engine in CHEAP else FEW_STEPS
+                scene = LongPendulum(links, duration=steps * FIXED_STEP, horizon=steps * FIXED_STEP)
+                chosen.append(Cell(scene, engine, steps, "large", 1))
             else:
                 scene = LongPendulum(links)
-                every = round(scene.duration / STEP) // SAMPLES
-                found.append(Cell(scene, engine, every, "growth" if links in SMALL else "large", SAMPLES))
-    return tuple(found)
+                every = round(scene.duration / FIXED_STEP) // SAMPLE_COUNT
+                chosen.append(Cell(scene, engine, every, "growth" if links in SMALL_SIZES else "large", SAMPLE_COUNT))
+    return tuple(chosen)
 
 
-CELLS = cells()
-WHOLE = LongPendulum().duration
-OWN = TruthError(LongPendulum(max(LARGE)))  # the longest chain that is run to the end
+SCALING_CELLS = cells()
+FULL_DURATION = LongPendulum().duration
+REFERENCE_ERROR = TruthError(LongPendulum(max(LARGE_SIZES)))  # the longest chain that is run to the end
 
 
-def found_series(material: Material) -> tuple[Series, ...]:
-    return series_of({cell: material.rows[cell] for cell in CELLS if cell in material.rows}, WHOLE)
+def found_series(material: Material) -> tuple[MethodSeries, ...]:
+    return series_of({cell: material.rows[cell] for cell in SCALING_CELLS if cell in material.rows}, FULL_DURATION)
 
 
 def figures(material: Material) -> dict[str, str]:
@@ -227,15 +234,19 @@ def figures(material: Material) -> dict[str, str]:
     return {"cost": svg(scaling_chart(found), title)} if found else {}
 
 
-def cost_table(found: tuple[Series, ...]) -> str:
+def cost_table(found: tuple[MethodSeries, ...]) -> str:
     """CPU time of a step [µs] by method and links."""
     sizes = sorted({point.size for series in found for point in series.points})
     return _table(found, sizes, lambda point: 1e6 * point.step)
 
 
-def error_table(found: tuple[Series, ...]) -> str:
+def error_table(found: tuple[MethodSeries, ...]) -> str:
     """The largest angle error [rad] by method and links, of the runs that are compared."""
-    run = {(method_name(c.engine), getattr(c.scene, "links", 0)) for c in CELLS if c.scene.duration == WHOLE}
+    run = {
+        (method_name(c.engine), getattr(c.scene, "links", 0))
+        for c in SCALING_CELLS
+        if c.scene.duration == FULL_DURATION
+    }
     compared = [
         replace(series, points=tuple(point for point in series.points if (series.method, point.size) in run))
         for series in found
@@ -243,18 +254,18 @@ def error_table(found: tuple[Series, ...]) -> str:
     return _table(compared, sorted({size for _, size in run}), lambda point: point.error)
 
 
-def _table(found: Iterable[Series], sizes: Sequence[int], value: Callable[[Point], float]) -> str:
-    """A number in each cell, the outcome where a run has none, nothing where there was no run."""
+def _table(found: Iterable[MethodSeries], sizes: Sequence[int], value: Callable[[SizePoint], float]) -> str:
+    """A number in each cell, the outcome of a failed run, nothing without a run."""
     body = [[series.method, *(_words(series.at(size), value) for size in sizes)] for series in found]
     return markdown(["method", *map(str, sizes)], body)
 
 
-def _words(point: Any, value: Callable[[Point], float]) -> str:
+def _words(point: Any, value: Callable[[SizePoint], float]) -> str:
     return "" if not point else f"**{point.outcome}**" if math.isnan(value(point)) else number(value(point))
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The tables, the laws, and single points for sentences, UNMEASURED where nothing was run."""
+    """The tables, the exponents, and single points for sentences (UNMEASURED without a run)."""
     found = found_series(material)
     by_method = {series.method: series for series in found}
 
@@ -267,20 +278,21 @@ def context(material: Material) -> Mapping[str, Any]:
         "errors": error_table(found),
         "laws": {series.method: fitted(series) for series in found},
         "sweeps": {"over_square": SWEEPS_OVER_SQUARE, "capped": CAPPED, "most": MOST},
-        "crossing": crossing(by_method.get("mujoco tuned"), by_method.get(f"mujoco {SPARSE.variant}")) or UNMEASURED,
+        "crossing": crossing(by_method.get("mujoco tuned"), by_method.get(f"mujoco {SPARSE_NEWTON.variant}"))
+        or UNMEASURED,
         "tree": {n: at(mujoco.TUNED, n) for n in (100, 1000)},
-        "sparse": {n: at(SPARSE, n) for n in (100, 1000)},
-        "swept": at(SWEPT, 100),
+        "sparse": {n: at(SPARSE_NEWTON, n) for n in (100, 1000)},
+        "swept": at(PGS, 100),
         "banded": {n: at(BandedChain(), n) for n in (100, 1000)},
         "impulses": {n: at(pymunk.DEFAULT, n) for n in (100, 1000)},
-        "own": own.number("error") if (own := material.finished(OWN)) else UNMEASURED,
-        "step": STEP,
-        "duration": WHOLE,
+        "own": answer.number("error") if (answer := material.finished(REFERENCE_ERROR)) else UNMEASURED,
+        "step": FIXED_STEP,
+        "duration": FULL_DURATION,
     }
 
 
-def crossing(one: Series | None, other: Series | None) -> tuple[int, int] | None:
-    """Between which two sizes the first begins to cost more than the other; None unless it does."""
+def crossing(one: MethodSeries | None, other: MethodSeries | None) -> tuple[int, int] | None:
+    """The neighbouring sizes between which the first begins to cost more than the other; None if it never does."""
     if one is None or other is None:
         return None
     pairs = [(p.size, p.step, q.step) for p in one.points if (q := other.at(p.size))]
@@ -291,9 +303,9 @@ PAGE = Page(
     name="scaling",
     title="Cost and error as a chain grows",
     lesson="From one link to a thousand: what coordinates, sweeps and exact multipliers cost as the chain grows.",
-    companions=pendulum.SCENES,
+    companions=pendulum.PAGE.scenes,
     figures=figures,
     context=context,
-    cells=CELLS,
-    tasks=(OWN,),
+    cells=SCALING_CELLS,
+    tasks=(REFERENCE_ERROR,),
 )

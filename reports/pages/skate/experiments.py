@@ -1,4 +1,4 @@
-"""Where constructions of a skate fail: experiments with a statement of what should happen; the methods by name."""
+"""Experiments in which constructions of a skate fail, and these constructions by name."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ from reports.pages.common import described, to_rounding
 from reports.write.experiments import observe_each
 from reports.write.tables import number
 
-CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_methods.SKATES, *mujoco_methods.SKATES)
-_KNOWN = {method_name(engine): engine for engine in (*VARIANTS, *CONSTRUCTIONS)}
+SKATE_CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_methods.SKATES, *mujoco_methods.SKATES)
+_KNOWN = {method_name(engine): engine for engine in (*VARIANTS, *SKATE_CONSTRUCTIONS)}
 
 
 def known(names: Iterable[str]) -> dict[str, Engine]:
-    """The engines of these names; a name that is not registered here is left out."""
+    """The engines with these names; names without an engine are left out."""
     return {name: _KNOWN[name] for name in names if name in _KNOWN}
 
 
-# What a user would take, and the best of each kind.
+# Variants that a user would choose, and the best one of each engine.
 ORDINARY: tuple[Engine, ...] = tuple(
     engine for engine in VARIANTS if engine.name != "lagrange" or engine.variant.startswith("rk4")
 )
 
 
-# Between these rates [rad/s] a turning on the straight run grows as the linearised motion says: far above where it
-# starts, and its square is still below a thousandth of that of the largest rate.
-GROWING = (2e-3, 4e-2)
+# Rates [rad/s] between which a small rotation grows as in the linearised motion: they are far above the rate at the
+# start, and their square is below a thousandth of the square of the largest rate.
+LINEAR_GROWTH = (2e-3, 4e-2)
 
 
 def growth_of(t: np.ndarray, rate: np.ndarray) -> float:
-    """The slope of log |turning rate| over time [1/s] between the rates of GROWING; NaN when it never gets there."""
+    """The slope of log |rate| over time [1/s] between the rates of LINEAR_GROWTH; NaN if they are not reached."""
     size = np.abs(rate)
-    late = int(np.argmax(size > GROWING[1])) if np.any(size > GROWING[1]) else 0
-    chosen = (np.arange(len(t)) < late) & (size > GROWING[0])
+    late = int(np.argmax(size > LINEAR_GROWTH[1])) if np.any(size > LINEAR_GROWTH[1]) else 0
+    chosen = (np.arange(len(t)) < late) & (size > LINEAR_GROWTH[0])
     if chosen.sum() < 3:
         return float("nan")
     return float(np.polyfit(t[chosen], np.log(size[chosen]), 1)[0])
@@ -54,11 +54,11 @@ def growth_of(t: np.ndarray, rate: np.ndarray) -> float:
 BACKWARDS = SleighBackwards()
 
 
-TURNING_ROUND = tuple(Cell(BACKWARDS, engine, 1) for engine in (*ORDINARY, *CONSTRUCTIONS))
+TURNING_ROUND = tuple(Cell(BACKWARDS, engine, 1) for engine in (*ORDINARY, *SKATE_CONSTRUCTIONS))
 
 
 def backwards(material: Material) -> list[Observation]:
-    """The growth of a small turning and the time of turning round, in each method."""
+    """The growth of a small rotation and the time of turning round, by method."""
     t = np.linspace(0, BACKWARDS.duration, BACKWARDS.samples + 1)
     truth = BACKWARDS.motion(t).twist[:, 0, 2]
     return [
@@ -72,7 +72,6 @@ def _grown(t: np.ndarray, rate: np.ndarray) -> str:
     grows, fastest = growth_of(t, rate), float(np.abs(rate).max())
     if np.isnan(grows):
         return f"does not turn round: at most {number(fastest)} rad/s"
-    # It turns fastest when the exact sleigh slides neither way.
     return f"{grows:.4f} per second; fastest, {fastest:.3f} rad/s, at {t[np.argmax(np.abs(rate))]:.2f} s"
 
 
@@ -101,43 +100,50 @@ COUNTED: tuple[tuple[str, Mechanism], ...] = (
 
 
 def counting(material: Material) -> list[Observation]:
-    """Freedoms by rank and by brackets, and integrability by Frobenius, of skates on one body."""
-    found = []
+    """Degrees of freedom by rank and by brackets, and integrability by Frobenius, of skates on one body."""
+    observations = []
     for name, mechanism in COUNTED:
         configuration, velocity = mechanism.degrees_of_freedom()
         reached = freedoms_by_brackets(mechanism)[-1] if velocity else 0
         kind = "integrable" if mechanism_is_integrable(mechanism) else "not integrable"
-        said = f"({configuration}, {velocity}); {kind}: of {configuration} it can reach {reached}"
+        result = f"({configuration}, {velocity}); {kind}: of {configuration} it can reach {reached}"
         if velocity == 0:
-            said = f"({configuration}, {velocity}): nothing can move, wherever it stands"
-        found.append(Observation(name, f"{mechanism.row_count} row{'' if mechanism.row_count == 1 else 's'}", said))
-    return found
+            result = f"({configuration}, {velocity}): no motion is possible from any pose"
+        rows = f"{mechanism.row_count} row{'' if mechanism.row_count == 1 else 's'}"
+        observations.append(Observation(name, rows, result))
+    return observations
 
 
-MOTION = ("position", "angle", "slip", "energy")
-IMPULSES = known(
+SKATE_QUANTITIES = ("position", "angle", "slip", "energy")
+VELOCITY_CHANGES = known(
     f"pymunk skate: {name}" for name in ("centre's velocity zeroed", "point's velocity zeroed", "impulse at the blade")
 )
-LONG = 1000.0  # s
-CIRCLING = ChaplyginSleigh(offset=0.0, duration=LONG, horizon=LONG)
-COASTING = ChaplyginSleigh(duration=LONG, horizon=LONG)
+LONG_DURATION = 1000.0  # s
+CIRCLING = ChaplyginSleigh(offset=0.0, duration=LONG_DURATION, horizon=LONG_DURATION)
+COASTING_SLEIGH = ChaplyginSleigh(duration=LONG_DURATION, horizon=LONG_DURATION)
 STRAIGHT_BACK = SleighBackwards(turning_rate=0.0, start=(0.0, 0.0, 0.3), duration=60.0, horizon=60.0)
 WRONG, SLOPE, TURNING = ChaplyginSleigh(), SkateOnSlope(), SkateOnSlope(turning_rate=2.0)
 
-FAILURES = described(
+SKATE_EXPERIMENTS = described(
     __file__,
-    to_rounding("No slip at all, and a wholly wrong motion", WRONG, (1, 10, 100), MOTION, engines=IMPULSES.values()),
+    to_rounding(
+        "No slip at all, and a wholly wrong motion",
+        WRONG,
+        (1, 10, 100),
+        SKATE_QUANTITIES,
+        engines=VELOCITY_CHANGES.values(),
+    ),
     Failure("The sleigh run backwards", tasks=tuple(map(Motion, TURNING_ROUND)), observations=backwards),
-    to_rounding("Straight back, for a minute", STRAIGHT_BACK, (1,), MOTION, 600),
-    to_rounding("Coasting for 1000 s", COASTING, (20,), MOTION, 1000),
-    to_rounding("Circling for 1000 s", CIRCLING, (20,), MOTION, 1000),
+    to_rounding("Straight back, for a minute", STRAIGHT_BACK, (1,), SKATE_QUANTITIES, 600),
+    to_rounding("Coasting for 1000 s", COASTING_SLEIGH, (20,), SKATE_QUANTITIES, 1000),
+    to_rounding("Circling for 1000 s", CIRCLING, (20,), SKATE_QUANTITIES, 1000),
     Failure("Friction too low to hold"),
     to_rounding("At rest across a slope", SLOPE, (1, 10), ("position", "slip", "reaction")),
-    to_rounding("Turning on a slope", TURNING, (1, 10), MOTION),
+    to_rounding("Turning on a slope", TURNING, (1, 10), SKATE_QUANTITIES),
     Failure("Counting freedoms of skates on one body", observations=counting),
     to_rounding("Held by three skates on a slope", HeldBySkates(), (1, 10), ("position", "angle", "slip", "reaction")),
     growth=rf"{{{BACKWARDS.growth_rate():g}\,t}}",
     rounded=f"{np.log(1e17) / BACKWARDS.growth_rate():.0f}",
-    growing=GROWING,
-    circled=f"{CIRCLING.turning_rate * LONG:.0f}",
+    growing=LINEAR_GROWTH,
+    circled=f"{CIRCLING.turning_rate * LONG_DURATION:.0f}",
 )

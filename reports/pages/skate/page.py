@@ -1,4 +1,4 @@
-"""The skate's page: every construction of one that we found, on the sleigh, and what else a skate teaches."""
+"""The page of the skate: all constructions that we found, compared on the sleigh, and the theory of skates."""
 
 from __future__ import annotations
 
@@ -33,27 +33,27 @@ from reports.model.cells import Cell
 from reports.model.convergence import by_method, groups, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
-from reports.model.page import Material, Page, usual_series
+from reports.model.page import Material, usual_series
 from reports.model.tasks import Motion
-from reports.pages.common import deviations
-from reports.pages.skate.experiments import CONSTRUCTIONS, FAILURES, known
+from reports.pages.common import scene_page
+from reports.pages.skate.experiments import SKATE_CONSTRUCTIONS, SKATE_EXPERIMENTS, known
 from reports.plots.plane_panels import Blades, Panel, PanelNote, Path, paths
 from reports.plots.theme import svg
 from reports.write import tables
-from reports.write.columns import holders
-from reports.write.page_tables import COMPARED
+from reports.write.columns import enforcement_by_method
+from reports.write.page_tables import COMPARED_STEP
 from reports.write.rows import Rows
 
-BLADE = 0.35  # m
-GAP = (0.0, 1.0, 0.0)  # the pose that is asked for: straight sideways of the start
+BLADE_LENGTH = 0.35  # m, as drawn
+PARKED: Triple = (0.0, 1.0, 0.0)  # the target pose of parking: straight sideways of the start
 
 
 def parking() -> Figure:
-    """From a pose to the one beside it: with all the room, within a lane, and by ever smaller commutators."""
+    """Manoeuvres from a pose to the one beside it, and the displacement of ever smaller commutators."""
     start: Triple = (0.0, 0.0, 0.0)
     panels = [
-        _manoeuvre("turn, slide, turn", start, park(start, GAP)),
-        _manoeuvre("sidestep, at most 0.6 rad", start, sidestep(GAP[1], 0.5, 0.6)),
+        _manoeuvre("turn, slide, turn", start, park(start, PARKED)),
+        _manoeuvre("sidestep, at most 0.6 rad", start, sidestep(PARKED[1], 0.5, 0.6)),
         _manoeuvre("the commutator: 0.8 rad, 1 m", start, commutator(0.8, 1.0)),
     ]
     sizes = np.geomspace(1.0, 1e-3, 60)
@@ -67,14 +67,14 @@ def parking() -> Figure:
 
 def _manoeuvre(title: str, start: Triple, moves: tuple[Move, ...]) -> Panel:
     way, poses = trace(start, moves), stops(start, moves)
-    blades = [Blades(poses[1:-1], BLADE, "quiet", 1.6), Blades(poses[[0, -1]], BLADE, "ink", 3.4)]
+    blades = [Blades(poses[1:-1], BLADE_LENGTH, "quiet", 1.6), Blades(poses[[0, -1]], BLADE_LENGTH, "ink", 3.4)]
     (x, y), (end_x, end_y) = poses[0][:2], poses[-1][:2]
     notes = [PanelNote((x, y - 0.16), "from", "center"), PanelNote((end_x, end_y + 0.16), "to", "center")]
     return Panel(title, [Path(way[:, :2], "path of C", "second", "-", 1.6)], blades, notes)
 
 
 def slope() -> Figure:
-    """An ideal skate that turns on an incline: it goes sideways in cycloids, and never down."""
+    """An ideal skate that turns on an incline and moves sideways along cycloids."""
     panels, label = [], "path of C; down the slope is down"
     for title, scene in (
         ("turning at 1 rad/s from rest, blade across the slope", SkateOnSlope(turning_rate=1.0)),
@@ -82,41 +82,42 @@ def slope() -> Figure:
     ):
         poses = scene.motion(np.linspace(0, 2 * math.pi, 721)).pose[:, 0]
         line = Path(poses[:, :2], label, "second", "-", 1.6, dot=True)
-        panels.append(Panel(title, [line], [Blades(poses[::60], BLADE, "ink", 2.2)]))
+        panels.append(Panel(title, [line], [Blades(poses[::60], BLADE_LENGTH, "ink", 2.2)]))
     return paths(panels, columns=2)
 
 
-SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinnedBody())
+SKATE_SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinnedBody())
 SLEIGH = ChaplyginSleigh()
 
-BLADES = 7  # skates drawn on the way
-# Name -> colour, dashes. A construction that is not visibly off is not worth a line.
-OVERLAID: dict[str, tuple[str, Any]] = {
+BLADES = 7  # skates drawn along a path
+# Method -> (colour, dashes); only methods that are visibly off.
+DRAWN_PATHS: dict[str, tuple[str, Any]] = {
     "pymunk skate: centre's velocity zeroed": ("first", "--"),
     "pymunk skate: point's velocity zeroed": ("first", ":"),
     "pymunk tuned": ("first", "-"),
     "mujoco default": ("second", "--"),
     "mujoco tuned": ("second", ":"),
 }
-# Beside the variants: "pymunk naive" is the centre's velocity zeroed, "tuned" the groove that is predicted.
+# Methods of the table beside the usual variants. "pymunk naive" zeroes the centre's velocity; "pymunk tuned" is the
+# groove at the predicted heading.
 LISTED = ("pymunk naive", "pymunk skate: groove, extrapolated", "pymunk skate: point's velocity zeroed")
 LISTED += ("mujoco friction blade",)
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
-    """Constructions of a skate on the sleigh alone: backwards they are an experiment, and a pin needs none."""
-    return scene == SLEIGH or engine not in CONSTRUCTIONS
+    """Constructions of a skate are run on the sleigh alone; the sleigh backwards is an experiment of its own."""
+    return scene == SLEIGH or engine not in SKATE_CONSTRUCTIONS
 
 
 def skate_path(scene: ChaplyginSleigh, trajectory: Trajectory) -> np.ndarray:
-    """Poses (times, 3) of the skate from those of the sleigh's body."""
+    """Poses (times, 3) of the skate, from those of the sleigh's body."""
     pose = trajectory.pose[:, 0]
     arm = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2]), np.zeros(len(pose))], axis=-1)
     return pose - scene.offset * arm
 
 
 PATHS = tuple(
-    (title, scene, {name: Cell(scene, engine, 1) for name, engine in known(OVERLAID).items()})
+    (title, scene, {name: Cell(scene, engine, 1) for name, engine in known(DRAWN_PATHS).items()})
     for title, scene in (
         ("ahead for 3 s, steps of 10 ms", SLEIGH),
         ("backwards for 10 s: it turns round", SleighBackwards()),
@@ -125,19 +126,19 @@ PATHS = tuple(
 
 
 def path_picture(material: Material) -> Figure:
-    """The skate's path in truth and in several methods, forwards and backwards."""
+    """The skate's path in the reference motion and by several methods, ahead and backwards."""
     panels = []
     for title, scene, cells in PATHS:
-        found = material.motions(cells.values())
+        motions = material.motions(cells.values())
         truth = scene.skate_pose(np.linspace(0, scene.duration, scene.samples + 1))
         lines = [Path(truth[:, :2], "truth", "ink", "-", 3.0)]
         for name, cell in cells.items():
-            if cell in found:
-                colour, dashes = OVERLAID[name]
-                points = skate_path(scene, found[cell])[:, :2]
+            if cell in motions:
+                colour, dashes = DRAWN_PATHS[name]
+                points = skate_path(scene, motions[cell])[:, :2]
                 lines.append(Path(points, name, colour, dashes, 1.6, framed=False, dot=True))
-        some = truth[:: max(1, scene.samples // (BLADES - 1))]
-        panels.append(Panel(title, lines, [Blades(some, 0.12 * float(np.ptp(truth[:, :2])), "ink", 3.0)]))
+        drawn = truth[:: max(1, scene.samples // (BLADES - 1))]
+        panels.append(Panel(title, lines, [Blades(drawn, 0.12 * float(np.ptp(truth[:, :2])), "ink", 3.0)]))
     return paths(panels, columns=2)
 
 
@@ -150,19 +151,26 @@ def figures(material: Material) -> dict[str, str]:
     }
 
 
-HEADER = ("construction", "position [m]", "slip [m/s]", "energy [relative]", "reaction [relative]", "CPU [ms/s]")
+CONSTRUCTION_HEADER = (
+    "construction",
+    "position [m]",
+    "slip [m/s]",
+    "energy [relative]",
+    "reaction [relative]",
+    "CPU [ms/s]",
+)
 
 
-def constructions(rows: Sequence[Measurement], held: Mapping[str, str] | None = None) -> str:
-    """One line a construction: its errors at about the compared step, its cost, and what its error does; best first.
+def constructions(rows: Sequence[Measurement], enforcement: Mapping[str, str] | None = None) -> str:
+    """A line for each construction, best first: errors at about the compared step, cost, convergence of the error.
 
-    Constructions that were run at other steps alone have no line; the text is empty if none has one.
+    Constructions without a run near that step are left out; the text is empty without any line.
     """
     verdicts = by_method(sweeps(rows), "position")
     lines = []
     for key, members in groups(rows).items():
         built = Rows(row for row in members if row.outcome != Outcome.UNSUPPORTED)
-        row = built.near(COMPARED)
+        row = built.near(COMPARED_STEP)
         if not built:
             lines.append((np.inf, [members[0].method, "can't be built", *[tables.NOTHING] * 4, ""]))
         elif row:
@@ -170,17 +178,17 @@ def constructions(rows: Sequence[Measurement], held: Mapping[str, str] | None = 
             if not Outcome(row.outcome).comparable:
                 numbers[0] = f"**{row.outcome}** {numbers[0]}"
             wrong = all(Outcome(member.outcome).wrong for member in members)
-            words = "wrong at every step" if wrong else tables.sweep_words(verdicts[key])
+            convergence = "wrong at every step" if wrong else tables.sweep_words(verdicts[key])
             error = row.position if np.isfinite(row.position) else np.inf
-            lines.append((error, [row.method, *numbers, tables.milliseconds(row.cpu), words]))
-    header = [*HEADER, "order as the step shrinks, plateau in m"]
+            lines.append((error, [row.method, *numbers, tables.milliseconds(row.cpu), convergence]))
+    header = [*CONSTRUCTION_HEADER, "order as the step shrinks, plateau in m"]
     body = [line for _, line in sorted(lines, key=lambda pair: pair[0])]
-    return tables.markdown(header, body, left=1, held=held) if lines else ""
+    return tables.markdown(header, body, left=1, enforcement=enforcement) if lines else ""
 
 
 @cache
 def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> str:
-    """Freedoms of scenes by rank and by brackets, as a table; `names` stand for the scenes' own."""
+    """A table of the degrees of freedom by rank and by brackets; `names` replace the scenes' own names."""
     body = []
     for name, scene in zip(names or tuple(scene.name for scene in scenes), scenes, strict=True):
         mechanism = scene.mechanism()
@@ -192,31 +200,35 @@ def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> 
     return tables.markdown(header, body, left=5)
 
 
-def only() -> str:
-    """Conditions (a, b, c) on one body, the skate that each is, and Frobenius' number at a pose."""
+def uniform_conditions() -> str:
+    """A table of conditions (a, b, c) on one body: the equivalent skate, and w . curl w at a pose."""
     body = []
     for row in ((0.0, 1.0, 0.5), (1.0, 0.0, 0.0), (3.0, 4.0, -2.0), (0.0, 0.0, 1.0)):
         skate, curl = skate_of(row), frobenius(row, np.array([0.3, -0.2, 0.8]))
-        place = () if skate is None else (*skate.second_point, math.degrees(skate.angle))
-        at = "({:.3g}, {:.3g}) m, {:.3g}°".format(*(each + 0.0 for each in place)) if place else "none"
-        body.append([f"({', '.join(f'{each:g}' for each in row)})", at, f"{curl + 0:.6g}"])
+        equivalent = "none"
+        if skate is not None:  # + 0.0 turns -0 into 0
+            numbers = (*skate.second_point, math.degrees(skate.angle))
+            equivalent = "({:.3g}, {:.3g}) m, {:.3g}°".format(*(number + 0.0 for number in numbers))
+        body.append([f"({', '.join(f'{factor:g}' for factor in row)})", equivalent, f"{curl + 0:.6g}"])
     return tables.markdown(["(a, b, c)", "skate: its point, its blade's angle", "w · curl w"], body, left=2)
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Tables, and rows of the sleigh, UNMEASURED where there is none.
+    """Tables, and functions that look up rows of the sleigh (UNMEASURED without a row).
 
-    at: of a method at about a step [s]; least: with the least position error of an engine's variant; finest: of a
-    method at the smallest step that has a position error.
+    at: a method's row nearest to a step [s]. least: the row of an engine's variant with the least position error.
+    finest: a method's row at the smallest step with a position error.
     """
     rows = Rows(material.sweep((SLEIGH,)))
-    held = holders(cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep")
+    enforcement = enforcement_by_method(
+        cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep"
+    )
     return {
-        "only": only(),
+        "only": uniform_conditions(),
         "coriolis": coriolis_factors(1.3, 1.7, -0.6),
-        "constructions": constructions([row for row in rows if usual_series(row) or row.method in LISTED], held),
-        "counted": counted(SCENES),
-        "at": lambda method, step=COMPARED: rows.of(method=method).known("position").near(step),
+        "constructions": constructions([row for row in rows if usual_series(row) or row.method in LISTED], enforcement),
+        "counted": counted(SKATE_SCENES),
+        "at": lambda method, step=COMPARED_STEP: rows.of(method=method).known("position").near(step),
         "least": lambda engine, variant: rows.of(method=f"{engine} {variant}").best("position"),
         "finest": lambda method: rows.of(method=method).known("position").finest(),
         "sleigh": SLEIGH,
@@ -225,22 +237,21 @@ def context(material: Material) -> Mapping[str, Any]:
     }
 
 
-# Another body's motion has no order; here it is held to an ideal row's all the same, so that by how much it misses that
-# stays known.
-ORDERS = {("sleigh_backwards", "pymunk default"): ConvergenceOrder(1, differences=1)}
+# The naive method moves another body and has no convergence order. The order of an ideal row is declared all the same,
+# so that the gate checks by how much the method misses it.
+DECLARED_ORDERS = {("sleigh_backwards", "pymunk default"): ConvergenceOrder(1, differences=1)}
 
-PAGE = Page(
-    name="skate",
+PAGE = scene_page(
+    "skate",
     title="The skate",
     lesson="A skate forbids velocities but no position. Engines have no such joint; here is what can stand for it.",
-    scenes=SCENES,
-    engines=(*VARIANTS, *CONSTRUCTIONS),
-    failures=FAILURES,
+    scenes=SKATE_SCENES,
+    engines=(*VARIANTS, *SKATE_CONSTRUCTIONS),
+    failures=SKATE_EXPERIMENTS,
     compared=compared,
     quantity="position",
     figures=figures,
     context=context,
-    orders=ORDERS,
-    known=deviations("skate"),
+    orders=DECLARED_ORDERS,
     tasks=tuple(Motion(cell) for _, _, cells in PATHS for cell in cells.values()),
 )

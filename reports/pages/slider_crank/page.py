@@ -1,4 +1,4 @@
-"""The slider-crank's page: driven and free, and what stands for its slot."""
+"""The page of the slider-crank, driven and free, and of constructions of its slot."""
 
 from __future__ import annotations
 
@@ -21,22 +21,21 @@ from reference.scenes.slider_crank import (
     SliderAtDeadCentre,
     SlottedLever,
 )
-from reports.model.page import Failure, Material, Observation, Page
+from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Task, Values
-from reports.pages.common import ALL, cells, described, deviations, read_answers, refusals
+from reports.pages.common import ALL, cells, described, read_answers, refusals, scene_page
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
-from reports.write.rows import lookups
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
-FAR = 1.0  # rad
-INSTANTS = 3001  # so that the time is known to a millisecond
+LEFT_BY = 1.0  # rad: a crank at this distance has left its dead centre
+TIMES_OF_LEAVING = 3001  # equally spaced over the scene's duration, every 0.5 ms
 
 
 @dataclass(frozen=True)
 class Leaving(Task):
-    """A slider that starts a crank, `angle` [rad] beside its dead centre."""
+    """The time at which a slider has moved the crank away from its dead centre, from `angle` [rad] beside it."""
 
     angle: float
 
@@ -44,69 +43,50 @@ class Leaving(Task):
     words: ClassVar[str] = "leaving a dead centre from {0.angle:g} rad"
 
     def run(self) -> Values:
-        """`when`: the first of INSTANTS over the scene's duration at which the crank is further than FAR [s]."""
+        """`when`: the first of TIMES_OF_LEAVING instants at which the crank is further than LEFT_BY [s]."""
         scene = SliderAtDeadCentre(angle=self.angle)
-        t = [scene.duration * i / (INSTANTS - 1) for i in range(INSTANTS)]
-        far = scene.motion(t).pose[:, 0, 2] > FAR
-        return {"when": np.asarray(t[int(np.argmax(far))] if far.any() else np.nan)}
+        t = [scene.duration * i / (TIMES_OF_LEAVING - 1) for i in range(TIMES_OF_LEAVING)]
+        has_left = scene.motion(t).pose[:, 0, 2] > LEFT_BY
+        return {"when": np.asarray(t[int(np.argmax(has_left))] if has_left.any() else np.nan)}
 
 
-GROOVE = (
+GROOVE_AT_ROD = (
     replace(pymunk.DEFAULT, variant="default, GrooveJoint at the rod's end", slot="groove"),
     replace(pymunk.TUNED, variant="tuned, GrooveJoint at the rod's end", slot="groove"),
 )
-GROOVES = cells(RodEndInSlot(), GROOVE, (1, 10, 100))
-LEVER = (
+GROOVES = cells(RodEndInSlot(), GROOVE_AT_ROD, (1, 10, 100))
+GROOVE_IN_LEVER = (
     replace(pymunk.DEFAULT, variant="default, GrooveJoint in the lever", slot="groove"),
     replace(pymunk.TUNED, variant="tuned, GrooveJoint in the lever", slot="groove"),
 )
-LEVERS = cells(SlottedLever(), LEVER, (1, 10, 100))
+LEVERS = cells(SlottedLever(), GROOVE_IN_LEVER, (1, 10, 100))
 
 LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
 
 
 def delay(material: Material) -> dict[str, Any]:
-    """`later` [s]: how much later the nearest start leaves than one a hundred times as far aside; `nearer`: log 100."""
+    """`later` [s]: delay of the nearest start relative to one at a hundred times its distance; `nearer`: log 100."""
     far, near = (material.finished(task) for task in LEAVING[-2:])
     later = near.number("when") - far.number("when") if far and near else UNMEASURED
     return {"later": later, "nearer": math.log(LEAVING[-2].angle / LEAVING[-1].angle)}
 
 
 def leaving(material: Material) -> list[Observation]:
-    """When the truth has left the dead centre by a radian, for starts nearer and nearer to it."""
+    """The times at which the reference motion is a radian away, for starts ever nearer to the dead centre."""
     settings = [(task, f"{number(task.angle)} rad aside") for task in LEAVING]
-    say = "a radian away after {:.3f} s".format
-    return read_answers(material, "the reference", settings, lambda answer: say(answer.number("when")))
+    describe = "a radian away after {:.3f} s".format
+    return read_answers(material, "the reference", settings, lambda answer: describe(answer.number("when")))
 
 
 def out_of_reach(material: Material) -> list[Observation]:
-    """The reference's sentences on slots that can't be reached."""
+    """The reference's error messages for slots that the rod can't reach."""
     shape = DrivenSliderCrank().shape
     offsets = (shape.rod - shape.crank, 1.0)
     return refusals({f"offset {offset:.3g} m": partial(replace, shape, offset=offset) for offset in offsets})
 
 
-FAILURES = described(
-    __file__,
-    Failure("The rod's end in a groove", cells=GROOVES + cells(RodEndInSlot(), ALL, (1, 10, 100))),
-    Failure("A groove in a moving lever", cells=LEVERS + cells(SlottedLever(), (*ALL, *SLOTS), (1, 10, 100))),
-    Failure(
-        "A slider that has to start the crank, next to its dead centre",
-        cells=cells(SliderAtDeadCentre(), (*ALL, Lagrange("rk4", "projection")), (1, 10)),
-        tasks=LEAVING,
-        context=delay,
-        observations=leaving,
-    ),
-    Failure("A slider in its dead centre", cells=cells(SliderAtDeadCentre(angle=0.0), ALL, (1, 10))),
-    Failure("A slot out of reach", observations=out_of_reach),
-)
-
-
-SCENES = (DrivenSliderCrank(), FreeSliderCrank())
-
-
 def figures(material: Material) -> dict[str, str]:
-    """Stroboscopic pictures of the truth: in line, offset, and the other branch."""
+    """Stroboscopic pictures of reference motions: in line, with an offset, and on the other branch."""
     driven = DrivenSliderCrank()
     offset = DrivenSliderCrank(offset=0.4, crank=0.4)
     strips = (
@@ -119,22 +99,33 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Rows, and the dead centres and stroke of the scene from the formulas."""
+    """Dead centres [°] and stroke [m] of the scene, by formula."""
     shape = DrivenSliderCrank().shape
     stretched, folded = shape.dead_centres()
-    formulas = {"stretched": math.degrees(stretched), "in_line_again": math.degrees(folded), "stroke": shape.stroke()}
-    return {**lookups(material, SCENES), **formulas}
+    return {"stretched": math.degrees(stretched), "in_line_again": math.degrees(folded), "stroke": shape.stroke()}
 
 
-PAGE = Page(
-    name="slider_crank",
+PAGE = scene_page(
+    "slider_crank",
     title="The slider-crank",
     lesson="A slot and three pins: a loop that slides, and a groove that is always right only at a centre of mass.",
-    scenes=SCENES,
+    scenes=(DrivenSliderCrank(), FreeSliderCrank()),
     advised="free_slider_crank",
     engines=VARIANTS,
-    failures=FAILURES,
+    failures=described(
+        __file__,
+        Failure("The rod's end in a groove", cells=GROOVES + cells(RodEndInSlot(), ALL, (1, 10, 100))),
+        Failure("A groove in a moving lever", cells=LEVERS + cells(SlottedLever(), (*ALL, *SLOTS), (1, 10, 100))),
+        Failure(
+            "A slider that has to start the crank, next to its dead centre",
+            cells=cells(SliderAtDeadCentre(), (*ALL, Lagrange("rk4", "projection")), (1, 10)),
+            tasks=LEAVING,
+            context=delay,
+            observations=leaving,
+        ),
+        Failure("A slider in its dead centre", cells=cells(SliderAtDeadCentre(angle=0.0), ALL, (1, 10))),
+        Failure("A slot out of reach", observations=out_of_reach),
+    ),
     figures=figures,
     context=context,
-    known=deviations("slider_crank"),
 )

@@ -22,14 +22,14 @@ from reports.write.tables import markdown
 
 
 def variants(entries: Sequence[Entry]) -> tuple[str, ...]:
-    """The methods in the order in which they stand in every table."""
-    found = dict.fromkeys(entry.variant for entry in entries)
-    usual = ("default", "tuned", "extended")
-    return (*(each for each in usual if each in found), *sorted(each for each in found if each not in usual))
+    """The variants in the order of every table: the three usual ones, then the others by name."""
+    present = {entry.variant for entry in entries}
+    usual = [variant for variant in ("default", "tuned", "extended") if variant in present]
+    return (*usual, *sorted(present - {*usual}))
 
 
-def heat_table(entries: Sequence[Entry], versions: Sequence[str]) -> Figure:
-    """Scenes by versions, a panel a method; each cell says its error's power of ten, or the outcome's letter."""
+def heat_map(entries: Sequence[Entry], versions: Sequence[str]) -> Figure:
+    """Scenes by versions, a panel for each method; a cell has the power of ten of its error or its outcome's letter."""
     methods = variants(entries)
     scenes = {method: tuple(dict.fromkeys(e.scene for e in entries if e.variant == method)) for method in methods}
     heights = [len(scenes[method]) for method in methods]
@@ -57,7 +57,7 @@ def heat_table(entries: Sequence[Entry], versions: Sequence[str]) -> Figure:
 
 
 def _look(entry: Entry) -> tuple[str, str]:
-    """(colour, letters) of a cell. The letter of a failure needs no hatch, which would make it unreadable."""
+    """(colour, text) of a cell. A failure has a letter and no hatch, which would make the letter unreadable."""
     if not entry.comparable:
         outcome = Outcome(entry.outcome)
         return outcome_colour(outcome, LIGHT), outcome.letter
@@ -67,7 +67,7 @@ def _look(entry: Entry) -> tuple[str, str]:
 
 def _draw_cell(panel: Axes, column: int, row: int, entry: Entry) -> None:
     colour, letters = _look(entry)
-    # No patch: the limits are given, and need not follow each of some thousand cells.
+    # An artist and not a patch, so that the limits are not computed again for each of some thousand cells.
     panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=LIGHT.paper, linewidth=1))
     panel.text(column + 0.5, row + 0.5, letters, ha="center", va="center", color=LIGHT.ink, fontsize=7, in_layout=False)
 
@@ -76,24 +76,27 @@ def _legend(figure: Figure, entries: Sequence[Entry]) -> None:
     colours = {name: getattr(LIGHT, role) for role, name in SHADE_NAMES.items()}
     for outcome in Outcome:
         if any(not entry.comparable and entry.outcome == outcome for entry in entries):
-            told = "our adapter builds none" if outcome is Outcome.UNSUPPORTED else outcome
-            colours[f"{outcome.letter}  {told}"] = outcome_colour(outcome, LIGHT)
+            label = "our adapter builds none" if outcome is Outcome.UNSUPPORTED else outcome
+            colours[f"{outcome.letter}  {label}"] = outcome_colour(outcome, LIGHT)
     patches = [Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor=LIGHT.quiet) for colour in colours.values()]
     figure.legend(patches, list(colours), loc="outside lower center", ncols=4)
 
 
 def version_table(table: ReleaseTable, engine: str) -> str:
-    """A line for each version: how many errors became better or worse with it, its cost, and its known changes."""
+    """A line for each version: the number of errors that became better or worse, its cost, and its known changes."""
     entries, versions = table.of(engine), table.versions(engine)
     costs = {method: relative_cost(entries, versions, method) for method in variants(entries)}
     costs = {method: ratios for method, ratios in costs.items() if ratios}
-    found = changes(entries)
+    changed = changes(entries)
     body = []
-    for before, version in pairwise(("", *versions)):
-        words = [word for _, after, word in found if after.version == version]
-        known = changes_between(engine, before, version) if before else ()
-        change = "; ".join(f"{each.changed} ([source]({each.source}))" for each in known)
-        counts = (f"{words.count('better') or '-'}", f"**{words.count('WORSE')}**" if "WORSE" in words else "-")
+    for previous, version in pairwise(("", *versions)):
+        verdicts = [verdict for _, after, verdict in changed if after.version == version]
+        known = changes_between(engine, previous, version) if previous else ()
+        change = "; ".join(f"{release.changed} ([source]({release.source}))" for release in known)
+        counts = (
+            f"{verdicts.count('better') or '-'}",
+            f"**{verdicts.count('WORSE')}**" if "WORSE" in verdicts else "-",
+        )
         ratios = [f"{costs[method][version]:.2f}" if version in costs[method] else "-" for method in costs]
         body.append([version, change or "-", *counts, *ratios])
     header = ["version", "change known by name", "better", "worse", *(f"CPU time, {method}" for method in costs)]
@@ -121,10 +124,10 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def figures(material: Material) -> Mapping[str, str]:
-    """A heat table of each engine, in the order of the page."""
+    """A heat map for each engine, in the order of the page."""
     table = released()
     return {
-        f"{name}_heat": svg(heat_table(table.of(name), table.versions(name)), f"{name}: errors of scenes by version")
+        f"{name}_heat": svg(heat_map(table.of(name), table.versions(name)), f"{name}: errors of scenes by version")
         for name in table.engines
     }
 

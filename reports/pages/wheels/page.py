@@ -1,4 +1,4 @@
-"""The wheels' page: vehicles that coast on ideal wheels, and what towed and free wheels do."""
+"""The page of ideal wheels: vehicles that coast, towed wheels and casters."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from reference.scenes.wheels.trailers import CarWithTrailers, Tow
 from reference.scenes.wheels.vehicles import CarAndTrailer, Cart, Casters
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
-from reports.model.page import Material, Observation, Page
+from reports.model.page import Material, Observation
 from reports.model.tasks import Motion, Task, Values
-from reports.pages.common import ENGINES_ALONE, described, deviations, steps_for, to_rounding
+from reports.pages.common import ENGINES_ALONE, described, scene_page, steps_for, to_rounding
 from reports.pages.skate.experiments import known
 from reports.pages.skate.page import counted
 from reports.plots.plane_panels import Blades, Panel, Path, paths
 from reports.plots.theme import svg
-from reports.write.columns import told_variant
+from reports.write.columns import displayed_variant
 from reports.write.experiments import observe_each
 from reports.write.unmeasured import UNMEASURED
 
 
 @dataclass(frozen=True)
 class Folding(Task):
-    """A car with a trailer that starts backwards; driven it is looked at for `driven` [s]."""
+    """The reference motion of a car that reverses with a trailer; `driven`: seconds of driving at an even speed."""
 
     scene: CarAndTrailer
     driven: float
@@ -39,7 +39,7 @@ class Folding(Task):
     words: ClassVar[str] = "the reference on a reversing trailer"
 
     def run(self) -> Values:
-        """`jackknifed` [s]: when the trailer is square to the driven car; `t`, `pose`: of the truth, coasting."""
+        """`jackknifed`: when the trailer is at a right angle to the driven car [s]; `t`, `pose`: coasting."""
         scene = self.scene
         car = CarWithTrailers(scene.wheelbase, (scene.length,), (scene.hitch,))
         convoy = car.drive(scene.speed, scene.steering, scene.pose, (scene.bend,), [self.driven])
@@ -48,46 +48,46 @@ class Folding(Task):
         return {"jackknifed": np.asarray(when), "t": t, "pose": scene.motion(t).pose}
 
 
-MOTION = ("position", "angle", "gap", "slip", "energy")
+VEHICLE_QUANTITIES = ("position", "angle", "gap", "slip", "energy")
 
 BACKING = CarAndTrailer(speed=-1.0, steering=0.0, bend=0.05, hitch=0.0)
-PUSHED = Cart(speed=-1.0, turning_rate=0.0, angles=(0.05, -1e-3))
+PUSHED_CART = Cart(speed=-1.0, turning_rate=0.0, angles=(0.05, -1e-3))
 FOLDED = math.pi / 2  # rad
 
 
 def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
-    """When |values| first passes a limit, linear between samples; None if it never does."""
+    """The time at which |values| first passes a limit, linear between samples; None if it never does."""
     over = np.flatnonzero(np.abs(values) > limit)
     if not over.size or over[0] == 0:
         return None
-    late = int(over[0])
-    before, after = abs(values[late - 1]), abs(values[late])
-    return float(t[late - 1] + (t[late] - t[late - 1]) * (limit - before) / (after - before))
+    end = int(over[0])
+    low, high = abs(values[end - 1]), abs(values[end])
+    return float(t[end - 1] + (t[end] - t[end - 1]) * (limit - low) / (high - low))
 
 
-# Straight back the bend b obeys b' = (v/L) sin b: tan(b/2) grows as exp(v t/L).
+# Straight back, the bend b follows b' = (v/L) sin b: tan(b/2) grows as exp(v t/L).
 FOLDS = BACKING.length * math.log(1 / math.tan(BACKING.bend / 2)) / abs(BACKING.speed)  # s
 REFERENCE = Folding(BACKING, FOLDS + 1)
 RUNS = tuple(Cell(BACKING, engine, every) for engine in ENGINES_ALONE for every in steps_for(engine, (1, 10)))
 
 
 def folding(material: Material) -> list[Observation]:
-    """When the reversing trailer is bent beyond a right angle: closed form, kinematics, and methods that coast."""
+    """When the reversing trailer passes a right angle: by closed form, by kinematics, and by methods that coast."""
     bent = float(Tow(BACKING.length, BACKING.bend).relative_angle(-FOLDS * abs(BACKING.speed)))
-    found = [Observation("closed form, at an even speed", "", f"{FOLDS:.4f} s")]
+    observations = [Observation("closed form, at an even speed", "", f"{FOLDS:.4f} s")]
     reference = material.finished(REFERENCE)
     if reference:
         driven = f"{reference.number('jackknifed'):.4f} s"
-        found.append(Observation("the reference, driven at an even speed", "", driven))
-    found.append(Observation("the drawbar pushed along by that way", "", f"bent by {bent:.4f} rad"))
+        observations.append(Observation("the reference, driven at an even speed", "", driven))
+    observations.append(Observation("the drawbar pushed along by that way", "", f"bent by {bent:.4f} rad"))
     if answer := material.answers.get(REFERENCE):
         coasting = _folded(answer.array("t"), answer.array("pose")) if reference else answer.told
-        found.append(Observation("the reference, coasting", "", coasting))
-    return [*found, *observe_each(material, RUNS, lambda cell, run: _folded(run.t, run.pose))]
+        observations.append(Observation("the reference, coasting", "", coasting))
+    return [*observations, *observe_each(material, RUNS, lambda cell, run: _folded(run.t, run.pose))]
 
 
 def lateness(material: Material) -> dict[str, Any]:
-    """`late` [s]: how much later than in the truth the trailer folds with the naive zeroing, larger step first."""
+    """`late`: the delay with which the trailer folds by the naive method [s], the larger step first."""
     truth = material.finished(REFERENCE)
     exact = crossing(truth.array("t"), bend_of(truth.array("pose")), FOLDED) if truth else None
     motions = material.motions(cell for cell in RUNS if cell.engine == pymunk.DEFAULT)
@@ -97,7 +97,7 @@ def lateness(material: Material) -> dict[str, Any]:
 
 
 def bend_of(pose: np.ndarray) -> np.ndarray:
-    """The trailer's angle against the car (times,) [rad]."""
+    """The trailer's angle relative to the car (times,) [rad]."""
     return pose[:, 1, 2] - pose[:, 0, 2]
 
 
@@ -107,52 +107,38 @@ def _folded(t: np.ndarray, pose: np.ndarray) -> str:
     return f"{when:.4f} s" if when is not None else f"never folds: bent by at most {np.abs(bend).max():.3f} rad"
 
 
-FORCES = ("position", "slip", "energy", "reaction")
+FORCE_QUANTITIES = ("position", "slip", "energy", "reaction")
 CAR, CART = CarAndTrailer(redundant=True), Cart(redundant=True)
 
-FAILURES = described(
-    __file__,
-    to_rounding(
-        "A reversing trailer jack-knifes",
-        *(BACKING, (1, 10), MOTION),
-        tasks=(REFERENCE, *map(Motion, RUNS)),
-        observations=folding,
-        context=lateness,
-    ),
-    to_rounding("Casters swing round when the cart is pushed back", PUSHED, (1, 10), MOTION),
-    to_rounding("Both wheels of every axle: the car and its trailer", CAR, (1, 10), FORCES),
-    to_rounding("Both wheels of the fixed axle: the cart", CART, (1, 10), FORCES),
-)
 
-
-# The straight tow starts square; the circular ones too, with the hitch on a circle of these radii [drawbar lengths].
-LENGTH = 1.0
-RADII = (1.6, 1.0, 0.6)
-DRAWBARS = 7  # how many are drawn on the way
+# All tows start with the drawbar at a right angle to the way of the hitch.
+DRAWBAR = 1.0  # m
+RADII = (1.6, 1.0, 0.6)  # of the circles of the hitch, in drawbar lengths
+DRAWBARS = 7  # drawn along a path
 
 
 def tows() -> Figure:
-    """A wheel towed along a straight line (the tractrix) and round three circles, R >, =, < L."""
-    panels = [_tow("straight: the tractrix", math.inf, 4 * LENGTH)]
+    """A wheel towed along a straight line (the tractrix) and round circles with R > L, R = L and R < L."""
+    panels = [_tow("straight: the tractrix", math.inf, 4 * DRAWBAR)]
     for radius, sign in zip(RADII, (">", "=", "<"), strict=True):
         panels.append(_tow(f"R {sign} L", radius, 2.5 * 2 * math.pi * radius))
     return paths(panels, columns=4)
 
 
 def _tow(title: str, radius: float, distance: float) -> Panel:
-    tow = Tow(LENGTH, math.pi / 2, radius)
-    way, some = np.linspace(0, distance, 800), np.linspace(0, min(distance, 4 * LENGTH), DRAWBARS)
+    tow = Tow(DRAWBAR, math.pi / 2, radius)
+    way, stops = np.linspace(0, distance, 800), np.linspace(0, min(distance, 4 * DRAWBAR), DRAWBARS)
     led = way if math.isinf(radius) else np.linspace(0, 2 * math.pi * radius, 200)
-    drawbars = np.column_stack([0.5 * (tow.hitch(some) + tow.wheel(some)), tow.heading(some)])
+    drawbars = np.column_stack([0.5 * (tow.hitch(stops) + tow.wheel(stops)), tow.heading(stops)])
     lines = [
         Path(tow.hitch(led), "hitch", "quiet", "--", 1.2),
         Path(tow.wheel(way), "towed wheel", "second", "-", 1.8, dot=True),
     ]
-    return Panel(title, lines, [Blades(drawbars, LENGTH, "quiet", 0.9, "drawbar")])
+    return Panel(title, lines, [Blades(drawbars, DRAWBAR, "quiet", 0.9, "drawbar")])
 
 
 def casters() -> Figure:
-    """A cart's two casters: going ahead they trail, pushed back they swing round, however straight they stood."""
+    """Two casters of a cart: going ahead they trail; pushed back they swing round after the smallest deviation."""
     cart = Casters(((0.7, 0.2), (0.7, -0.2)), 0.1)
     corners = np.array([[0.0, 0.2], *cart.places, [0.0, -0.2], [0.0, 0.2]])  # from the fixed axle to the kingpins
     t = np.linspace(0, 2, 801)
@@ -178,7 +164,7 @@ def casters() -> Figure:
 
 
 def reversing() -> Figure:
-    """A car backs straight with its trailer bent a little: the trailer folds, at the instant that the tractrix says."""
+    """A car that reverses straight with a trailer that is slightly bent: the trailer folds as a tractrix predicts."""
     car = CarWithTrailers(1.0, (0.8,), (0.2,))
     t = np.linspace(0, 3.2, 321)
     panels = []
@@ -200,9 +186,9 @@ def reversing() -> Figure:
     return paths(panels, columns=2)
 
 
-SCENES = (CarAndTrailer(), Cart())
+VEHICLES = (CarAndTrailer(), Cart())
 
-OVERLAID: dict[str, tuple[str, Any]] = {
+VEHICLE_METHODS: dict[str, tuple[str, Any]] = {
     "pymunk default": ("first", "--"),
     "pymunk tuned": ("first", "-"),
     "mujoco default": ("second", "--"),
@@ -210,8 +196,8 @@ OVERLAID: dict[str, tuple[str, Any]] = {
 }
 
 
-COASTING = tuple(
-    (title, scene, {name: Cell(scene, engine, 1) for name, engine in known(OVERLAID).items()})
+COASTING_VEHICLES = tuple(
+    (title, scene, {name: Cell(scene, engine, 1) for name, engine in known(VEHICLE_METHODS).items()})
     for title, scene in (
         ("car and trailer, 5 s, steps of 10 ms", CarAndTrailer()),
         ("cart with two casters, 3 s", Cart()),
@@ -220,9 +206,9 @@ COASTING = tuple(
 
 
 def coasting(material: Material) -> Figure:
-    """The paths of the bodies of both vehicles: the truth, and other methods' over it."""
+    """The paths of the bodies of both vehicles, by the reference and by several methods."""
     panels = []
-    for title, scene, cells in COASTING:
+    for title, scene, cells in COASTING_VEHICLES:
         truth, motions = (
             scene.motion(np.linspace(0, scene.duration, scene.samples + 1)),
             material.motions(cells.values()),
@@ -230,9 +216,12 @@ def coasting(material: Material) -> Figure:
         lines = [Path(pose, "truth", "ink", "-", 3.0) for pose in _of_bodies(truth)]
         for name, cell in cells.items():
             if cell in motions:
-                label, (colour, dashes) = f"{cell.engine.name} {told_variant(scene, cell.engine)}", OVERLAID[name]
-                how = (label, colour, dashes, 1.5)
-                lines += [Path(pose, *how, framed=False, dot=True) for pose in _of_bodies(motions[cell])]
+                label, (colour, dashes) = (
+                    f"{cell.engine.name} {displayed_variant(scene, cell.engine)}",
+                    VEHICLE_METHODS[name],
+                )
+                style = (label, colour, dashes, 1.5)
+                lines += [Path(pose, *style, framed=False, dot=True) for pose in _of_bodies(motions[cell])]
         panels.append(Panel(title, lines))
     return paths(panels, columns=2)
 
@@ -253,22 +242,33 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """`counted`: the freedoms' table."""
-    shown = (*SCENES, CAR, CART)
+    """`counted`: the table of degrees of freedom."""
+    shown = (*VEHICLES, CAR, CART)
     doubled = ("car_and_trailer, both wheels of each axle", "cart, both wheels of the fixed axle")
-    return {"counted": counted(shown, (*(scene.name for scene in SCENES), *doubled))}
+    return {"counted": counted(shown, (*(scene.name for scene in VEHICLES), *doubled))}
 
 
-PAGE = Page(
-    name="wheels",
+PAGE = scene_page(
+    "wheels",
     title="Ideal wheels",
     lesson="Cars, trailers and carts consist of pins and skates. Here they coast in the ways that their wheels allow.",
-    scenes=SCENES,
+    scenes=VEHICLES,
     engines=VARIANTS,
-    failures=FAILURES,
+    failures=described(
+        __file__,
+        to_rounding(
+            "A reversing trailer jack-knifes",
+            *(BACKING, (1, 10), VEHICLE_QUANTITIES),
+            tasks=(REFERENCE, *map(Motion, RUNS)),
+            observations=folding,
+            context=lateness,
+        ),
+        to_rounding("Casters swing round when the cart is pushed back", PUSHED_CART, (1, 10), VEHICLE_QUANTITIES),
+        to_rounding("Both wheels of every axle: the car and its trailer", CAR, (1, 10), FORCE_QUANTITIES),
+        to_rounding("Both wheels of the fixed axle: the cart", CART, (1, 10), FORCE_QUANTITIES),
+    ),
     quantity="position",
     figures=figures,
     context=context,
-    known=deviations("wheels"),
-    tasks=tuple(Motion(cell) for _, _, cells in COASTING for cell in cells.values()),
+    tasks=tuple(Motion(cell) for _, _, cells in COASTING_VEHICLES for cell in cells.values()),
 )

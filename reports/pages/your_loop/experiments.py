@@ -1,4 +1,4 @@
-"""What the page measures beyond the rows of scenes: fresh mechanisms of each kind, and linkages of users of pymunk."""
+"""Measurements beside the rows of scenes: fresh mechanisms of each kind, and linkages of users of pymunk."""
 
 from __future__ import annotations
 
@@ -16,44 +16,48 @@ from engines.pymunk.reading import read
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.scene import Scene
-from reports.check.judging import IdealMotion, errors, judged
+from reports.check.judging import IdealMotion, judged
+from reports.check.judging import errors as errors_of_run
 from reports.model.tasks import Task, Values
 from reports.pages.common import OfMethod
 from reports.pages.your_loop.linkages import LINKAGES
 
-STEP, EVERY = 1e-3, 10  # s, and steps from sample to sample
-# The mechanisms are drawn from the hash of the last commit before this draw was written, so that nobody chose them and
-# the same are drawn each time.
+PAGE_STEP = 1e-3  # s
+STEPS_PER_SAMPLE = 10
+# The seed of the draw is the hash of the last commit before its code was written: the mechanisms were not selected, and
+# each run draws the same.
 COMMIT = "007b1fa1"
-COUNT = 60
-LEAST_SAMPLES = 20  # a motion that can be compared for less than this is drawn again
-SPREAD = 1.0  # each number is multiplied by 2 to the power of -SPREAD to SPREAD
-ANGLES = ("start", "angle", "start_angle")  # fields that are angles [rad]: any is drawn
-FIXED = ("links", "duration", "horizon", "branch", "friction", "density", "gravity")  # not drawn as numbers
+COUNT = 60  # mechanisms of each kind
+LEAST_SAMPLES = 20  # a motion that can be compared for fewer samples is drawn again
+SCALE_EXPONENT = 1.0  # each number is multiplied by 2**x, x between -SCALE_EXPONENT and SCALE_EXPONENT
+ANGLE_FIELDS = ("start", "angle", "start_angle")  # [rad], drawn from the whole circle
+UNCHANGED_FIELDS = ("links", "duration", "horizon", "branch", "friction", "density", "gravity")
 
 
 def draw(scene: Scene, number: int) -> Mechanism:
-    """Mechanism `number` of the scene's kind: its sizes, masses and rates times a random factor, at any angle.
+    """Mechanism `number` of the scene's kind: sizes, masses and rates times random factors, at a random angle.
 
-    Drawn again while the numbers make no mechanism, or one whose motion is not known for LEAST_SAMPLES.
+    The draw is repeated until the numbers define a mechanism whose motion is known for LEAST_SAMPLES.
     """
     digest = hashlib.sha256(f"{COMMIT} {scene.name} {number}".encode()).hexdigest()
     random = np.random.default_rng(int(digest, 16))
     while True:
         changed: dict[str, Any] = {}
-        # Fields alone: a scene that was used keeps what it has worked out among its attributes.
+        # Fields only: other attributes of a scene are cached results.
         for name in (each.name for each in fields(cast(Any, scene))):
             match getattr(scene, name):
                 case _ if name == "branch":
                     changed[name] = int(random.choice((-1, 1)))
-                case _ if name in FIXED:
+                case _ if name in UNCHANGED_FIELDS:
                     continue
-                case float() if name in ANGLES:
+                case float() if name in ANGLE_FIELDS:
                     changed[name] = float(random.uniform(-pi, pi))
                 case float(value):
-                    changed[name] = value * 2 ** float(random.uniform(-SPREAD, SPREAD))
+                    changed[name] = value * 2 ** float(random.uniform(-SCALE_EXPONENT, SCALE_EXPONENT))
                 case tuple(values):
-                    changed[name] = tuple(value * 2 ** float(random.uniform(-SPREAD, SPREAD)) for value in values)
+                    changed[name] = tuple(
+                        value * 2 ** float(random.uniform(-SCALE_EXPONENT, SCALE_EXPONENT)) for value in values
+                    )
         try:
             changed_scene: Any = replace(cast(Any, scene), **changed)
             mechanism = changed_scene.mechanism()
@@ -70,7 +74,7 @@ def _ideal(mechanism: Mechanism, samples: int, duration: float) -> IdealMotion:
 
 @dataclass(frozen=True)
 class Fresh(OfMethod):
-    """One method in COUNT fresh mechanisms of a scene's kind, beside the exact solver."""
+    """The errors of one method in COUNT fresh mechanisms of a scene's kind, against the exact solver."""
 
     scene: Scene
     quantity: str = "angle"
@@ -79,26 +83,27 @@ class Fresh(OfMethod):
     seconds: ClassVar[float] = 20.0
 
     def run(self) -> Values:
-        """`error` (COUNT,): the largest until neighbouring starts part exponentially; inf where the run ends."""
+        """`error` (COUNT,): the largest errors before neighbouring motions diverge; inf for a failed run."""
         return {"error": np.array([self.error(number) for number in range(COUNT)])}
 
     def error(self, number: int) -> float:
-        """Of mechanism `number` [rad, or m for positions]."""
+        """The error of mechanism `number` [rad, or m for positions]."""
         mechanism, samples = draw(self.scene, number), self.scene.samples
         ideal = _ideal(mechanism, samples, self.scene.duration)
         truth = ideal.trajectory
-        run = self.method.build(mechanism, STEP)(len(truth.t) - 1, round(float(truth.t[1]) / STEP))
-        compared = errors(mechanism, truth, run)
+        run = self.method.build(mechanism, PAGE_STEP)(len(truth.t) - 1, round(float(truth.t[1]) / PAGE_STEP))
+        compared = errors_of_run(mechanism, truth, run)
         early = compared.of[self.quantity][truth.t <= ideal.horizon]
         return float(early.max()) if np.isfinite(early).all() else inf
 
 
-SECONDS, COMPARED = 10.0, 3.0  # s: the gaps are measured for longer than `choose` has seen, angles for less
-LINKAGE_STEP = 1 / 240  # s, a usual one of games; shorter steps take several minutes of CPU time for all linkages
+GAP_DURATION = 10.0  # s: gaps are measured for longer than `choose` has looked ahead
+ANGLE_DURATION = 3.0  # s: angles are compared for this time at most
+LINKAGE_STEP = 1 / 240  # s, usual in games; shorter steps take several minutes of CPU time for all linkages
 
 
 def run_lines(space: pymunk.Space, lines: str) -> dict[str, Any]:
-    """The names that the lines leave behind, pasted where the space is ready to be stepped."""
+    """The global names after the lines were run on a space that is ready to be stepped."""
     names: dict[str, Any] = {"pymunk": pymunk, "space": space, "print": lambda *words: None}
     exec(lines, names)
     return names
@@ -106,7 +111,7 @@ def run_lines(space: pymunk.Space, lines: str) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class BeforeAndAfter(Task):
-    """One linkage as shipped, and with the lines of the page."""
+    """The errors of one linkage as shipped and with the lines of the page."""
 
     linkage: str
     lines: str
@@ -115,46 +120,49 @@ class BeforeAndAfter(Task):
     words: ClassVar[str] = "with the lines: {0.linkage}"
 
     def run(self) -> Values:
-        """`gap` (2,) [px], as shipped and with the lines, and `angle` (2,) [rad] beside the exact solver, NaN where
-        shapes touch or the space is no ideal mechanism; `iterations`, 0 where the lines leave the space as shipped."""
+        """`gap` (2,) [px] as shipped and with the lines; `angle` (2,) [rad], the errors against the exact solver.
+
+        Angles are NaN if shapes touch or the space is not an ideal mechanism. `iterations` is 0 if the lines leave the
+        space as shipped.
+        """
         make = LINKAGES[self.linkage]
         shipped, closed, touched = make(), make(), []
         shipped.on_collision(begin=lambda *arguments: touched.append(True))
-        before = closed.iterations, {joint.error_bias for joint in closed.constraints}
+        shipped_settings = closed.iterations, {joint.error_bias for joint in closed.constraints}
         gaps = run_lines(closed, self.lines)["gaps"]
-        after = closed.iterations, {joint.error_bias for joint in closed.constraints}
+        changed_settings = closed.iterations, {joint.error_bias for joint in closed.constraints}
         angles = [[], []]
         worst = [0.0, 0.0]
-        for place, space in enumerate((shipped, closed)):
-            for step in range(round(SECONDS / LINKAGE_STEP)):
+        for index, space in enumerate((shipped, closed)):
+            for step in range(round(GAP_DURATION / LINKAGE_STEP)):
                 space.step(LINKAGE_STEP)
-                worst[place] = max(worst[place], *gaps(space))
-                if (step + 1) % EVERY == 0:
-                    angles[place].append([body.angle for body in space.bodies])
+                worst[index] = max(worst[index], *gaps(space))
+                if (step + 1) % STEPS_PER_SAMPLE == 0:
+                    angles[index].append([body.angle for body in space.bodies])
         compared = [nan, nan] if touched else self._angle_errors(np.array(angles))
         return {
             "gap": np.array(worst),
             "angle": np.array(compared),
-            "iterations": np.array(0 if before == after else closed.iterations),
+            "iterations": np.array(0 if shipped_settings == changed_settings else closed.iterations),
         }
 
     def _angle_errors(self, angles: np.ndarray) -> list[float]:
-        """Of angles (2, times, bodies) [rad], until neighbouring starts part exponentially or an obstacle is met."""
+        """The largest errors of angles (2, times, bodies) [rad] before neighbours diverge or an obstacle is met."""
         space = LINKAGES[self.linkage]()
         try:
             reading = read(space, LINKAGE_STEP)
-            spacing = EVERY * LINKAGE_STEP
-            ideal = judged(reading.mechanism, round(COMPARED / spacing), spacing)
+            spacing = STEPS_PER_SAMPLE * LINKAGE_STEP
+            ideal = judged(reading.mechanism, round(ANGLE_DURATION / spacing), spacing)
         except (InvalidMechanism, Unsupported):
             return [nan, nan]
         model: Any = reading.model
         truth = ideal.trajectory
         met = [obstacle.t for obstacle in model.obstacles(truth.t, truth.pose, truth.twist)]
-        early = truth.t <= min(ideal.horizon, *met, COMPARED)
+        early = truth.t <= min(ideal.horizon, *met, ANGLE_DURATION)
         bodies = list(space.bodies)
         order = [bodies.index(body) for body in model.described.moving]
         count = int(early.sum()) - 1
-        apart = (
+        errors = (
             np.abs(angles[:, :count, order] - truth.pose[1 : count + 1, :, 2]) if count > 0 else np.full((2, 1), nan)
         )
-        return apart.reshape(2, -1).max(axis=1).tolist()
+        return errors.reshape(2, -1).max(axis=1).tolist()

@@ -1,9 +1,9 @@
 """Planar linkages as users of pymunk build them: in pixels, y up, mostly from rest. LINKAGES makes a new space of each.
 
-`linkages.json` has the elements of each by its name, bodies first: `["bars", density, group, corners]` is one body of
-thin bars between its corners, closed where there are three or more; `["pin", a, b, point]` is a pivot of two bodies,
-which are counted from 0, with -1 for the ground. Points of bars, balls, boxes and pins are those of the space; those of
-grooves, springs and rods are in the frames of the bodies. A new linkage is another entry of that file.
+`linkages.json` has the elements of each linkage by its name, bodies first: `["bars", density, group, corners]` is one
+body of thin bars between its corners (closed if there are three or more); `["pin", a, b, point]` is a pivot of two
+bodies, numbered from 0, with -1 for the ground. Points of bars, balls, boxes and pins are points of the space; points
+of grooves, springs and rods are in the frames of the bodies. A new linkage is an entry of that file.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from pymunk.constraints import (
 )
 
 PLANS: Mapping[str, list[list[Any]]] = json.loads(Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
-GRAVITY = (0, -900)
-# By the word of an element that stands between two bodies; the rest of the element are the constraint's arguments.
-JOINTS: Mapping[str, Callable[..., Constraint]] = {
+PIXEL_GRAVITY = (0, -900)  # px/s^2
+# The first word of an element between two bodies -> its class; the rest of the element are the arguments.
+PYMUNK_JOINTS: Mapping[str, Callable[..., Constraint]] = {
     "pin": PivotJoint,
     "motor": SimpleMotor,
     "gear": GearJoint,
@@ -43,7 +43,7 @@ JOINTS: Mapping[str, Callable[..., Constraint]] = {
 
 
 def bars(density: float, corners: list[list[float]]) -> tuple[pymunk.Body, list[pymunk.Shape]]:
-    """A body of thin bars between the corners [px], of a mass per pixel, with its shapes."""
+    """A body of thin bars between the corners [px] with this mass per pixel, and its shapes."""
     points = [pymunk.Vec2d(*corner) for corner in corners]
     sides = list(itertools.pairwise(points)) + ([(points[-1], points[0])] if len(points) > 2 else [])
     masses = [density * (q - p).length for p, q in sides]
@@ -59,7 +59,7 @@ def bars(density: float, corners: list[list[float]]) -> tuple[pymunk.Body, list[
 
 
 def body_of(kind: str, size: float, *rest: Any) -> tuple[pymunk.Body, list[pymunk.Shape]]:
-    """The body of an element with its shapes; `size` is its mass, of bars their density."""
+    """The body of an element and its shapes; `size`: the mass, or the density of bars."""
     match kind, rest:
         case "bars", (_, corners):
             return bars(size, corners)
@@ -69,7 +69,7 @@ def body_of(kind: str, size: float, *rest: Any) -> tuple[pymunk.Body, list[pymun
         case "box", (_, at, sides):
             body = pymunk.Body(size, pymunk.moment_for_box(size, sides))
             shapes = [pymunk.Poly.create_box(body, sides)]
-        case _:  # a slider, which can't turn and touches nothing
+        case _:  # a slider, which can't rotate and has no shape
             (at,) = rest
             body, shapes = pymunk.Body(size, inf), []
     body.position = tuple(at)
@@ -79,7 +79,7 @@ def body_of(kind: str, size: float, *rest: Any) -> tuple[pymunk.Body, list[pymun
 def make(name: str) -> pymunk.Space:
     """A new space with the linkage of this name."""
     space = pymunk.Space()
-    space.gravity = GRAVITY
+    space.gravity = PIXEL_GRAVITY
     bodies: list[pymunk.Body] = []
     for kind, *arguments in PLANS[name]:
         if kind == "gravity":
@@ -89,10 +89,10 @@ def make(name: str) -> pymunk.Space:
             shape = pymunk.Segment(space.static_body, (x, y), (end_x, end_y), 5)
             shape.friction = 1.0
             space.add(shape)
-        elif kind in JOINTS:
+        elif kind in PYMUNK_JOINTS:
             a, b, *rest = arguments
             joined = [space.static_body if index < 0 else bodies[index] for index in (a, b)]
-            joint = JOINTS[kind](*joined, *(tuple(each) if isinstance(each, list) else each for each in rest))
+            joint = PYMUNK_JOINTS[kind](*joined, *(tuple(each) if isinstance(each, list) else each for each in rest))
             space.add(joint)
         else:
             body, shapes = body_of(kind, *arguments)

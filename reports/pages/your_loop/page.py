@@ -1,4 +1,4 @@
-"""The lines to paste into a user's model, and the errors before and after, for MuJoCo and pymunk."""
+"""The page with lines to paste into a model of MuJoCo or pymunk, and the errors before and after."""
 
 from __future__ import annotations
 
@@ -15,23 +15,22 @@ from reference.scenes.catalogue import scene
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.pages.your_loop.experiments import COMMIT, COUNT, EVERY, BeforeAndAfter, Fresh
+from reports.pages.your_loop.experiments import COMMIT, COUNT, STEPS_PER_SAMPLE, BeforeAndAfter, Fresh
 from reports.pages.your_loop.linkages import LINKAGES
 from reports.versions.table import released
 from reports.write.page_tables import program
 from reports.write.tables import NOTHING, error_words, markdown, milliseconds, number
 from reports.write.unmeasured import UNMEASURED
 
-NAME = "your_loop"
-LINES = Path(__file__).parent / "lines"
+LINE_FILES = Path(__file__).parent / "lines"
 LOOP, SLIDER, CHAIN, DISC, SKATE = map(
     scene, ("free_four_bar", "free_slider_crank", "pendulum_10", "rolling_disc", "sleigh")
 )
 
 
 @dataclass(frozen=True)
-class Case:
-    """A kind of mechanism: `before` as shipped, None without such a joint; `after` with the lines of the page."""
+class PastedCase:
+    """A kind of mechanism with one engine: `before`: as shipped, None without such a joint; `after`: with the lines."""
 
     title: str
     page: str
@@ -49,38 +48,41 @@ class Case:
         return tuple(Fresh(engine, self.scene, self.quantity) for engine in self.engines)
 
 
-KINDS = (
+MECHANISM_KINDS = (
     ("closed linkage", "four_bar", LOOP),
     ("slider", "slider_crank", SLIDER),
     ("chain of ten", "pendulum", CHAIN),
     ("disc that rolls", "rolling", DISC),
 )
 SKATING = ("skate, by our code in every step", "skate", SKATE)
-MUJOCO = (
-    *(Case(*kind, mujoco.DEFAULT, mujoco.TUNED) for kind in KINDS),
-    Case(*SKATING, mujoco.DEFAULT, mujoco.TUNED, "position"),
+MUJOCO_CASES = (
+    *(PastedCase(*kind, mujoco.DEFAULT, mujoco.TUNED) for kind in MECHANISM_KINDS),
+    PastedCase(*SKATING, mujoco.DEFAULT, mujoco.TUNED, "position"),
 )
-PYMUNK = (
-    *(Case(*kind, pymunk.DEFAULT, pymunk.TUNED if kind[2] == DISC else pymunk.LEAPFROG) for kind in KINDS),
-    Case(*SKATING, None, pymunk.TUNED, "position"),
+PYMUNK_CASES = (
+    *(
+        PastedCase(*kind, pymunk.DEFAULT, pymunk.TUNED if kind[2] == DISC else pymunk.LEAPFROG)
+        for kind in MECHANISM_KINDS
+    ),
+    PastedCase(*SKATING, None, pymunk.TUNED, "position"),
 )
 
 
-def cell(case: Case, engine: Engine) -> Cell:
-    """At this page's one step; beside the grid where no other page runs the method in this scene."""
-    own = engine == pymunk.LEAPFROG and case.scene != LOOP
-    return Cell(case.scene, engine, EVERY, "beside" if own else "sweep")
+def cell(case: PastedCase, engine: Engine) -> Cell:
+    """The cell of a case at the page's only step; beside the grid if no other page runs the method in this scene."""
+    beside = engine == pymunk.LEAPFROG and case.scene != LOOP
+    return Cell(case.scene, engine, STEPS_PER_SAMPLE, "beside" if beside else "sweep")
 
 
-ASKED = tuple(cell(case, engine) for case in (*MUJOCO, *PYMUNK) for engine in case.engines)
-OWN = tuple(each for each in ASKED if each.purpose == "beside")
-FRESH = tuple(dict.fromkeys(task for case in (*MUJOCO, *PYMUNK) for task in case.fresh))
-PASTED = "\n\n".join((LINES / f"{name}.txt").read_text(encoding="utf-8") for name in ("close", "choose"))
-BUILT = tuple(BeforeAndAfter(name, PASTED.replace("(space, 1e-3)", "(space, 1 / 240)")) for name in LINKAGES)
+PASTED_CELLS = tuple(cell(case, engine) for case in (*MUJOCO_CASES, *PYMUNK_CASES) for engine in case.engines)
+CELLS_BESIDE_GRID = tuple(each for each in PASTED_CELLS if each.purpose == "beside")
+FRESH = tuple(dict.fromkeys(task for case in (*MUJOCO_CASES, *PYMUNK_CASES) for task in case.fresh))
+PYMUNK_LINES = "\n\n".join((LINE_FILES / f"{name}.txt").read_text(encoding="utf-8") for name in ("close", "choose"))
+BUILT = tuple(BeforeAndAfter(name, PYMUNK_LINES.replace("(space, 1e-3)", "(space, 1 / 240)")) for name in LINKAGES)
 
 
-def table(material: Material, cases: tuple[Case, ...]) -> str:
-    """A line a case: the errors of fresh mechanisms before and after, those of the page's scene, and CPU times."""
+def table(material: Material, cases: tuple[PastedCase, ...]) -> str:
+    """A line for each case: errors of fresh mechanisms before and after, errors and CPU times of the page's scene."""
     body = []
     for case in cases:
         rows = [material.rows.get(cell(case, engine)) for engine in case.engines]
@@ -90,13 +92,13 @@ def table(material: Material, cases: tuple[Case, ...]) -> str:
         example = " → ".join(error_words(row, case.quantity) for row in rows)
         costs = " → ".join(NOTHING if row is None else milliseconds(row.cpu) for row in rows)
         body.append([f"[{case.title}]({case.page}.md), {quantity(case.quantity).unit}", *spreads, example, costs])
-    known = any(each in material.rows for each in ASKED)
+    known = any(each in material.rows for each in PASTED_CELLS)
     head = ["at 1 ms", "as shipped", "with the lines", "the page's example", "CPU of the example [ms/s]"]
     return markdown(head, body, left=1) if known else ""
 
 
 def spread(material: Material, task: Fresh) -> list[float]:
-    """[median, least, largest] error of the fresh mechanisms, UNMEASURED if they were not run."""
+    """[median, least, largest] error of the fresh mechanisms; UNMEASURED if they were not run."""
     answer = material.finished(task)
     if answer is None:
         return [UNMEASURED] * 3
@@ -105,13 +107,13 @@ def spread(material: Material, task: Fresh) -> list[float]:
 
 
 def spread_words(material: Material, task: Fresh) -> str:
-    """'1e-3 (1e-5 to 0.2)', or that it was not run."""
+    """'1e-3 (1e-5 to 0.2)', or a dash if they were not run."""
     median, least, largest = (number(value, infinite="gave up") for value in spread(material, task))
     return NOTHING if median == NOTHING else f"{median} ({least} to {largest})"
 
 
 def before_and_after(material: Material) -> str:
-    """A line a linkage of pymunk's users; empty where none was run."""
+    """A line for each linkage of pymunk's users; empty if none was run."""
     body = []
     for task in BUILT:
         answer = material.finished(task)
@@ -126,42 +128,44 @@ def before_and_after(material: Material) -> str:
     return markdown(["linkage", "iterations", "largest gap, px", "angle error, rad"], body, left=1) if body else ""
 
 
-def aimed(engine: str) -> str:
-    """What our code does before each step of a skate, from the program that a test runs."""
+def code_before_step(engine: str) -> str:
+    """The code before each step of a skate, from the program that a test runs."""
     source = program("sleigh", f"{engine} tuned")
     return source[source.index("def aim():") : source.index("end = ")].rstrip()
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The lines and tables; `reactions`: relative errors of the joints' forces on the loop, by engine; `fresh`: by
-    engine the spreads as shipped and with the lines, of the closed linkage."""
-    old = [e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
-    first = {"mujoco": MUJOCO[0], "pymunk": PYMUNK[0]}
+    """The lines and tables. reactions: relative errors of the joint forces on the loop, by engine.
+
+    fresh: by engine, the spreads of the closed linkage as shipped and with the lines.
+    """
+    earlier = [e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
+    first = {"mujoco": MUJOCO_CASES[0], "pymunk": PYMUNK_CASES[0]}
     rows = {name: material.rows.get(cell(case, case.after)) for name, case in first.items()}
     counts = [answer.number("iterations") for answer in map(material.finished, BUILT) if answer is not None]
     return {
-        "mujoco": table(material, MUJOCO),
-        "pymunk": table(material, PYMUNK),
+        "mujoco": table(material, MUJOCO_CASES),
+        "pymunk": table(material, PYMUNK_CASES),
         "built": before_and_after(material),
         "built_count": len(LINKAGES),
         "left_as_shipped": sum(not count for count in counts) if counts else UNMEASURED,
-        "lines": {path.stem: path.read_text(encoding="utf-8").rstrip() for path in sorted(LINES.iterdir())},
-        "aimed": {engine: aimed(engine) for engine in ("mujoco", "pymunk")},
+        "lines": {path.stem: path.read_text(encoding="utf-8").rstrip() for path in sorted(LINE_FILES.iterdir())},
+        "aimed": {engine: code_before_step(engine) for engine in ("mujoco", "pymunk")},
         "reactions": {engine: UNMEASURED if row is None else row.reaction for engine, row in rows.items()},
         "fresh": {name: [spread(material, task) for task in case.fresh] for name, case in first.items()},
         "fresh_count": COUNT,
         "fresh_commit": COMMIT,
-        "before_term": old[0] if old and rows["mujoco"] is not None else UNMEASURED,
+        "before_term": earlier[0] if earlier and rows["mujoco"] is not None else UNMEASURED,
     }
 
 
 PAGE = Page(
-    name=NAME,
+    name="your_loop",
     title="Your loop in MuJoCo, your loop in pymunk",
     lesson="The lines to paste, the error and the cost before and after, the release, and what they do not cure.",
     companions=(LOOP,),
-    borrowed=tuple(each for each in ASKED if each not in OWN),
-    cells=OWN,
+    borrowed=tuple(each for each in PASTED_CELLS if each not in CELLS_BESIDE_GRID),
+    cells=CELLS_BESIDE_GRID,
     context=context,
     tasks=(*FRESH, *BUILT),
 )

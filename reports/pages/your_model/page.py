@@ -1,4 +1,4 @@
-"""The page that walks through three models of a user's: what `crosscheck check` finds in each, in words."""
+"""The page that explains the results of `crosscheck check` with three models of a user."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values
 from reports.write.tables import markdown, number
 
-MODELS = Path(__file__).parent / "models"
+MODEL_FILES = Path(__file__).parent / "models"
 
 
 @dataclass(frozen=True)
-class Walk(Task):
-    """One of the models beside this file, by its text, so that another text is another task."""
+class ModelCheck(Task):
+    """The check of one of the models beside this file; its text is a field, so that another text is another task."""
 
     file: str
     text: str
-    word: str  # as on the command line
+    argument: str  # of the command line
     duration: float  # s
     tolerance: float
     step: float | None = None
@@ -37,50 +37,50 @@ class Walk(Task):
 
     @property
     def stem(self) -> str:
-        """The model's name in the template and in the names of its pictures."""
+        """The name of the model in the template and in the names of its pictures."""
         return self.file.split(".")[0]
 
     def run(self) -> Values:
-        """All that `crosscheck check --json` tells but CPU times, others on every machine; and what is drawn."""
+        """The output of `crosscheck check --json` without CPU times, and the data of the pictures."""
         with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
             (Path(folder) / self.file).write_text(self.text, encoding="utf-8")
-            reading = read(self.word, Path(folder), ReadingTerms(step=self.step))
-            found = check(reading, self.file, self.duration, self.tolerance, plan=Plan(float("inf")))
-        told = data(found)
-        for setting in (told, *told["tried"]):
+            reading = read(self.argument, Path(folder), ReadingTerms(step=self.step))
+            checked = check(reading, self.file, self.duration, self.tolerance, plan=Plan(float("inf")))
+        document = data(checked)
+        for setting in (document, *document["tried"]):
             setting.pop("cpu")
             setting.pop("front", None)
-        # What is cheapest by the clock differs between machines; the largest step that is enough does not.
-        coarsest = coarsest_enough(found)
-        told["advised"] = coarsest and {
+        # The cheapest setting differs between machines; the largest sufficient step does not.
+        coarsest = coarsest_enough(checked)
+        document["advised"] = coarsest and {
             "words": coarsest.change.words,
             "step": coarsest.change.dt,
             "error": coarsest.error,
             "lines": list(coarsest.change.lines),
         }
-        del told["next_decade"], told["over_time"]
-        return {"found": json.dumps(told, sort_keys=True), "shown": shown_of(found, coarsest).as_text()}
+        del document["next_decade"], document["over_time"]
+        return {"found": json.dumps(document, sort_keys=True), "shown": shown_of(checked, coarsest).as_text()}
 
 
-def coarsest_enough(found: Checked) -> Tried | None:
-    """The setting of the largest step within the tolerance, the first of equal ones."""
-    enough = [each for each in found.table if each.error <= found.tolerance]
-    return max(enough, key=lambda each: each.change.dt, default=None)
+def coarsest_enough(checked: Checked) -> Tried | None:
+    """The first setting with the largest step within the tolerance."""
+    enough = [setting for setting in checked.table if setting.error <= checked.tolerance]
+    return max(enough, key=lambda setting: setting.change.dt, default=None)
 
 
-def walk(file: str, name: str = "", **settings: float) -> Walk:
-    """The task of a model of the page."""
-    text = (MODELS / file).read_text(encoding="utf-8")
-    return Walk(file, text, f"{file}:{name}" if name else file, **settings)  # type: ignore[arg-type]
+def model_check(file: str, name: str = "", **settings: float) -> ModelCheck:
+    """The check of a model of the page."""
+    text = (MODEL_FILES / file).read_text(encoding="utf-8")
+    return ModelCheck(file, text, f"{file}:{name}" if name else file, **settings)  # type: ignore[arg-type]
 
 
-FOUR_BAR = walk("four_bar.xml", duration=2.0, tolerance=1e-4)
-CART = walk("cart_and_pole.xml", duration=2.0, tolerance=1e-4)
-SWING = walk("swing.py", "space", duration=2.0, tolerance=1e-3, step=1 / 60)
-WALKS = (FOUR_BAR, CART, SWING)
+FOUR_BAR_CHECK = model_check("four_bar.xml", duration=2.0, tolerance=1e-4)
+CART_CHECK = model_check("cart_and_pole.xml", duration=2.0, tolerance=1e-4)
+SWING_CHECK = model_check("swing.py", "space", duration=2.0, tolerance=1e-3, step=1 / 60)
+MODEL_CHECKS = (FOUR_BAR_CHECK, CART_CHECK, SWING_CHECK)
 
-TABLE = MODELS / "of_others.csv"
-SOURCES = {
+TRIED_MODELS = MODEL_FILES / "of_others.csv"
+MODEL_SOURCES = {
     "mujoco": "MuJoCo's package",
     "gymnasium": "Gymnasium",
     "dm_control": "dm_control's suite",
@@ -89,86 +89,88 @@ SOURCES = {
 
 
 def rows() -> list[dict[str, str]]:
-    """Every model that was tried, by its name."""
-    with TABLE.open(encoding="utf-8", newline="") as file:
+    """The rows of all models that were tried."""
+    with TRIED_MODELS.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def other_models() -> dict[str, object]:
-    """How many were tried and read, as they are and with something switched off, and the table."""
-    found = rows()
-    read = [row for row in found if row["bodies"]]
-    body = [[SOURCES[row["source"]], f"`{row['model']}`", _sentence(row)] for row in found]
+    """The number of models that were tried, that are read as they are and with options off, and their table."""
+    tried = rows()
+    readable = [row for row in tried if row["bodies"]]
+    body = [[MODEL_SOURCES[row["source"]], f"`{row['model']}`", _sentence(row)] for row in tried]
     return {
-        "count": len(found),
-        "as_is": sum(not row["without"] for row in read),
-        "switched": sum(bool(row["without"]) for row in read),
+        "count": len(tried),
+        "as_is": sum(not row["without"] for row in readable),
+        "switched": sum(bool(row["without"]) for row in readable),
         "table": markdown(["from", "model", "what became of it"], body),
     }
 
 
 def read_elements() -> str:
-    """What the readers of models read, from their own tables."""
+    """The table of elements that the readers of models read, and of their meaning."""
     body = [
-        [key, element, taken] for key, reader in sorted(readers().items()) for element, taken in reader.elements.items()
+        [key, element, meaning]
+        for key, reader in sorted(readers().items())
+        for element, meaning in reader.elements.items()
     ]
     return markdown(["in", "element", "is read as"], body, left=3)
 
 
 def _sentence(row: dict[str, str]) -> str:
-    off = "".join(f" `--without {word}`" for word in row["without"].split())
+    off = "".join(f" `--without {option}`" for option in row["without"].split())
     if row["bodies"]:
         bodies = f"read: {row['bodies']} {'body' if row['bodies'] == '1' else 'bodies'}"
         return f"{bodies}, with{off}" if off else bodies
     return f"refused{f', with{off} too' if off else ''}: {row['reason']}"
 
 
-NAME = "your_model"
-
-
-def found_of(material: Material, walk: Walk) -> dict[str, Any] | None:
-    """The results of a check with their table; None if it was not run or not finished."""
-    if (answer := material.finished(walk)) is None:
+def result_of(material: Material, task: ModelCheck) -> dict[str, Any] | None:
+    """The results of a check with their table; None if it was not run or did not finish."""
+    if (answer := material.finished(task)) is None:
         return None
-    found = json.loads(str(answer.values["found"]))
-    return {**found, "table": table(found)}
+    document = json.loads(str(answer.values["found"]))
+    return {**document, "table": table(document)}
 
 
 def figures(material: Material) -> dict[str, str]:
     """Errors over time, and the worst moment, of each model."""
     return {
-        f"{walk.stem}_{key}": drawing
-        for walk in WALKS
-        if (answer := material.finished(walk)) is not None
+        f"{task.stem}_{key}": drawing
+        for task in MODEL_CHECKS
+        if (answer := material.finished(task)) is not None
         for key, (_, drawing) in pictures(from_text(str(answer.values["shown"]))).items()
     }
 
 
-def table(found: Mapping[str, Any]) -> str:
-    """The settings that were tried, with their errors."""
+def table(document: Mapping[str, Any]) -> str:
+    """The settings that were tried, and their errors."""
     body = [
-        [each["words"], *("gave up" if each[key] is None else number(each[key]) for key in ("error", "reaction"))]
-        for each in found["tried"]
+        [
+            setting["words"],
+            *("gave up" if setting[key] is None else number(setting[key]) for key in ("error", "reaction")),
+        ]
+        for setting in document["tried"]
     ]
     return markdown(["setting", "largest error", "reaction error"], body)
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """By a model's name what was found in it, its text and its table; None for one that was not run."""
+    """The tables, and by a model's name its check and the results (None if it was not run)."""
     return {
         "read": read_elements(),
         "others": other_models(),
-        "found": {walk.stem: found_of(material, walk) for walk in WALKS},
-        "walks": {walk.stem: walk for walk in WALKS},
+        "found": {task.stem: result_of(material, task) for task in MODEL_CHECKS},
+        "walks": {task.stem: task for task in MODEL_CHECKS},
     }
 
 
 PAGE = Page(
-    name=NAME,
+    name="your_model",
     title="Your own model",
-    lesson="What `crosscheck check` tells of a model of your own: how wrong it is, why, and which settings are enough.",
+    lesson="What `crosscheck check` reports on your own model: its error, its causes, and settings that suffice.",
     companions=(FreeFourBar(),),  # a full run of it runs the checks too
     figures=figures,
     context=context,
-    tasks=WALKS,
+    tasks=MODEL_CHECKS,
 )
