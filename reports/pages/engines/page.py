@@ -29,7 +29,7 @@ from reports.pages.engines.experiments import (
 from reports.plots.theme import svg
 from reports.plots.work_precision import work_precision
 from reports.write.columns import Column, column_of
-from reports.write.provenance import told_versions
+from reports.write.provenance import engine_versions
 from reports.write.tables import markdown, number
 
 
@@ -56,7 +56,7 @@ def matrix(answers: Mapping[Capabilities, Answer]) -> str:
     engines = [task.method for task in answers]
     body = [[what, *(verdict(str(answer.values[what])) for answer in answers.values())] for what in ASKED]
     body += [[what, *(str(answer.values[what]) for answer in answers.values())] for what in ("reactions", "width")]
-    body.append(["version", *(told_versions([engine]) for engine in engines)])
+    body.append(["version", *(engine_versions([engine]) for engine in engines)])
     return markdown(["", *(engine.name for engine in engines)], body, left=len(engines) + 1) if engines else ""
 
 
