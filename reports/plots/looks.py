@@ -1,4 +1,4 @@
-"""How families of engines and outcomes are drawn; families in the registry's order, so that pictures keep theirs."""
+"""Colours, lines and marks of engines and outcomes; the order of the registry decides the look of a family."""
 
 from __future__ import annotations
 
@@ -10,35 +10,34 @@ from engines import registry
 from reports.model.outcomes import Outcome
 from reports.plots.theme import LIGHT, SERIES, Theme
 
-# One more than there are colours: family by family both change, and no pair comes again before the 72nd.
+# One more mark than colours, so that the first 72 families have different pairs of colour and mark.
 MARKS = ("o", "s", "^", "D", "P", "*", "p", "h", "<")
-LINES: tuple[Any, ...] = (":", "--", "-", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 3)), (0, (4, 1, 1, 1)))
+DASHES: tuple[Any, ...] = (":", "--", "-", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 3)), (0, (4, 1, 1, 1)))
 FILLS = ("empty", "left", "full", "bottom", "top", "right", "empty", "full")
-# A family's three variants look the same in every chart, whichever of them are shown.
-VARIANTS = ("default", "tuned", "extended")
+# The three usual variants of a family look the same in every chart.
+USUAL_VARIANTS = ("default", "tuned", "extended")
 
 
 def family_of(engine: str) -> str:
-    """The family of an engine by its name; of one that is not registered (any more) the name itself."""
-    return next((each.family for each in (*registry.ENGINES, *registry.OTHERS) if each.name == engine), engine)
+    """The family of an engine by its name; the name itself if it is not registered."""
+    return next((known.family for known in (*registry.ENGINES, *registry.OTHERS) if known.name == engine), engine)
 
 
-def places(engines: Iterable[str] = ()) -> dict[str, int]:
-    """Family -> its place in the palette: the registry's first, then those of other engines by name."""
-    registered = [each.family for each in (*registry.ENGINES, *registry.OTHERS)]
-    return {
-        family: place for place, family in enumerate(dict.fromkeys([*registered, *sorted(map(family_of, engines))]))
-    }
+def _palette_index(family: str, engines: Iterable[str]) -> int:
+    """The index of a family in the palette: the registered ones first, then those of other engines by name."""
+    registered = [engine.family for engine in (*registry.ENGINES, *registry.OTHERS)]
+    others = sorted({family_of(family), *map(family_of, engines)} - {*registered})
+    return [*dict.fromkeys(registered), *others].index(family)
 
 
 def role(family: str, engines: Iterable[str] = ()) -> str:
-    """The role of a family's colour in a theme; `engines`: the names of all that stand in the same picture."""
-    return SERIES[places([family, *engines])[family] % len(SERIES)]
+    """The role of a family's colour in a theme; `engines`: the names of all engines in the same picture."""
+    return SERIES[_palette_index(family, engines) % len(SERIES)]
 
 
 def mark(family: str, engines: Iterable[str] = ()) -> str:
     """The shape of a family's marks."""
-    return MARKS[places([family, *engines])[family] % len(MARKS)]
+    return MARKS[_palette_index(family, engines) % len(MARKS)]
 
 
 def colour(engine: str, theme: Theme = LIGHT, engines: Iterable[str] = ()) -> str:
@@ -47,22 +46,24 @@ def colour(engine: str, theme: Theme = LIGHT, engines: Iterable[str] = ()) -> st
 
 
 def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: Theme = LIGHT) -> dict[str, Any]:
-    """Line and mark of one method among all that are shown, variants by engine: its family is colour and shape of the
-    mark, its variant line and filling, so that a chart survives without colours.
+    """Line and mark of one method; `shown`: the variants in the same chart, by engine.
+
+    The family determines colour and mark, the variant determines line and filling, so that methods differ without
+    colours too.
     """
     family = family_of(engine)
-    methods = [(name, each) for name, variants in shown.items() if family_of(name) == family for each in variants]
-    usual = [(methods[0][0], each) for each in VARIANTS]
-    first = len(VARIANTS) if any(method in usual for method in methods) else 0
-    # A family without these three: what is run in every scene comes first, and looks the same whatever else is shown.
-    everywhere = [] if first else [(each.name, each.variant) for each in registry.VARIANTS if each.family == family]
-    named = [method for method in dict.fromkeys([*everywhere, *methods]) if method not in usual]
-    own = (engine, variant)
-    index = usual.index(own) if own in usual else first + named.index(own)
+    methods = [(name, known) for name, variants in shown.items() if family_of(name) == family for known in variants]
+    usual = [(methods[0][0], known) for known in USUAL_VARIANTS]
+    first = len(USUAL_VARIANTS) if any(method in usual for method in methods) else 0
+    # In a family without usual variants the registered methods come first, so that their looks never change.
+    everywhere = [] if first else [(known.name, known.variant) for known in registry.VARIANTS if known.family == family]
+    others = [known for known in dict.fromkeys([*everywhere, *methods]) if known not in usual]
+    method = (engine, variant)
+    index = usual.index(method) if method in usual else first + others.index(method)
     paint, fill = colour(engine, theme, shown), FILLS[index % len(FILLS)]
     return {
         "color": paint,
-        "linestyle": LINES[index % len(LINES)],
+        "linestyle": DASHES[index % len(DASHES)],
         "marker": mark(family, shown),
         "fillstyle": "full" if fill == "empty" else fill,
         "markerfacecolor": theme.paper if fill == "empty" else paint,
@@ -73,7 +74,7 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: T
     }
 
 
-# Errors in maps and tables by their bounds, each darker than the last on light paper: no failure is friendlier.
+# (upper bound of the error, role of its colour), each darker than the one before on light paper.
 SHADES = ((1e-9, "exact"), (1e-6, "fine"), (1e-4, "good"), (1e-2, "fair"), (math.inf, "middling"))
 SHADE_NAMES = {
     "exact": "error below 1e-9",
@@ -85,10 +86,10 @@ SHADE_NAMES = {
 
 
 def shade(error: float) -> str:
-    """The role of an error's colour; an unknown one is told by no smaller bound than the largest."""
+    """The role of an error's colour; the last one for NaN."""
     return next((role for bound, role in SHADES if error < bound), "middling")
 
 
 def outcome_colour(outcome: Outcome, theme: Theme) -> str:
-    """The colour of a cell of a map that ended so, where its error is not told (`shade`)."""
+    """The colour of a cell with this outcome, where it is not coloured by its error (`shade`)."""
     return getattr(theme, outcome.colour)

@@ -1,7 +1,7 @@
 """Mechanisms drawn from their poses: a bar joins the joint points of a body, a small circle is a joint.
 
-Pictures side by side, with other methods over the truth; or poses at equal intervals in one picture, the older the
-paler, or side by side as film.
+`configurations` draws pictures side by side, with methods over the reference motion. `stroboscope` draws poses at equal
+intervals in one picture, paler for earlier ones, or side by side like a film.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from reports.plots.theme import LIGHT, bare, drawing
 
 Array = NDArray[np.float64]
 
-# A method's pose is drawn over the truth only where a point of it is off by this part of the picture: a line's width.
+# A method's pose is drawn only if the error of a point exceeds this fraction of the picture: the width of a line.
 VISIBLE = 5e-3
-DOTS: dict[str, Any] = {"marker": "o", "markerfacecolor": LIGHT.paper, "markeredgecolor": LIGHT.ink}
-INK: dict[str, Any] = {"color": LIGHT.ink, "linewidth": 2.2, "markersize": 4.5, "zorder": 2, **DOTS}
+JOINT_DOTS: dict[str, Any] = {"marker": "o", "markerfacecolor": LIGHT.paper, "markeredgecolor": LIGHT.ink}
+INK: dict[str, Any] = {"color": LIGHT.ink, "linewidth": 2.2, "markersize": 4.5, "zorder": 2, **JOINT_DOTS}
 
 
 def draw_pose(panel: Axes, mechanism: Mechanism, pose: Array, **line: Any) -> None:
-    """Bars of one pose; keyword arguments are those of a line."""
+    """The bars of one pose (bodies, 3); keyword arguments are those of a line."""
     for points in body_points(mechanism, pose).values():
         panel.plot(points[:, 0], points[:, 1], solid_capstyle="round", **line)
 
@@ -49,10 +49,10 @@ def configurations(
     others: Mapping[str, tuple[Array, str, Any]] | None = None,
     columns: int = 3,
 ) -> Figure:
-    """Small multiples of poses (pictures, bodies, 3) of the truth, with other methods' overlaid where the eye can tell.
+    """A panel for each of the reference poses (pictures, bodies, 3), with methods drawn over them where they differ.
 
-    others: name -> (poses (pictures, bodies, 3), theme colour name, line style). A method that is nowhere visibly off
-    is named in the legend as such, not drawn.
+    others: name -> (poses (pictures, bodies, 3), name of a theme colour, line style). The legend says of a method that
+    is not drawn that it is not visibly off.
     """
     others = others or {}
     looks = {
@@ -89,7 +89,7 @@ def configurations(
 
 
 def visibly_off(mechanism: Mechanism, truth: Array, pose: Array, size: float) -> bool:
-    """Whether a joint point is off by more than VISIBLE of the picture's size [m]; never for a pose not finite."""
+    """Whether a joint point is off by more than VISIBLE of the picture's size [m]; False if the pose is not finite."""
     if not np.isfinite(pose).all():
         return False
     first, second = body_points(mechanism, truth), body_points(mechanism, pose)
@@ -99,18 +99,18 @@ def visibly_off(mechanism: Mechanism, truth: Array, pose: Array, size: float) ->
 
 Points = tuple[tuple[float, float], ...]
 
-PALEST = 0.12  # opacity of the oldest pose
-GAP = np.full((1, 2), np.nan)  # between two bodies of one line
-BLOCK = 0.045  # of the picture's size: half the side of a body that has one joint point only
+LEAST_OPACITY = 0.12  # of the earliest pose
+LINE_BREAK = np.full((1, 2), np.nan)  # separates bodies that are drawn as one line
+BLOCK_SIZE = 0.045  # side of a body with a single joint point, as a fraction of the picture's size
 
 
 @dataclass(frozen=True)
 class Strip:
-    """One panel: `count` poses from `start` to `end` [s] of a scene's truth.
+    """One panel: `count` poses of a scene's reference motion from `start` to `end` [s].
 
-    ends: points in the frame of a body [m] that are drawn beside its joints (a free end, a shoulder). spread [m]: each
-    pose stands so far to the right of the one before, as on a film. trace: a body and a point of it, whose path is
-    drawn. floor: whether the ground is a line at y = 0.
+    ends: further points to draw, by body, in its frame [m] (a free end, a shoulder). spread: shift of each pose to the
+    right of the one before [m], as in a film. trace: a body and a point of it, whose path is drawn. floor: whether the
+    ground is a line at y = 0.
     """
 
     scene: Scene
@@ -124,37 +124,37 @@ class Strip:
     floor: bool = False
 
     def times(self) -> Array:
-        """When the poses are taken (count,) [s]."""
+        """The times of the poses (count,) [s]."""
         return np.linspace(self.start, self.scene.duration if self.end is None else self.end, self.count)
 
     @property
     def caption(self) -> str:
-        """The title with the interval between poses."""
+        """The title and the interval between poses."""
         t = self.times()
         return f"{self.title}: every {t[1] - t[0]:.3g} s" if len(t) > 1 else f"{self.title}: {t[0]:.3g} s"
 
 
 def outline(mechanism: Mechanism, pose: Array, ends: Mapping[str, Points]) -> dict[str, Array]:
-    """World points (points, 2) [m] of each body's joints and further `ends`, in the order along its x axis."""
+    """The world points (points, 2) [m] of each body's joints and `ends`, sorted along its x axis."""
     out = {}
     for name, points in body_points(mechanism, pose).items():
         x, y, angle = pose[mechanism.body_index(name)]
-        more = rotated(angle, np.array(ends.get(name, ()), dtype=float).reshape(-1, 2)) + np.array([x, y])
-        points = np.concatenate([points, more])
+        free_ends = rotated(angle, np.array(ends.get(name, ()), dtype=float).reshape(-1, 2)) + np.array([x, y])
+        points = np.concatenate([points, free_ends])
         out[name] = points[np.argsort((points - (x, y)) @ (np.cos(angle), np.sin(angle)), kind="stable")]
     return out
 
 
 def path(scene: Scene, body: str, point: tuple[float, float], t: Array) -> Array:
-    """Where a point of a body is (times, 2) [m]."""
+    """The path (times, 2) [m] of a point of a body, given in the body's frame [m]."""
     pose = scene.motion(t).pose[:, scene.mechanism().body_index(body)]
     return pose[:, :2] + rotated(pose[:, 2], np.array(point))
 
 
 def stroboscope(strips: Sequence[Strip], columns: int = 2) -> Figure:
-    """One panel a strip, all poses in it, the last in full ink."""
-    drawn = [_poses(strip) for strip in strips]
-    boxes = [_box(strip, poses) for strip, poses in zip(strips, drawn, strict=True)]
+    """A panel for each strip with all its poses, the last one the darkest."""
+    poses_of_strips = [_poses(strip) for strip in strips]
+    boxes = [_box(strip, poses) for strip, poses in zip(strips, poses_of_strips, strict=True)]
     columns = min(columns, len(strips))
     lines = [range(i, min(i + columns, len(strips))) for i in range(0, len(strips), columns)]
     width = 9.2 / columns
@@ -164,7 +164,7 @@ def stroboscope(strips: Sequence[Strip], columns: int = 2) -> Figure:
         panels = figure.subplots(len(lines), columns, squeeze=False, height_ratios=heights).ravel()
         for spare in panels[len(strips) :]:
             spare.set_visible(False)
-        for panel, strip, poses, box in zip(panels, strips, drawn, boxes, strict=False):
+        for panel, strip, poses, box in zip(panels, strips, poses_of_strips, boxes, strict=False):
             bare(panel, strip.caption)
             panel.set_xlim(box[0], box[2])
             panel.set_ylim(box[1], box[3])
@@ -199,23 +199,23 @@ def _draw(panel: Axes, strip: Strip, poses: list[dict[str, Array]], size: float)
         body, point = strip.trace
         line = path(strip.scene, body, point, np.linspace(t[0], t[-1], 40 * len(t)))
         panel.plot(line[:, 0], line[:, 1], color=LIGHT.second, linewidth=0.9, zorder=2)
-    few, film = max(len(bodies) for bodies in poses) < 20, bool(strip.spread)
+    few_bodies, is_film = max(len(bodies) for bodies in poses) < 20, bool(strip.spread)
     look: dict[str, Any] = {
         "color": LIGHT.ink,
         "solid_capstyle": "round",
-        "linewidth": 2.0 if few else 1.3,
+        "linewidth": 2.0 if few_bodies else 1.3,
         "zorder": 3,
     }
     for index, bodies in enumerate(poses):
-        alone = film or len(poses) == 1
-        strength = 1.0 if alone else PALEST + (1 - PALEST) * (index / (len(poses) - 1)) ** 1.5
+        is_separate = is_film or len(poses) == 1
+        opacity = 1.0 if is_separate else LEAST_OPACITY + (1 - LEAST_OPACITY) * (index / (len(poses) - 1)) ** 1.5
         parts: list[Array] = []
         for points in bodies.values():
             if len(np.unique(points.round(12), axis=0)) == 1:
                 corners = np.array([[-1, -0.6], [1, -0.6], [1, 0.6], [-1, 0.6], [-1, -0.6]])
-                block = points[0] + BLOCK * size / 2 * corners
-                panel.plot(*block.T, color=LIGHT.ink, alpha=strength, linewidth=1.4, zorder=3)
+                block = points[0] + BLOCK_SIZE * size / 2 * corners
+                panel.plot(*block.T, color=LIGHT.ink, alpha=opacity, linewidth=1.4, zorder=3)
             else:
-                parts += [points, GAP]
-        dots = {**DOTS, "markersize": 3.0} if few and (film or index == len(poses) - 1) else {}
-        panel.plot(*np.concatenate(parts).T, alpha=strength, **look, **dots)
+                parts += [points, LINE_BREAK]
+        dots = {**JOINT_DOTS, "markersize": 3.0} if few_bodies and (is_film or index == len(poses) - 1) else {}
+        panel.plot(*np.concatenate(parts).T, alpha=opacity, **look, **dots)

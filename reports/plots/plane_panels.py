@@ -1,4 +1,4 @@
-"""Plane pictures: paths, blades and notes in panels of true shape, and curves over time in panels that are not."""
+"""Panels with paths, blades and notes in the plane, and panels with curves over time."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
-from reports.plots.theme import LIGHT, WIDTH, drawing, style_axes
+from reports.plots.theme import FIGURE_WIDTH, LIGHT, drawing, style_axes
 
 Array = NDArray[np.float64]
 
-MARGIN = 0.07  # of a panel's larger extent
-LOWEST, HIGHEST = 1.4, 5.0  # inches that a panel may be high
-NARROWEST = 0.7  # a panel's least width over its height: ticks need room
+PANEL_MARGIN = 0.07  # of a panel's larger extent
+MIN_HEIGHT, MAX_HEIGHT = 1.4, 5.0  # of a panel, in inches
+MIN_ASPECT = 0.7  # least width over height, since ticks need room
 
 
 @dataclass(frozen=True)
 class Path:
-    """A line through points (points, 2); equal labels are one entry of the legend. `colour` names a theme's role.
+    """A line through points (points, 2). Paths with the same label share an entry of the legend.
 
-    `framed`: whether the panel is as large as this path (a wrong motion may run out of the picture). `dot`: at its end.
+    colour: a role of the theme. framed: whether the panel is large enough for this path; a wrong motion may leave the
+    picture. dot: whether the end has a dot.
     """
 
     points: ArrayLike
@@ -43,7 +44,7 @@ class Path:
 
 @dataclass(frozen=True)
 class Blades:
-    """Skates or bars, drawn as strokes of `length` [m] at poses (n, 3) of their middles; `label` for the legend."""
+    """Skates or bars, drawn as strokes of `length` [m] at poses (n, 3) of their centres; `label`: for the legend."""
 
     poses: ArrayLike
     length: float
@@ -54,49 +55,49 @@ class Blades:
     def strokes(self) -> list[Array]:
         poses = np.asarray(self.poses, dtype=float)
         half = 0.5 * self.length * np.stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])], axis=-1)
-        return [np.stack([place - arm, place + arm]) for place, arm in zip(poses[:, :2], half, strict=True)]
+        return [np.stack([centre - arm, centre + arm]) for centre, arm in zip(poses[:, :2], half, strict=True)]
 
 
 @dataclass(frozen=True)
 class PanelNote:
-    """A few words at a place; `align` as matplotlib's horizontal alignment."""
+    """A text at a point; `align`: matplotlib's horizontal alignment."""
 
-    place: tuple[float, float]
-    words: str
+    point: tuple[float, float]
+    text: str
     align: str = "left"
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One picture. `plane` draws lengths as they are; otherwise the axes have names and may be logarithmic."""
+    """One panel. `plane`: both axes have the same scale; otherwise they have labels and may be logarithmic."""
 
     title: str
     paths: Sequence[Path] = ()
     blades: Sequence[Blades] = ()
     notes: Sequence[PanelNote] = ()
     plane: bool = True
-    across: str = ""
-    up: str = ""
+    x_label: str = ""
+    y_label: str = ""
     logarithmic: bool = False
     logarithmic_across: bool = False
 
     def corners(self) -> tuple[Array, Array]:
-        """The lowest and highest coordinates of what frames the panel."""
+        """The lowest and highest coordinates of framed paths, blades and notes."""
         points = [path.finite() for path in self.paths if path.framed]
         points += [stroke for blades in self.blades for stroke in blades.strokes()]
-        points += [np.array([note.place]) for note in self.notes]
+        points += [np.array([note.point]) for note in self.notes]
         everything = np.concatenate(points)
         low, high = everything.min(axis=0), everything.max(axis=0)
-        lacking = max(0.0, NARROWEST * float(high[1] - low[1]) - float(high[0] - low[0]))
-        spread = np.array([0.5 * lacking, 0.0])
+        missing_width = max(0.0, MIN_ASPECT * float(high[1] - low[1]) - float(high[0] - low[0]))
+        spread = np.array([0.5 * missing_width, 0.0])
         return low - spread, high + spread
 
 
 def paths(panels: Sequence[Panel], columns: int = 3, height: float | None = None) -> Figure:
-    """The panels in rows, with one legend below. A row is as high [inches] as its pictures ask for, unless given."""
+    """The panels in rows with one legend; `height` [inches] of a row, by default from the shapes of its panels."""
     columns = min(columns, len(panels))
     rows = [panels[i : i + columns] for i in range(0, len(panels), columns)]
-    heights = [height or max(_height(panel, WIDTH / columns) for panel in row) for row in rows]
+    heights = [height or max(_height(panel, FIGURE_WIDTH / columns) for panel in row) for row in rows]
     with drawing(sum(heights) + 0.35 * len(rows) + 0.5) as figure:
         axes = figure.subplots(len(rows), columns, squeeze=False, gridspec_kw={"height_ratios": heights})
         handles: dict[str, Line2D] = {}
@@ -113,17 +114,17 @@ def _height(panel: Panel, width: float) -> float:
     if not panel.plane:
         return 2.6
     low, high = panel.corners()
-    size = (high - low) + 2 * MARGIN * float((high - low).max())
-    return float(np.clip(width * size[1] / size[0], LOWEST, HIGHEST))
+    size = (high - low) + 2 * PANEL_MARGIN * float((high - low).max())
+    return float(np.clip(width * size[1] / size[0], MIN_HEIGHT, MAX_HEIGHT))
 
 
 def _draw(spot: Axes, panel: Panel, handles: dict[str, Line2D]) -> None:
     style_axes(spot)
     spot.set_title(panel.title, loc="left", fontsize=9, color=LIGHT.ink)
-    for order, path in enumerate(panel.paths):
+    for index, path in enumerate(panel.paths):
         look = {"color": getattr(LIGHT, path.colour), "linestyle": path.dashes, "linewidth": path.width}
         points = path.finite()
-        spot.plot(points[:, 0], points[:, 1], zorder=3 + 0.01 * order, **look)
+        spot.plot(points[:, 0], points[:, 1], zorder=3 + 0.01 * index, **look)
         if path.dot and len(points):
             spot.plot(*points[-1], marker="o", markersize=4.5, color=look["color"], zorder=4)
         if path.label:
@@ -135,18 +136,18 @@ def _draw(spot: Axes, panel: Panel, handles: dict[str, Line2D]) -> None:
         if blades.label:
             handles.setdefault(blades.label, Line2D([], [], label=blades.label, **look))
     box = {"facecolor": LIGHT.paper, "edgecolor": "none", "pad": 1.0}
-    words: dict[str, Any] = {"va": "center", "fontsize": 8, "color": LIGHT.ink, "zorder": 5, "bbox": box}
+    text_style: dict[str, Any] = {"va": "center", "fontsize": 8, "color": LIGHT.ink, "zorder": 5, "bbox": box}
     for note in panel.notes:
-        spot.annotate(note.words, note.place, ha=note.align, **words)
-    spot.set_xlabel(panel.across or ("x [m]" if panel.plane else ""))
-    spot.set_ylabel(panel.up or ("y [m]" if panel.plane else ""))
+        spot.annotate(note.text, note.point, ha=note.align, **text_style)
+    spot.set_xlabel(panel.x_label or ("x [m]" if panel.plane else ""))
+    spot.set_ylabel(panel.y_label or ("y [m]" if panel.plane else ""))
     if panel.logarithmic:
         spot.set_yscale("log")
     if panel.logarithmic_across:
         spot.set_xscale("log")
     if panel.plane:
         low, high = panel.corners()
-        margin = MARGIN * float((high - low).max())
+        margin = PANEL_MARGIN * float((high - low).max())
         spot.set_xlim(low[0] - margin, high[0] + margin)
         spot.set_ylim(low[1] - margin, high[1] + margin)
         spot.set_aspect("equal")

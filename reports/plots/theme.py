@@ -1,4 +1,4 @@
-"""Colours for light and dark paper, and how a figure becomes an SVG that reads well on both."""
+"""Colours for light and dark backgrounds, and figures as SVG texts that follow the reader's colour scheme."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatterSciNotation
 from numpy.typing import ArrayLike
 
-WIDTH = 9.2  # inches: GitHub shows about this much of a page without scaling
+FIGURE_WIDTH = 9.2  # inches: GitHub shows a page of about this width without scaling
 
 
 @dataclass(frozen=True)
 class Theme:
-    """One colour for each role, by default on light paper.
+    """One colour for each role; the defaults are for a light background.
 
-    No two roles share a colour, so that a stylesheet can tell them apart in an SVG.
+    No two roles have the same colour, because a stylesheet recognises a role in an SVG by its colour.
     """
 
     paper: str = "#fdfdfc"
@@ -70,12 +70,12 @@ DARK = Theme(
     worse="#55437f",
 )
 
-# The roles of lines that are told apart: families of engines in charts, whatever a picture shows elsewhere.
+# The roles of families of engines in charts, and of different lines in other pictures.
 SERIES = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
-SETTINGS = {
+RC_SETTINGS = {
     "svg.hashsalt": "crosscheck",
-    "svg.fonttype": "none",  # text stays text: it can be searched, read aloud and copied
+    "svg.fonttype": "none",  # text remains text: it can be searched, read aloud and copied
     "font.family": "DejaVu Sans",
     "font.size": 9,
     "axes.titlesize": 9.5,
@@ -85,57 +85,57 @@ SETTINGS = {
     "hatch.linewidth": 0.6,
     "legend.frameon": False,
     "legend.labelcolor": LIGHT.ink,
-    "axes.titlecolor": LIGHT.ink,  # a title beside the middle is another one than `Axes.title`
-    # Titles stand on their axes. Left to itself, matplotlib looks at all ticks in search of some that stand above.
+    "axes.titlecolor": LIGHT.ink,  # of titles at the left, which are not `Axes.title`
+    # A fixed position of titles: otherwise matplotlib measures all ticks to place them.
     "axes.titley": 1.0,
 }
 
 
-# Where the first is missing, the second has letters of the same widths: both are drawn after one face.
+# Verdana has letters of the same widths as DejaVu Sans, and replaces it where it is missing.
 FONTS = "'DejaVu Sans', Verdana, sans-serif"
-# Names that matplotlib makes from a digest of what it draws: the last bit of a coordinate may differ between runs.
+# Names that matplotlib derives from a digest of coordinates, whose last bits may differ between runs.
 DIGESTED = re.compile(r"\b([mpCh][0-9a-f]{10})\b")
 
 
 def settings() -> AbstractContextManager[None]:
-    """Context in which every figure is made and saved, whatever the user's own configuration says."""
-    plain: dict[Any, Any] = {**matplotlib.rcParamsDefault, **SETTINGS}
+    """A context with our settings in place of the user's matplotlib configuration, for making and saving figures."""
+    plain: dict[Any, Any] = {**matplotlib.rcParamsDefault, **RC_SETTINGS}
     return matplotlib.rc_context(plain)
 
 
-def new_figure(height: float, theme: Theme = LIGHT, width: float = WIDTH) -> Figure:
-    """An empty figure [inches] on the theme's paper."""
+def new_figure(height: float, theme: Theme = LIGHT, width: float = FIGURE_WIDTH) -> Figure:
+    """An empty figure (sizes in inches) with the theme's background."""
     return Figure(figsize=(width, height), facecolor=theme.paper, layout="constrained")
 
 
 @contextmanager
-def drawing(height: float, width: float = WIDTH) -> Iterator[Figure]:
+def drawing(height: float, width: float = FIGURE_WIDTH) -> Iterator[Figure]:
     """A figure that is drawn within `settings`."""
     with settings():
         yield new_figure(height, LIGHT, width)
 
 
-def note(panel: Axes, words: str, place: ArrayLike, offset: tuple[float, float], color: str, **more: Any) -> None:
-    """Words at an offset [points] from a place."""
-    panel.annotate(words, place, xytext=offset, textcoords="offset points", color=color, **more)  # type: ignore[arg-type]
+def note(panel: Axes, text: str, point: ArrayLike, offset: tuple[float, float], color: str, **style: Any) -> None:
+    """A text at an offset [points of 1/72 inch] from a data point."""
+    panel.annotate(text, point, xytext=offset, textcoords="offset points", color=color, **style)  # type: ignore[arg-type]
 
 
-TIMES = "\N{MULTIPLICATION SIGN}"
-RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+TIMES_SIGN = "\N{MULTIPLICATION SIGN}"
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class PowersOfTen(LogFormatterSciNotation):
-    """Ticks of a logarithmic axis as text, 10⁻³: matplotlib has a formula there, and parses it for milliseconds."""
+    """Labels of a logarithmic axis as text, such as 10⁻³; matplotlib's own are formulas, which take long to parse."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
-        if not super().__call__(x, pos):  # a tick between others, without a word
+        if not super().__call__(x, pos):  # a minor tick without a label
             return ""
         digits, power = f"{x:.0e}".split("e")
-        return f"{'' if digits == '1' else digits + TIMES}10{str(int(power)).translate(RAISED)}"
+        return f"{'' if digits == '1' else digits + TIMES_SIGN}10{str(int(power)).translate(SUPERSCRIPTS)}"
 
 
 def _in_powers(figure: Figure) -> None:
-    """Give logarithmic axes that have matplotlib's own words ours."""
+    """Replace matplotlib's default formatters of logarithmic axes by ours."""
     for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) if axis.get_scale() == "log"):
         if type(axis.get_major_formatter()) is LogFormatterSciNotation:
             axis.set_major_formatter(PowersOfTen())
@@ -144,7 +144,7 @@ def _in_powers(figure: Figure) -> None:
 
 
 def style_axes(axes: Axes, theme: Theme = LIGHT, grid: bool = True) -> None:
-    """Quiet frame, quiet ticks, a grid behind the data."""
+    """A grey frame, grey ticks, and a grid behind the data."""
     axes.set_facecolor(theme.paper)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
@@ -160,7 +160,7 @@ def style_axes(axes: Axes, theme: Theme = LIGHT, grid: bool = True) -> None:
 
 
 def bare(panel: Axes, title: str) -> None:
-    """A panel without axes, in which lengths are as they are."""
+    """A panel without axes and with equal scales."""
     style_axes(panel, grid=False)
     panel.set_axis_off()
     panel.set_aspect("equal")
@@ -168,10 +168,10 @@ def bare(panel: Axes, title: str) -> None:
 
 
 def svg(figure: Figure, title: str) -> str:
-    """A figure made with LIGHT as an SVG text whose colours follow the reader's scheme; the same bytes every time.
+    """A figure in the colours of LIGHT as a reproducible SVG text that follows the reader's colour scheme.
 
-    The light colours stand in the drawing itself, so that a viewer without stylesheets shows it well too; one rule a
-    role replaces them on dark paper. `title` becomes the text that a screen reader says.
+    The drawing itself has the light colours, for viewers without stylesheets; one rule for each role replaces them in a
+    dark scheme. `title`: the text for screen readers.
     """
     out = io.StringIO()
     _in_powers(figure)
@@ -190,6 +190,6 @@ def svg(figure: Figure, title: str) -> str:
 
 
 def _renumbered(text: str) -> str:
-    """The drawing with names for its clips, marks and hatches that count them, in the order in which they come."""
+    """The drawing with consecutive numbers as names of its clips, marks and hatches."""
     names: dict[str, str] = {}
-    return DIGESTED.sub(lambda found: names.setdefault(found[1], f"{found[1][0]}{len(names) + 1}"), text)
+    return DIGESTED.sub(lambda match: names.setdefault(match[1], f"{match[1][0]}{len(names) + 1}"), text)

@@ -1,6 +1,6 @@
-"""Rows to charts: work and precision, error against step, engines at equal CPU time. Pure functions that give a figure.
+"""Charts of rows: error against CPU time, error against step, engines at equal CPU time.
 
-What a method looks like is in `reports.plots.looks`.
+The colours, lines and marks of methods are in `reports.plots.looks`.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from reports.model.quantities import quantity
 from reports.plots.looks import colour, family_of, look, mark
 from reports.plots.theme import LIGHT, PowersOfTen, drawing, new_figure, note, settings, style_axes
 
-COLUMNS = 2
-LONG_NAME = 30  # letters: beyond, four names don't fit side by side
+PANEL_COLUMNS = 2
+LONGEST_OF_FOUR = 30  # letters: with longer names only three fit side by side in the legend
 SLOPES = (1, 2, 4)
-PLACES = 25  # along each side of a panel, where the fan of slopes is tried
+FAN_POSITIONS = 25  # along each side of a panel, at which the fan of slopes is tried
 
 Featured = Callable[[Measurement], bool]
 
 
 def pareto(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Of (cost, error) pairs those that no other beats in both, by rising cost."""
+    """The Pareto front of (cost, error) pairs, by rising cost."""
     front: list[tuple[float, float]] = []
     for cost, error in sorted(points):
         if not front or error < front[-1][1]:
@@ -42,26 +42,26 @@ def pareto(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def forwards(members: Iterable[Measurement]) -> list[Measurement]:
-    """The rows of one method from coarse to fine, without those that cost as much as one at a smaller step or more:
-    methods that look for their steps or sweeps by rough runs do so at large steps."""
-    kept: list[Measurement] = []
+    """The rows of one method from coarse to fine, without rows that cost no less than one at a smaller step.
+
+    Methods that choose steps or iterations by pilot runs have such rows at large steps.
+    """
+    forward: list[Measurement] = []
     for row in sorted(members, key=lambda row: row.step):
-        if not kept or row.cpu < kept[-1].cpu:
-            kept.append(row)
-    return kept[::-1]
+        if not forward or row.cpu < forward[-1].cpu:
+            forward.append(row)
+    return forward[::-1]
 
 
-def _shown_variants(rows: Sequence[Measurement]) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
+def _variants_by_engine(rows: Sequence[Measurement]) -> dict[str, list[str]]:
+    variants: dict[str, dict[str, None]] = {}
     for row in rows:
-        variants = found.setdefault(row.engine, [])
-        if row.variant not in variants:
-            variants.append(row.variant)
-    return found
+        variants.setdefault(row.engine, {})[row.variant] = None
+    return {engine: list(names) for engine, names in variants.items()}
 
 
 def drawable(rows: Iterable[Measurement], field: str) -> list[Measurement]:
-    """The rows of sweeps whose error has a place on a logarithmic axis."""
+    """The rows of sweeps whose error can be drawn on a logarithmic axis."""
     return [
         row
         for row in rows
@@ -69,15 +69,15 @@ def drawable(rows: Iterable[Measurement], field: str) -> list[Measurement]:
     ]
 
 
-def _with_lines(rows: Sequence[Measurement]) -> list[str]:
-    """The scenes in which a method has two points or more; all of them where none has: single points teach little."""
+def _scenes_with_lines(rows: Sequence[Measurement]) -> list[str]:
+    """The scenes in which some method has at least two points; all scenes if there is none."""
     scenes = list(dict.fromkeys(row.scene for row in rows))
-    lined = {scene for (scene, _, _), members in groups(rows).items() if len(members) > 1}
-    return [scene for scene in scenes if scene in lined] or scenes
+    with_lines = {scene for (scene, _, _), members in groups(rows).items() if len(members) > 1}
+    return [scene for scene in scenes if scene in with_lines] or scenes
 
 
 def _panels(scenes: Sequence[str], height: float) -> tuple[Figure, list[Axes]]:
-    columns = min(COLUMNS, len(scenes)) or 1
+    columns = min(PANEL_COLUMNS, len(scenes)) or 1
     count = -(-len(scenes) // columns) or 1
     figure = new_figure(height * count + 0.9)
     axes = figure.subplots(count, columns, squeeze=False, sharey=True).ravel()
@@ -93,7 +93,7 @@ def _panels(scenes: Sequence[str], height: float) -> tuple[Figure, list[Axes]]:
 
 def _finish(panel: Axes) -> None:
     for axis, (low, high) in ((panel.xaxis, panel.get_xlim()), (panel.yaxis, panel.get_ylim())):
-        # Less than two decades may have a single power of ten: one tick tells no scale.
+        # A range below two decades may contain a single power of ten, and one tick shows no scale.
         narrow = math.log10(high / low) < 2
         axis.set_major_locator(LogLocator(base=10, subs=(1.0, 3.0) if narrow else (1.0,), numticks=9))
         axis.set_major_formatter(PowersOfTen(minor_thresholds=(math.inf, math.inf)))
@@ -103,7 +103,7 @@ def _finish(panel: Axes) -> None:
 
 def _legend(figure: Figure, handles: Sequence[Line2D]) -> None:
     longest = max((len(str(handle.get_label())) for handle in handles), default=0)
-    columns = 4 if longest <= LONG_NAME else 3
+    columns = 4 if longest <= LONGEST_OF_FOUR else 3
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, handlelength=3.2)
 
 
@@ -113,15 +113,15 @@ Pairs = list[tuple[float, float]]
 def _chart(
     shown: Sequence[Measurement], scenes: Sequence[str], field: str, label: str, series: Callable[..., Pairs]
 ) -> tuple[Figure, list[Axes], list[Line2D]]:
-    """A panel for each scene with a line for each method, through what `series` makes of its rows; and the legend's."""
-    variants = _shown_variants(shown)
+    """A panel for each scene with a line for each method through `series(rows)`, and the entries of the legend."""
+    variants = _variants_by_engine(shown)
     figure, panels = _panels(scenes, 3.6)
     for index, (panel, scene) in enumerate(zip(panels, scenes, strict=True)):
         for (_, engine, variant), members in groups(row for row in shown if row.scene == scene).items():
             panel.plot(*zip(*series(members), strict=True), zorder=3, **look(engine, variant, variants))
         panel.set_xlabel(label)
-        if index % COLUMNS == 0:
-            panel.set_ylabel(f"largest {quantity(field).axis}")
+        if index % PANEL_COLUMNS == 0:
+            panel.set_ylabel(f"largest {quantity(field).heading}")
     handles = [
         Line2D([], [], label=f"{engine} {variant}", **look(engine, variant, variants))
         for engine, names in variants.items()
@@ -131,10 +131,10 @@ def _chart(
 
 
 def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle") -> Figure:
-    """Error against CPU time, one panel a scene, one series a method; the front that nothing beats is underlaid.
+    """Error against CPU time: a panel for each scene, a series for each method, and the Pareto front below them.
 
-    The front is that of all rows, also of those that are not featured as series: those stand as small grey dots.
-    A series never runs backwards: see `forwards`.
+    The front is that of all rows. Rows that are not featured are small grey dots. A series has no rows that `forwards`
+    removes.
     """
 
     def pairs(members: Iterable[Measurement]) -> Pairs:
@@ -142,14 +142,14 @@ def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row:
 
     rows = [row for row in drawable(rows, field) if row.cpu > 0]
     shown = [row for row in rows if featured(row)]
-    scenes, label = _with_lines(shown or rows), "CPU time per simulated second [ms]"
+    scenes, label = _scenes_with_lines(shown or rows), "CPU time per simulated second [ms]"
     with settings():
         figure, panels, handles = _chart(shown, scenes, field, label, lambda members: pairs(forwards(members)))
         for panel, scene in zip(panels, scenes, strict=True):
-            here = [row for row in rows if row.scene == scene]
-            front = zip(*pareto(pairs(here)), strict=True)
+            of_scene = [row for row in rows if row.scene == scene]
+            front = zip(*pareto(pairs(of_scene)), strict=True)
             panel.plot(*front, color=LIGHT.grid, linewidth=7, drawstyle="steps-post", zorder=1)
-            if others := pairs(row for row in here if not featured(row)):
+            if others := pairs(row for row in of_scene if not featured(row)):
                 panel.plot(*zip(*others, strict=True), ".", color=LIGHT.quiet, markersize=3, zorder=2)
             _finish(panel)
         handles.append(Line2D([], [], color=LIGHT.grid, linewidth=8, label="nothing is better and cheaper"))
@@ -162,14 +162,14 @@ def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row:
 def error_against_step(
     rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle"
 ) -> Figure:
-    """Error against step, one panel a scene, with slopes 1, 2 and 4 as guides. A flat end is a plateau: the model."""
+    """Error against step: a panel for each scene, with slopes 1, 2 and 4 as guides."""
 
     def pairs(members: Iterable[Measurement]) -> Pairs:
         return [(1e3 * row.step, getattr(row, field)) for row in members]
 
     rows = [row for row in drawable(rows, field) if featured(row)]
     with settings():
-        figure, panels, handles = _chart(rows, _with_lines(rows), field, "step [ms]", pairs)
+        figure, panels, handles = _chart(rows, _scenes_with_lines(rows), field, "step [ms]", pairs)
         for panel in panels:
             panel.axhspan(1e-16, quantity(field).rounding, color=LIGHT.grid, alpha=0.45, linewidth=0, zorder=0)
             panel.set_ylim(bottom=min(getattr(row, field) for row in rows) / 3)
@@ -182,33 +182,33 @@ def error_against_step(
 
 
 def _guides(panel: Axes) -> None:
-    """A fan of slopes where it is farthest from the lines of the panel, whose limits it leaves as they are."""
+    """A fan of slopes at the position farthest from the lines of the panel; the limits of the axes do not change."""
     low, high = np.log10([panel.get_xlim(), panel.get_ylim()]).T
     size = high - low  # decades
     width, gap = min(0.22 * size[0], 0.28 * size[1] / max(SLOPES)), 0.05 * size[0]
-    # What the fan and its numbers cover, in shares of the panel from the point of the fan.
+    # The extent of the fan and its numbers, as fractions of the panel, relative to the fan's vertex.
     slopes = [(share * width, slope * share * width) for slope in SLOPES for share in np.linspace(0, 1, 5)]
     fan = np.array([*slopes, *((width + gap, slope * width) for slope in SLOPES)]) / size
     lines = [(np.log10(line.get_xydata()) - low) / size for line in panel.lines]
     between = np.linspace(0, 1, 12)[:, None]
-    taken = [a + between * (b - a) for line in lines for a, b in zip(line, [*line[1:], line[-1]], strict=True)]
+    occupied = [a + between * (b - a) for line in lines for a, b in zip(line, [*line[1:], line[-1]], strict=True)]
     room = 0.97 - fan.max(axis=0)
-    places = [np.linspace(0.03, most, PLACES) for most in room]
-    corners = np.stack(np.meshgrid(*places, indexing="ij"), axis=-1).reshape(-1, 1, 2)
-    points = np.concatenate(taken) if taken else np.array([[0.0, 1.0]])
+    positions = [np.linspace(0.03, most, FAN_POSITIONS) for most in room]
+    corners = np.stack(np.meshgrid(*positions, indexing="ij"), axis=-1).reshape(-1, 1, 2)
+    points = np.concatenate(occupied) if occupied else np.array([[0.0, 1.0]])
     distances = KDTree(points).query(corners + fan)[0].min(axis=1)
     left, bottom = low + corners[distances.argmax(), 0] * size
-    for slope, place in zip(SLOPES, ("top", "center", "bottom"), strict=True):  # apart in a panel of many decades too
+    for slope, alignment in zip(SLOPES, ("top", "center", "bottom"), strict=True):  # numbers must not overlap
         end = bottom + slope * width
         panel.plot(10 ** np.array([left, left + width]), 10 ** np.array([bottom, end]), color=LIGHT.quiet,
                    linewidth=0.8, zorder=2, scalex=False, scaley=False)  # fmt: skip
-        note(panel, str(slope), (10 ** (left + width), 10**end), (3, 0), LIGHT.quiet, fontsize=8, va=place)
+        note(panel, str(slope), (10 ** (left + width), 10**end), (3, 0), LIGHT.quiet, fontsize=8, va=alignment)
 
 
 COMPARED_HEIGHT = 6.2  # inches
 MAIN_ENGINES = ("pymunk", "mujoco")
-JUDGE = "lagrange"  # no engine to choose: what plain code with exact multipliers reaches
-NAMES = {
+EXACT_SOLVER = "lagrange"  # not an engine for users: it shows the accuracy of exact multipliers in plain code
+ENGINE_NAMES = {
     "pymunk": "pymunk",
     "mujoco": "MuJoCo",
     "exudyn": "Exudyn",
@@ -216,25 +216,25 @@ NAMES = {
     "pinocchio": "Pinocchio",
     "mjx": "MJX",
     "bullet": "Bullet",
-    JUDGE: "plain code, exact multipliers",
+    EXACT_SOLVER: "plain code, exact multipliers",
 }
 
-Points = Sequence[tuple[float, float]]  # (CPU seconds per simulated second, error), by rising cost
+CostErrorPairs = Sequence[tuple[float, float]]  # (CPU seconds per simulated second, error), by rising cost
 
 
 @dataclass(frozen=True)
 class ComparedRow:
-    """A row of panels: `lines` by column and engine, `absent` by column and reason the engines without one."""
+    """A row of panels. lines: column -> engine -> points. absent: column -> reason -> the engines without a line."""
 
     title: str
     axis: str
-    lines: Mapping[str, Mapping[str, Points]]
+    lines: Mapping[str, Mapping[str, CostErrorPairs]]
     absent: Mapping[str, Mapping[str, Sequence[str]]]
 
 
 def engines_compared(rows: Sequence[ComparedRow]) -> Figure:
     """The least error within a CPU time against that time, both logarithmic; all panels have the same axes."""
-    engines = list(dict.fromkeys(each for row in rows for lines in row.lines.values() for each in lines))
+    engines = list(dict.fromkeys(engine for row in rows for lines in row.lines.values() for engine in lines))
     with drawing(COMPARED_HEIGHT) as figure:
         columns = list(dict.fromkeys(column for row in rows for column in row.lines))
         grid = figure.subplots(len(rows), len(columns), sharex=True, sharey=True, squeeze=False)
@@ -245,14 +245,14 @@ def engines_compared(rows: Sequence[ComparedRow]) -> Figure:
                 style_axes(panel)
                 for engine, points in row.lines.get(column, {}).items():
                     if points:
-                        shown = [(1e3 * cost, error) for cost, error in points]
-                        panel.plot(*zip(*shown, strict=True), **_look_of(engine, engines))
-                absent = {
-                    word: ", ".join(NAMES.get(each, each) for each in names)
-                    for word, names in row.absent.get(column, {}).items()
+                        in_ms = [(1e3 * cost, error) for cost, error in points]
+                        panel.plot(*zip(*in_ms, strict=True), **_look_of(engine, engines))
+                absent = [
+                    f"{reason}: {', '.join(ENGINE_NAMES.get(engine, engine) for engine in names)}"
+                    for reason, names in row.absent.get(column, {}).items()
                     if names
-                }
-                _write(panel, 0.98, 0.98, "\n".join(f"{word}: {names}" for word, names in absent.items()), "right")
+                ]
+                _write(panel, 0.98, 0.98, "\n".join(absent), "right")
                 panel.set_title(f"{row.title}, {column}", loc="left", fontweight="bold", fontsize=9, color=LIGHT.ink)
             panels[0].set_ylabel(row.axis)
         _write(grid[0][0], 0.02, 0.12, "better: lower\nand further left", "left")
@@ -260,18 +260,18 @@ def engines_compared(rows: Sequence[ComparedRow]) -> Figure:
             panel.set_xlabel("CPU time per simulated second [ms]")
         for panel in grid.ravel():
             panel.minorticks_off()
-        handles = [Line2D([], [], label=NAMES.get(each, each), **_look_of(each, engines)) for each in engines]
+        handles = [Line2D([], [], label=ENGINE_NAMES.get(name, name), **_look_of(name, engines)) for name in engines]
         figure.legend(handles=handles, loc="outside lower center", ncols=4, handlelength=3)
     return figure
 
 
-def _write(panel: Axes, x: float, y: float, words: str, side: Literal["left", "right"]) -> None:
-    panel.text(x, y, words, transform=panel.transAxes, fontsize=8, color=LIGHT.quiet, ha=side, va="top")
+def _write(panel: Axes, x: float, y: float, text: str, side: Literal["left", "right"]) -> None:
+    panel.text(x, y, text, transform=panel.transAxes, fontsize=8, color=LIGHT.quiet, ha=side, va="top")
 
 
 def _look_of(engine: str, engines: Sequence[str]) -> dict[str, Any]:
-    """The colour and mark of the engine's family; plain code has a dashed grey line."""
-    if engine == JUDGE:
+    """The colour and mark of the engine's family; the exact solver has a dashed grey line."""
+    if engine == EXACT_SOLVER:
         return {"color": LIGHT.quiet, "linestyle": "--", "linewidth": 1.5, "marker": ".", "markersize": 5}
     paint = colour(engine, engines=engines)
     return {
@@ -280,5 +280,5 @@ def _look_of(engine: str, engines: Sequence[str]) -> dict[str, Any]:
         "linewidth": 2.2 if engine in MAIN_ENGINES else 1.5,
         "marker": mark(family_of(engine), engines),
         "markersize": 5.5,
-        "markerfacecolor": paint if engine in MAIN_ENGINES else LIGHT.paper,  # told apart without colours too
+        "markerfacecolor": paint if engine in MAIN_ENGINES else LIGHT.paper,  # differs without colours too
     }

@@ -15,7 +15,7 @@ from types import MappingProxyType
 
 from engines import Enforcement, Engine
 from engines.registry import method_name
-from reference.joints import Skate
+from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.scene import Scene
@@ -76,7 +76,9 @@ def describe_enforcement(engine: Engine, mechanism: Mechanism) -> str:
 
     Joints are named by their kind, and by their own names where joints of one kind differ.
     """
-    by_joint = [(joint, engine.enforcement(joint, mechanism)) for joint in mechanism.joints]
+    by_joint: list[tuple[Joint, Enforcement]] = [
+        (joint, engine.enforcement(joint, mechanism)) for joint in mechanism.joints
+    ]
     by_kind: dict[str, set[Enforcement]] = {}
     for joint, enforcement in by_joint:
         by_kind.setdefault(_kind(joint), set()).add(enforcement)
@@ -94,7 +96,7 @@ def describe_enforcement(engine: Engine, mechanism: Mechanism) -> str:
     return "; ".join(["engine", *others] if "engine" in names else others)
 
 
-def _kind(joint: object) -> str:
+def _kind(joint: Joint) -> str:
     return type(joint).__name__.lower()
 
 

@@ -128,7 +128,7 @@ def planes() -> Figure:
     right = Path([[0.0, 0.0], [1.0, 2.0]], "truth")
     first = Panel("first", [right, wrong], [blades], [PanelNote((0.25, 1.5), "here", "center")])
     curve = Path([[1.0, 1e-3], [2.0, 1e-1]], "truth")
-    second = Panel("second", [curve], plane=False, across="time [s]", up="m", logarithmic=True)
+    second = Panel("second", [curve], plane=False, x_label="time [s]", y_label="m", logarithmic=True)
     return paths([first, second], columns=2)
 
 

@@ -61,7 +61,7 @@ def parking() -> Figure:
     sideways = Path(np.column_stack([sizes, moved[:, 1]]), "sideways, towards 1", "third")
     along = Path(np.column_stack([sizes, moved[:, 0]]), "along, towards 0", "first", "--")
     title, across = "the commutator's way, over the product of its moves", "size of both moves [rad, m]"
-    panels.append(Panel(title, [sideways, along], plane=False, across=across, logarithmic_across=True))
+    panels.append(Panel(title, [sideways, along], plane=False, x_label=across, logarithmic_across=True))
     return paths(panels, columns=2, height=2.6)
 
 

@@ -159,7 +159,7 @@ def casters() -> Figure:
             curves.append(Path(np.column_stack([t, angle]), name, colour, dashes))
         curves += [Path(np.column_stack([t, 0 * t + level]), "", "quiet", ":", 1.0) for level in (-math.pi, 0, math.pi)]
         panels.append(Panel(title, lines))
-        panels.append(Panel("angles against the cart [rad]", curves, plane=False, across="time [s]"))
+        panels.append(Panel("angles against the cart [rad]", curves, plane=False, x_label="time [s]"))
     return paths(panels, columns=2, height=1.9)
 
 
