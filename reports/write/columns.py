@@ -162,7 +162,7 @@ def engine_lines(entries: Iterable[PageRows]) -> list[EngineLine]:
 
 
 def _engine_line(page: Page, scene: Scene, engine_name: str, rows: Sequence[Measurement]) -> EngineLine:
-    usual = usual_variants((engine.name, engine.variant) for engine in page.engines)[engine_name]
+    usual = usual_variants((engine.name, engine.variant) for engine in page.engines).get(engine_name, ())
     methods = [engine for engine in page.engines_of(scene) if engine.name == engine_name]
     columns: dict[Column, list[Engine]] = {}
     for engine in methods:
