@@ -1,32 +1,31 @@
-"""pymunk under test: impulses by Gauss-Seidel sweeps, as shipped, well set, started in step, and extrapolated.
+"""pymunk: impulses by Gauss-Seidel iterations, as shipped, well set, and extrapolated.
 
 All methods are in `engines.pymunk.methods`, the constructions of each joint in `engines.pymunk.joints`.
 
-What one step of Chipmunk does (its cpSpaceStep.c): it drifts, p += v dt, with the old velocity; then, at the new
-positions, it kicks, and lets every joint correct the velocities in turn, `iterations` times, beginning with the
-impulses of the step before. So after n steps it holds p_n and a velocity that has felt the forces up to p_n in full.
-Two readings:
+A step of Chipmunk (its cpSpaceStep.c) first drifts, p += v dt, with the old velocity. Then, at the new positions, it
+adds the forces to the velocities (kick), and every joint corrects the velocities in turn, `iterations` times, starting
+from the impulses of the step before. After n steps it has the positions p_n, and velocities that include the forces at
+p_n in full. They can be read in two ways:
 
-- As a user reads it (`leapfrog` False): `body.velocity` is the velocity at t_n. As the first drift used the velocity
-  at 0, not at dt/2, the motion is half a kick off: first order. (From rest this is a delay of dt/2, which the kick in
-  the last step makes up for in the velocities: they alone are then of second order.)
-- As a leapfrog (`leapfrog` True): one kick of half a step, without drift, comes before the first step. The engine then
-  holds v at t_n + dt/2, and the velocity at t_n is the mean of the two around it: second order.
+- As a user reads them (`leapfrog` False): `body.velocity` is the velocity at t_n. As the first drift used the velocity
+  at 0 and not at dt/2, half a kick is missing: first order. (From rest this is a delay of dt/2, which the kick of the
+  last step compensates in the velocities: they alone are of second order.)
+- As a leapfrog (`leapfrog` True): a kick of half a step, without drift, comes before the first step. The engine then
+  has v at t_n + dt/2, and the velocity at t_n is the mean of the two around it: second order.
 
-The force of step n is evaluated at p_n, so in both readings (change of velocity over step n) / dt is an acceleration
-at t_n, along the rows at p_n; `Mechanism.reaction` turns it into reactions with their signs (`constraint.impulse` is
-only a magnitude). No step lies before the first sample: see `PymunkRun`.
+The force of step n is evaluated at p_n, so in both readings (change of velocity over step n) / dt is the acceleration
+at t_n, with the rows at p_n. `Mechanism.reaction` computes signed reactions from it (`constraint.impulse` is only a
+magnitude). For the first sample see `PymunkRun`.
 
-A joint closes the fraction 1 - error_bias ** dt of its gap in a step. As shipped this is about 6.3 dt, so that a gap of
-the order of dt remains; with error_bias 0 all of it is closed every step, and what remains is of the order of dt ** 2.
-How many sweeps that takes, and when it may not be done, is in `engines.pymunk.contraction`.
+A joint corrects the fraction 1 - error_bias ** dt of its gap in a step. As shipped this is about 6.3 dt, so a gap of
+the order of dt remains. With error_bias 0 the whole gap is corrected in every step, and dt ** 2 remains. The iterations
+that this needs, and its limit of stability, are in `engines.pymunk.convergence`.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from importlib import import_module
 from itertools import repeat
 from typing import Any
 
@@ -41,10 +40,10 @@ from reference.mechanism import Mechanism
 
 @validated
 def bare_loop(engine: Engine, mechanism: Mechanism, dt: Positive, steps: Count) -> float:
-    """CPU seconds of `steps` steps of dt [s] with nothing recorded: the floor under the stepping of a run.
+    """CPU seconds of `steps` steps of dt [s] without recording: the lower bound of a run's `stepping`.
 
-    An extrapolated engine counts as it runs: `level` times as many steps, of dt / level, for each of its levels. Raises
-    ValueError for an engine that is not pymunk.
+    For each `level` of an extrapolation, `level` times as many steps of dt / level. Raises ValueError for an engine
+    that is not pymunk.
     """
     if isinstance(engine, Extended):
         engine = engine.chosen(mechanism)
@@ -64,8 +63,9 @@ def bare_loop(engine: Engine, mechanism: Mechanism, dt: Positive, steps: Count) 
 
 def read(space: Any, step: float | None = None, without: Sequence[str] = ()) -> Any:
     """A pymunk.Space as a mechanism: see `engines.pymunk.reading.read`."""
-    # By its name: what only reads a user's models is no part of what an engine's rows depend on.
-    return import_module("engines.pymunk.reading").read(space, step, without)
+    from engines.pymunk.reading import read as read_space  # imports this package
+
+    return read_space(space, step, without)
 
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""Pymunk: the engine's settings, checked, and what they make of a mechanism."""
+"""pymunk as an engine: its validated settings, and the models and runs that they give for a mechanism."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from engines import ConvergenceOrder, Enforcement, Engine, EngineWrapper, Instan
 from engines.extrapolated import Extrapolated
 from engines.motions import over_three
 from engines.pymunk import declared
-from engines.pymunk.contraction import CONTACT_CONVERGED, FEWEST, Sweeping, Whole, sweeping, swept_by
-from engines.pymunk.expected import worst_contraction
+from engines.pymunk.convergence import MIN_ITERATIONS
+from engines.pymunk.iterations import IterationPlan, Whole, plan_by_rule, plan_with, worst_factor
 from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstruction
 from engines.pymunk.joints.slide import SkateConstruction, SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
@@ -27,36 +27,40 @@ from reference.rolling.roll import Roll
 def _shipped() -> tuple[int, float]:
     """A space's iterations and a joint's error_bias as pymunk sets them.
 
-    The objects end with this function: a space that is still there when Python ends can crash the process.
+    The objects end with this function: a space that still exists when Python ends can crash the process.
     """
     space = pymunk.Space()
     return space.iterations, PivotJoint(space.static_body, pymunk.Body(1, 1), (0, 0), (0, 0)).error_bias
 
 
-# 10, and 0.9 ** 60: a tenth of the gap is closed in a sixtieth of a second.
+# 10, and 0.9 ** 60: a tenth of the gap is corrected in a sixtieth of a second.
 SHIPPED_ITERATIONS, SHIPPED_ERROR_BIAS = _shipped()
 CONTRACTION = "contraction"
-# CPU time [s] of a step with three bodies, and of one joint in one sweep.
-STEP_COST, SWEEP_COST = 2e-6, 13e-9
+# CPU time [s] of a step with three bodies, and of one joint in one iteration.
+STEP_COST, ITERATION_COST = 2e-6, 13e-9
+# Iterations of the start-up for contacts, whose points act on each other, which is not part of the convergence factor:
+# after five iterations half of a disc's force is missing.
+CONTACT_ITERATIONS = 1000
 
 
 @dataclass(frozen=True)
 class Pymunk(Engine, Valid):
     """An engine in the sense of `engines.Engine`.
 
-    `iterations` sweeps over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left
-    after one second; either may be "contraction": by how fast sweeps converge here (`engines.pymunk.contraction`).
-    `fewest` sweeps are made by contraction, and more than `engines.pymunk.contraction.MOST` only while a step takes no
-    more `work`, sweeps times joints. `settled`: how many steps has each stage at the beginning of a run, in which
-    sweeps become fewer, from as many as leave nothing; 0 for none.
-    `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
-    never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
-    (`engines.pymunk.joints.slide`, `.roll`), `contact` how contact is set where it stands for a Roll.
+    `iterations` over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left after one
+    second. Either may be "contraction": by the convergence of the iterations (`engines.pymunk.iterations`). Then a step
+    makes at least `min_iterations`, and more than `iterations.MAX_ITERATIONS` only while iterations times joints do not
+    exceed `max_work`. `startup_steps`: steps in each stage of the start-up, in which the iterations decrease from
+    converged; 0 for no start-up.
 
-    A `gain` below 1 in every step would be an error_bias ** dt; that power underflows to 0 at small steps, which is a
-    gain of 1. Models by "contraction" are therefore built in a unit of time in which the step is 1, where that matters.
+    `leapfrog`: start half a step ahead, average the velocities, and step without the checks of `Space.step`, which
+    concern changes of the model. `skate`, `roll` and `slot` name the construction of such a joint (`joints.slide`,
+    `joints.roll`), `contact` the settings of contact for a Roll.
 
-    Raises ValueError for other values: the engine would abort the process.
+    A `gain` below 1 in every step would be an error_bias ** dt, which underflows to 0 (gain 1) at small steps. Models
+    with such a gain therefore use a unit of time in which the step is 1.
+
+    Raises ValueError for other values, for which pymunk would abort the process.
     """
 
     name = "pymunk"
@@ -66,15 +70,15 @@ class Pymunk(Engine, Valid):
     iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS
     error_bias: Fraction | Literal["contraction"] = SHIPPED_ERROR_BIAS
     leapfrog: bool = False
-    # pymunk has no joint for a skate. "centre" is a user's naive trick and no part of pymunk: after each step the
-    # velocity of the centre of mass across the blade is set to zero.
+    # pymunk has no joint for a skate. "centre" is what users try: after each step the velocity of the centre of mass
+    # across the blade is set to zero.
     skate: SkateConstruction = "centre"
     roll: RollConstruction = "contact"
     slot: SlotConstruction = "exact"
     contact: Contact = SHIPPED_CONTACT
-    settled: Whole = 0
-    fewest: Count = FEWEST
-    work: Whole = 0
+    startup_steps: Whole = 0
+    min_iterations: Count = MIN_ITERATIONS
+    max_work: Whole = 0
 
     @property
     def uses_contacts(self) -> bool:
@@ -83,13 +87,13 @@ class Pymunk(Engine, Valid):
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """See `engines.pymunk.declared`."""
-        return declared.promise(self, mechanism)
+        return declared.order(self, mechanism)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """About how long a step takes [s]: the bodies, and every joint in every sweep."""
-        sweeps = SWEEP_COST * len(mechanism.joints) * self.sweeping(mechanism).iterations
-        return STEP_COST * over_three(mechanism) + sweeps
+        """The estimated CPU time of a step [s]."""
+        iterations = ITERATION_COST * len(mechanism.joints) * self.plan(mechanism).iterations
+        return STEP_COST * over_three(mechanism) + iterations
 
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
@@ -97,15 +101,15 @@ class Pymunk(Engine, Valid):
         return declared.enforcement(self, joint, mechanism)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """How joints give way with steps of dt [s], None where they are set for the pose after the drift.
+        """The regularisation with steps of dt [s]; None if rows are at the pose after the drift and gaps are corrected.
 
-        One step stops a slip and closes a share of a gap; a row of the pose before the drift has no term of velocities.
+        A step removes all slip and corrects a fraction of a gap; rows at the pose before the drift lack J_dot v.
         """
-        stale = self.uses_contacts and any(isinstance(joint, Roll) for joint in mechanism.joints)
-        closed = 1.0 if isinstance(self.error_bias, str) else 1 - self.error_bias**dt
-        if not stale and (closed == 1 or not mechanism.holonomic.any()):
+        rows_before_drift = self.uses_contacts and any(isinstance(joint, Roll) for joint in mechanism.joints)
+        corrected = 1.0 if isinstance(self.error_bias, str) else 1 - self.error_bias**dt
+        if not rows_before_drift and (corrected == 1 or not mechanism.holonomic.any()):
             return None
-        return Regularisation(max(closed, 1e-9) / dt**2, 1 / dt, 0.0, (True,) * mechanism.row_count, complete=False)
+        return Regularisation(max(corrected, 1e-9) / dt**2, 1 / dt, 0.0, (True,) * mechanism.row_count, complete=False)
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
@@ -114,73 +118,57 @@ class Pymunk(Engine, Valid):
         return declared.instants(self, mechanism, dt, steps, built or mechanism)
 
     def stricter(self, mechanism: Mechanism) -> Pymunk | None:
-        """With ten times as many sweeps, where their number is a setting."""
+        """With ten times as many iterations, where their number is a setting."""
         return replace(self, iterations=10 * self.iterations) if isinstance(self.iterations, int) else None
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> PymunkRun:
         """A model of the mechanism at t = 0 for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        return PymunkRun(
-            mechanism,
-            dt,
-            lambda sweeping: self.swept_model(mechanism, dt, sweeping),
-            lambda duration: self.sweeping(mechanism, duration),
-            self.leapfrog,
-            self.settled,
-        )
+        return PymunkRun(self, mechanism, dt)
 
     @validated
     def settled_for(self, steps: Count) -> Pymunk:
-        """The same with stages of so many steps, if it settles: see `engines.extrapolated.Settling`."""
-        return replace(self, settled=steps) if self.settled else self
+        """The same engine with `steps` steps in each start-up stage, if it has any; see `extrapolated.Settling`."""
+        return replace(self, startup_steps=steps) if self.startup_steps else self
 
     @validated
     def iterations_of(self, mechanism: Mechanism) -> int:
         """Iterations in a step for this mechanism, as it starts."""
-        return self.sweeping(mechanism).iterations
+        return self.plan(mechanism).iterations
 
     @validated
-    def sweeping(self, mechanism: Mechanism, duration: NonNegative = 0.0) -> Sweeping:
-        """How the mechanism is swept in a motion of `duration` [s]: by its worst pose, where it is by contraction."""
+    def plan(self, mechanism: Mechanism, duration: NonNegative = 0.0) -> IterationPlan:
+        """The iterations for a motion of `duration` [s]: for its worst pose, if they follow from the convergence."""
         if isinstance(self.iterations, int) and self.error_bias != CONTRACTION:
-            return Sweeping(self.iterations)
-        rho = worst_contraction(mechanism, duration, self.uses_contacts)
+            return IterationPlan(self.iterations)
+        rho = worst_factor(mechanism, duration, self.uses_contacts)
         if isinstance(self.iterations, int):
-            return swept_by(rho, self.iterations)
-        found = sweeping(rho, max(1, len(mechanism.joints)), self.fewest, self.work)
-        if self.roll == "contact" and any(isinstance(joint, Roll) for joint in mechanism.joints):
-            found = replace(found, converged=max(found.converged, CONTACT_CONVERGED))
-        return found
+            return plan_with(rho, self.iterations)
+        plan = plan_by_rule(rho, max(1, len(mechanism.joints)), self.min_iterations, self.max_work)
+        if self.uses_contacts and any(isinstance(joint, Roll) for joint in mechanism.joints):
+            plan = replace(plan, converged=max(plan.converged, CONTACT_ITERATIONS))
+        return plan
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, duration: NonNegative = 0.0) -> Model:
-        """The engine's objects for steps of dt [s], not yet stepped, swept as a motion of `duration` [s] asks for."""
-        return self.swept_model(mechanism, dt, self.sweeping(mechanism, duration))
+        """The engine's objects for steps of dt [s], not yet stepped, with the plan for `duration` [s]."""
+        return self.model_with(mechanism, dt, self.plan(mechanism, duration))
 
     @validated
-    def swept_model(self, mechanism: Mechanism, dt: Positive, sweeping: Sweeping) -> Model:
-        """The same, swept as told."""
+    def model_with(self, mechanism: Mechanism, dt: Positive, plan: IterationPlan) -> Model:
+        """The engine's objects with a given plan."""
         bias, unit = self.error_bias, 1.0
-        if not isinstance(bias, int | float):
-            bias, unit = 1 - sweeping.gain, (1.0 if sweeping.gain == 1 else dt)
-        settings = Settings(
-            sweeping.iterations,
-            float(bias),
-            unit,
-            self.skate,
-            self.roll,
-            self.slot,
-            self.contact,
-        )
+        if isinstance(bias, str):
+            bias, unit = 1 - plan.gain, (1.0 if plan.gain == 1 else dt)
+        settings = Settings(plan.iterations, float(bias), unit, self.skate, self.roll, self.slot, self.contact)
         return build_model(mechanism, settings)
 
 
 @dataclass(frozen=True)
 class Extended(EngineWrapper, Valid):
-    """The extrapolation whose powers fit the mechanism: pymunk has two orders.
+    """Extrapolation with the powers of the step that the mechanism's error has.
 
-    `skates`: for skates, or dampers, which act at the end of a step instead of around it, so of first order. `pins`:
-    for all others.
+    `skates`: for skates and dampers, which act at the end of a step and are of first order. `pins`: for all others.
     """
 
     variant: Name

@@ -1,9 +1,10 @@
-"""Stepping a pymunk model, copying its states out cheaply, and reading poses, twists and reactions from them."""
+"""Stepping a pymunk model, copying its states out in C, and computing poses, twists and reactions from them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pymunk
@@ -13,35 +14,39 @@ from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
 from engines import OneShot, Size
 from engines.extrapolated import UNCONVERGED
-from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
 from engines.sampling import reactions, sampled
 from reference.checks import Count, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
+if TYPE_CHECKING:
+    from engines.pymunk.engine import Pymunk
+    from engines.pymunk.iterations import IterationPlan
+
 Array = NDArray[np.float64]
 
 VELOCITIES = BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
 STATES = BodyFields.POSITION | BodyFields.ANGLE | VELOCITIES
-# C grows an array a little before it is full, and ours are not its own to grow.
+# pymunk's C code reallocates an array shortly before it is full, and this one is numpy's.
 SPARE = 64
-UNSETTLED = 1e-5  # of the slowest mode after the sweeps of the first reaction: beyond, it is told
+# Residual of the slowest mode in the first reactions, from which on there is a warning.
+MAX_START_RESIDUAL = 1e-5
 
 
-class Recorder:
-    """Copies the bodies of a space, in C, to the end of an array that is allocated before.
+class StateRecorder:
+    """Copies the bodies' states in C to the end of an array that is allocated before.
 
     `lib.cpSpaceEachBody(space, visitor, states)`, or with `velocities`, copies one record.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: tuple[pymunk.Body, ...], states: int, velocities: int) -> None:
-        visited = visited_bodies(space)
-        self._order = [visited.index(body.id) for body in bodies]
+    def __init__(self, model: Model, states: int, velocities: int) -> None:
+        visited = _visited_bodies(model.space)
+        self._order = [visited.index(body.id) for body in model.bodies]
         self._count = len(visited)
         length = (6 * states + 3 * velocities) * self._count
         room = np.full(length + SPARE, np.nan)
-        self.values = room[:length]
+        self._values = room[:length]
         floats = ffi.from_buffer("double[]", room)
         integers = ffi.new("pmIntArray *")
         target = ffi.new("pmFloatArray *", {"num": 0, "max": len(floats), "arr": floats})
@@ -53,11 +58,11 @@ class Recorder:
         )
 
     def read(self, samples: int, with_velocities: bool) -> tuple[Array, Array]:
-        """States (samples + 1, bodies, 6) and the velocities one step before each (samples, bodies, 3).
+        """States (samples + 1, bodies, 6) and the velocities one step before each sample (samples, bodies, 3).
 
-        In the array stands a state, then for every sample, if `with_velocities`, velocities and a state, else a state.
+        The array holds the first state, then for each sample the velocities (if `with_velocities`) and the state.
         """
-        first, rest = np.split(self.values, [6 * self._count])
+        first, rest = np.split(self._values, [6 * self._count])
         rest = rest.reshape(samples, -1)
         split = 3 * self._count if with_velocities else 0
         states = np.concatenate([first[None], rest[:, split:]]).reshape(samples + 1, self._count, 6)
@@ -65,7 +70,7 @@ class Recorder:
         return states[:, self._order], before[:, self._order]
 
 
-def visited_bodies(space: pymunk.Space) -> list[int]:
+def _visited_bodies(space: pymunk.Space) -> list[int]:
     """The ids of a space's bodies in the order in which C visits them, which is not the order of adding."""
     buffer = Buffer()
     get_space_bodies(space, BodyFields.BODY_ID, buffer)
@@ -74,45 +79,41 @@ def visited_bodies(space: pymunk.Space) -> list[int]:
 
 @dataclass(frozen=True)
 class Recording:
-    """What the engine held at the samples, in the mechanism's order and frame."""
+    """The engine's states at the samples; bodies in the mechanism's order, at their centres of mass.
+
+    The engine's velocities with the positions of t are those of t, or of t + dt/2 in a leapfrog.
+    """
 
     pose: Array  # (times, bodies, 3) at t
-    after: Array  # (times, bodies, 3) the engine's velocities with p(t): those of t, or of t + dt/2 in a leapfrog
-    before: Array  # (times - 1, bodies, 3) its velocities a step earlier, from the second sample on
+    after: Array  # (times, bodies, 3) velocities with the positions of t
+    before: Array  # (times - 1, bodies, 3) velocities one step earlier, from the second sample on
     stepping: float  # s
-    stopped: str = ""  # why the stepping ended early, if it did: from there on everything is NaN
+    stopped: str = ""  # the reason if stepping ended early; all later values are NaN
 
 
-def record(
-    model: Model,
-    dt: float,
-    samples: int,
-    every: int,
-    raw: bool,
-    settling: Sequence[int] = (),
-) -> Recording:
-    """Step samples * every times and keep every `every`-th state, with the velocities of the step before it.
+def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup: Sequence[int] = ()) -> Recording:
+    """Take samples * every steps and record every `every`-th state, with the velocities of the step before it.
 
-    `settling`: the iterations of the first steps.
+    `startup`: the iterations of the first steps.
     """
-    velocities = every > 1
-    recorder = Recorder(model.space, model.bodies, samples + 1, samples if velocities else 0)
+    with_velocities = every > 1
+    recorder = StateRecorder(model, samples + 1, samples if with_velocities else 0)
     visit_each, pointer = lib.cpSpaceEachBody, model.space._space
     step, space = model.stepper(raw)
     dt /= model.unit
     visitor, before, after = recorder.visitor, recorder.velocities, recorder.states
     stopped = ""
-    own = model.space.iterations
-    first = [own, *reversed(settling)] if settling else []  # the last one stays
+    # Popped from the end: the last value is the model's own.
+    iterations = [model.space.iterations, *reversed(startup)] if startup else []
 
     def advance(count: int) -> bool:
         nonlocal stopped
         try:
             for _ in range(count):
-                if first:
-                    lib.cpSpaceSetIterations(pointer, first.pop())
+                if iterations:
+                    lib.cpSpaceSetIterations(pointer, iterations.pop())
                 step(space, dt)
-        except (ValueError, ArithmeticError) as reason:  # a joint that our code places has no place any more
+        except (ValueError, ArithmeticError) as reason:  # an update before a step found no pose for its joint
             stopped = f"ours: stopped, as a joint could no longer be placed ({reason})"
         return bool(stopped)
 
@@ -120,24 +121,21 @@ def record(
         [every] * samples,
         advance,
         lambda _: visit_each(pointer, visitor, after),
-        (lambda _: visit_each(pointer, visitor, before)) if velocities else None,
+        (lambda _: visit_each(pointer, visitor, before)) if with_velocities else None,
     )
-    states, earlier = recorder.read(samples, velocities)
-    with np.errstate(all="ignore"):  # a motion that blew up is a result
+    states, earlier = recorder.read(samples, with_velocities)
+    with np.errstate(all="ignore"):  # an unstable motion is a result
         states[..., 3:] /= model.unit
-        earlier = earlier / model.unit if velocities else states[:-1, :, 3:]
-        return Recording(*_of_mass_centres(model, states, earlier), stepping, stopped)
+        earlier = earlier / model.unit if with_velocities else states[:-1, :, 3:]
+        return Recording(*_at_mass_centres(model, states, earlier), stepping, stopped)
 
 
-def _of_mass_centres(model: Model, states: Array, earlier: Array) -> tuple[Array, Array, Array]:
-    """Move poses and velocities from the engine's origins to the centres of mass: cranks have theirs at the pin."""
+def _at_mass_centres(model: Model, states: Array, earlier: Array) -> tuple[Array, Array, Array]:
+    """Poses and both velocities at the centres of mass instead of the engine's origins, which differ for cranks."""
     pose, after, before = states[..., :3].copy(), states[..., 3:].copy(), earlier.copy()
-    for index in np.flatnonzero(np.any(model.origins != 0, axis=1)):
+    for index in _cranks(model):
         x, y = -model.origins[index]
-        for velocity, angle in (
-            (after[:, index], pose[:, index, 2]),
-            (before[:, index], pose[1:, index, 2]),
-        ):
+        for velocity, angle in ((after[:, index], pose[:, index, 2]), (before[:, index], pose[1:, index, 2])):
             velocity[:, 0] -= velocity[:, 2] * (np.sin(angle) * x + np.cos(angle) * y)
             velocity[:, 1] += velocity[:, 2] * (np.cos(angle) * x - np.sin(angle) * y)
         angle = pose[:, index, 2]
@@ -146,11 +144,16 @@ def _of_mass_centres(model: Model, states: Array, earlier: Array) -> tuple[Array
     return pose, after, before
 
 
+def _cranks(model: Model) -> NDArray[np.intp]:
+    """Indices of the bodies whose origin is not the centre of mass."""
+    return np.flatnonzero(np.any(model.origins != 0, axis=1))
+
+
 def accelerations(model: Model, recording: Recording, dt: float) -> Array:
     """Accelerations (times - 1, bodies, 3) of the centres of mass at the samples after the first."""
     out = (recording.after[1:] - recording.before) / dt
-    for index in np.flatnonzero(np.any(model.origins != 0, axis=1)):
-        # A crank's rate is constant, and its centre turns about the pin.
+    for index in _cranks(model):
+        # The rate is constant, and the centre of mass turns about the pin.
         x, y = -model.origins[index]
         angle, rate = recording.pose[1:, index, 2], recording.after[1:, index, 2]
         out[:, index, 0] = -(rate**2) * (np.cos(angle) * x - np.sin(angle) * y)
@@ -159,47 +162,34 @@ def accelerations(model: Model, recording: Recording, dt: float) -> Array:
     return out
 
 
-def loads(model: Model) -> tuple[Array, tuple[float, float]]:
-    """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity [m/s^2] that the engine's objects hold.
+def inertias_and_gravity(model: Model) -> tuple[Array, tuple[float, float]]:
+    """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity [m/s^2] of the engine's objects.
 
-    NaN where it needs none, as the motion is prescribed: of a kinematic body, and the inertia of one that can't turn.
+    NaN for a prescribed motion: all of a kinematic body, and the moment of inertia of a body that cannot turn.
     """
     inertias = np.full((len(model.bodies), 3), np.nan)
-    for own, body in zip(inertias, model.bodies, strict=True):
+    for row, body in zip(inertias, model.bodies, strict=True):
         if body.body_type == pymunk.Body.DYNAMIC:
-            own[:] = body.mass, body.mass, body.moment if np.isfinite(body.moment) else np.nan
+            row[:] = body.mass, body.mass, body.moment if np.isfinite(body.moment) else np.nan
     x, y = model.space.gravity
-    return inertias, (x / model.unit / model.unit, y / model.unit / model.unit)  # a unit squared may overflow
+    return inertias, (x / model.unit / model.unit, y / model.unit / model.unit)  # the unit's square may overflow
 
 
 class PymunkRun(OneShot):
     """One model, ready to be stepped once; see `engines.Run`."""
 
-    def __init__(
-        self,
-        mechanism: Mechanism,
-        dt: float,
-        make: Callable[[Sweeping], Model],
-        swept: Callable[[float], Sweeping],
-        leapfrog: bool,
-        settled: int,
-    ) -> None:
-        """`make` builds the model, `swept` tells how it is swept in a motion of so many seconds.
+    def __init__(self, engine: Pymunk, mechanism: Mechanism, dt: float) -> None:
+        self._engine, self._mechanism, self._dt = engine, mechanism, dt
+        self.size: Size = engine.model(mechanism, dt).size
 
-        `settled`: see `Sweeping.settling`.
-        """
-        self._mechanism, self._dt, self._make, self._swept = mechanism, dt, make, swept
-        self._leapfrog, self._settled = leapfrog, settled
-        self.size: Size = make(swept(0.0)).size
-
-    def _started(self, sweeping: Sweeping) -> Model:
-        """The model, half a kick ahead if it is a leapfrog."""
-        model = self._make(sweeping)
-        if self._leapfrog:
-            if self._settled:
-                model.space.iterations = max(sweeping.converged, sweeping.iterations)
+    def _started(self, plan: IterationPlan) -> Model:
+        """The model, with a kick of half a step if the engine is a leapfrog."""
+        model = self._engine.model_with(self._mechanism, self._dt, plan)
+        if self._engine.leapfrog:
+            if self._engine.startup_steps:
+                model.space.iterations = max(plan.converged, plan.iterations)
             model.kick(self._dt / model.unit / 2)
-            model.space.iterations = sweeping.iterations
+            model.space.iterations = plan.iterations
         return model
 
     @validated
@@ -212,49 +202,50 @@ class PymunkRun(OneShot):
         """The same, with reactions at every `each`-th sample alone, and NaN at the others."""
         self._mechanism.require_room(samples)
         self.begin()
-        sweeping = self._swept(samples * every * self._dt)  # no part of stepping: a plan serves all runs of a mechanism
-        model, settling = self._started(sweeping), sweeping.settling(self._settled)
-        recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling)
+        # Not timed as stepping: all runs of a mechanism use the same plan.
+        plan = self._engine.plan(self._mechanism, samples * every * self._dt)
+        model, startup = self._started(plan), plan.startup(self._engine.startup_steps)
+        recording = record(model, self._dt, samples, every, raw=self._engine.leapfrog, startup=startup)
         pose, twist = recording.pose.copy(), recording.after.copy()
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
         with np.errstate(all="ignore"):
-            if self._leapfrog:
+            if self._engine.leapfrog:
                 twist[1:] = (recording.before + recording.after[1:]) / 2
             acceleration = accelerations(model, recording, self._dt)
         reaction = np.full((samples + 1, self._mechanism.row_count), np.nan)
-        reaction[0] = self._start_reaction(sweeping)
-        told = slice(each, None, each)
-        reaction[told] = reactions(
-            self._mechanism, recording.pose[told], twist[told], acceleration[each - 1 :: each], *loads(model)
+        reaction[0] = self._start_reaction(plan)
+        times = slice(each, None, each)
+        reaction[times] = reactions(
+            self._mechanism, pose[times], twist[times], acceleration[each - 1 :: each], *inertias_and_gravity(model)
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
-        warnings = tuple(filter(None, (self._unconverged(sweeping), recording.stopped)))
+        warnings = tuple(filter(None, (_convergence_warning(plan), recording.stopped)))
         return Trajectory(t, pose, twist, reaction, stepping=recording.stepping, warnings=warnings)
 
-    def _start_reaction(self, sweeping: Sweeping) -> Array:
-        """The reactions (rows,) at t = 0, where no step lies behind, from a twin that takes the first steps apart.
+    def _start_reaction(self, plan: IterationPlan) -> Array:
+        """The reactions (rows,) at t = 0, from the first steps of another model with converged iterations.
 
-        The twin makes enough sweeps that the cold start of the impulses does not matter. The force of its first step
-        will not do: it closes a gap for the first time, and so has up to half of the centripetal part too much; what is
-        left of this falls by one order of dt a step. As a user reads it, the third step's force stands here, first
-        order in dt. In a leapfrog the third and the fourth are extrapolated to zero: second order.
+        The first step's impulse contains a start-up position correction, up to half of the centripetal force; it falls
+        by one order of dt in each step. As a user reads velocities, the third step's force is returned: first order.
+        In a leapfrog the third and fourth steps are extrapolated to t = 0: second order.
         """
-        model = self._started(replace(sweeping, iterations=sweeping.converged, gain=1.0))
-        recording = record(model, self._dt, samples=4, every=1, raw=self._leapfrog)
+        model = self._started(replace(plan, iterations=plan.converged, gain=1.0))
+        recording = record(model, self._dt, samples=4, every=1, raw=self._engine.leapfrog)
         with np.errstate(all="ignore"):
             acceleration = accelerations(model, recording, self._dt)
-            held = loads(model)
-            twist = (recording.before + recording.after[1:]) / 2 if self._leapfrog else recording.after[1:]
-            third, fourth = reactions(self._mechanism, recording.pose[3:], twist[2:], acceleration[2:], *held)
-            return 4 * third - 3 * fourth if self._leapfrog else third
+            loads = inertias_and_gravity(model)
+            leapfrog = self._engine.leapfrog
+            twist = (recording.before + recording.after[1:]) / 2 if leapfrog else recording.after[1:]
+            third, fourth = reactions(self._mechanism, recording.pose[3:], twist[2:], acceleration[2:], *loads)
+            return 4 * third - 3 * fourth if leapfrog else third
 
-    def _unconverged(self, sweeping: Sweeping) -> str:
-        """What is to be said of the sweeps."""
-        if sweeping.gain < 1:
-            return f"{UNCONVERGED}, {sweeping.iterations} sweeps leave {sweeping.left:.0%} of the slowest mode"
-        if sweeping.unsettled > UNSETTLED:
-            return (
-                "ours: the reactions at the start are not converged, "
-                f"{sweeping.unsettled:.0e} of the slowest mode is left"
-            )
-        return ""
+
+def _convergence_warning(plan: IterationPlan) -> str:
+    if plan.gain < 1:
+        return f"{UNCONVERGED}, {plan.iterations} sweeps leave {plan.residual:.0%} of the slowest mode"
+    if plan.converged_residual > MAX_START_RESIDUAL:
+        return (
+            "ours: the reactions at the start are not converged, "
+            f"{plan.converged_residual:.0e} of the slowest mode is left"
+        )
+    return ""

@@ -20,7 +20,7 @@ from tests.wrong.adapters import WRONG, Wrong
 
 METHODS = (*pymunk.METHODS, *mujoco.METHODS, *lagrange.METHODS, *registry.OTHERS)
 SPECIAL = (
-    *(*of_pymunk.SKATES, *of_pymunk.ROLL_FACETED, of_pymunk.ROLL_PIVOT),
+    *(*of_pymunk.SKATE_METHODS, *of_pymunk.ROLL_FACETED, of_pymunk.ROLL_PIVOT),
     *(*of_mujoco.SKATES, *of_mujoco.SLOTS, *of_mujoco.ROLLS, *of_mujoco.DRIVES),
 )
 # Daily one of each adapter, and one that is extrapolated; the others differ by settings alone.

@@ -21,7 +21,7 @@ from engines import Size, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, bare_loop, methods
 from engines.pymunk.joints.roll import MovedPivot
-from engines.pymunk.methods import SKATES
+from engines.pymunk.methods import SKATE_METHODS
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Line, Placed, Side
@@ -116,7 +116,7 @@ def thrown(mass: float | None = None) -> Mechanism:
     [
         (METHODS, RollingEllipse().mechanism(), 1e200),
         (METHODS, RollingOnCircle().mechanism(), 1e200),
-        (SKATES, thrown(), 1e200),
+        (SKATE_METHODS, thrown(), 1e200),
         (METHODS[:3], thrown(1e-300), 1e-3),
         (METHODS[:2], thrown(1e300), 1e-3),
     ],
@@ -229,7 +229,7 @@ def test_shapes_of_different_contacts_do_not_see_each_other():
 
 def test_thirty_two_contacts_are_told_apart_and_one_more_is_refused():
     assert DEFAULT.build(side_by_side(range(32), [0.0] * 32), 1e-3).size.rows == 64
-    with pytest.raises(Unsupported, match="tells 32 pairs apart"):
+    with pytest.raises(Unsupported, match="has 32 categories, one for each roll"):
         DEFAULT.build(side_by_side(range(33), [0.0] * 33), 1e-3)
 
 

@@ -11,15 +11,13 @@ import pytest
 from engines import ConvergenceOrder
 from engines.lagrange import TRUTH
 from engines.pymunk import DEFAULT, LEAPFROG, TUNED, Pymunk
-from engines.pymunk.contraction import (
-    closing,
-    contraction,
-    contraction_at,
-    gain,
-    growth,
-    sweeps,
+from engines.pymunk.convergence import (
+    convergence_factor,
+    convergence_factor_at,
+    corrects_gap,
+    step_spectral_radius,
 )
-from engines.pymunk.expected import worst_contraction
+from engines.pymunk.iterations import iterations_in_step, stable_gain, worst_factor
 from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import FreeFourBar
@@ -50,17 +48,17 @@ def test_what_hangs_on_a_body_that_is_driven_without_a_pin_does_not_turn_it(meth
 
 @pytest.mark.parametrize("links", [2, 10, 80])
 def test_sweeps_over_a_chain_of_equal_links_converge_as_a_relaxation_does(links):
-    rho = contraction(LinkPendulum(links=links).mechanism())
+    rho = convergence_factor(LinkPendulum(links=links).mechanism())
     # cos^2 of half the step of the slowest wave on a chain held at one end.
     assert rho == pytest.approx(math.cos(math.pi / (2 * links)) ** 2, abs=1e-6)
 
 
 def test_sweeps_are_counted_for_the_joints_that_forces_must_find():
-    assert contraction(LinkPendulum(links=1).mechanism()) == 0  # one joint feels no other
-    driven, free = (contraction(four_bar(10.0, drive=drive)) for drive in (10.0, None))
+    assert convergence_factor(LinkPendulum(links=1).mechanism()) == 0  # one joint feels no other
+    driven, free = (convergence_factor(four_bar(10.0, drive=drive)) for drive in (10.0, None))
     assert driven < free < 1
     # A hundredfold mass on a light link converges a hundred times slower.
-    assert 1 - contraction(LinkPendulum(tip=100.0).mechanism()) == pytest.approx(0.01, rel=0.05)
+    assert 1 - convergence_factor(LinkPendulum(tip=100.0).mechanism()) == pytest.approx(0.01, rel=0.05)
 
 
 def test_sweeps_are_counted_for_the_worst_pose_of_the_motion():
@@ -68,17 +66,17 @@ def test_sweeps_are_counted_for_the_worst_pose_of_the_motion():
     scene = FreeFourBar()
     mechanism = scene.mechanism()
     passed = scene.motion(np.linspace(0, scene.duration, 200)).pose
-    worst = max(contraction_at(mechanism, pose) for pose in passed)
-    assert sweeps(contraction(mechanism)) < sweeps(worst)
+    worst = max(convergence_factor_at(mechanism, pose) for pose in passed)
+    assert iterations_in_step(convergence_factor(mechanism)) < iterations_in_step(worst)
     # A rough run of soft joints looks at some poses, beside those of the motion: it may count one sweep more or less.
-    assert abs(sweeps(worst_contraction(mechanism, scene.duration)) - sweeps(worst)) <= 1
-    assert worst_contraction(mechanism, 0.0) == contraction(mechanism)
+    assert abs(iterations_in_step(worst_factor(mechanism, scene.duration)) - iterations_in_step(worst)) <= 1
+    assert worst_factor(mechanism, 0.0) == convergence_factor(mechanism)
     # The same motion in bars a thousand times as long: gaps of metres are as small a part of them.
     longer = {name: 1e3 * getattr(scene, name) for name in ("crank", "coupler", "rocker")}
     larger = replace(scene, **longer, ground=(1200.0, 0.0), gravity=(0.0, -9810.0)).mechanism()
-    assert worst_contraction(larger, scene.duration) == pytest.approx(worst_contraction(mechanism, scene.duration))
-    assert LEAPFROG.sweeping(mechanism, scene.duration).iterations > LEAPFROG.sweeping(mechanism).iterations
-    assert LEAPFROG.sweeping(mechanism, scene.duration).gain == 1
+    assert worst_factor(larger, scene.duration) == pytest.approx(worst_factor(mechanism, scene.duration))
+    assert LEAPFROG.plan(mechanism, scene.duration).iterations > LEAPFROG.plan(mechanism).iterations
+    assert LEAPFROG.plan(mechanism, scene.duration).gain == 1
 
 
 @pytest.mark.parametrize("iterations", [2, 10])
@@ -90,7 +88,7 @@ def test_the_gain_by_rule_is_stable_and_closing_all_of_a_gap_with_as_few_sweeps_
         return float(np.ptp(energy(mechanism, engine.build(mechanism, dt)(300, 10))))
 
     # J; the ten links of 1 kg and 1 m fall by 5 m: about 490 J turn from potential to kinetic.
-    assert gained(gain(contraction(mechanism), iterations)) < 1
+    assert gained(stable_gain(convergence_factor(mechanism), iterations)) < 1
     assert gained(1.0) > 500
 
 
@@ -115,7 +113,7 @@ def test_welds_and_motors_do_not_blow_up_however_short_steps_are_and_where_they_
 @pytest.mark.parametrize(("seed", "number", "few"), [(*MOTOR, 30), (31, 655, 9), (31, 981, 8)])
 def test_impulses_grow_in_the_engine_as_the_map_of_a_step_says_where_motors_and_blades_close_no_gap(seed, number, few):
     own = mechanism(seed, number, EVERY)
-    of_gaps = closing(own, touching=True)
+    of_gaps = corrects_gap(own, rolls_are_contacts=True)
     assert 0 < of_gaps.mean() < 1
 
     def grown(iterations: int) -> float:
@@ -125,8 +123,8 @@ def test_impulses_grow_in_the_engine_as_the_map_of_a_step_says_where_motors_and_
         return float((change[-1] / change[20]) ** (1 / 45))
 
     # What the fastest mode begins with is not all there is, and modes turn: a few per cent, of 5 to 25 in a step.
-    assert grown(few) == pytest.approx(growth(own, own.pose, few, of_gaps), abs=0.02)
-    enough = TUNED.sweeping(own).iterations
+    assert grown(few) == pytest.approx(step_spectral_radius(own, own.pose, few, of_gaps), abs=0.02)
+    enough = TUNED.plan(own).iterations
     assert grown(enough) < 1.01
     # Left to fewer sweeps, not all of a gap is closed, and it is said.
     short = replace(TUNED, iterations=few).build(own, 1e-3 * own.time_scale)(2, 2)
@@ -138,9 +136,9 @@ def test_a_small_gain_does_not_underflow_to_a_gain_of_one_at_small_steps():
     assert 0.9 ** (1 / 1e-5) == 0
     heavy = LinkPendulum(tip=1e4)
     model = LEAPFROG.model(heavy.mechanism(), 1e-5)
-    rho = contraction(heavy.mechanism())
+    rho = convergence_factor(heavy.mechanism())
     assert model.unit == 1e-5
-    assert next(iter(model.space.constraints)).error_bias == pytest.approx(1 - gain(rho, 300), rel=1e-12)
+    assert next(iter(model.space.constraints)).error_bias == pytest.approx(1 - stable_gain(rho, 300), rel=1e-12)
     assert model.space.gravity == pytest.approx((0.0, -9.81e-10), rel=1e-12)
 
 

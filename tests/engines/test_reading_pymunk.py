@@ -325,7 +325,7 @@ def test_a_start_ahead_of_a_space_in_motion_is_undone_and_another_first_step_is_
         (tmp_path / "x.py").write_text(moving + lines, encoding="utf-8")
         reading = READER.read("x.py", tmp_path, AS_IT_IS)
         assert (reading.model.dt, reading.model.ahead) == (1e-3, ahead)
-        assert next(iter(reading.model.described.space.bodies)).angular_velocity == 3.0
+        assert next(iter(reading.model.imported.space.bodies)).angular_velocity == 3.0
     uneven = "\nfor joint in space.constraints:\n    joint.error_bias = 0\nspace.step(5e-4)\nspace.step(3e-3)\n"
     (tmp_path / "x.py").write_text(moving + uneven, encoding="utf-8")
     reading = READER.read("x.py", tmp_path, AS_IT_IS)

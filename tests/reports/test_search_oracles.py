@@ -27,7 +27,7 @@ from engines.pymunk import LEAPFROG
 from engines.pymunk import TUNED as PYMUNK_TUNED
 from engines.pymunk import declared as pymunk_declared
 from engines.pymunk import model as pymunk_model
-from engines.pymunk.declared import PUSHED
+from engines.pymunk.declared import GROOVE_LAW
 from engines.registry import INSTALLED, VARIANTS
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -251,7 +251,7 @@ def test_a_groove_off_the_centre_of_mass_misses_its_velocities_and_obeys_the_law
     cases = [plan.GROOVE.draw(SEED, number, ("pin", "slot"), 0) for number in range(9)]
     found = [plan.GROOVE.ask(case, 0, ("instant",)).errors for case in cases if "slot" in case.kinds]
     assert sum(errors["velocity"][0] > 1e-3 for errors in found) >= 5
-    assert max(errors[PUSHED][0] for errors in found) < 1e-10
+    assert max(errors[GROOVE_LAW][0] for errors in found) < 1e-10
 
 
 # -------------------------------------------------------------------------------------------------- other descriptions

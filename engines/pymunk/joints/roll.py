@@ -1,10 +1,8 @@
-"""What can stand for a Roll in pymunk: two shapes that press and rub, or a pivot moved along both curves.
+"""Constructions of a Roll in pymunk, by `RollConstruction`.
 
-`RollConstruction` names them:
-
-- "contact": by contact and friction, the two curves as shapes, as a user would make them.
-- "pivot": a `PivotJoint` whose anchors, one on each curve, are set before every step where the curves will touch after
-  its drift. Both are found by arc length from the start, so the gap it closes is the whole gap since the start.
+- "contact": two shapes with contact and friction, as a user would build them.
+- "pivot": a `PivotJoint`. Before every step its two anchors, one on each curve, are set to the points that will be in
+  contact after the step's drift. Arc lengths count from the start, so the joint corrects the gap since the start.
 """
 
 from __future__ import annotations
@@ -32,29 +30,33 @@ RollConstruction = Literal["contact", "pivot"]
 
 
 def _shipped() -> tuple[float, float]:
-    """As pymunk sets them; the space ends with this function, see `engines.pymunk.engine`."""
+    """A space's collision_slop and collision_bias; see `engines.pymunk.engine._shipped`."""
     space = pymunk.Space()
     return space.collision_slop, space.collision_bias
 
 
 SHIPPED_SLOP, SHIPPED_BIAS = _shipped()  # 0.1, 0.9 ** 60
-REACH = 1e3  # half the length of flat ground, in the mechanism's extents
+GROUND_REACH = 1e3  # half the length of flat ground, in multiples of `extent_of`
 
 
 @dataclass(frozen=True)
 class Contact(Valid):
-    """How contact is set: `slop` [m] of overlap is left alone, the fraction `bias` of the rest is left after a second.
+    """Settings of contact: the overlap `slop` [m] is not corrected; `bias` is the fraction of the rest after a second.
 
-    `friction` of each shape (the engine multiplies the two); `vertices` of a body that is not round, equally far apart
-    along its rim; `thickness` of flat ground, a part of the mechanism's extent (`extent_of`), as the radius of a
-    segment that lies this deep. On ground without thickness a polygon of some hundred corners is at times given a wrong
-    normal: it is thrown, or stops dead (`tests/engines/test_pymunk.py` has it). Raises ValueError for other
-    values: the engine would abort the process, or give NaN.
+    `friction` of each shape (the engine multiplies two); number of `vertices` of a body that is not round, at equal arc
+    lengths; `thickness` of flat ground in multiples of `extent_of`: the radius of a segment whose surface is the
+    ground. On a segment without thickness Chipmunk sometimes gives a polygon of some hundred corners a wrong normal: it
+    is thrown, or stops dead (`tests/engines/test_pymunk.py`). Raises ValueError for other values, with which the
+    engine aborts the process or returns NaN.
+
+    As shipped, the motion of a contact depends on the unit of length: collision_slop is 0.1 of whatever unit the
+    positions have (pymunk 7.3.1, `Space.collision_slop`; Chipmunk's cpSpace.c). `rolling_ellipse` counted in
+    millimetres turns otherwise by 4e-3 rad, since overlaps there exceed 0.1 mm. With `slop` 0 or `bias` 1 it does not.
     """
 
     slop: NonNegative = SHIPPED_SLOP
     bias: Fraction = SHIPPED_BIAS
-    friction: NonNegative = 10.0  # a product of 100: no rolling here ever needs so much
+    friction: NonNegative = 10.0  # the product of 100 exceeds the friction coefficient that any rolling here needs
     vertices: Annotated[int, from_to(3, 10000)] = 64
     thickness: NonNegative = 0.1
 
@@ -63,31 +65,29 @@ SHIPPED_CONTACT = Contact()
 
 
 def extent_of(mechanism: Mechanism) -> float:
-    """About how far a rolling body of the mechanism reaches across [m], to the next power of ten.
-
-    It is for lengths that only have to be large or small enough: steps of ten leave them as they are, to the last bit,
-    for all mechanisms of about one size.
-    """
+    """The size of a mechanism [m], rounded to a power of ten: equal to the last bit for mechanisms of similar size."""
     return 10.0 ** round(math.log10(2 * mechanism.length_scale))
 
 
-def touching(
+def contact_shapes(
     joint: Roll,
     contact: Contact,
     extent: float,
     index: int,
     sides: tuple[tuple[pymunk.Body, Callable[[Vector], Vector]], tuple[pymunk.Body, Callable[[Vector], Vector]]],
 ) -> list[pymunk.Shape]:
-    """The shapes of both curves, that see each other only; `index` counts the mechanism's Rolls from 0.
+    """The shapes of both curves, which collide with each other only.
 
-    `extent` [m] is the mechanism's. `sides` are the first and second body, each with what gives a point from the
-    engine's origin.
+    `extent` [m] by `extent_of`; `index` counts the mechanism's Rolls from 0. `sides`: the first and second body, each
+    with a function that converts a point [m] of the mechanism's body frame to the engine's.
     """
     if index >= 32:
-        raise Unsupported(f"joint {joint.name!r}: pymunk's shape filter tells 32 pairs apart, and this is one more")
+        raise Unsupported(
+            f"joint {joint.name!r}: pymunk's shape filter has 32 categories, one for each roll; this mechanism has more"
+        )
     shapes = [
-        _shape(joint, curve, body, own, contact, extent)
-        for curve, (body, own) in zip((joint.rolling.ground, joint.rolling.body), sides, strict=True)
+        _shape(joint, curve, body, to_engine, contact, extent)
+        for curve, (body, to_engine) in zip((joint.rolling.ground, joint.rolling.body), sides, strict=True)
     ]
     for shape in shapes:
         shape.friction = contact.friction
@@ -96,40 +96,34 @@ def touching(
 
 
 def _shape(
-    joint: Roll, curve: Curve, body: pymunk.Body, own: Callable[[Vector], Vector], contact: Contact, extent: float
+    joint: Roll, curve: Curve, body: pymunk.Body, to_engine: Callable[[Vector], Vector], contact: Contact, extent: float
 ) -> pymunk.Shape:
     inner, shift, turn = unplaced(curve)
     if isinstance(inner, Circle):
         centre = rect(1.0, turn) * complex(*inner.centre) + shift
-        return pymunk.Circle(body, inner.radius, own((centre.real, centre.imag)))
+        return pymunk.Circle(body, inner.radius, to_engine((centre.real, centre.imag)))
     if isinstance(inner, Line):
         along = rect(1.0, turn + inner.heading)
-        thickness, reach = contact.thickness * extent, REACH * extent * along
+        thickness, reach = contact.thickness * extent, GROUND_REACH * extent * along
         below = thickness * 1j * along  # material is to the left
         through = rect(1.0, turn) * complex(*inner.through) + shift + below
-        back, front = (own((end.real, end.imag)) for end in (through - reach, through + reach))
+        back, front = (to_engine((end.real, end.imag)) for end in (through - reach, through + reach))
         return pymunk.Segment(body, back, front, thickness)
     if curve.curvature_range[0] < 0:
         raise Unsupported(
-            f"joint {joint.name!r}: pymunk's shapes are convex, and a {type(inner).__name__} is hollow: our adapter "
-            "builds no hole of segments"
+            f"joint {joint.name!r}: pymunk's shapes are convex, and a {type(inner).__name__} is hollow; our adapter "
+            "builds no ring of segments"
         )
     if not math.isfinite(curve.length):
-        raise Unsupported(f"joint {joint.name!r}: a {type(inner).__name__} has no end, and a polygon closes")
+        raise Unsupported(f"joint {joint.name!r}: a {type(inner).__name__} is open, and a polygon is closed")
     corners = curve.point(np.linspace(0.0, curve.length, contact.vertices, endpoint=False))
-    return pymunk.Poly(body, [own((float(x), float(y))) for x, y in corners])
+    return pymunk.Poly(body, [to_engine((float(x), float(y))) for x, y in corners])
 
 
 class MovedPivot:
-    """The pivot of one Roll, between any two bodies; `origins` [m] are the engine's in the mechanism's body frames."""
+    """The pivot of one Roll; `origins` [m] are the origins of the engine's bodies in the mechanism's body frames."""
 
-    def __init__(
-        self,
-        joint: Roll,
-        first: pymunk.Body,
-        second: pymunk.Body,
-        origins: tuple[Vector, Vector],
-    ) -> None:
+    def __init__(self, joint: Roll, first: pymunk.Body, second: pymunk.Body, origins: tuple[Vector, Vector]) -> None:
         self._contact = rolled(joint.rolling).contact
         self._bodies = (first._body, second._body)
         self._from_first, self._from_second = (complex(*origin) for origin in origins)

@@ -1,4 +1,4 @@
-"""A user's pymunk space as a mechanism: `read`, and how a script's space is found."""
+"""A user's pymunk space as a mechanism: `read` for a space, `READER` for a script that makes one."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from typing import ClassVar
 import pymunk
 
 from engines.consistent_start import closed_positions, with_consistent_start
-from engines.pymunk.reading.joints import BODIES, CONSTRAINTS, described, moved_to
+from engines.pymunk.reading.constraints import READ_BODIES, READ_CONSTRAINTS, copy_space, import_space, set_poses
 from engines.pymunk.reading.own_model import OwnPymunk, switch_off
-from engines.pymunk.reading.script import made, rewritten
+from engines.pymunk.reading.script import rewritten, run_script
 from engines.reading import AS_IT_IS, Note, Reading, ReadingTerms, Source, refuse_at_start
 from reference.checks import InvalidMechanism
 
-USUAL_STEP = 1 / 60  # s: pymunk's own examples'
+# The step [s] of pymunk's own examples, for a space that has not been stepped.
+USUAL_STEP = 1 / 60
 
 
 def read(
@@ -27,53 +28,55 @@ def read(
     parts: int = 1,
     ahead: bool = False,
 ) -> Reading:
-    """The mechanism of a space as it is now.
+    """The mechanism of a space in its present state. Raises Unsupported for an element without an ideal counterpart.
 
-    `step` [s]: the user's; unless it is given, the last that the space was stepped by, or 1/60 s. `without`: elements
-    to switch off first, in a copy. `parts`: the steps that one call of the space's own `step` makes. `ahead`: the
-    user's lines start half a step ahead. Raises Unsupported
-    for what has no ideal counterpart, in a sentence that names it.
+    `step` [s]: the user's, by default the last one of the space, or 1/60 s. `without`: kinds of elements to switch off
+    first, in a copy. `parts`: the steps that one call of the space's own `step` makes. `ahead`: the user's script
+    starts half a step ahead.
     """
     if without:
         space = space.copy()
         for element in without:
             switch_off(space, element)
-    found = described(space)
-    last = float(space.current_time_step)
-    x, y = space.gravity
-    elements = found.bodies, found.joints, (float(x), float(y)), found.forces
-    closed = closed_positions(*elements)
+    imported = import_space(space)
+    last_step = float(space.current_time_step)
+    gravity = float(space.gravity.x), float(space.gravity.y)
+    closed = closed_positions(imported.bodies, imported.joints, gravity, imported.forces)
     if closed is not None:
-        found = described(moved_to(found, closed[0]))
-        elements = found.bodies, found.joints, (float(x), float(y)), found.forces
-        found.notes.insert(0, closed[1])
+        pose, note = closed
+        closed_space, bodies = copy_space(imported)
+        set_poses(bodies, pose)
+        imported = import_space(closed_space)
+        imported.notes.insert(0, note)
     try:
-        mechanism, jumped = with_consistent_start(*elements)
+        mechanism, start_notes = with_consistent_start(imported.bodies, imported.joints, gravity, imported.forces)
     except InvalidMechanism as reason:
-        if not last:
+        if not last_step:
             raise
-        words = f"the space has been stepped by {last:g} s already, which opens joints; give it before its first step"
-        raise InvalidMechanism(f"{reason}; {words}") from None
-    own = OwnPymunk(found, mechanism, step or last or USUAL_STEP / parts, not (step or last), ahead)
-    refuse_at_start(own, mechanism)
+        cause = f"the space has been stepped by {last_step:g} s already, which opens joints"
+        raise InvalidMechanism(f"{reason}; {cause}; give it before its first step") from None
+    dt = step or last_step or USUAL_STEP / parts
+    model = OwnPymunk(imported, mechanism, dt, step_is_assumed=not (step or last_step), ahead=ahead)
+    refuse_at_start(model, mechanism)
+    notes = [*start_notes, *imported.notes]
     if len({shape.body for shape in space.shapes if not shape.sensor}) > 1:
-        found.notes.append(Note("contacts", "they are left out, since none is made in the judged motion"))
-    notes = [*jumped, *found.notes, *(Note(element, "left out at your word, in your model too") for element in without)]
-    return Reading(mechanism, own, tuple(notes))
+        notes.append(Note("contacts", "they are left out, since none is made in the judged motion"))
+    notes += [Note(element, "left out at your word, in your model too") for element in without]
+    return Reading(mechanism, model, tuple(notes))
 
 
 def read_object(space: pymunk.Space, terms: ReadingTerms = AS_IT_IS) -> Reading:
-    """`read`, with the terms of every engine's."""
+    """`read` with the terms of all engines."""
     return read(space, terms.step, terms.without)
 
 
-class Reader:
+class SpaceReader:
     """For `crosscheck check`: a variable of a script, or a function without arguments, that gives a space."""
 
     words = "a script with a pymunk space (path/to/script.py, or script.py:NAME)"
     elements: ClassVar[Mapping[str, str]] = {
-        **BODIES,
-        **{kind.__name__: words for kind, words in CONSTRAINTS.items()},
+        **READ_BODIES,
+        **{kind.__name__: entry.read_as for kind, entry in READ_CONSTRAINTS.items()},
     }
 
     def reads(self, word: str) -> bool:
@@ -93,28 +96,28 @@ class Reader:
             raise ValueError(f"{file}: it is a folder")
         if not path.is_file():
             raise ValueError(f"{file}: there is no such file")
-        found = made(path, file, name)
-        own = terms.step or (found.dt and found.dt * found.parts)
+        script = run_script(path, file, name)
+        step = terms.step or (script.dt and script.dt * script.parts)
         try:
-            reading = read(found.space, own and own / found.parts, terms.without, found.parts, found.ahead)
+            reading = read(script.space, step and step / script.parts, terms.without, script.parts, script.ahead)
         finally:
-            for body in found.space.bodies:
+            for body in script.space.bodies:
                 if body.is_sleeping:
-                    body.activate()  # pymunk (7.3.1) ends the process where a space with a sleeping body is freed
+                    body.activate()  # pymunk (7.3.1) ends the process when a space with a sleeping body is freed
         notes = [*reading.notes]
-        if found.dt is not None:
-            words = f"it steps its space by {own:.4g} s; it was stopped before the first step, which is the start"
-            notes.append(Note("the script", words))
-        if found.ahead:
+        if script.dt is not None:
+            stopped = f"it steps its space by {step:.4g} s; it was stopped before the first step, which is the start"
+            notes.append(Note("the script", stopped))
+        if script.ahead:
             notes.append(Note("its first step", "it brings velocities half a step ahead, as your runs here begin too"))
-        if found.parts > 1:
-            notes.append(Note("space.step", f"each call makes {found.parts} steps, as the script says"))
+        if script.parts > 1:
+            notes.append(Note("space.step", f"each call makes {script.parts} steps, as the script says"))
         source = Source(
             path,
-            partial(rewritten, path, found, reading.model.dt),
+            partial(rewritten, path, script, reading.model.dt),
             lambda other: self.read(f"{other.name}:{name}" if name else other.name, other.parent, terms),
         )
         return replace(reading, notes=tuple(notes), source=source)
 
 
-READER = Reader()
+READER = SpaceReader()

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from engines import Engine
-from engines.pymunk.contraction import contraction
+from engines.pymunk.convergence import convergence_factor
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.model.cells import Cell
@@ -180,10 +180,10 @@ def residual_of_sweeps(mechanism: Mechanism, engine: Engine) -> float:
     """The fraction of the slowest mode's error that remains after the iterations of a step [1].
 
     NaN for an engine without a fixed number of Gauss-Seidel iterations. Above 1/2 a gap grows from step to step if a
-    step closes all of it (`engines.pymunk.contraction`).
+    step closes all of it (`engines.pymunk.convergence`).
     """
     count = engine.iterations_of(mechanism)
-    return math.nan if count is None else float(contraction(mechanism) ** count)
+    return math.nan if count is None else float(convergence_factor(mechanism) ** count)
 
 
 def as_csv(columns: Iterable[StoredColumn]) -> str:

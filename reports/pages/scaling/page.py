@@ -16,7 +16,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 
 from engines import Engine, method_name, mujoco, pymunk
 from engines.lagrange import Lagrange
-from engines.pymunk.contraction import LEFT, MOST
+from engines.pymunk.convergence import RESIDUAL
+from engines.pymunk.iterations import MAX_ITERATIONS
 from reference.scenes.pendulum.scenes import LongPendulum
 from reports.model.cells import Cell
 from reports.model.measure import Measurement
@@ -188,9 +189,9 @@ SCALING_METHODS: tuple[Engine, ...] = (
 AT_MOST_300 = (pymunk.EXTENDED, PGS, EULER, RUNGE_KUTTA)
 CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SPARSE_NEWTON, BandedChain())
 
-# With equal links an iteration leaves 1 - pi^2/(4 N^2) of the slowest mode; those of a step have to leave LEFT of it.
-SWEEPS_OVER_SQUARE = -4 * log(LEFT) / pi**2
-CAPPED = ceil(sqrt(MOST / SWEEPS_OVER_SQUARE))
+# With equal links an iteration leaves 1 - pi^2/(4 N^2) of the slowest mode; a step has to leave RESIDUAL of it.
+SWEEPS_OVER_SQUARE = -4 * log(RESIDUAL) / pi**2
+CAPPED = ceil(sqrt(MAX_ITERATIONS / SWEEPS_OVER_SQUARE))
 
 # Sizes (smallest, largest) of the fits of methods that change: the iterations of pymunk tuned have an upper limit, and
 # at COSTLY_SIZES its first steps, which have more iterations, are a large part of the few steps.
@@ -277,7 +278,7 @@ def context(material: Material) -> Mapping[str, Any]:
         "costs": cost_table(found),
         "errors": error_table(found),
         "laws": {series.method: fitted(series) for series in found},
-        "sweeps": {"over_square": SWEEPS_OVER_SQUARE, "capped": CAPPED, "most": MOST},
+        "sweeps": {"over_square": SWEEPS_OVER_SQUARE, "capped": CAPPED, "most": MAX_ITERATIONS},
         "crossing": crossing(by_method.get("mujoco tuned"), by_method.get(f"mujoco {SPARSE_NEWTON.variant}"))
         or UNMEASURED,
         "tree": {n: at(mujoco.TUNED, n) for n in (100, 1000)},

@@ -21,7 +21,7 @@ from reports.pages.common import described, to_rounding
 from reports.write.experiments import observe_each
 from reports.write.tables import number
 
-SKATE_CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_methods.SKATES, *mujoco_methods.SKATES)
+SKATE_CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_methods.SKATE_METHODS, *mujoco_methods.SKATES)
 _KNOWN = {method_name(engine): engine for engine in (*VARIANTS, *SKATE_CONSTRUCTIONS)}
 
 

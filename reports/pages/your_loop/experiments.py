@@ -160,7 +160,7 @@ class BeforeAndAfter(Task):
         met = [obstacle.t for obstacle in model.obstacles(truth.t, truth.pose, truth.twist)]
         early = truth.t <= min(ideal.horizon, *met, ANGLE_DURATION)
         bodies = list(space.bodies)
-        order = [bodies.index(body) for body in model.described.moving]
+        order = [bodies.index(body) for body in model.imported.moving]
         count = int(early.sum()) - 1
         errors = (
             np.abs(angles[:, :count, order] - truth.pose[1 : count + 1, :, 2]) if count > 0 else np.full((2, 1), nan)

@@ -99,7 +99,7 @@ def space_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> MunkSpace
 
     constraints = list(space._constraints)  # the public property is a set
     # The gap of an aimed groove is never closed, so its error_bias does not count.
-    aimed = [aim.constraint for aim in model.aims if isinstance(aim, AimedGroove)]
+    aimed = [aim.constraint for aim in model.before_step if isinstance(aim, AimedGroove)]
     biases = {constraint.error_bias for constraint in constraints if constraint not in aimed}
     gravity = (component / unit**2 for component in space.gravity)
     head = (*gravity, space.collision_slop, space.collision_bias, len(model.bodies), space.iterations)
@@ -161,7 +161,7 @@ def _by_hand(model: Model, mechanism: Mechanism) -> list[tuple[RecordKind, tuple
     """Return records of our adapter's code around a step; munk2d.c has the two kinds that enforce skates."""
     skates = [mechanism.body_index(str(joint.second)) for joint in mechanism.joints if isinstance(joint, Skate)]
     records: list[tuple[RecordKind, tuple[float, ...]]] = []
-    for hands in (model.repairs, model.aims):
+    for hands in (model.after_step, model.before_step):
         if hands and len(hands) != len(skates):
             raise Unsupported("this method needs Python code in every step, which the page has not")
         for body, hand in zip(skates, hands, strict=False):

@@ -1,0 +1,159 @@
+"""How many iterations a step of pymunk makes, and which fraction of a gap it corrects, for the worst pose of a motion.
+
+The poses come from a pilot run with soft joints and long steps, whose errors do not matter here.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass, replace
+from math import ceil, log
+from typing import Annotated
+
+import numpy as np
+
+from engines import Unsupported
+from engines.pymunk.convergence import (
+    DENSE,
+    MIN_ITERATIONS,
+    RESIDUAL,
+    STARTUP_WORK,
+    Factor,
+    convergence_factor,
+    convergence_factor_at,
+    convergence_factors,
+    iterations_for,
+    stable_factor,
+)
+from engines.pymunk.model import Settings, build_model
+from engines.pymunk.running import record
+from engines.remembered import by_identity
+from reference.checks import LARGEST_COUNT, Count, NonNegative, validated
+from reference.joints import Roll
+from reference.mechanism import Mechanism
+from reference.validators import from_to
+
+# Factor on the stable gain (1 - r)/r where the iterations do not reach RESIDUAL.
+SAFETY = 0.8
+# With more iterations, a step of a hundred links costs more than a smaller step gains.
+MAX_ITERATIONS = 300
+# Residual that counts as converged.
+CONVERGED_RESIDUAL = 1e-16
+# Stages of the start-up phase after the converged steps; the last one ends at the tenth step, often the first sample.
+STARTUP_STAGES = 6
+
+# Poses of the pilot run for up to DENSE rows, and for more: one pose costs as much as some hundred steps.
+PILOT_POSES, FEW_PILOT_POSES = 16, 2
+# Steps of the pilot run in one radian of the fastest motion.
+PILOT_STEPS = 20
+MAX_PILOT_STEPS = 4096
+# A tenth of each gap is corrected in a step: no mechanism was found that is unstable with this.
+PILOT = Settings(iterations=10, error_bias=0.9, unit=1.0, skate="groove", roll="pivot")
+# Gap, in the mechanism's length scale or rad, beyond which a pose of the pilot run is dropped.
+MAX_PILOT_GAP = 0.05
+
+Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
+
+
+@dataclass(frozen=True)
+class IterationPlan:
+    """`iterations` of a step, their `residual` of the slowest mode, and the `gain`: the fraction of a gap to correct.
+
+    `converged` iterations reach CONVERGED_RESIDUAL as far as STARTUP_WORK allows; their residual is
+    `converged_residual`.
+    """
+
+    iterations: int
+    gain: float = 1.0
+    residual: float = 0.0
+    converged: int = 1000
+    converged_residual: float = 0.0
+
+    def startup(self, steps: int) -> list[int]:
+        """Iterations of the first steps: converged, then decreasing in STARTUP_STAGES of `steps` steps each.
+
+        The error has an expansion in the step only after a number of steps, which is no fixed time. With small
+        stages this hardly shows, and each stage ends at the same time in all runs of an extrapolation.
+        """
+        first = [self.converged, *[ceil(self.converged / 2)] * (steps - 1)][:steps]
+        if not 0 < self.residual <= RESIDUAL:
+            return first
+        factors = [1 + log(STARTUP_STAGES / stage) / -log(self.residual) for stage in range(1, STARTUP_STAGES)]
+        counts = [ceil(self.iterations * factor) for factor in factors]
+        return first + [min(count, self.converged) for count in counts for _ in range(steps)]
+
+
+def plan_by_rule(rho: float, joints: int, fewest: int = MIN_ITERATIONS, work: int = 0) -> IterationPlan:
+    """The plan for `joints` joints with `iterations_in_step`."""
+    iterations = iterations_in_step(rho, joints, fewest, work)
+    needed = ceil(log(CONVERGED_RESIDUAL) / log(rho)) if rho > 0 else 1
+    return plan_with(rho, iterations, max(iterations, min(needed, STARTUP_WORK // joints)))
+
+
+def plan_with(rho: float, iterations: int, converged: int = 1000) -> IterationPlan:
+    """The plan with a given number of iterations, whatever their residual."""
+    return IterationPlan(iterations, stable_gain(rho, iterations), rho**iterations, converged, rho**converged)
+
+
+@validated
+def iterations_in_step(rho: Factor, joints: Count = 1, fewest: Count = MIN_ITERATIONS, work: Whole = 0) -> int:
+    """Iterations after which RESIDUAL of the slowest mode is left, at least `fewest`.
+
+    More than MAX_ITERATIONS only if iterations times joints do not exceed `work`; else MAX_ITERATIONS.
+    """
+    needed = iterations_for(rho, fewest)
+    return needed if needed * joints <= work else min(needed, max(MAX_ITERATIONS, fewest))
+
+
+@validated
+def stable_gain(rho: Factor, iterations: Count) -> float:
+    """The fraction of a gap that a step may correct."""
+    residual = rho**iterations
+    return 1.0 if residual <= RESIDUAL else min(1.0, SAFETY * (1 - residual) / residual)
+
+
+@validated
+def worst_factor(mechanism: Mechanism, duration: NonNegative, rolls_are_contacts: bool = False) -> float:
+    """The largest convergence factor at the start and at the poses of a pilot run of `duration` [s].
+
+    Where not all rows correct gaps, the stable one: see `engines.pymunk.convergence.stable_factor`.
+    """
+    # Rounded, because the levels of an extrapolation compute the duration with different rounding.
+    return _worst_factor(mechanism, float(f"{duration:.12g}"), rolls_are_contacts)
+
+
+@by_identity()
+def _worst_factor(mechanism: Mechanism, duration: float, rolls_are_contacts: bool) -> float:
+    poses = _pilot_poses(mechanism, duration)
+    rho = max([convergence_factor(mechanism), *_factors(mechanism, poses)])
+    return stable_factor(mechanism, np.array([mechanism.pose, *poses]), rho, rolls_are_contacts)
+
+
+def _factors(mechanism: Mechanism, poses: list[np.ndarray]) -> list[float]:
+    if poses and mechanism.row_count <= DENSE:
+        with contextlib.suppress(np.linalg.LinAlgError):
+            return convergence_factors(mechanism, np.array(poses)).tolist()
+    return [convergence_factor_at(mechanism, pose) for pose in poses]
+
+
+def _pilot_poses(mechanism: Mechanism, duration: float) -> list[np.ndarray]:
+    if duration == 0 or not mechanism.joints:
+        return []
+    count = PILOT_POSES if mechanism.row_count <= DENSE else FEW_PILOT_POSES
+    every = max(1, ceil(min(duration / mechanism.time_scale * PILOT_STEPS, MAX_PILOT_STEPS) / count))
+    dt = duration / (every * count)
+    try:
+        with np.errstate(all="ignore"):
+            model = build_model(mechanism, replace(PILOT, unit=dt))
+            poses = record(model, dt, count, every, raw=True).pose[1:]
+            gap = mechanism.gap(poses, dt * every * np.arange(1, count + 1))
+    except Unsupported:
+        return []
+    except (ValueError, ArithmeticError):
+        # The pilot run may reach a pose in which curves have no contact. Without curves the error is ours.
+        if not any(isinstance(joint, Roll) for joint in mechanism.joints):
+            raise
+        return []
+    too_open = np.abs(gap) > MAX_PILOT_GAP * np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
+    usable = np.isfinite(poses).all(axis=(1, 2)) & ~too_open.any(axis=1)
+    return list(poses[usable])
