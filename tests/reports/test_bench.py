@@ -13,9 +13,9 @@ from reports.model.ending import BadInput
 from tests.toys import Disc, Toy
 
 
-def test_an_engine_is_compared_with_the_loop_that_is_declared_for_its_name():
+def test_an_engine_is_compared_with_the_bare_loop_of_its_name():
     costs = list(measure_loops([Toy(), pymunk.TUNED, mujoco.TUNED], Disc(), 2))
-    assert [cost.engine for cost in costs] == [pymunk.TUNED, mujoco.TUNED]  # nobody declares one for the toy
+    assert [cost.engine for cost in costs] == [pymunk.TUNED, mujoco.TUNED]  # the toy has no bare loop
     assert all(cost.steps == 2 * Disc().samples for cost in costs)
 
 

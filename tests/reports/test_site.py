@@ -62,7 +62,7 @@ def require_packages():
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory):
-    """The published pages, no motions, and no packages: npm is not asked."""
+    """The published pages without motions and without packages, so that npm is not called."""
     cache = tmp_path_factory.mktemp("cache")
     options = {"answers": {}, "cache": cache, "foot": "Made by a test.", "contributing": CONTRIBUTING, "api": False}
     return Source(**texts_of(RESULTS), **options)
@@ -217,7 +217,7 @@ def test_every_stored_row_has_its_cost_and_settings():
     assert len(rows) > 500
     free = ("free_four_bar", "pymunk", "default")
     (row,) = [r for r in rows if (r["scene"], r["engine"], r["variant"]) == free and abs(r["step"] - 1e-3) < 1e-6]
-    assert row["angle"] == pytest.approx(0.19, rel=0.1)  # as the page of the four-bar tells
+    assert row["angle"] == pytest.approx(0.19, rel=0.1)  # as on the page of the four-bar
     assert row["cpu"] > 0
     assert "Pymunk(" in row["settings"]
 
@@ -252,13 +252,13 @@ def test_the_truth_and_each_method_pass_through_their_poses(falling):
     scales = []
     for index, pose in enumerate([*falling.motions.values(), falling.truth.pose]):
         for body in range(3):
-            found = keys(text, f"m{index}b{body}")[:-1]
-            frames = np.interp(found[:, 0] / 100 / (1 - PAUSE) * falling.t[-1], falling.t, np.arange(len(falling.t)))
-            gone = (pose[frames.round().astype(int), body] - pose[0, body]) * (1, -1, -180 / np.pi)
-            # Instants are told to a hundredth of a percent, half a frame at worst: what moves in it is small.
-            assert np.abs(found[:, 3] - gone[:, 2]).max() < 2.0
-            scales.append(np.vdot(found[:, 1:3], gone[:, :2]) / np.vdot(gone[:, :2], gone[:, :2]))
-            assert np.abs(found[:, 1:3] / scales[-1] - gone[:, :2]).max() < 0.02
+            places = keys(text, f"m{index}b{body}")[:-1]
+            frames = np.interp(places[:, 0] / 100 / (1 - PAUSE) * falling.t[-1], falling.t, np.arange(len(falling.t)))
+            expected = (pose[frames.round().astype(int), body] - pose[0, body]) * (1, -1, -180 / np.pi)
+            # Instants are rounded to a hundredth of a percent, at most half a frame, in which the motion is small.
+            assert np.abs(places[:, 3] - expected[:, 2]).max() < 2.0
+            scales.append(np.vdot(places[:, 1:3], expected[:, :2]) / np.vdot(expected[:, :2], expected[:, :2]))
+            assert np.abs(places[:, 1:3] / scales[-1] - expected[:, :2]).max() < 0.02
     assert np.ptp(scales) < 1e-3 * min(scales)  # points a metre, the same for all
 
 
@@ -271,13 +271,13 @@ def test_a_picture_is_xml_without_script_and_the_same_every_time(falling):
     assert text == animation(falling, 'A <title> & "more"')
 
 
-def test_a_method_that_gave_up_stays_where_it_was(falling):
+def test_a_method_that_fails_keeps_its_last_pose(falling):
     pose = falling.motions["pymunk default"].copy()
     pose[40:] = np.nan
     text = animation(replace(falling, motions={"pymunk default": pose}), "Lost")
     assert "nan" not in text
-    found = keys(text, "m0b0")
-    assert np.all(found[-5:, 1:] == found[-1, 1:])
+    places = keys(text, "m0b0")
+    assert np.all(places[-5:, 1:] == places[-1, 1:])
 
 
 def test_a_film_is_written(falling, tmp_path, monkeypatch):

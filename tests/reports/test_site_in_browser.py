@@ -48,9 +48,9 @@ QUICK = ("four_bar", "skate", "rolling")
 
 @pytest.fixture(scope="module")
 def files(request):
-    """The site with the quick lessons and with those that a test that was selected asks for."""
-    given = (vars(item).get("callspec") for item in request.session.items if item.path == request.path)
-    wanted = {*QUICK, *(each.params.get("lesson") for each in given if each is not None)}
+    """The site with the quick lessons and those of the selected tests."""
+    parameters = (vars(item).get("callspec") for item in request.session.items if item.path == request.path)
+    wanted = {*QUICK, *(call.params.get("lesson") for call in parameters if call is not None)}
     answers = {motion: answered(motion) for motion in tasks(LESSONS[:1])}
     cache = Path(request.config.cache.mkdir("site"))
     source = Source(**texts_of(RESULTS), answers=answers, cache=cache, foot="Made by a test.", api=False)
@@ -76,25 +76,30 @@ def chromium():
         browser.close()
 
 
-def new_page(chromium: Any, **given: Any) -> Any:
-    context = chromium.new_context(**{"viewport": {"width": 1200, "height": 900}, **given})
+def new_page(chromium: Any, **options: Any) -> Any:
+    context = chromium.new_context(**{"viewport": {"width": 1200, "height": 900}, **options})
     context.set_default_timeout(LONGEST)
     return context.new_page()
 
 
 @pytest.fixture
 def opened(chromium, address):
-    """Opens a page in a new context; what the browser complains of is in `complaints`, and fails the test."""
+    """A function that opens a page in a new context; an error or a warning of the browser fails the test."""
     contexts: list[Any] = []
     complaints: list[str] = []
 
-    def open_page(name: str, **given: Any) -> Any:
-        page = new_page(chromium, **given)
+    def open_page(name: str, **options: Any) -> Any:
+        page = new_page(chromium, **options)
         contexts.append(page.context)
-        page.on("console", lambda said: complaints.append(said.text) if said.type in ("error", "warning") else None)
+        page.on(
+            "console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") else None
+        )
         page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("response", lambda got: complaints.append(f"{got.status} {got.url}") if got.status >= 400 else None)
-        page.on("request", lambda asked: complaints.append(asked.url) if not local(asked.url, address) else None)
+        page.on(
+            "response",
+            lambda response: complaints.append(f"{response.status} {response.url}") if response.status >= 400 else None,
+        )
+        page.on("request", lambda request: complaints.append(request.url) if not local(request.url, address) else None)
         page.goto(address + name)
         return page
 
@@ -110,7 +115,7 @@ def local(url: str, address: str) -> bool:
 
 @pytest.fixture(scope="module")
 def running(chromium, address, files):
-    """Gives the page of a lesson with its engines loaded, each opened once."""
+    """A function that returns the page of a lesson with its engines loaded; each is opened once."""
     if not {"packages/mujoco.wasm", "packages/munk2d.js"} <= set(files):
         pytest.skip("the site was built without its engines: tests/tools/browser.sh installs npm and emscripten")
     pages: dict[str, Any] = {}
@@ -127,7 +132,7 @@ def running(chromium, address, files):
         page.context.close()
 
 
-# Asks the engines of the page for a setting: places of the controls, the others as they come, and where it is let go.
+# Runs the engines of the page: indices of the controls, the others at their start values, and the pose of release.
 ASKED = """async ([scene, places, start]) => {
   const { ask, form } = window.crosscheck;
   form.move(scene, places);
@@ -138,55 +143,54 @@ ASKED = """async ([scene, places, start]) => {
 }"""
 
 
-def asked(page: Any, lesson: str, scene: str, given: dict[str, Any], start: list[float] | None = None) -> Any:
-    """What the engines in the page make of a scene with these values of its controls."""
+def asked(page: Any, lesson: str, scene: str, values: dict[str, Any], start: list[float] | None = None) -> Any:
+    """Return the motions of the engines in the page for a scene with these values of its controls."""
     live = BY_NAME[lesson].scene(scene)
-    return page.evaluate(ASKED, [BY_NAME[lesson].scenes.index(live), live.located(given), start])
+    return page.evaluate(ASKED, [BY_NAME[lesson].scenes.index(live), live.located(values), start])
 
 
-def python_of(live: Live, given: dict[str, Any]) -> tuple[Scene, dict[str, Any], float]:
-    """The scene, pymunk and MuJoCo in Python as these values ask for, a sentence where there is none; the step [s]."""
-    changed: Any = {name: value for name, value in given.items() if name in {each.field for each in live.sliders}}
+def python_of(live: Live, values: dict[str, Any]) -> tuple[Scene, dict[str, Any], float]:
+    """Return the scene, pymunk and MuJoCo in Python (or a sentence) with these values, and the step [s]."""
+    changed: Any = {name: value for name, value in values.items() if name in {slider.field for slider in live.sliders}}
     scene: Any = replace(live.scene, **changed)  # type: ignore[type-var]
-    step = scene.duration / given.get("steps", live.steps[live.start])
+    step = scene.duration / values.get("steps", live.steps[live.start])
     engines: dict[str, Any] = {
-        name: next(engine for words, engine in live.ways(name) if words == given.get(name, live.ways(name)[0][0]))
+        name: next(engine for label, engine in live.ways(name) if label == values.get(name, live.ways(name)[0][0]))
         for name in ENGINES
     }
     fields = {"munk": {"iterations": "iterations", "bias": "error_bias"}, "mujoco": {"tolerance": "tolerance"}}
-    for name, known in fields.items():
-        told = {field: given[own] for own, field in known.items() if own in given}
-        if name == "mujoco" and "integrator" in given:
-            told["integrator"] = dict(INTEGRATORS)[given["integrator"]]
-        if told and not isinstance(engines[name], str):
-            engines[name] = replace(engines[name], **told)
+    for name, names in fields.items():
+        settings = {field: values[name] for name, field in names.items() if name in values}
+        if name == "mujoco" and "integrator" in values:
+            settings["integrator"] = dict(INTEGRATORS)[values["integrator"]]
+        if settings and not isinstance(engines[name], str):
+            engines[name] = replace(engines[name], **settings)
     return scene, engines, step
 
 
 BY_NAME = {lesson.name: lesson for lesson in LESSONS}
 
 
-def marked(*given: Any) -> Any:
-    """Parameters that begin with the name of a lesson: slow unless it is a quick one."""
-    return pytest.param(*given, marks=() if given[0] in QUICK else pytest.mark.slow)
+def marked(*arguments: Any) -> Any:
+    """Return parameters that begin with the name of a lesson; marked slow unless it is in QUICK."""
+    return pytest.param(*arguments, marks=() if arguments[0] in QUICK else pytest.mark.slow)
 
 
 SCENES = [marked(lesson.name, live.word) for lesson in LESSONS for live in lesson.scenes]
-# By how much an engine in the page may differ from the same one in Python, relative to the motion's size. Both do the
-# same operations, though MuJoCo's releases differ, and compilers round some sums in another order: measured are 1e-17
-# to 1e-13. Coarse steps of a car that stands on contacts (5e-8), of a blade that does (2e-11), of a crank with a heavy
-# slider (8e-10) and of an ellipse on a stiff contact (4e-9) multiply last digits; so do polygons of gears that hit each
-# other (3e-7). The contact of two ellipses (1.3e-2) is searched for until it moves by less than 1e-6, MuJoCo's
-# ccd_tolerance, which releases do not do alike.
+# Largest difference of an engine in the page and in Python, relative to the size of the motion. Both do the same
+# operations, but MuJoCo's releases differ, and compilers order some sums differently: measured are 1e-17 to 1e-13.
+# Some motions amplify the last digits: a car on contacts at coarse steps (5e-8), a blade on contacts (2e-11), a crank with a
+# heavy slider (8e-10), an ellipse on a stiff contact (4e-9), gears as polygons (3e-7). MuJoCo iterates for the contact
+# of two ellipses until it moves by less than ccd_tolerance, 1e-6, and releases iterate differently (1.3e-2).
 APART = {"gears": 5e-2, "rolling": 1e-7, "wheels": 1e-6, "skate": 1e-9, "slider_crank": 1e-8}
 MUNK_APART = {"gears": 1e-5}
 
 
 def moved(live: Live) -> dict[str, Any]:
-    """Another mechanism and other settings than the first ones: the last value of every slider."""
+    """Return other settings than the first ones: the last value of every slider."""
     way = {name: live.ways(name)[-1][0] for name in ENGINES} if len(live.munk) > 2 else {}
     engines = {"iterations": 20, "bias": 1e-6, "integrator": 3, "tolerance": 1e-15}
-    return {"steps": live.steps[2], **engines, **way, **{each.field: each.values[-1] for each in live.sliders}}
+    return {"steps": live.steps[2], **engines, **way, **{slider.field: slider.values[-1] for slider in live.sliders}}
 
 
 GIVEN = {
@@ -196,86 +200,93 @@ GIVEN = {
 }
 
 
-@pytest.mark.parametrize("given", GIVEN)
+@pytest.mark.parametrize("variant", GIVEN)
 @pytest.mark.parametrize(("lesson", "word"), SCENES)
-def test_the_engines_in_the_page_give_what_python_gives(running, lesson, word, given):
+def test_the_engines_in_the_page_compute_the_motions_of_python(running, lesson, word, variant):
     live = BY_NAME[lesson].scene(word)
-    values = GIVEN[given](live)
-    found = asked(running(lesson), lesson, word, values)
+    values = GIVEN[variant](live)
+    answer = asked(running(lesson), lesson, word, values)
     scene, engines, step = python_of(live, values)
     samples = live.samples(round(scene.duration / step))
     every = round(scene.duration / step) // samples
     truth = scene.motion(np.arange(samples + 1) * (scene.duration / samples)).pose
     size = max(1.0, float(np.abs(truth).max()))
-    # What the page integrates itself has an error, which it tells, some ten times too large; rounding grows likewise.
-    missed = found["exact"]["missed"] or 0.0
-    assert np.abs(np.reshape(found["exact"]["pose"], truth.shape) - truth).max() < missed + 1e-12 * size
+    # The page estimates the error of its own integration, about ten times too large.
+    missed = answer["exact"]["missed"] or 0.0
+    assert np.abs(np.reshape(answer["exact"]["pose"], truth.shape) - truth).max() < missed + 1e-12 * size
     assert missed < 1e-5
     for name, method in engines.items():
         try:
             python = method.build(scene.mechanism(), step)(samples, every)
         except (Unsupported, AttributeError):  # a sentence builds nothing
-            assert name in found["lost"]
+            assert name in answer["lost"]
             continue
-        if name in found["lost"]:
-            assert re.search("needs Python code in every step|writes rows while it steps", found["lost"][name])
+        if name in answer["lost"]:
+            assert re.search("needs Python code in every step|writes rows while it steps", answer["lost"][name])
             continue
-        page = np.reshape(np.array(found["motions"][name]["pose"], dtype=float), python.pose.shape)
-        lost = np.isnan(page)  # MuJoCo started anew, or a motion blew up: what follows is no motion
-        kept = ~lost & np.isfinite(python.pose)
-        assert np.array_equal(lost, ~np.isfinite(python.pose) | (np.abs(python.pose) > 1e6))
-        apart = np.abs(page - python.pose)[kept].max() / max(1.0, float(np.abs(python.pose[kept]).max()))
-        assert apart < (APART if name == "mujoco" else MUNK_APART).get(lesson, 1e-12)
+        page = np.reshape(np.array(answer["motions"][name]["pose"], dtype=float), python.pose.shape)
+        is_missing = np.isnan(page)  # after MuJoCo has reset itself, or the motion has diverged
+        is_compared = ~is_missing & np.isfinite(python.pose)
+        assert np.array_equal(is_missing, ~np.isfinite(python.pose) | (np.abs(python.pose) > 1e6))
+        difference = np.abs(page - python.pose)[is_compared].max() / max(
+            1.0, float(np.abs(python.pose[is_compared]).max())
+        )
+        assert difference < (APART if name == "mujoco" else MUNK_APART).get(lesson, 1e-12)
 
 
 EXPERIMENTS = [marked(lesson.name, number) for lesson in LESSONS for number, _ in enumerate(lesson.experiments)]
 
 
 @pytest.mark.parametrize(("lesson", "number"), EXPERIMENTS)
-def test_what_an_experiment_claims_is_so_and_its_cause_can_be_switched_off(running, lesson, number):
-    each = BY_NAME[lesson].experiments[number]
+def test_the_claims_of_an_experiment_hold_and_its_causes_too(running, lesson, number):
+    experiment = BY_NAME[lesson].experiments[number]
 
-    def errors(*given: Any) -> dict[str, float]:
-        told = asked(running(lesson), lesson, each.scene, {name: value for one in given for name, value in one.items()})
+    def errors(*changes: Any) -> dict[str, float]:
+        answer = asked(
+            running(lesson),
+            lesson,
+            experiment.scene,
+            {name: value for change in changes for name, value in change.items()},
+        )
         return {
-            name: np.inf if motion["error"] is None else motion["error"] for name, motion in told["motions"].items()
+            name: np.inf if motion["error"] is None else motion["error"] for name, motion in answer["motions"].items()
         }
 
-    before, after = errors(each.before), errors(each.before, each.after)
-    for claim in each.claims:
-        assert claim.least <= after[claim.engine] / before[claim.engine] <= claim.most
-    for change, claim in each.causes:
-        without = errors(each.before, each.after, change)
-        assert claim.least <= without[claim.engine] / after[claim.engine] <= claim.most, change
+    start, end = errors(experiment.before), errors(experiment.before, experiment.after)
+    for claim in experiment.claims:
+        assert claim.least <= end[claim.engine] / start[claim.engine] <= claim.most
+    for change, claim in experiment.causes:
+        without = errors(experiment.before, experiment.after, change)
+        assert claim.least <= without[claim.engine] / end[claim.engine] <= claim.most, change
 
 
 LET_GO = (("four_bar", "let go"), ("slider_crank", "let go"), ("pendulum", "two links"))
 
 
 @pytest.mark.parametrize(("lesson", "word"), [marked(*each) for each in LET_GO])
-def test_a_mechanism_that_is_let_go_elsewhere_moves_on_from_there_in_truth_and_engines(running, lesson, word):
+def test_a_mechanism_released_elsewhere_moves_from_there_exactly_and_in_engines(running, lesson, word):
     page, live = running(lesson), BY_NAME[lesson].scene(word)
     mechanism = live.scene.mechanism()
     start = live.scene.motion([0.37 * live.scene.duration]).pose[0]
-    found = asked(page, lesson, word, {}, start.ravel().tolist())
+    answer = asked(page, lesson, word, {}, start.ravel().tolist())
     bodies = [
         replace(b, pose=tuple(p), twist=(0.0,) * 3) for b, p in zip(mechanism.bodies, start.tolist(), strict=True)
     ]
-    there = Mechanism(tuple(bodies), mechanism.joints, mechanism.gravity)
+    released = Mechanism(tuple(bodies), mechanism.joints, mechanism.gravity)
     steps = live.steps[live.start]
     samples, step = live.samples(steps), live.scene.duration / steps
-    exact = Lagrange("dop853", "projection").build(there, live.scene.duration / samples / 10)(samples, 10).pose
-    assert np.abs(np.reshape(found["exact"]["pose"], exact.shape) - exact).max() < 1e-8
-    assert found["exact"]["missed"] < 1e-8
-    python = pymunk.DEFAULT.build(there, step)(samples, steps // samples).pose
-    assert np.abs(np.reshape(found["motions"]["munk"]["pose"], python.shape) - python).max() < 1e-9
-    # How soft a loop of MuJoCo is, is found in the pose in which its model is compiled, which is another one here.
+    exact = Lagrange("dop853", "projection").build(released, live.scene.duration / samples / 10)(samples, 10).pose
+    assert np.abs(np.reshape(answer["exact"]["pose"], exact.shape) - exact).max() < 1e-8
+    assert answer["exact"]["missed"] < 1e-8
+    python = pymunk.DEFAULT.build(released, step)(samples, steps // samples).pose
+    assert np.abs(np.reshape(answer["motions"]["munk"]["pose"], python.shape) - python).max() < 1e-9
+    # The stiffness of a loop in MuJoCo depends on the pose in which the model is compiled, which differs here.
     tuned = asked(page, lesson, word, {"mujoco": DOCUMENTED}, start.ravel().tolist())
     assert np.abs(np.array(tuned["motions"]["mujoco"]["pose"][: start.size]) - start.ravel()).max() < 1e-12
-    assert tuned["motions"]["mujoco"]["error"] < 0.01 < found["motions"]["mujoco"]["error"] < 3
+    assert tuned["motions"]["mujoco"]["error"] < 0.01 < answer["motions"]["mujoco"]["error"] < 3
 
 
-def test_a_joint_is_taken_by_hand_and_the_linkage_stays_closed(opened):
+def test_a_joint_is_dragged_and_the_linkage_stays_closed(opened):
     page = opened("lessons/four_bar.html", reduced_motion="reduce")  # nothing plays by itself
     page.wait_for_selector("#lesson.ready")
     pin = page.locator(".motion.truth .body").nth(1).locator("circle").first.bounding_box()
@@ -284,12 +295,12 @@ def test_a_joint_is_taken_by_hand_and_the_linkage_stays_closed(opened):
     page.mouse.move(pin["x"] + 40, pin["y"] + 30, steps=5)
     page.mouse.up()
     page.wait_for_function("document.querySelector('.status').textContent.includes('computes this exact motion')")
-    held = page.evaluate("window.crosscheck.setting().start")
-    assert np.abs(DrivenFourBar().mechanism().gap(np.reshape(held, (3, 3)), 0.0)[:8]).max() < 1e-9
+    pose = page.evaluate("window.crosscheck.setting().start")
+    assert np.abs(DrivenFourBar().mechanism().gap(np.reshape(pose, (3, 3)), 0.0)[:8]).max() < 1e-9
 
 
-def test_the_first_step_of_pymunk_is_told_sweep_by_sweep(running):
-    told = running("four_bar").evaluate(
+def test_the_first_step_of_pymunk_is_shown_by_iterations(running):
+    answer = running("four_bar").evaluate(
         """async () => {
           const { ask, form } = window.crosscheck;
           form.move(1, { steps: 1 });
@@ -301,29 +312,29 @@ def test_the_first_step_of_pymunk_is_told_sweep_by_sweep(running):
             after: [...motions[0].twist.slice(9, 18)] };
         }"""
     )
-    assert told["whole"] == len(told["swept"]) == pymunk.SHIPPED_ITERATIONS
+    assert answer["whole"] == len(answer["swept"]) == pymunk.SHIPPED_ITERATIONS
     # The last sweep is the step itself, and each adds less than the one before.
-    assert told["swept"][-1] == pytest.approx(told["after"], rel=1e-9)
-    added = np.linalg.norm(np.diff(told["impulses"], axis=0), axis=1)
+    assert answer["swept"][-1] == pytest.approx(answer["after"], rel=1e-9)
+    added = np.linalg.norm(np.diff(answer["impulses"], axis=0), axis=1)
     assert added[-1] < added[0]
 
 
-def test_springs_of_mujoco_are_those_of_the_sliders_and_what_acts_on_nothing_can_not_be_moved(running):
+def test_springs_of_mujoco_follow_the_sliders_and_sliders_without_effect_are_disabled(running):
     live = BY_NAME["four_bar"].scene("driven")
     springs = {"integrator": 1, "timeConstant": 0.01, "impedance": STIFFEST[0]}
-    found = asked(running("four_bar"), "four_bar", "driven", springs)
+    answer = asked(running("four_bar"), "four_bar", "driven", springs)
     step = live.scene.duration / live.steps[live.start]
     engine = replace(mujoco.DEFAULT, integrator="RK4", stiffness=TiedToStep(0.01 / step))
     python = engine.build(live.scene.mechanism(), step)(live.frames, live.steps[live.start] // live.frames)
-    assert np.abs(np.reshape(found["motions"]["mujoco"]["pose"], python.pose.shape) - python.pose).max() < 1e-12
-    assert found["idle"] == []
+    assert np.abs(np.reshape(answer["motions"]["mujoco"]["pose"], python.pose.shape) - python.pose).max() < 1e-12
+    assert answer["idle"] == []
     # pymunk has nothing there; the capsule has a solver and a spring.
     assert set(asked(running("skate"), "skate", "the sleigh", {})["idle"]) == {"iterations", "bias"}
-    told = asked(running("skate"), "skate", "the sleigh", {"munk": NAIVE, "mujoco": DOCUMENTED})
-    assert {"iterations", "bias", "integrator", "timeConstant"} <= set(told["idle"])
+    other = asked(running("skate"), "skate", "the sleigh", {"munk": NAIVE, "mujoco": DOCUMENTED})
+    assert {"iterations", "bias", "integrator", "timeConstant"} <= set(other["idle"])
 
 
-def test_the_address_changes_by_the_reader_alone_and_holds_what_he_set(opened):
+def test_the_address_stores_the_changes_of_the_reader_alone(opened):
     page = opened("lessons/four_bar.html", viewport=TALL)
     page.wait_for_selector("#lesson.ready")
     page.locator("#part-2 .set").click()
@@ -338,25 +349,25 @@ def test_the_address_changes_by_the_reader_alone_and_holds_what_he_set(opened):
     assert "up to" in linked.inner_text(".legend .method-1")
 
 
-def test_a_guess_is_answered_with_what_was_measured(opened):
+def test_a_guess_is_answered_with_measured_errors(opened):
     page = opened("lessons/four_bar.html", viewport=TALL, reduced_motion="reduce")
     page.wait_for_selector("#lesson.ready")
     page.locator("#part-5 .answers button").first.click()
     page.wait_for_selector("#part-5 .why[open]")
-    told = page.inner_text("#part-5 .measured")
-    assert told.startswith("Not so. pymunk: ")
-    assert "times as large" in told
+    text = page.inner_text("#part-5 .measured")
+    assert text.startswith("Not so. pymunk: ")
+    assert "times as large" in text
     assert page.locator("#part-5 [data-right].right").count() == 1
-    # The legend tells what the picture was made with, and the picture comes after the answer.
+    # The legend has the settings of the picture, which comes after the answer.
     page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('iterations 1')")
 
 
-@pytest.mark.parametrize("each", [4, pytest.param(1, marks=pytest.mark.slow)])
-def test_every_page_loads_without_a_complaint_and_fits_a_phone(files, opened, each):
-    """Every lesson, and of the others each fourth: pages of one kind have one template; the slow test opens all."""
+@pytest.mark.parametrize("stride", [4, pytest.param(1, marks=pytest.mark.slow)])
+def test_every_page_loads_without_a_complaint_and_fits_a_phone(files, opened, stride):
+    """Open every lesson, and each fourth of the other pages, which share templates; the slow test opens all."""
     names = sorted(name for name in files if name.endswith(".html") and not name.startswith("reference/"))
     lessons = [name for name in names if name.startswith("lessons/")]
-    for name in dict.fromkeys([*lessons, *names[::each]]):
+    for name in dict.fromkeys([*lessons, *names[::stride]]):
         page = opened(name, viewport=PHONE)
         assert page.title()
         wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
@@ -364,7 +375,7 @@ def test_every_page_loads_without_a_complaint_and_fits_a_phone(files, opened, ea
         page.context.close()
 
 
-def test_a_motion_is_played_dragged_and_switched_by_keys_alone(opened):
+def test_a_motion_is_played_moved_and_switched_by_keys(opened):
     page = opened("lessons/four_bar.html", reduced_motion="reduce")
     page.wait_for_selector("#lesson.ready")
     clock = page.locator(".clock")
@@ -385,7 +396,7 @@ def test_a_motion_is_played_dragged_and_switched_by_keys_alone(opened):
     page.keyboard.press("Enter")
 
 
-def test_without_a_script_words_pictures_and_tables_are_there(opened):
+def test_texts_pictures_and_tables_need_no_script(opened):
     page = opened("lessons/four_bar.html", java_script_enabled=False)
     assert "Three bars and four pins" in page.inner_text("main")
     assert page.locator(".motion.truth .body").count() == 3
@@ -400,9 +411,9 @@ def test_without_a_script_words_pictures_and_tables_are_there(opened):
 def test_tables_and_charts_are_sorted_and_filtered(opened):
     page = opened("results/index.html")
     table = page.locator("table").filter(has=page.locator("tbody tr:nth-child(6)")).first
-    before = table.locator("tbody tr").count()
+    count = table.locator("tbody tr").count()
     page.locator(".filter input").first.fill(table.locator("tbody tr td").first.inner_text().split()[0])
-    assert 0 < table.locator("tbody tr:visible").count() < before
+    assert 0 < table.locator("tbody tr:visible").count() < count
     page.locator(".filter input").first.fill("")
     table.locator("th button").first.click()
     first = table.locator("tbody tr td:first-child").all_inner_texts()
