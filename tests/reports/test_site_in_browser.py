@@ -179,9 +179,9 @@ def marked(*arguments: Any) -> Any:
 SCENES = [marked(lesson.name, live.word) for lesson in LESSONS for live in lesson.scenes]
 # Largest difference of an engine in the page and in Python, relative to the size of the motion. Both do the same
 # operations, but MuJoCo's releases differ, and compilers order some sums differently: measured are 1e-17 to 1e-13.
-# Some motions amplify the last digits: a car on contacts at coarse steps (5e-8), a blade on contacts (2e-11), a crank with a
-# heavy slider (8e-10), an ellipse on a stiff contact (4e-9), gears as polygons (3e-7). MuJoCo iterates for the contact
-# of two ellipses until it moves by less than ccd_tolerance, 1e-6, and releases iterate differently (1.3e-2).
+# Some motions amplify the last digits: a car on contacts at coarse steps (5e-8), a blade on contacts (2e-11), a crank
+# with a heavy slider (8e-10), an ellipse on a stiff contact (4e-9), gears as polygons (3e-7). MuJoCo iterates for the
+# contact of two ellipses until it moves by less than ccd_tolerance, 1e-6, and releases iterate differently (1.3e-2).
 APART = {"gears": 5e-2, "rolling": 1e-7, "wheels": 1e-6, "skate": 1e-9, "slider_crank": 1e-8}
 MUNK_APART = {"gears": 1e-5}
 
