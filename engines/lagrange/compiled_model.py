@@ -11,22 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Regularisation
-from engines.lagrange.dynamics import ADAPTIVE_DOP853, NONE, PROJECTION_ITERATIONS, Tableau
+from engines.lagrange.dynamics import ADAPTIVE_DOP853, NO_STAGES, PROJECTION_ITERATIONS, Tableau
 from engines.lagrange.loading import CompiledFunctions, compiled
 from engines.lagrange.records import (
     CELL_SIZE,
-    COMPLIANT,
-    FORCE_KINDS,
-    JOINT_KINDS,
-    NOT_TABULATED,
-    SPRINGS,
-    TABULATED,
     Records,
+    RollingForm,
+    RowLaw,
     StepStorage,
     System,
     new_storage,
-    system_of,
 )
+from engines.lagrange.system import FORCE_FIELDS, JOINT_FIELDS, system_of
 from engines.rolling_table import BLOCK, FARTHEST, Table, rolled
 from reference.joints import Roll
 from reference.mechanism import Body, Mechanism
@@ -49,11 +45,11 @@ class CellWindows:
 
     def __init__(self, rolls: Sequence[Rolling], records: Records) -> None:
         self._tables = [rolled(rolling) for rolling in rolls]
-        self._records = records  # (rolls,) ROLLING records, changed here
+        self._records = records  # (rolls,) ROLLING_RECORDs, changed here
         self._parts = [np.zeros((0, CELL_SIZE), dtype=complex) for _ in rolls]
         self.cells = np.zeros((0, CELL_SIZE), dtype=complex)
         for number, rolling in enumerate(rolls):
-            if records[number]["form"] == TABULATED:
+            if records[number]["form"] == RollingForm.TABULATED:
                 self.move(number, rolling.theta)
 
     def move(self, number: int, theta: float) -> bool:
@@ -120,11 +116,11 @@ class CompiledModel:
         """None if numpy has to evaluate the mechanism: for a pair of curves that no table represents, and for a type of
         joint or force without a compiled function.
         """
-        known = {*map(type, mechanism.joints)} <= {*JOINT_KINDS} and {*map(type, mechanism.forces)} <= {*FORCE_KINDS}
+        known = {*map(type, mechanism.joints)} <= {*JOINT_FIELDS} and {*map(type, mechanism.forces)} <= {*FORCE_FIELDS}
         if not known:
             return None
         system, positions = system_of(mechanism)
-        if np.any(system.rolls["form"] == NOT_TABULATED):
+        if np.any(system.rolls["form"] == RollingForm.NOT_TABULATED):
             return None
         rolls = [joint.rolling for joint in mechanism.joints if isinstance(joint, Roll)]
         windows = CellWindows(rolls, system.rolls)
@@ -133,7 +129,7 @@ class CompiledModel:
     def regularise(self, regularisation: Regularisation, rows: NDArray[np.bool_]) -> None:
         """Regularise the rows that the mask (rows,) selects, by springs, dampers and a compliance."""
         system, selected = self.system, self.positions[rows]
-        system.constants["regularised"] = COMPLIANT if regularisation.compliance > 0 else SPRINGS
+        system.constants["regularised"] = RowLaw.COMPLIANT if regularisation.compliance > 0 else RowLaw.SPRINGS
         for name in ("stiffness", "damping", "compliance"):
             system.equations[name][selected] = getattr(regularisation, name)
         system.equations["without_bias"][selected] = not regularisation.complete
@@ -243,5 +239,5 @@ def compile_functions(adaptive: bool) -> None:
     if adaptive:
         model.adaptive_steps(1e-3, 1.0, 0, poses, twists)
     else:
-        model.fixed_steps(NONE, 0, 1.0, 1, 0, poses, twists)
+        model.fixed_steps(NO_STAGES, 0, 1.0, 1, 0, poses, twists)
     model.reactions(1.0, poses, twists)

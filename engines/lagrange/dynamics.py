@@ -1,4 +1,4 @@
-"""Exact multipliers in numpy: what runs without numba, and what the compiled code is held against."""
+"""Exact multipliers in numpy: used without numba, and the comparison for the compiled code."""
 
 from __future__ import annotations
 
@@ -11,34 +11,29 @@ from scipy.integrate import DOP853
 from scipy.linalg import get_lapack_funcs
 
 from engines import Regularisation
+from engines.lagrange.records import CLOSED, LEAST_INVERSE_INERTIA
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE, rank, solve_symmetric
 
 Array = NDArray[np.float64]
 
 PROJECTION_ITERATIONS = 8
-# Newton's method is quadratic: after a correction this small, in parts of the mechanism's length, the next would be
-# lost in rounding.
-CLOSED = 1e-9
-# Steps that are accepted between two samples, some seconds for a few bodies, and what each sample adds to these for the
-# whole run. Compiled code, which is faster, allows ten times as many.
-MOST_STEPS, EACH_SAMPLE = 2_000, 100
+# Accepted steps of an adaptive run in numpy: at first, and further ones for each sample. They take some seconds for a
+# few bodies; compiled code, which is faster, allows ten times as many.
+MOST_NUMPY_STEPS, NUMPY_STEPS_PER_SAMPLE = 2_000, 100
 
 (_solve_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
-# A soft row's compliance is counted in its own inverse inertia while the rigid rows hold. Of a row that rigid rows hold
-# already nothing is left: it gets at least this part of the inverse inertia that it has alone.
-LEAST_INVERSE_INERTIA = 0.1
 
 
 class Tableau(NamedTuple):
-    """Stages (n, n), weights (n,) and nodes (n,)."""
+    """An explicit Runge-Kutta method: stages (n, n), weights (n,) and nodes (n,)."""
 
     stages: Array
     weights: Array
     nodes: Array
 
 
-NONE = Tableau(np.zeros((0, 0)), np.zeros(0), np.zeros(0))  # of the semi-implicit Euler method
+NO_STAGES = Tableau(np.zeros((0, 0)), np.zeros(0), np.zeros(0))  # stands for the semi-implicit Euler method
 RK4 = Tableau(
     np.array([[0, 0, 0, 0], [0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 1, 0]]),
     np.array([1, 2, 2, 1]) / 6,
@@ -50,7 +45,7 @@ FIXED_DOP853 = Tableau(DOP853.A.copy(), DOP853.B.copy(), DOP853.C.copy())
 class Embedded(NamedTuple):
     """DOP853 with its error estimates and its dense output: Hairer, Norsett and Wanner, part I, section II.6.
 
-    The thirteenth stage stands at the end of the step, the last three are for dense output alone.
+    The thirteenth stage is at the end of the step; the last three are for dense output only.
     """
 
     stages: Array  # (16, 16)
@@ -62,9 +57,8 @@ class Embedded(NamedTuple):
 
 
 def _embedded() -> Embedded:
-    extra, own = DOP853.A_EXTRA, DOP853.A
     stages = np.zeros((16, 16))
-    stages[:12, :12], stages[12, :12], stages[13:, :] = own, DOP853.B, extra
+    stages[:12, :12], stages[12, :12], stages[13:, :] = DOP853.A, DOP853.B, DOP853.A_EXTRA
     nodes = np.concatenate([DOP853.C, [1.0], DOP853.C_EXTRA])
     return Embedded(stages, DOP853.B.copy(), nodes, DOP853.E3.copy(), DOP853.E5.copy(), DOP853.D.copy())
 
@@ -73,10 +67,10 @@ ADAPTIVE_DOP853 = _embedded()
 
 
 def solve_rows(matrix: Array, right: Array, dependent: bool = False, least_pivot: float = 0.0) -> Array:
-    """x (rows,) or (rows, n) with matrix x = right for a symmetric, positive semidefinite matrix (rows, rows).
+    """Solve matrix x = right, (rows,) or (rows, n), for a symmetric, positive semidefinite matrix (rows, rows).
 
-    By Cholesky's factors; the smallest solution where rows are known to be `dependent`, or where a pivot is below
-    `least_pivot` of its row's diagonal. NaN for a matrix that is not finite.
+    By Cholesky's factors; the minimum-norm solution if rows are known to be `dependent`, or if a pivot is below
+    `least_pivot` times its row's diagonal. NaN for a matrix that is not finite.
     """
     if not dependent:
         factor, solution, failed = _solve_positive(matrix, right, lower=True)
@@ -97,9 +91,9 @@ def constrained_acceleration(
 ) -> tuple[Array, Array]:
     """Accelerations a (bodies, 3) and reactions r (rows,) with M a = f + J^T r and J a + compliance r = target.
 
-    pose, twist (bodies, 3); target (rows,), the bias -J_dot v of ideal rows unless given: subtract damping times slip
-    and stiffness times gap for rows with a spring and a damper. compliance: 0, or symmetric (rows, rows) [1/kg, or
-    1/(kg m^2) in rows of torque]. The smallest reactions where a row's pivot is below `least_pivot` of its diagonal.
+    pose, twist (bodies, 3); target (rows,): by default the bias -J_dot v of ideal rows. For rows with a spring and a
+    damper, subtract damping times slip and stiffness times gap. compliance: 0, or symmetric (rows, rows) [1/kg, or
+    1/(kg m^2) in rows of torque]. Minimum-norm reactions if a row's pivot is below `least_pivot` times its diagonal.
     """
     free = np.broadcast_to(mechanism.unconstrained(pose, twist), pose.shape)
     if not mechanism.row_count:
@@ -112,47 +106,55 @@ def constrained_acceleration(
 
 
 def inverse_inertia(matrix: Array, soft: NDArray[np.bool_], least: float = LEAST_INVERSE_INERTIA) -> Array:
-    """The inverse inertia (rows,) that each soft row feels while the rigid rows hold, from J M^-1 J^T (rows, rows).
+    """The inverse inertia (rows,) of each soft row while the rigid rows hold, from J M^-1 J^T (rows, rows).
 
-    It is the diagonal of the Schur complement, and at least `least` of the diagonal; rigid rows keep their diagonal.
+    It is the diagonal of the Schur complement, and at least `least` times the diagonal; rigid rows keep their diagonal.
     """
     out = np.diag(matrix).copy()
     if not soft.all():
         coupled = matrix[np.ix_(~soft, soft)]
-        held = solve_rows(matrix[np.ix_(~soft, ~soft)], coupled, least_pivot=RANK_TOLERANCE)
-        out[soft] -= np.einsum("ij,ij->j", coupled, held)
+        reactions = solve_rows(matrix[np.ix_(~soft, ~soft)], coupled, least_pivot=RANK_TOLERANCE)
+        out[soft] -= np.einsum("ij,ij->j", coupled, reactions)
     return np.maximum(out, least * np.diag(matrix))
+
+
+def regularised_bias(
+    regularisation: Regularisation, soft: NDArray[np.bool_], bias: Array, slip: Array, gap: Array
+) -> Array:
+    """The bias (..., rows) of rows of which the mask (rows,) `soft` selects the regularised ones."""
+    kept = bias if regularisation.complete else np.where(soft, 0.0, bias)
+    return kept - soft * (regularisation.damping * slip + regularisation.stiffness * gap)
 
 
 class Dynamics:
     """Accelerations and projections of one mechanism, arranged for speed: one call is one evaluation of the rows.
 
-    `least_pivot` as in `solve_rows`. The rows that `gives` (rows,) names are soft: J a = bias - damping slip -
-    stiffness gap - compliance r, with the compliance in units of `inverse_inertia`; without the bias where the
-    softness is not complete.
+    `soft` (rows,) is the mask of the regularised rows, by default all; the compliance of a soft row is in units of its
+    `inverse_inertia`, which is at least `least_inverse_inertia` times that of the row alone. `least_pivot` as in
+    `solve_rows`.
     """
 
     def __init__(
         self,
         mechanism: Mechanism,
-        softness: Regularisation | None = None,
-        gives: NDArray[np.bool_] | None = None,
-        least: float = LEAST_INVERSE_INERTIA,
+        regularisation: Regularisation | None = None,
+        soft: NDArray[np.bool_] | None = None,
+        least_inverse_inertia: float = LEAST_INVERSE_INERTIA,
         least_pivot: float = 0.0,
     ) -> None:
-        self.mechanism = mechanism
-        self.softness, self.least, self.least_pivot = softness, least, least_pivot
-        self.gives = np.ones(mechanism.row_count, dtype=bool) if gives is None else gives
-        self.unclosed = float("nan")  # s, the first time at which a projection left joints open
+        self.mechanism, self.regularisation = mechanism, regularisation
+        self.least_inverse_inertia, self.least_pivot = least_inverse_inertia, least_pivot
+        self.soft = np.ones(mechanism.row_count, dtype=bool) if soft is None else soft
+        self.open_from = float("nan")  # s, the first time at which a projection left joints open
         self.weight = 1 / mechanism.inertias.reshape(-1)
         self.holonomic = mechanism.holonomic
         self.unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
-        # Redundant rows (two wheels on one axle) make the row system singular; then the smallest reactions are taken.
+        # Dependent rows (two wheels on one axle) make the row system singular; its minimum-norm solution is used.
         rows = mechanism.rows(mechanism.pose)
-        self.redundant = rows.size > 0 and rank(rows, mechanism.length_scale) < rows.shape[0]
+        self.has_dependent_rows = rows.size > 0 and rank(rows, mechanism.length_scale) < rows.shape[0]
 
     def _solve(self, rows: Array, right: Array) -> Array:
-        return solve_rows((rows * self.weight) @ rows.T, right, self.redundant, self.least_pivot)
+        return solve_rows((rows * self.weight) @ rows.T, right, self.has_dependent_rows, self.least_pivot)
 
     def acceleration(self, pose: Array, twist: Array, t: float) -> Array:
         """Accelerations (bodies, 3) under gravity, forces and the joints' reactions."""
@@ -160,31 +162,34 @@ class Dynamics:
             return self.mechanism.unconstrained(pose, twist)
         if not (np.isfinite(pose).all() and np.isfinite(twist).all()):  # curves have no contact there
             return np.full_like(pose, np.nan)
-        return self.under(*self.reaction(pose, twist, t), pose, twist)
+        return self.acceleration_under(*self.reaction(pose, twist, t), pose, twist)
 
-    def under(self, rows: Array, reaction: Array, pose: Array, twist: Array) -> Array:
-        """Accelerations (bodies, 3) under these reactions (rows,)."""
+    def acceleration_under(self, rows: Array, reaction: Array, pose: Array, twist: Array) -> Array:
+        """Accelerations (bodies, 3) under given reactions (rows,)."""
         free = self.mechanism.unconstrained(pose, twist).reshape(-1)
         return (free + self.weight * (rows.T @ reaction)).reshape(-1, 3)
 
     def reaction(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
-        """The rows (rows, 3 bodies), and their multipliers (rows,): the joints' reactions [N, N m]."""
-        mechanism, softness = self.mechanism, self.softness
+        """The rows J (rows, 3 bodies), and their multipliers (rows,): the joints' reactions [N, N m]."""
+        mechanism, regularisation = self.mechanism, self.regularisation
         rows, bias = mechanism.rows(pose), mechanism.bias(pose, twist)
-        if softness is not None:
+        if regularisation is not None:
             slip = rows @ twist.reshape(-1) - mechanism.rate
             gap = np.where(self.holonomic, mechanism.gap(pose, t), 0.0)
-            bias = bias if softness.complete else np.where(self.gives, 0.0, bias)
-            bias = bias - self.gives * (softness.damping * slip + softness.stiffness * gap)
+            bias = regularised_bias(regularisation, self.soft, bias, slip, gap)
         right = bias - rows @ mechanism.unconstrained(pose, twist).reshape(-1)
-        if softness is None or not softness.compliance:
+        if regularisation is None or not regularisation.compliance:
             return rows, self._solve(rows, right)
         matrix = (rows * self.weight) @ rows.T
-        matrix += softness.compliance * np.diag(self.gives * inverse_inertia(matrix, self.gives, self.least))
+        unit = inverse_inertia(matrix, self.soft, self.least_inverse_inertia)
+        matrix += regularisation.compliance * np.diag(self.soft * unit)
         return rows, solve_rows(matrix, right, least_pivot=RANK_TOLERANCE)
 
     def project(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
-        """The nearest pose (Newton) and twist, in the metric of the mass matrix, that satisfy the joints."""
+        """The nearest pose (by Newton's method) and twist, in the metric of the mass matrix, that satisfy the joints.
+
+        Sets `open_from` if the iterations leave joints open.
+        """
         mechanism = self.mechanism
         if not mechanism.row_count or not np.all(np.isfinite(pose)):
             return pose, twist
@@ -197,7 +202,7 @@ class Dynamics:
                 if not np.max(np.abs(correction) / self.unit) > CLOSED:
                     break
             else:
-                self.unclosed = t if np.isnan(self.unclosed) else self.unclosed
+                self.open_from = t if np.isnan(self.open_from) else self.open_from
             if not np.all(np.isfinite(pose)):
                 return pose, twist
         rows = mechanism.rows(pose)
@@ -209,7 +214,7 @@ Step = Callable[[Array, Array, float, float], tuple[Array, Array]]
 
 
 def semi_implicit_euler(dynamics: Dynamics) -> Step:
-    """Kick, then drift."""
+    """The velocity changes first, and the pose by the new velocity."""
 
     def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
         twist = twist + dt * dynamics.acceleration(pose, twist, t)
@@ -235,23 +240,24 @@ def runge_kutta(dynamics: Dynamics, tableau: Tableau) -> Step:
 
 
 def adaptive(dynamics: Dynamics, tolerance: float) -> Step:
-    """One interval between samples by DOP853 with steps of its own choice; NaN where they are too small or too many."""
-    tolerance = max(tolerance, 100 * float(np.finfo(float).eps))  # scipy's least
-    left = MOST_STEPS
+    """Adaptive steps of DOP853 from one sample to the next; NaN if they become too small or too many."""
+    tolerance = max(tolerance, 100 * float(np.finfo(float).eps))  # the smallest that scipy accepts
+    steps_left = MOST_NUMPY_STEPS
     allowed: Any = tolerance * np.append(dynamics.unit, dynamics.unit / dynamics.mechanism.time_scale)
 
     def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
         def rates(at: float, state: Array) -> Array:
+            velocity = state[state.size // 2 :]
             own_pose, own_twist = state.reshape(2, -1, 3)
-            return np.concatenate([state[own_pose.size :], dynamics.acceleration(own_pose, own_twist, at).reshape(-1)])
+            return np.concatenate([velocity, dynamics.acceleration(own_pose, own_twist, at).reshape(-1)])
 
         start = np.concatenate([pose.reshape(-1), twist.reshape(-1)])
         solver: Any = DOP853(rates, t, start, t + dt, rtol=tolerance, atol=allowed)
-        nonlocal left
-        while solver.status == "running" and left > 0:
+        nonlocal steps_left
+        while solver.status == "running" and steps_left > 0:
             solver.step()
-            left -= 1
-        left += EACH_SAMPLE
+            steps_left -= 1
+        steps_left += NUMPY_STEPS_PER_SAMPLE
         state = solver.y if solver.status == "finished" else np.full_like(start, np.nan)
         return state.reshape(2, -1, 3)[0], state.reshape(2, -1, 3)[1]
 

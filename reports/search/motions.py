@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from engines import CLAIM, ConvergenceOrder, Engine, NotDeclared
 from engines.constraint_error import FORCES, largest_force
-from engines.lagrange import HELD, TRUTH
+from engines.lagrange import JUDGE_CLAIM, TRUTH
 from engines.lagrange.dynamics import inverse_inertia
 from engines.remembered import by_identity
 from reference.mechanism import Mechanism
@@ -79,7 +79,7 @@ def errors(engine: Engine, mechanism: Mechanism) -> Errors | Skip:
     if not np.isfinite(truth.pose).all():
         return Skip("the judge itself finds no motion")
     if truth.unresolved_at is not None:
-        return Skip(f"the judge itself does not hold {HELD:g}, as it says")
+        return Skip(f"the judge itself does not hold {JUDGE_CLAIM:g}, as it says")
     if max(turned_in_a_step(mechanism, dt, *state) for state in zip(truth.pose, truth.twist, strict=True)) > 1:
         return Skip("steps are too long for what turns, so that no order is seen")
     case = _Case(engine, mechanism, promise, truth, dt)
@@ -304,7 +304,7 @@ def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | 
         return Skip("it has no estimate of its own error")
     truth = _judged_longer(mechanism)
     if truth.unresolved_at is not None or truth.warnings or not np.isfinite(truth.pose).all():
-        return Skip(f"the judge itself does not hold {HELD:g}, as it says")
+        return Skip(f"the judge itself does not hold {JUDGE_CLAIM:g}, as it says")
     return compared(mechanism, run, truth)
 
 

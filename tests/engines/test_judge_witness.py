@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from engines.lagrange import HELD, TRUTH
+from engines.lagrange import JUDGE_CLAIM, TRUTH
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -185,7 +185,7 @@ def test_the_judge_moves_random_mechanisms_as_newtons_law_does(number: int) -> N
 class WitnessedCase(NamedTuple):
     """In radians and parts of the mechanism's length, velocities in its time: by how much judge and witness are
     `apart`, and the witness from itself at another tolerance; NaN where one of them stops. `resolved`: whether the
-    judge claims to hold HELD.
+    judge claims to hold JUDGE_CLAIM.
     """
 
     number: int
@@ -228,8 +228,8 @@ STIFF_CASES = (59, 114, 237, 411)  # 10 to 3,204 times faster than gravity and t
 
 def held(found: list[WitnessedCase]) -> list[WitnessedCase]:
     """Those that can be compared: the judge claims them, and the witness knows them better than the claim."""
-    both = [one for one in found if one.resolved and one.doubt < HELD]
-    wrong = [one for one in both if not one.apart < HELD + one.doubt]
+    both = [one for one in found if one.resolved and one.doubt < JUDGE_CLAIM]
+    wrong = [one for one in both if not one.apart < JUDGE_CLAIM + one.doubt]
     assert wrong == [], f"{len(wrong)} of {len(found)}"
     return both
 

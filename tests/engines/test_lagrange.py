@@ -10,7 +10,7 @@ from scipy.special import ellipj, ellipk
 
 from engines import Regularisation
 from engines.constrained import constrained
-from engines.lagrange import HELD, TRUTH, Judge, Lagrange
+from engines.lagrange import JUDGE_CLAIM, TRUTH, Judge, Lagrange
 from engines.lagrange.dynamics import RK4, Dynamics, constrained_acceleration, inverse_inertia, runge_kutta
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
@@ -54,7 +54,7 @@ def test_a_judge_estimates_its_error_and_says_from_when_on_it_does_not_hold_its_
     assert (run.unresolved_at is None) is resolved
     assert any("unresolved" in warning for warning in run.warnings) is not resolved
     if run.unresolved_at is not None:
-        assert np.all(estimate[run.t < run.unresolved_at] < HELD)
+        assert np.all(estimate[run.t < run.unresolved_at] < JUDGE_CLAIM)
 
 
 @pytest.mark.parametrize("method", ["euler", "rk4", "dop853"])

@@ -13,7 +13,7 @@ from engines import Regularisation
 from engines.lagrange import METHODS, Lagrange, loading
 from engines.lagrange.compiled_model import CompiledModel
 from engines.lagrange.dynamics import RK4
-from engines.lagrange.records import FORCE_KINDS, JOINT_KINDS, system_of
+from engines.lagrange.system import FORCE_FIELDS, JOINT_FIELDS, system_of
 from reference.couplings import Coupling
 from reference.forces import CoupledForce, Damper, TorsionDamper
 from reference.mechanism import Mechanism
@@ -55,7 +55,7 @@ def test_random_mechanisms_of_all_joints_links_and_forces_move_as_in_numpy(numbe
 def test_the_random_mechanisms_have_every_joint_link_and_force_of_the_compiled_code():
     drawn = [random_mechanism(21, number, EVERY) for number in range(12)]
     kinds = {type(part) for mechanism in drawn for part in (*mechanism.joints, *mechanism.forces)}
-    assert kinds == {*JOINT_KINDS, *FORCE_KINDS} - {Coupling, CoupledForce}  # see tests/engines/test_couplings.py
+    assert kinds == {*JOINT_FIELDS, *FORCE_FIELDS} - {Coupling, CoupledForce}  # see tests/engines/test_couplings.py
 
 
 def test_rows_that_follow_from_others_change_no_motion_and_share_the_reaction():
@@ -109,7 +109,9 @@ def test_where_a_table_has_no_cell_numpy_goes_on(monkeypatch):
 
 @pytest.mark.parametrize("compiled", [True, False])
 def test_a_pendulum_that_no_step_can_follow_is_told_and_ends(compiled, monkeypatch):
-    monkeypatch.setattr("engines.lagrange.dynamics.MOST_STEPS", 200)  # of the interpreted path: reached as well, sooner
+    monkeypatch.setattr(
+        "engines.lagrange.dynamics.MOST_NUMPY_STEPS", 200
+    )  # of the interpreted path: reached as well, sooner
     # A bar of a micrometre on a bar of a metre: its period is a thousandth, and the tolerance asks for every swing.
     fast = replace(pendulum(length=1e-12), gravity=(0.0, -1e6))
     hopeless = Lagrange(tolerance=1e-14, compiled=compiled).build(fast, 1.0)(2, 1)
@@ -117,14 +119,14 @@ def test_a_pendulum_that_no_step_can_follow_is_told_and_ends(compiled, monkeypat
     assert "can't be held beyond" in hopeless.warnings[0]
 
 
-SOFT = (
+REGULARISATIONS = (
     Regularisation(2500.0, 100.0, 0.01, (True,) * 8),
     Regularisation(2500.0, 100.0, 0.0, (True,) * 8, complete=False),
     Regularisation(2500.0, 100.0, 0.01, (True, True, False, False, True, True, False, True)),
 )
 
 
-@pytest.mark.parametrize("soft", [None, *SOFT])
+@pytest.mark.parametrize("soft", [None, *REGULARISATIONS])
 @pytest.mark.parametrize("project", [False, True])
 def test_the_gates_judge_is_the_same_compiled_and_in_numpy(soft, project):
     scene = FreeFourBar(duration=0.05)

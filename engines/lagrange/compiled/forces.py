@@ -6,7 +6,7 @@ import math
 
 from engines.lagrange.compiled import inlined, inner, merged
 from engines.lagrange.compiled.couplings import term_value
-from engines.lagrange.records import COUPLED_FORCE, DAMPER, FORCE, SPRING, TORQUE, TORSION_SPRING
+from engines.lagrange.records import ForceKind
 
 
 @merged
@@ -18,16 +18,16 @@ def applied_accelerations(system, out):
     for index in range(len(system.forces)):
         force = system.forces[index]
         kind = force.kind
-        if kind == COUPLED_FORCE:
+        if kind == ForceKind.COUPLED_FORCE:
             coupled_force(system, force, out)
             continue
         first, second = bodies[force.first], bodies[force.second]
-        if kind in (SPRING, DAMPER, FORCE):
+        if kind in (ForceKind.SPRING, ForceKind.DAMPER, ForceKind.FORCE):
             point_force(bodies, force, first, second, out)
             continue
-        if kind == TORQUE:
+        if kind == ForceKind.TORQUE:
             torque = force.load
-        elif kind == TORSION_SPRING:
+        elif kind == ForceKind.TORSION_SPRING:
             torque = -force.stiffness * (second.angle - first.angle - force.rest)
         else:
             torque = -force.damping * (second.omega - first.omega)
@@ -42,11 +42,11 @@ def point_force(bodies, force, first, second, out):
     ay = first.sin * force.first_x + first.cos * force.first_y
     bx = second.cos * force.second_x - second.sin * force.second_y
     by = second.sin * force.second_x + second.cos * force.second_y
-    if force.kind == FORCE:
+    if force.kind == ForceKind.FORCE:
         push(bodies, force.second, force.x, force.y, bx * force.y - by * force.x, out)
         return
     x, y = second.x + bx - first.x - ax, second.y + by - first.y - ay
-    if force.kind == SPRING:
+    if force.kind == ForceKind.SPRING:
         pull = force.stiffness  # over the distance
         if force.rest != 0:
             pull -= force.stiffness * force.rest / math.sqrt(x * x + y * y)

@@ -11,7 +11,7 @@ import math
 from engines.lagrange.compiled import inlined
 from engines.lagrange.compiled.couplings import coupling_equations
 from engines.lagrange.compiled.rolling import roll_equations
-from engines.lagrange.records import COUPLING, DRIVE, GEAR, PIN, ROD, ROLL, SLOT, WELD
+from engines.lagrange.records import JointKind
 
 
 @inlined
@@ -32,23 +32,23 @@ def set_equations(system, t):
         joint = system.joints[index]
         kind, row = joint.kind, joint.row
         first, second = bodies[joint.first], bodies[joint.second]
-        if kind == COUPLING:
+        if kind == JointKind.COUPLING:
             continue  # see `coupling_equations`
-        if kind in (DRIVE, GEAR):
+        if kind in (JointKind.DRIVE, JointKind.GEAR):
             angle_equation(joint, first, second, t, equations[row], ends, 2 * row)
             continue
-        if kind == ROLL:
+        if kind == JointKind.ROLL:
             roll_equations(system, system.rolls[joint.roll], joint.roll, first, second, row)
             continue
         ax = first.cos * joint.first_x - first.sin * joint.first_y
         ay = first.sin * joint.first_x + first.cos * joint.first_y
         bx = second.cos * joint.second_x - second.sin * joint.second_y
         by = second.sin * joint.second_x + second.cos * joint.second_y
-        if kind in (PIN, WELD):
+        if kind in (JointKind.PIN, JointKind.WELD):
             pin_equations(first, second, ax, ay, bx, by, equations, ends, row)
-            if kind == WELD:
+            if kind == JointKind.WELD:
                 angle_equation(joint, first, second, t, equations[row + 2], ends, 2 * row + 4)
-        elif kind == ROD:
+        elif kind == JointKind.ROD:
             rod_equation(joint, first, second, ax, ay, bx, by, equations[row], ends[2 * row], ends[2 * row + 1])
         else:
             line_equation(joint, first, second, ax, ay, bx, by, equations[row], ends[2 * row], ends[2 * row + 1])
@@ -109,7 +109,7 @@ def line_equation(joint, first, second, ax, ay, bx, by, equation, at_first, at_s
     """
     omega, spin = first.omega, second.omega
     apart_x, apart_y = second.x + bx - first.x, second.y + by - first.y
-    angle = joint.angle + (first.angle if joint.kind == SLOT else second.angle)
+    angle = joint.angle + (first.angle if joint.kind == JointKind.SLOT else second.angle)
     x, y = math.cos(angle), math.sin(angle)
     vx = second.vx - spin * by - first.vx
     vy = second.vy + spin * bx - first.vy
@@ -118,7 +118,7 @@ def line_equation(joint, first, second, ax, ay, bx, by, equation, at_first, at_s
     along = x * vx + y * vy
     relative_along = x * (vx + omega * apart_y) + y * (vy - omega * apart_x)
     centripetal = spin * spin * (x * by - y * bx)
-    if joint.kind == SLOT:
+    if joint.kind == JointKind.SLOT:
         equation.gap = x * (apart_y - ay) - y * (apart_x - ax)
         equation.bias = centripetal + omega * (along + relative_along)
     else:

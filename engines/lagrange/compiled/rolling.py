@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from engines.lagrange.compiled import inner, merged
-from engines.lagrange.records import ON_LINE, ON_ROUND
+from engines.lagrange.records import RollingForm
 
 
 @merged
@@ -39,11 +39,11 @@ def roll_equations(system, roll, number, first, second, row):
 def contact(system, roll, number, theta):
     """P, P', P'', the tangent e_t and its turning rate per radian, in the first body's frame; NaN without a cell."""
     turn = complex(math.cos(theta), math.sin(theta))
-    if roll.form == ON_LINE:
+    if roll.form == RollingForm.ON_LINE:
         out = turn * roll.middle
         place = roll.origin + roll.along * (theta - roll.start) - out
         return place, roll.along - 1j * out, out, roll.along * (1 / abs(roll.along)), 0.0
-    if roll.form == ON_ROUND:
+    if roll.form == RollingForm.ON_ROUND:
         angle = roll.angle + roll.turning * (theta - roll.start)
         tangent = complex(math.cos(angle), math.sin(angle))
         radius, out = roll.radius * tangent, turn * roll.middle

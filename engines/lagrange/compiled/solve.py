@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from engines.lagrange.compiled import inlined, inner, merged, unsigned
-from engines.lagrange.records import ALL_ROWS, COMPLIANT, HOLONOMIC_ROWS, RIGID_ROWS
+from engines.lagrange.records import LEAST_INVERSE_INERTIA, RowLaw, RowSelection
 
 # The largest pivot, relative to the diagonal, of a row that follows from others, where all rows are independent at the
 # start: a thousand times the rounding of the product.
@@ -24,16 +24,15 @@ WELL_CONDITIONED = 1e-2
 # More rows than this are always corrected once: the condition of a long chain is not visible in its pivots.
 FEW_ROWS = 24
 MOST_CORRECTIONS = 4
-LEAST_INVERSE_INERTIA = 0.1  # as in `engines.lagrange.dynamics`
 
 
 @inlined
 def is_left_out(system, row):
     """Whether a row does not belong to the selected rows; it then gets a diagonal of one and no coupling."""
     selection = system.status.selection
-    if selection == HOLONOMIC_ROWS:
+    if selection == RowSelection.HOLONOMIC:
         return system.rows[row].holonomic == 0
-    return selection == RIGID_ROWS and system.equations[row].compliance > 0
+    return selection == RowSelection.RIGID and system.equations[row].compliance > 0
 
 
 @inlined
@@ -61,7 +60,7 @@ def factorise(system):
     smallest = 1.0
     for row in range(len(rows)):
         first, begin = rows[unsigned(row)].column, rows[unsigned(row)].begin
-        if system.status.selection != ALL_ROWS:
+        if system.status.selection != RowSelection.ALL:
             leave_out(system, row, first, begin)
         rest = diagonal = matrix[unsigned(begin + row)]
         for column in range(first, row):
@@ -174,7 +173,7 @@ def row_times(system, index, vector):
 @inner
 def factorise_rows(system):
     """Set the factor of the selected rows."""
-    if system.constants.regularised == COMPLIANT and system.status.selection == ALL_ROWS:
+    if system.constants.regularised == RowLaw.COMPLIANT and system.status.selection == RowSelection.ALL:
         assemble_compliant(system)
     else:
         assemble(system)
@@ -189,13 +188,13 @@ def solve(system, corrections):
     """
     rows, status = len(system.rows), system.status
     reaction, residual, right = system.reaction, system.residual, system.right
-    is_part, pivot = status.selection != ALL_ROWS, status.factor_pivot
+    is_part, pivot = status.selection != RowSelection.ALL, status.factor_pivot
     status.smallest_pivot = min(status.smallest_pivot, pivot)
     for row in range(rows):
         reaction[row] = 0.0 if is_part and is_left_out(system, row) else right[row]
     substitute(system, reaction)
     apply_reactions(system)
-    if system.constants.regularised == COMPLIANT and not is_part:
+    if system.constants.regularised == RowLaw.COMPLIANT and not is_part:
         return  # J change differs from the right side by the compliance
     before = math.inf
     for _ in range(corrections if pivot > WELL_CONDITIONED else MOST_CORRECTIONS):
@@ -225,7 +224,7 @@ def assemble_compliant(system):
     reaction, residual, equations = system.reaction, system.residual, system.equations
     rows = len(system.rows)
     assemble(system)
-    system.status.selection = RIGID_ROWS
+    system.status.selection = RowSelection.RIGID
     factorise(system)
     for compliant in range(rows):
         if is_left_out(system, compliant):
@@ -239,7 +238,7 @@ def assemble_compliant(system):
             for row in range(rows):
                 inverse_inertia -= residual[row] * row_times(system, row, system.change)
             equations[compliant].inverse_inertia = max(inverse_inertia, LEAST_INVERSE_INERTIA * alone)
-    system.status.selection = ALL_ROWS
+    system.status.selection = RowSelection.ALL
     assemble(system)
     for row in range(rows):
         equation = equations[row]

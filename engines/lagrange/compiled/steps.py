@@ -8,11 +8,7 @@ from engines.lagrange.compiled import entry, inlined, inner, merged
 from engines.lagrange.compiled.forces import applied_accelerations
 from engines.lagrange.compiled.joints import set_bodies, set_equations
 from engines.lagrange.compiled.solve import FEW_ROWS, WELL_CONDITIONED, factorise_rows, row_times, solve
-from engines.lagrange.records import ALL_ROWS, HOLONOMIC_ROWS, IDEAL
-
-# Newton's method is quadratic: after a correction this small, in units of the mechanism's length, the next one is
-# below rounding.
-CLOSED = 1e-9
+from engines.lagrange.records import CLOSED, RowLaw, RowSelection
 
 
 @inner
@@ -24,7 +20,7 @@ def accelerate(system, pose, twist, t, out):
     if len(system.rows) > 0:
         set_equations(system, t)
         set_right_side(system, twist, out)
-        system.status.selection = ALL_ROWS
+        system.status.selection = RowSelection.ALL
         factorise_rows(system)
         solve(system, 1 if len(system.rows) > FEW_ROWS else 0)
         for k in range(ground):
@@ -40,7 +36,7 @@ def set_right_side(system, twist, applied):
     rows = len(system.rows)
     for row in range(rows):
         system.right[row] = system.equations[row].bias - row_times(system, row, applied)
-    if system.constants.regularised == IDEAL:
+    if system.constants.regularised == RowLaw.IDEAL:
         return
     for row in range(rows):
         equation = system.equations[row]
@@ -70,7 +66,7 @@ def project(system, pose, twist, t, iterations, pose_unit):
         set_equations(system, t)
         for row in range(rows):
             right[row] = -system.equations[row].gap
-        system.status.selection = ALL_ROWS if all_holonomic else HOLONOMIC_ROWS
+        system.status.selection = RowSelection.ALL if all_holonomic else RowSelection.HOLONOMIC
         factorise_rows(system)
         solve(system, 1 if keeps_factor else 0)
         largest = 0.0
@@ -85,7 +81,7 @@ def project(system, pose, twist, t, iterations, pose_unit):
     set_equations(system, t)
     for row in range(rows):
         right[row] = system.equations[row].rate - row_times(system, row, twist)
-    system.status.selection = ALL_ROWS
+    system.status.selection = RowSelection.ALL
     if not keeps_factor or system.status.factor_pivot < WELL_CONDITIONED:
         factorise_rows(system)
     solve(system, 1 if keeps_factor else 0)
