@@ -174,7 +174,7 @@ class MuJoCo(Engine, Valid):
         softening = stiffness.softening
         if stiffness is self.stiffness and isinstance(stiffness, Hardened) and stiffness.eased:
             with suppress(Unsupported):  # the softening of eased rows is a property of the model
-                softening = self.model(mechanism, dt).softening or softening
+                softening = self.model(mechanism, dt).softening
         # The impedance at a gap of a millimetre and more; with MuJoCo's defaults a closed gap is about twice as soft.
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * softening
         rows = tuple(joint in soft for joint in mechanism.joints for _ in range(joint.size))
@@ -223,7 +223,7 @@ class MuJoCo(Engine, Valid):
 
         Raises Unsupported where our code writes rows or changes compliances.
         """
-        return mjcf(self._model(mechanism, dt, 1.0), self.stiffness.softening)
+        return mjcf(self._model(mechanism, dt, 1.0))
 
     def _model(self, mechanism: Mechanism, dt: float, unit: float | None = None) -> MuJoCoModel:
         is_stepwise = self.skates in STEPWISE and _has(mechanism, Skate)
@@ -237,7 +237,7 @@ class MuJoCo(Engine, Valid):
         model = build_model(mechanism, dt, self, options, unit)
         start = choose_solver(model, self.solvers)
         if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
-            return replace(model, softening=soften_until_solvable(model, self.stiffness.softening, start))
+            return replace(model, softening=soften_until_solvable(model, start))
         return model
 
 

@@ -56,7 +56,7 @@ class MuJoCoModel:
     not counted; `has_user_rows`: some of them are written by a callback. `start_rates`: the rates at t = 0 of
     coordinates of no body of the mechanism, by index in qvel. `unit` [kg]: masses, forces and torques of the compiled
     model are in this unit. `split_bodies`: auxiliary bodies, and the body from which each was split. `softening`: the
-    factor on the compliances where it differs from that of the settings.
+    factor on MuJoCo's compliances.
     """
 
     mechanism: Mechanism
@@ -72,7 +72,7 @@ class MuJoCoModel:
     unit: float = 1.0
     split_bodies: tuple[tuple[str, int], ...] = ()
     spec: Any = None  # mujoco.MjSpec
-    softening: float | None = None
+    softening: float = 1.0
 
     @contextmanager
     def callback_installed(self) -> Iterator[None]:
@@ -159,6 +159,7 @@ def build_model(
         unit=unit,
         split_bodies=tuple(builder.split_bodies),
         spec=builder.spec,
+        softening=settings.stiffness.softening,
     )
 
 

@@ -164,12 +164,12 @@ class MuJoCoRun(OneShot):
         if doubling.needs_half:
             half, more = self._difference(run.pose, 2 * counts, 0.5)
             doubling, stepping = replace(doubling, half=half), stepping + more
-        estimate = doubling.estimate()
+        error, correction = doubling.estimate()
         # Extrapolated poses still have the gaps that are equal in all runs.
-        extrapolated = run.pose[watched] + estimate.correction[watched]
+        extrapolated = run.pose[watched] + correction[watched]
         released = RELEASED_MOTION * closing(self.model.mechanism, run.t[watched], extrapolated, run.t)
-        error = estimate.error + np.maximum.accumulate(np.abs(released))
-        warnings = [*run.warnings, *self._reaction_warnings(run, released, estimate.correction)]
+        error = error + np.maximum.accumulate(np.abs(released))
+        warnings = [*run.warnings, *self._reaction_warnings(run, released, correction)]
         steps, unresolved_at = doubling.unresolved_from(error), None
         if steps is not None:
             unresolved_at = steps * self._dt

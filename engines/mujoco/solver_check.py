@@ -86,14 +86,13 @@ def _remaining_error(compiled: Any, data: Any) -> float:
     return np.inf if failed or not inverse > 0 else float(np.finfo(float).eps / inverse)
 
 
-def soften_until_solvable(model: MuJoCoModel, softening: float, start: Any) -> float:
+def soften_until_solvable(model: MuJoCoModel, start: Any) -> float:
     """Multiply the compliances by 10, at most to MuJoCo's default, until the Newton matrix is well conditioned.
 
-    Returns the new softening. `softening`: the compliances relative to MuJoCo's default; `start`: a mujoco.MjData at
-    the start, solved by the model's solver. 1e-12 is too small where a light body carries a heavy one. Solvers other
-    than Newton's build no such matrix, so the compliances do not change.
+    Returns the new softening. `start`: a mujoco.MjData at the start, solved by the model's solver. 1e-12 is too small
+    where a light body carries a heavy one. Solvers other than Newton's build no such matrix, so nothing changes.
     """
-    compiled = model.compiled
+    compiled, softening = model.compiled, model.softening
     if (
         compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON
         or not solver_residual(compiled, start) < MAX_START_RESIDUAL

@@ -142,11 +142,11 @@ def _upright(x: float, y: float) -> str:
     return _row((x, 0.0, y))
 
 
-def mjcf(model: MuJoCoModel, softening: float) -> str:
+def mjcf(model: MuJoCoModel) -> str:
     """The MJCF of a model in kg. Raises Unsupported where our code changes the model or runs while it is stepped."""
     if model.hooks:
         raise Unsupported("this variant writes rows while it steps: a file would not run without this suite")
-    if softening != 1:
+    if model.softening != 1:
         raise Unsupported("this variant changes compliances that no file can state; take default or tuned")
     root = xml.fromstring(model.spec.to_xml())
     root.set("model", "crosscheck")
@@ -278,12 +278,7 @@ def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
 
 def _points(mechanism: Mechanism, name: str | None) -> list[Vector]:
     """The points of a body's joints, and its centre of mass if these are fewer than two; only joints for the ground."""
-    points = [
-        tuple(getattr(joint, which))
-        for joint in mechanism.joints
-        for owner, which in ((joint.first, "first_point"), (joint.second, "second_point"))
-        if owner == name and hasattr(joint, which) and not (isinstance(joint, Slot) and which == "first_point")
-    ]
+    points = [point for joint in mechanism.joints for owner, point in joint.fixed_points if owner == name]
     if name is not None and len(set(points)) < 2:
         points.append((0.0, 0.0))
     return list(dict.fromkeys(points))

@@ -43,7 +43,7 @@ def mujoco_text(engine: MuJoCo, mechanism: Mechanism, step: float) -> MujocoText
     model = engine.model(mechanism, step, unit=1.0)
     springs = model.compiled.neq or model.compiled.npair
     return MujocoText(
-        mjcf(model, engine.stiffness.softening),
+        mjcf(model),
         tuple(int(model.compiled.body(f"body {number}").id) for number in range(len(mechanism.bodies))),
         links(model),
         () if springs else tuple(name for name in ENGINES["mujoco"] if name != "integrator"),
