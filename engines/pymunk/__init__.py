@@ -25,9 +25,7 @@ that this needs, and its limit of stability, are in `engines.pymunk.convergence`
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from itertools import repeat
-from typing import Any
 
 from engines import Engine
 from engines.extrapolated import Extrapolated
@@ -61,13 +59,6 @@ def bare_loop(engine: Engine, mechanism: Mechanism, dt: Positive, steps: Count) 
     return time.process_time() - begin
 
 
-def read(space: Any, step: float | None = None, without: Sequence[str] = ()) -> Any:
-    """A pymunk.Space as a mechanism: see `engines.pymunk.reading.read`."""
-    from engines.pymunk.reading import read as read_space  # imports this package
-
-    return read_space(space, step, without)
-
-
 __all__ = [
     "DEFAULT",
     "EXTENDED",
@@ -81,5 +72,4 @@ __all__ = [
     "Extended",
     "Pymunk",
     "bare_loop",
-    "read",
 ]

@@ -128,7 +128,7 @@ class Pymunk(Engine, Valid):
 
     @validated
     def settled_for(self, steps: Count) -> Pymunk:
-        """The same engine with `steps` steps in each start-up stage, if it has any; see `extrapolated.Settling`."""
+        """This engine with `steps` steps in each start-up stage, if it has any; see `extrapolated.Settling`."""
         return replace(self, startup_steps=steps) if self.startup_steps else self
 
     @validated

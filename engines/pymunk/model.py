@@ -16,17 +16,8 @@ from typing import Any
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
+from pymunk import constraints
 from pymunk._chipmunk_cffi import lib
-from pymunk.constraints import (
-    Constraint,
-    DampedRotarySpring,
-    DampedSpring,
-    GearJoint,
-    GrooveJoint,
-    PinJoint,
-    PivotJoint,
-    SimpleMotor,
-)
 
 from engines import Size, Unsupported
 from engines.capability import Capability
@@ -45,13 +36,15 @@ from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, 
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
 
+Pair = tuple[pymunk.Body, pymunk.Body]
+Constraints = list[constraints.Constraint]
 # Numbers of scalar rows of the pymunk constraints that joints become; springs have none.
-CONSTRAINT_ROWS: Mapping[type[Constraint], int] = {
-    PivotJoint: 2,
-    SimpleMotor: 1,
-    GrooveJoint: 1,
-    PinJoint: 1,
-    GearJoint: 1,
+CONSTRAINT_ROWS: Mapping[type[constraints.Constraint], int] = {
+    constraints.PivotJoint: 2,
+    constraints.SimpleMotor: 1,
+    constraints.GrooveJoint: 1,
+    constraints.PinJoint: 1,
+    constraints.GearJoint: 1,
 }
 
 
@@ -165,7 +158,7 @@ class _Builder:
                 self.rows += CONSTRAINT_ROWS[type(constraint)]
                 self.solver_rows += CONSTRAINT_ROWS[type(constraint)]
         for element in self.mechanism.forces:
-            FORCES[type(element)](self, element, *self._pair(element))
+            FORCES[type(element)](self, element, self._pair(element))
         self._add_pushes()
         count = len(self.bodies)
         size = Size(bodies=count, coordinates=3 * count, rows=self.rows, solver_rows=self.solver_rows)
@@ -173,7 +166,7 @@ class _Builder:
         updates = tuple(self.before_step), tuple(self.after_step)
         return Model(self.space, tuple(self.bodies.values()), origins, size, self.settings.unit, *updates)
 
-    def _pair(self, element: Any) -> tuple[pymunk.Body, pymunk.Body]:
+    def _pair(self, element: Any) -> Pair:
         ground = self.space.static_body
         first, second = (ground if name is None else self.bodies[name] for name in (element.first, element.second))
         return first, second
@@ -188,70 +181,70 @@ class _Builder:
 
     def anchors(self, element: Any) -> tuple[Vector, Vector]:
         """Both points of an element [m] from the engine's origins: two anchors, so that an open joint stays visible."""
-        return self.from_origin(element.first, element.first_point), self.from_origin(
-            element.second, element.second_point
-        )
+        first, second = (element.first, element.first_point), (element.second, element.second_point)
+        return self.from_origin(*first), self.from_origin(*second)
 
-    def _constraints(self, joint: Joint) -> list[Constraint]:
+    def _constraints(self, joint: Joint) -> Constraints:
         """The constraints of one joint; none if a prescribed motion already contains it."""
         if any(joint in (crank.pin, crank.drive) for crank in self.cranks.values()) or joint in self.turned.values():
             return []
-        first, second = self._pair(joint)
-        self._require_movable(joint, first, second)
-        return CONSTRUCTIONS[type(joint)](self, joint, first, second)
+        pair = self._pair(joint)
+        self._require_movable(joint, pair)
+        return CONSTRUCTIONS[type(joint)](self, joint, pair)
 
-    def _require_movable(self, joint: Joint, first: pymunk.Body, second: pymunk.Body) -> None:
+    def _require_movable(self, joint: Joint, pair: Pair) -> None:
         turns = any(name is not None and name not in self.turned for name in (joint.first, joint.second))
-        moves = pymunk.Body.DYNAMIC in (first.body_type, second.body_type)
-        free = (moves or isinstance(joint, Drive | Gear)) and (turns or not isinstance(joint, Drive | Gear | Weld))
+        free = (can_move(pair) or isinstance(joint, Drive | Gear)) and (
+            turns or not isinstance(joint, Drive | Gear | Weld)
+        )
         if not free:
             raise Unsupported(
                 f"joint {joint.name!r} joins two bodies whose motion is already prescribed; "
                 "a pymunk constraint needs one that forces can move"
             )
 
-    def pin(self, joint: Pin, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
-        return [PivotJoint(first, second, *self.anchors(joint))]
+    def pin(self, joint: Pin, pair: Pair) -> Constraints:
+        return [constraints.PivotJoint(*pair, *self.anchors(joint))]
 
-    def drive(self, joint: Drive, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
-        return [motor(joint, first, second, self.settings.unit)]
+    def drive(self, joint: Drive, pair: Pair) -> Constraints:
+        return [motor(joint, *pair, self.settings.unit)]
 
-    def rod(self, joint: Rod, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
-        constraint = PinJoint(first, second, *self.anchors(joint))
+    def rod(self, joint: Rod, pair: Pair) -> Constraints:
+        constraint = constraints.PinJoint(*pair, *self.anchors(joint))
         constraint.distance = joint.length  # pymunk's default is the distance at the start
         return [constraint]
 
-    def gear(self, joint: Gear, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
+    def gear(self, joint: Gear, pair: Pair) -> Constraints:
         # Chipmunk holds ratio angle_b - angle_a = phase (preStep in its cpGearJoint.c), so both are inverted.
-        return [GearJoint(first, second, joint.phase / joint.ratio, 1 / joint.ratio)]
+        return [constraints.GearJoint(*pair, joint.phase / joint.ratio, 1 / joint.ratio)]
 
-    def weld(self, joint: Weld, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
-        return [PivotJoint(first, second, *self.anchors(joint)), GearJoint(first, second, joint.angle, 1.0)]
+    def weld(self, joint: Weld, pair: Pair) -> Constraints:
+        return [constraints.PivotJoint(*pair, *self.anchors(joint)), constraints.GearJoint(*pair, joint.angle, 1.0)]
 
-    def slot(self, joint: Slot, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
+    def slot(self, joint: Slot, pair: Pair) -> Constraints:
         scale = self.mechanism.length_scale
-        constraints, updates = build_slot(joint, self.settings.slot, first, second, *self.anchors(joint), scale)
+        rows, updates = build_slot(joint, self.settings.slot, *pair, *self.anchors(joint), scale)
         self.before_step += updates
-        return constraints
+        return rows
 
-    def skate(self, joint: Skate, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
+    def skate(self, joint: Skate, pair: Pair) -> Constraints:
         point, scale = self.from_origin(joint.second, joint.second_point), self.mechanism.length_scale
-        constraints, before, after = build_skate(joint, self.settings.skate, first, second, point, scale)
-        self.before_step += before
-        self.after_step += after
-        self.rows += 0 if constraints else 1  # enforced by our code
-        return constraints
+        rows, before_step, after_step = build_skate(joint, self.settings.skate, *pair, point, scale)
+        self.before_step += before_step
+        self.after_step += after_step
+        self.rows += 0 if rows else 1  # enforced by our code
+        return rows
 
-    def roll(self, joint: Roll, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
+    def roll(self, joint: Roll, pair: Pair) -> Constraints:
         if self.settings.roll != "contact":
-            pivot = MovedPivot(joint, first, second, (self.origin(joint.first), self.origin(joint.second)))
+            pivot = MovedPivot(joint, *pair, (self.origin(joint.first), self.origin(joint.second)))
             self.before_step.append(pivot)
             return [pivot.constraint]
         contact = self.settings.contact
         self.space.collision_slop, self.space.collision_bias = contact.slop, contact.bias**self.settings.unit
         sides = (
-            (first, lambda point: self.from_origin(joint.first, point)),
-            (second, lambda point: self.from_origin(joint.second, point)),
+            (pair[0], lambda point: self.from_origin(joint.first, point)),
+            (pair[1], lambda point: self.from_origin(joint.second, point)),
         )
         shapes = contact_shapes(joint, contact, extent_of(self.mechanism), self.rolls, sides)
         self.space.add(*shapes)
@@ -263,32 +256,32 @@ class _Builder:
 
     # A body whose motion is prescribed feels no force, and a spring between two such bodies would divide by zero.
 
-    def spring(self, element: Spring, first: pymunk.Body, second: pymunk.Body) -> None:
-        if pymunk.Body.DYNAMIC in (first.body_type, second.body_type):
+    def spring(self, element: Spring, pair: Pair) -> None:
+        if can_move(pair):
             stiffness = element.stiffness * self.settings.unit * self.settings.unit
-            self.space.add(DampedSpring(first, second, *self.anchors(element), element.rest_length, stiffness, 0.0))
+            self.space.add(constraints.DampedSpring(*pair, *self.anchors(element), element.rest_length, stiffness, 0.0))
 
-    def damper(self, element: Damper, first: pymunk.Body, second: pymunk.Body) -> None:
-        if pymunk.Body.DYNAMIC in (first.body_type, second.body_type):
+    def damper(self, element: Damper, pair: Pair) -> None:
+        if can_move(pair):
             damping = element.damping * self.settings.unit
-            self.space.add(DampedSpring(first, second, *self.anchors(element), 0.0, 0.0, damping))
+            self.space.add(constraints.DampedSpring(*pair, *self.anchors(element), 0.0, 0.0, damping))
 
-    def torsion_spring(self, element: TorsionSpring, first: pymunk.Body, second: pymunk.Body) -> None:
-        if can_turn(first) or can_turn(second):
+    def torsion_spring(self, element: TorsionSpring, pair: Pair) -> None:
+        if can_turn(pair[0]) or can_turn(pair[1]):
             # Chipmunk's relative angle is that of the first against the second (cpDampedRotarySpring.c).
             stiffness = element.stiffness * self.settings.unit * self.settings.unit
-            self.space.add(DampedRotarySpring(first, second, -element.rest_angle, stiffness, 0.0))
+            self.space.add(constraints.DampedRotarySpring(*pair, -element.rest_angle, stiffness, 0.0))
 
-    def torsion_damper(self, element: TorsionDamper, first: pymunk.Body, second: pymunk.Body) -> None:
-        if can_turn(first) or can_turn(second):
-            self.space.add(DampedRotarySpring(first, second, 0.0, 0.0, element.damping * self.settings.unit))
+    def torsion_damper(self, element: TorsionDamper, pair: Pair) -> None:
+        if can_turn(pair[0]) or can_turn(pair[1]):
+            self.space.add(constraints.DampedRotarySpring(*pair, 0.0, 0.0, element.damping * self.settings.unit))
 
-    def force(self, element: Force, first: pymunk.Body, second: pymunk.Body) -> None:
+    def force(self, element: Force, pair: Pair) -> None:
         (x, y), unit = element.force, self.settings.unit
         point = self.from_origin(element.second, element.second_point)
         self.pushed_points.setdefault(element.second, []).append((point, (x * unit * unit, y * unit * unit)))
 
-    def torque(self, element: Torque, first: pymunk.Body, second: pymunk.Body) -> None:
+    def torque(self, element: Torque, pair: Pair) -> None:
         for name, sign in ((element.first, -1.0), (element.second, 1.0)):
             if name is not None:
                 torque = sign * element.torque * self.settings.unit * self.settings.unit
@@ -299,6 +292,11 @@ class _Builder:
             if self.bodies[name].body_type == pymunk.Body.DYNAMIC:
                 push = _push(self.bodies[name], self.pushed_points.get(name, []), self.torques.get(name, 0.0))
                 self.before_step.append(push)
+
+
+def can_move(pair: Pair) -> bool:
+    """Whether impulses can move one of two bodies."""
+    return pymunk.Body.DYNAMIC in (pair[0].body_type, pair[1].body_type)
 
 
 def can_turn(body: pymunk.Body) -> bool:
@@ -323,7 +321,7 @@ def _push(body: pymunk.Body, points: list[tuple[Vector, Vector]], torque: float)
 
 
 # The elements that this adapter builds, each with its construction; all others are refused.
-CONSTRUCTIONS: Mapping[type, Callable[[_Builder, Any, pymunk.Body, pymunk.Body], list[Constraint]]] = {
+CONSTRUCTIONS: Mapping[type, Callable[[_Builder, Any, Pair], Constraints]] = {
     Pin: _Builder.pin,
     Weld: _Builder.weld,
     Gear: _Builder.gear,
@@ -333,7 +331,7 @@ CONSTRUCTIONS: Mapping[type, Callable[[_Builder, Any, pymunk.Body, pymunk.Body],
     Skate: _Builder.skate,
     Roll: _Builder.roll,
 }
-FORCES: Mapping[type, Callable[[_Builder, Any, pymunk.Body, pymunk.Body], None]] = {
+FORCES: Mapping[type, Callable[[_Builder, Any, Pair], None]] = {
     Spring: _Builder.spring,
     Damper: _Builder.damper,
     TorsionSpring: _Builder.torsion_spring,

@@ -9,16 +9,7 @@ from typing import Any
 
 import numpy as np
 import pymunk
-from pymunk.constraints import (
-    Constraint,
-    DampedRotarySpring,
-    DampedSpring,
-    GearJoint,
-    GrooveJoint,
-    PinJoint,
-    PivotJoint,
-    SimpleMotor,
-)
+from pymunk import constraints
 
 from engines import Unsupported
 from engines.pymunk.engine import Pymunk
@@ -33,17 +24,17 @@ def _point(vector: Any) -> str:
 
 
 # The arguments after the two bodies of each kind of constraint that is written; every other is refused.
-ARGUMENTS: Mapping[type[Constraint], Callable[[Any], tuple[str, ...]]] = {
-    PivotJoint: lambda joint: (_point(joint.anchor_a), _point(joint.anchor_b)),
-    PinJoint: lambda joint: (_point(joint.anchor_a), _point(joint.anchor_b)),
-    GrooveJoint: lambda joint: (_point(joint.groove_a), _point(joint.groove_b), _point(joint.anchor_b)),
-    SimpleMotor: lambda joint: (repr(joint.rate),),
-    GearJoint: lambda joint: (repr(joint.phase), repr(joint.ratio)),
-    DampedSpring: lambda joint: (
+ARGUMENTS: Mapping[type[constraints.Constraint], Callable[[Any], tuple[str, ...]]] = {
+    constraints.PivotJoint: lambda joint: (_point(joint.anchor_a), _point(joint.anchor_b)),
+    constraints.PinJoint: lambda joint: (_point(joint.anchor_a), _point(joint.anchor_b)),
+    constraints.GrooveJoint: lambda joint: (_point(joint.groove_a), _point(joint.groove_b), _point(joint.anchor_b)),
+    constraints.SimpleMotor: lambda joint: (repr(joint.rate),),
+    constraints.GearJoint: lambda joint: (repr(joint.phase), repr(joint.ratio)),
+    constraints.DampedSpring: lambda joint: (
         *(_point(joint.anchor_a), _point(joint.anchor_b)),
         *(repr(joint.rest_length), repr(joint.stiffness), repr(joint.damping)),
     ),
-    DampedRotarySpring: lambda joint: (repr(joint.rest_angle), repr(joint.stiffness), repr(joint.damping)),
+    constraints.DampedRotarySpring: lambda joint: (repr(joint.rest_angle), repr(joint.stiffness), repr(joint.damping)),
 }
 
 
@@ -67,7 +58,7 @@ def object_lines(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> list[str
         arguments = ", ".join((names[joint.a], names[joint.b], *ARGUMENTS[type(joint)](joint)))
         lines.append(f"j{number} = pymunk.{kind}({arguments})")
         lines.append(f"j{number}.error_bias = {joint.error_bias!r}")
-        if isinstance(joint, PinJoint):
+        if isinstance(joint, constraints.PinJoint):
             lines.append(f"j{number}.distance = {joint.distance!r}")
         lines.append(f"space.add(j{number})")
     return lines

@@ -19,10 +19,11 @@ from pymunk import constraints
 
 from engines import Size, Unsupported
 from engines.extrapolated import Extrapolated
-from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, bare_loop, methods
+from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, bare_loop, declared, methods
 from engines.pymunk.joints.roll import MovedPivot
 from engines.pymunk.methods import SKATE_METHODS
-from reference.joints import Drive, Pin
+from reference.forces import TorsionDamper
+from reference.joints import Drive, Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Line, Placed, Side
 from reference.rolling.kinematics import Rolling
@@ -33,10 +34,11 @@ from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
+from reference.scenes.wheels.vehicles import CarAndTrailer
 from reference.trajectory import Trajectory
 from tests import ROOT
 from tests.engines.test_matrix import blade_on_a_board
-from tests.mechanisms import elbow, four_bar, rolling_disc
+from tests.mechanisms import elbow, four_bar, pendulum, rolling_disc
 
 FREE, MOVING, DRIVEN = four_bar(), four_bar(10.0), four_bar(10.0, drive=10.0)
 every_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
@@ -280,3 +282,38 @@ def test_a_blade_that_is_aimed_closes_no_gap_and_so_adds_no_noise():
     right = scene.motion(trajectory.t)
     assert largest(trajectory.reaction - right.reaction) < 1e-8
     assert largest(trajectory.twist - right.twist) < 1e-11
+
+
+# Orders
+
+
+def with_blade_at_centre() -> Mechanism:
+    sleigh = SLEIGH.mechanism()
+    (body,), (skate,) = sleigh.bodies, sleigh.joints
+    assert isinstance(skate, Skate)
+    return replace(
+        sleigh, bodies=(replace(body, twist=(0.0, 0.0, 1.0)),), joints=(replace(skate, second_point=(0.0, 0.0)),)
+    )
+
+
+DAMPER = TorsionDamper("damper", None, "rocker", 0.1)
+# For each row of `declared.ORDERS` a mechanism, and the constructions with which it belongs to the row.
+ORDER_CASES = {
+    "contact": (DISC.mechanism(), {"roll": "contact"}),
+    "set velocity": (with_blade_at_centre(), {"skate": "centre"}),
+    "single skate": (SLEIGH.mechanism(), {"skate": "projection"}),
+    "skate": (CarAndTrailer().mechanism(), {"skate": "groove"}),
+    "damper": (replace(FREE, forces=(DAMPER,)), {}),
+    "prescribed": (DRIVEN, {}),
+    "steady": (replace(pendulum(rate=2.0), gravity=(0.0, 0.0)), {}),
+    "at rest": (FREE, {}),
+    "moving": (MOVING, {}),
+}
+
+
+@pytest.mark.parametrize("kind", declared.ORDERS)
+def test_the_orders_of_each_kind_of_mechanism_are_those_of_its_row_in_the_table(kind):
+    mechanism, constructions = ORDER_CASES[kind]
+    fraction_of_gap, whole_gap = (replace(DEFAULT, iterations=1000, error_bias=b, **constructions) for b in (0.5, 0.0))
+    leapfrog = replace(whole_gap, leapfrog=True)
+    assert tuple(e.order(mechanism) for e in (fraction_of_gap, whole_gap, leapfrog)) == declared.ORDERS[kind]

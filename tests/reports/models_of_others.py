@@ -60,7 +60,7 @@ try:
 except Stepped as stepped:
     space, dt = stepped.args
     pymunk.Space.step = own
-    from engines.pymunk import read
+    from engines.pymunk.reading import read
     from tests.reports.models_of_others import tried
     print(json.dumps(tried(lambda without: read(space, dt, without))))
 except BaseException as reason:

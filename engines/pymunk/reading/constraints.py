@@ -10,18 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
-from pymunk.constraints import (
-    Constraint,
-    DampedRotarySpring,
-    DampedSpring,
-    GearJoint,
-    GrooveJoint,
-    PinJoint,
-    PivotJoint,
-    RotaryLimitJoint,
-    SimpleMotor,
-    SlideJoint,
-)
+from pymunk import constraints
 
 from engines.pymunk.joints.slide import groove_is_exact
 from engines.pymunk.model import can_turn
@@ -30,7 +19,7 @@ from reference.forces import Damper, Force, ForceElement, Spring, Torque, Torsio
 from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Slot, Vector
 
 Array = NDArray[np.float64]
-LIMIT_JOINTS = (SlideJoint, RotaryLimitJoint)
+LIMIT_JOINTS = (constraints.SlideJoint, constraints.RotaryLimitJoint)
 EQUALITY = "its min and max are equal, so it is taken as a {}; pymunk's {} holds from both sides at once"
 # Relative difference [rad, or of a length] of the ends of a limit that is rounding.
 EQUAL_ENDS = 1e-12
@@ -53,10 +42,10 @@ class ImportedSpace:
     forces: list[ForceElement] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
     names: Names = field(default_factory=Names)
-    prescribed: list[str] = field(default_factory=list)  # joints that stand for a prescribed motion
+    prescribed: list[str] = field(default_factory=list)  # joints of a prescribed motion
     pushed: dict[int, tuple[Vector, float]] = field(default_factory=dict)  # force, torque by index in `moving`
     suspects: dict[str, str] = field(default_factory=dict)  # joints that are not ideal at any step, with the reason
-    labels: dict[Constraint, str] = field(default_factory=dict)
+    labels: dict[constraints.Constraint, str] = field(default_factory=dict)
 
     def name_of(self, body: pymunk.Body) -> str | None:
         """The body's name in the mechanism; None for the ground."""
@@ -160,7 +149,7 @@ def _add_push(out: ImportedSpace, body: pymunk.Body) -> None:
     out.notes.append(Note(f"the force or torque that stands on {name}", reason))
 
 
-def _add_constraint(out: ImportedSpace, constraint: Constraint, label: str) -> None:
+def _add_constraint(out: ImportedSpace, constraint: constraints.Constraint, label: str) -> None:
     a, b = constraint.a, constraint.b
     # A body of the ground need not be in the space.
     if any(_moves(body) and body.space is not out.space for body in (a, b)):
@@ -182,11 +171,11 @@ def _add_constraint(out: ImportedSpace, constraint: Constraint, label: str) -> N
     add(out, constraint, label)
 
 
-def _add_pin(out: ImportedSpace, pivot: PivotJoint, label: str) -> None:
+def _add_pin(out: ImportedSpace, pivot: constraints.PivotJoint, label: str) -> None:
     out.joints.append(Pin(label, *out.ends(pivot)))
 
 
-def _add_slot(out: ImportedSpace, groove: GrooveJoint, label: str) -> None:
+def _add_slot(out: ImportedSpace, groove: constraints.GrooveJoint, label: str) -> None:
     a, b = groove.a, groove.b
     ends = [out.local(a, point) for point in (groove.groove_a, groove.groove_b)]
     line = pymunk.Vec2d(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1])
@@ -206,8 +195,8 @@ def _add_slot(out: ImportedSpace, groove: GrooveJoint, label: str) -> None:
         )
 
 
-def _add_rod(out: ImportedSpace, constraint: PinJoint | SlideJoint, label: str) -> None:
-    slides = isinstance(constraint, SlideJoint)
+def _add_rod(out: ImportedSpace, constraint: constraints.PinJoint | constraints.SlideJoint, label: str) -> None:
+    slides = isinstance(constraint, constraints.SlideJoint)
     length = float(constraint.min if slides else constraint.distance)
     if not length:
         zero = "its min and max are zero" if slides else "its distance is zero"
@@ -217,22 +206,22 @@ def _add_rod(out: ImportedSpace, constraint: PinJoint | SlideJoint, label: str) 
         out.notes.append(Note(label, EQUALITY.format("rod", "PinJoint")))
 
 
-def _add_fixed_angle(out: ImportedSpace, limit: RotaryLimitJoint, label: str) -> None:
+def _add_fixed_angle(out: ImportedSpace, limit: constraints.RotaryLimitJoint, label: str) -> None:
     angle = float(limit.min) + out.ground_angle(limit.a) - out.ground_angle(limit.b)
     out.joints.append(Drive(label, out.name_of(limit.a), out.name_of(limit.b), 0.0, angle))
     out.notes.append(Note(label, EQUALITY.format("joint that holds the angle", "GearJoint")))
 
 
-def _add_drive(out: ImportedSpace, motor: SimpleMotor, label: str) -> None:
+def _add_drive(out: ImportedSpace, motor: constraints.SimpleMotor, label: str) -> None:
     angle = out.angle(motor.b) - out.angle(motor.a)
     out.joints.append(Drive(label, out.name_of(motor.a), out.name_of(motor.b), -float(motor.rate), angle))
 
 
-def _add_gear(out: ImportedSpace, gear: GearJoint, label: str) -> None:
+def _add_gear(out: ImportedSpace, gear: constraints.GearJoint, label: str) -> None:
     out.joints.append(_gear(out, gear, label))
 
 
-def _gear(out: ImportedSpace, gear: GearJoint, label: str) -> Joint:
+def _gear(out: ImportedSpace, gear: constraints.GearJoint, label: str) -> Joint:
     """angle of a = ratio times angle of b - phase (preStep in Chipmunk's cpGearJoint.c)."""
     ratio, a, b = float(gear.ratio), out.name_of(gear.a), out.name_of(gear.b)
     if not ratio:
@@ -245,13 +234,13 @@ def _gear(out: ImportedSpace, gear: GearJoint, label: str) -> Joint:
     return Gear(label, b, a, ratio, phase)
 
 
-def _add_spring(out: ImportedSpace, spring: DampedSpring, label: str) -> None:
+def _add_spring(out: ImportedSpace, spring: constraints.DampedSpring, label: str) -> None:
     if getattr(spring, "_force_func", None):
         raise refuse(label, "its force is a function of its own")
     _add_elastic_and_viscous(out, spring, label, out.ends(spring), (Spring, Damper), spring.rest_length)
 
 
-def _add_torsion_spring(out: ImportedSpace, spring: DampedRotarySpring, label: str) -> None:
+def _add_torsion_spring(out: ImportedSpace, spring: constraints.DampedRotarySpring, label: str) -> None:
     if getattr(spring, "_torque_func", None):
         raise refuse(label, "its force is a function of its own")
     # Chipmunk's relative angle is that of the first body against the second.
@@ -271,42 +260,42 @@ def _add_elastic_and_viscous(
 
 
 class ConstraintEntry(NamedTuple):
-    """What a kind of constraint is read as, for the page, and the function that adds it."""
+    """The description of a kind of constraint for the page, and the function that adds it to the mechanism."""
 
     read_as: str
     add: Callable[[ImportedSpace, Any, str], None]
 
 
 # The kinds of constraint that are read; every other is refused.
-READ_CONSTRAINTS: Mapping[type[Constraint], ConstraintEntry] = {
-    PivotJoint: ConstraintEntry("a pin", _add_pin),
-    GrooveJoint: ConstraintEntry("a slot", _add_slot),
-    PinJoint: ConstraintEntry("a rod", _add_rod),
-    GearJoint: ConstraintEntry("a gear, or a fixed angle", _add_gear),
-    SimpleMotor: ConstraintEntry("a drive, also from rest", _add_drive),
-    DampedSpring: ConstraintEntry("a spring and a damper", _add_spring),
-    DampedRotarySpring: ConstraintEntry("a torsion spring and damper", _add_torsion_spring),
-    SlideJoint: ConstraintEntry("nothing where it is not reached; a rod where min = max", _add_rod),
-    RotaryLimitJoint: ConstraintEntry(
+READ_CONSTRAINTS: Mapping[type[constraints.Constraint], ConstraintEntry] = {
+    constraints.PivotJoint: ConstraintEntry("a pin", _add_pin),
+    constraints.GrooveJoint: ConstraintEntry("a slot", _add_slot),
+    constraints.PinJoint: ConstraintEntry("a rod", _add_rod),
+    constraints.GearJoint: ConstraintEntry("a gear, or a fixed angle", _add_gear),
+    constraints.SimpleMotor: ConstraintEntry("a drive, also from rest", _add_drive),
+    constraints.DampedSpring: ConstraintEntry("a spring and a damper", _add_spring),
+    constraints.DampedRotarySpring: ConstraintEntry("a torsion spring and damper", _add_torsion_spring),
+    constraints.SlideJoint: ConstraintEntry("nothing where it is not reached; a rod where min = max", _add_rod),
+    constraints.RotaryLimitJoint: ConstraintEntry(
         "nothing where it is not reached; a fixed angle where min = max", _add_fixed_angle
     ),
 }
 
 
-def is_equality(constraint: Constraint) -> bool:
+def is_equality(constraint: constraints.Constraint) -> bool:
     """Whether it is a limit with equal ends, which acts as a joint."""
     if not isinstance(constraint, LIMIT_JOINTS):
         return False
     return constraint.max - constraint.min <= EQUAL_ENDS * max(1.0, abs(constraint.max))
 
 
-def both_sided(limit: Any) -> Constraint:
+def both_sided(limit: Any) -> constraints.Constraint:
     """The pymunk joint that an `is_equality` limit is equivalent to."""
-    if isinstance(limit, SlideJoint):
-        rod = PinJoint(limit.a, limit.b, limit.anchor_a, limit.anchor_b)
+    if isinstance(limit, constraints.SlideJoint):
+        rod = constraints.PinJoint(limit.a, limit.b, limit.anchor_a, limit.anchor_b)
         rod.distance = limit.min
         return rod
-    return GearJoint(limit.a, limit.b, limit.min, 1.0)
+    return constraints.GearJoint(limit.a, limit.b, limit.min, 1.0)
 
 
 def copy_space(imported: ImportedSpace) -> tuple[pymunk.Space, list[pymunk.Body]]:
@@ -320,7 +309,7 @@ def copy_space(imported: ImportedSpace) -> tuple[pymunk.Space, list[pymunk.Body]
             # pymunk (7.3.1) sets the position of a copy before its centre of mass, and so to another place.
             copy.angle, copy.position = body.angle, body.position
     for copy, constraint in zip(space.constraints, original.constraints, strict=True):
-        if isinstance(constraint, PinJoint):
+        if isinstance(constraint, constraints.PinJoint):
             copy.distance = constraint.distance  # a copy of pymunk (7.3.1) takes the present distance of its bodies
     return space, [copies[body] for body in imported.moving]
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
-from pymunk.constraints import Constraint, GrooveJoint, RotaryLimitJoint, SlideJoint
+from pymunk import constraints
 
 from engines.pymunk.iterations import iterations_in_step, stable_gain, worst_factor
 from engines.pymunk.methods import LARGEST_WORK
@@ -201,7 +201,7 @@ class OwnPymunk:
         finite = np.isfinite(acceleration).all(axis=(1, 2)) & np.isfinite(pose).all(axis=(1, 2))
         if self.mechanism.row_count and finite.any():
             reaction[finite] = self.mechanism.reaction(pose[finite], acceleration[finite], twist=twist[finite])
-            # pymunk has no force for the joints that stand for a prescribed motion.
+            # pymunk has no force for the joints of a prescribed motion.
             names = [joint.name for joint in self.mechanism.joints for _ in range(joint.size)]
             reaction[:, [name in self.imported.prescribed for name in names]] = np.nan
         return Trajectory(t, pose, twist, reaction, stepping)
@@ -261,7 +261,7 @@ def contacts_and_limits(imported: ImportedSpace, t: Array, pose: Array) -> list[
     limits = [
         (constraint, label)
         for constraint, label in zip(space.constraints, imported.labels.values(), strict=True)
-        if isinstance(constraint, SlideJoint | RotaryLimitJoint | GrooveJoint) and not is_equality(constraint)
+        if isinstance(constraint, (*LIMIT_JOINTS, constraints.GrooveJoint)) and not is_equality(constraint)
     ]
     names = {id(body): name for body, name in zip(bodies, imported.body_names.values(), strict=True)}
     for time, poses in zip(t, pose, strict=True):
@@ -274,7 +274,7 @@ def contacts_and_limits(imported: ImportedSpace, t: Array, pose: Array) -> list[
                 add(time, f"a shape of {owners[0]} touches one of {owners[1]}", left_out("contact"))
         for limit, label in limits:
             if _reached(limit):
-                groove = isinstance(limit, GrooveJoint)
+                groove = isinstance(limit, constraints.GrooveJoint)
                 add(time, f"{label} reaches its end", "give a longer groove" if groove else left_out("limit"))
     return list(first.values())
 
@@ -312,7 +312,7 @@ def _touch(one: pymunk.Shape, other: pymunk.Shape) -> bool:
         return True
 
 
-def _may_touch(one: pymunk.Shape, other: pymunk.Shape, in_space: set[Constraint]) -> bool:
+def _may_touch(one: pymunk.Shape, other: pymunk.Shape, in_space: set[constraints.Constraint]) -> bool:
     """Whether pymunk would let these shapes collide."""
     if one.body is other.body or one.body is None or other.body is None:
         return False
@@ -330,10 +330,10 @@ def _may_touch(one: pymunk.Shape, other: pymunk.Shape, in_space: set[Constraint]
 def _reached(limit: Any) -> bool:
     """Whether a limit is at or beyond an end where its bodies are now."""
     a, b = limit.a, limit.b
-    if isinstance(limit, SlideJoint):
+    if isinstance(limit, constraints.SlideJoint):
         apart = a.local_to_world(limit.anchor_a).get_distance(b.local_to_world(limit.anchor_b))
         return not limit.min < apart < limit.max
-    if isinstance(limit, RotaryLimitJoint):
+    if isinstance(limit, constraints.RotaryLimitJoint):
         return not limit.min < b.angle - a.angle < limit.max
     begin, end = a.local_to_world(limit.groove_a), a.local_to_world(limit.groove_b)
     share = (b.local_to_world(limit.anchor_b) - begin).dot(end - begin) / (end - begin).dot(end - begin)

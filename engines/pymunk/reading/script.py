@@ -271,7 +271,7 @@ def _name_and_line(path: Path, name: str, stop: _SpaceStepped) -> tuple[str, int
 
 
 def _function_body(tree: ast.Module, function: str, line: int) -> list[ast.stmt]:
-    """The statements of the innermost function of this name around a line; of the module if there is none."""
+    """The statements of the innermost function of this name around a line, or of the module without such a function."""
     functions = [
         node
         for node in ast.walk(tree)
