@@ -1,6 +1,6 @@
-"""MuJoCo as an engine: the right model and forces, stiffness by rule, no silent trouble, releases that move wrongly.
+"""MuJoCo as an engine: its model and forces, the stiffness of its rows, and warnings of failures and faulty releases.
 
-Which order and error each construction reaches stands in `test_matrix`.
+`test_matrix` has the order and the error of each construction.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ def arch(links: int, length: float = 0.02) -> Mechanism:
     places = [(float(x), float(y)) for x, y in points]
     bodies = tuple(bar(f"bar {i}", places[i], places[i + 1]) for i in range(links))
     ends = [(body.name, (-body.mass / 2, 0.0), (body.mass / 2, 0.0)) for body in bodies]
-    left, right = (None, places[0], places[0]), (None, places[-1], places[-1])
-    pins = zip((left, *ends), (*ends, right), strict=True)
+    first, last = (None, places[0], places[0]), (None, places[-1], places[-1])
+    pins = zip((first, *ends), (*ends, last), strict=True)
     joints = tuple(Pin(f"pin {i}", a[0], b[0], a[2], b[1]) for i, (a, b) in enumerate(pins))
     return Mechanism(bodies, joints, (1.0, -9.81))
 
@@ -55,12 +55,12 @@ def test_reactions_by_newtons_law_are_the_forces_that_the_engine_applied(engine:
     mechanism = four_bar(crank_rate=10.0)
     built = engine.build(mechanism, 1e-3)
     motion = built(10, 10)
-    compiled, data = built.model.compiled, built.data  # left at the last sample by the reading
+    compiled, data = built.model.compiled, built.data  # in the state of the last sample
     mujoco.mj_rnePostConstraint(compiled, data)
     rows = dict(zip(mechanism.row_names, motion.reaction[-1], strict=True))
     unit = built.model.unit  # of masses, and so of forces, in the model
     loop = unit * data.efc_force[:2]
-    # Both are sums of forces of about 100 N: a hundred roundings. The hinges differ from the loop by the whole chain.
+    # Both are sums of forces of about 100 N, with the rounding of some hundred operations.
     largest = np.abs(motion.reaction[-1]).max()
     assert np.abs(loop - [rows["C x"], rows["C y"]]).max() < 1e-9 * largest
     for pin, body in (("A", "crank"), ("B", "coupler"), ("D", "rocker")):
@@ -69,20 +69,20 @@ def test_reactions_by_newtons_law_are_the_forces_that_the_engine_applied(engine:
 
 
 def test_no_armature_lets_the_solver_end_before_it_has_begun() -> None:
-    whole = four_bar(crank_rate=0.1)
-    (crank, coupler), pins = whole.bodies[:2], whole.joints[:2]
-    # Driven against the ground, the outer bar's rotation is a sum of two coordinates: a clock beside the tree turns it.
+    linkage = four_bar(crank_rate=0.1)
+    (crank, coupler), pins = linkage.bodies[:2], linkage.joints[:2]
+    # The rotation of the outer bar against the ground is a sum of two coordinates, which is driven by a clock.
     clocked = Drive("drive", None, "coupler", coupler.twist[2], coupler.pose[2])
     driven = Drive("drive", None, "crank", 0.1, crank.pose[2])
     for mechanism in (
         Mechanism((crank, coupler), (*pins, clocked), (0.0, -0.1)),
-        replace(whole, joints=(*whole.joints, driven), gravity=(0.0, -0.1)),
+        replace(linkage, joints=(*linkage.joints, driven), gravity=(0.0, -0.1)),
     ):
         model = DEFAULT.model(mechanism, 1e-3)
         solved = model.start().qacc
         model.compiled.opt.tolerance = 0.0
         exact = model.start().qacc
-        # Newton's iteration solves a linear row at once, and leaves rounding.
+        # Newton's method solves linear rows in one iteration, to rounding.
         assert np.abs(solved - exact).max() < 1e-12 * np.abs(exact).max()
         model.compiled.opt.tolerance = DEFAULT.tolerance
         assert np.abs(model.start().qacc - exact).max() > 1e-3 * np.abs(exact).max()
@@ -94,13 +94,13 @@ def test_no_armature_lets_the_solver_end_before_it_has_begun() -> None:
         (EXTENDED, FREE.mechanism(), (3, 3, 2, 3)),  # a tree closes only the loops
         (FREE_COORDINATES, FREE.mechanism(), (3, 9, 8, 12)),
         (EXTENDED, FreeSliderCrank().mechanism(), (3, 3, 2, 3)),  # a slider that keeps its angle is one coordinate
-        # Four pins and the slot of the slider's centre as rows, and the level as an inertia that can't turn.
+        # Rows of four pins and of the slot; the slider's angle is driven at rate zero by an armature.
         (FREE_COORDINATES, FreeSliderCrank().mechanism(), (3, 9, 8, 10)),
-        (EXTENDED, far_drive(), (4, 4, 3, 4)),  # driven over two coordinates: held against a clock
-        # A contact has a normal row and two of friction, of which one points out of the plane and is empty, or four
-        # edges of a pyramid; two rows of ours hold the same.
-        *((each, RollingDisc().mechanism(), (1, 3, 2, n)) for each, n in ((DEFAULT, 4), (TUNED, 3), (EXTENDED, 2))),
-        (TUNED, SlottedLever().mechanism(), (3, 4, 4, 6)),  # half a body and a weld hold a slot, or one row of ours
+        (EXTENDED, far_drive(), (4, 4, 3, 4)),  # driven over two coordinates, by a clock
+        # A contact has four edges of a pyramid, or a normal row and two of friction, of which one is empty since it is
+        # across the plane. EXTENDED has two user rows.
+        *((engine, RollingDisc().mechanism(), (1, 3, 2, n)) for engine, n in ((DEFAULT, 4), (TUNED, 3), (EXTENDED, 2))),
+        (TUNED, SlottedLever().mechanism(), (3, 4, 4, 6)),  # a split body and a weld
         (SLOTS[0], SlottedLever().mechanism(), (2, 2, 2, 1)),
     ],
 )
@@ -118,7 +118,7 @@ def test_a_pin_between_a_body_and_the_ground_is_the_same_whichever_is_named_firs
         for pin in mechanism.joints
     )
     motions = [FREE_COORDINATES.build(m, 1e-3)(20, 10) for m in (mechanism, replace(mechanism, joints=turned))]
-    # The rows are the negative ones, and the anchor is rounded in another frame.
+    # The rows have the other sign, and the anchor is rounded in another frame.
     assert np.abs(motions[0].pose - motions[1].pose).max() < 1e-9
     grounded = [name.startswith(("A", "D")) for name in mechanism.row_names]
     signs = np.where(grounded, -1.0, 1.0)
@@ -131,39 +131,39 @@ def test_a_resting_line_at_any_angle_holds_the_centre_of_a_free_body() -> None:
     slot = Slot("wire", None, "bead", (0.2, 0.3), angle, (0.0, 0.0))
     mechanism = Mechanism((bead,), (slot,), (0.0, -9.81))
     motion = FREE_COORDINATES.build(mechanism, 1e-3)(20, 10)
-    way = 0.5 * motion.t - 9.81 * along[1] * motion.t**2 / 2
-    # What is left of the compliance: the weight across the wire over the hardened spring's stiffness.
-    assert np.abs(motion.pose[:, 0, :2] - [0.2, 0.3] - way[:, None] * along).max() < 1e-7
+    distance = 0.5 * motion.t - 9.81 * along[1] * motion.t**2 / 2
+    # The bound is the weight across the wire divided by the stiffness of the hardened spring.
+    assert np.abs(motion.pose[:, 0, :2] - [0.2, 0.3] - distance[:, None] * along).max() < 1e-7
     assert np.abs(motion.pose[:, 0, 2] - 3.0 * motion.t).max() < 1e-9
 
 
 def test_a_rod_of_mujocos_own_lacks_the_velocity_term_and_ours_has_it() -> None:
-    # A rod that turns at 2 rad/s without gravity: its centripetal acceleration is nothing but -(dJ/dt) v.
+    # A rod that turns at 2 rad/s without gravity: its acceleration is the velocity term -(dJ/dt) v alone.
     body = Body("b", 1.0, 1.0, (1.0, 0.0, 0.0), (0.0, 2.0, 0.0))
     mechanism = Mechanism((body,), (Rod("r", None, "b", (0.0, 0.0), (0.0, 0.0), 1.0),))
     ours, tendon = (replace(EXTENDED, rods=rods).build(mechanism, 1e-3)(1, 1) for rods in ("rows", "tendon"))
     assert ours.reaction[0, 0] == pytest.approx(-4.0, rel=1e-6)
-    # Upstream: if this fails, the release has the term, and rods need no rows of ours.
+    # If this fails, the release has the term, and rods need no user rows.
     assert abs(tendon.reaction[0, 0]) < 1e-6
 
 
 def test_a_hundred_links_keep_their_energy() -> None:
     mechanism = HundredLinks().mechanism()
     total = energy(mechanism, EXTENDED.build(mechanism, 5e-4)(2, 200))
-    # Of 5e4 J that could be turned: (m g L) times the sum of heights.
+    # The potential energy can change by 5e4 J: m g L times the sum of heights.
     assert np.abs(total - total[0]).max() < 2e-8
 
 
 def test_an_overwritten_crank_tears_the_loop_at_any_step() -> None:
     mechanism = DRIVEN.mechanism()
-    # The solver believes that an overwritten crank is free to accelerate, so the loop is wrong by a time constant's
-    # worth of its acceleration, however small the step.
+    # MuJoCo's solver does not know that the crank is driven, so the loop has an error of its acceleration times the
+    # square of a time constant, at any step.
     gaps = []
     for every in (10, 40):
         engine = replace(DEFAULT, drive="overwrite")
         motion = engine.build(mechanism, DRIVEN.spacing / every)(DRIVEN.samples, every)
         gaps.append(np.abs(mechanism.gap(motion.pose, motion.t)[:, :8]).max())
-        # The crank itself is where it is put: at the angle of the sample's own time.
+        # The crank has the angle that is written at the time of the sample.
         assert np.abs(mechanism.gap(motion.pose, motion.t)[:, 8]).max() < 1e-12
         assert any(warning.startswith("ours:") for warning in motion.warnings)
     assert gaps[1] > 0.5 * gaps[0] > 5e-3
@@ -175,7 +175,7 @@ def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
     spring, damper = stiffness.gains(mechanism, dt)
     assert damper**2 == pytest.approx(4 * spring, rel=1e-14)
     first, second = stiffness.reference(mechanism, dt)
-    if first < 0:  # the direct form tells both; the other a time constant, at least two steps, and a damping ratio
+    if first < 0:  # the direct form; the other is a time constant, at least two steps, and a damping ratio
         assert (-first, -second) == pytest.approx((spring, damper), rel=1e-14)
     else:
         assert (max(first, 2 * dt), second) == pytest.approx((2 / damper, 1.0), rel=1e-14)
@@ -183,8 +183,8 @@ def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
 
 @pytest.mark.parametrize(("steps", "dt"), [(2.0, 1e-2), (5.0, 1e-4), (20.0, 1e-2)])
 def test_the_first_acceleration_of_a_loop_under_discrete_is_divided_by_what_its_spring_is_in_a_step(steps, dt):
-    # From a closed start the exact loop has J a = -bias. Backward Euler's spring (stiffness k, damping b per inertia)
-    # gives that over 1 + h b + h^2 k = (1 + 1 / steps)^2: a share that no step changes.
+    # The exact loop has J a = -bias at a closed start. With a spring (stiffness k, damping b per inertia) by backward
+    # Euler it is divided by 1 + h b + h^2 k = (1 + 1 / steps)^2, which does not depend on the step.
     def first(integrator):
         engine = MuJoCo("loop", integrator=integrator, stiffness=TiedToStep(steps))
         run = engine.build(DrivenFourBar().mechanism(), dt)
@@ -194,7 +194,7 @@ def test_the_first_acceleration_of_a_loop_under_discrete_is_divided_by_what_its_
     np.testing.assert_allclose(first("discrete") / first("implicitfast"), (1 + 1 / steps) ** -2, rtol=1e-4)
 
 
-# What fails, and says so
+# Failures, of which every run warns
 
 
 @pytest.mark.parametrize("ratio", [1e-4, 1.0, 1e4])
@@ -214,7 +214,7 @@ def test_a_hundred_links_closed_by_one_loop_are_solved_by_the_first_solver_and_n
     built = EXTENDED.build(chain, 1e-3)
     assert built.model.compiled.opt.solver == mujoco.mjtSolver.mjSOL_PGS
     motion = built(2, 10)
-    # Steps of a millisecond are 1/45 of its time scale: what it loses is the order's, and nothing the solver's.
+    # Steps of a millisecond are 1/45 of its time scale: the error is that of the order, not of the solver.
     assert [warning for warning in motion.warnings if "unresolved" not in warning] == []
     assert np.abs(chain.gap(motion.pose, motion.t)).max() < 1e-8
     newton = replace(EXTENDED, solvers=("Newton",)).build(chain, 1e-3)
@@ -243,8 +243,8 @@ def test_motions_of_a_version_that_moves_wrongly_say_so(
     monkeypatch.setattr(mujoco, "__version__", version)
     scene = FreeFourBar()
     motion = DEFAULT.build(scene.mechanism(), scene.spacing)(1, 1)
-    [told] = [warning for warning in motion.warnings if KNOWN_WRONG in warning]
-    assert told.startswith("ours: ")
-    assert reason in told
-    assert version in told
+    [fault] = [warning for warning in motion.warnings if KNOWN_WRONG in warning]
+    assert fault.startswith("ours: ")
+    assert reason in fault
+    assert version in fault
     assert [known_fault(right) for right in ("3.7.0", "3.10.0", "4.0.1")] == [""] * 3

@@ -1,6 +1,6 @@
-"""Rolling, skates and slots in MuJoCo: what contacts, tendons and rows do, and where they end; extreme scales.
+"""Rolling, skates and slots in MuJoCo by contacts, tendons and user rows, their limits, and extreme scales.
 
-Which order and error each construction reaches stands in `test_matrix`.
+`test_matrix` has the order and the error of each construction.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def run(engine: MuJoCo, scene: Any, dt: float) -> tuple[Trajectory, Trajectory]:
 
 
 def disc_in_ring(clearance: float, rate: float = 1.0) -> Mechanism:
-    """A disc smaller than its ring by this part of it, without gravity: it turns steadily, as its arm is fixed."""
+    """A disc in a ring, smaller by the relative `clearance`. Without gravity it turns steadily, as its arm is fixed."""
     rolling = Rolling.at_angle(Circle(1 - clearance), Placed(Ring(1.0), turn=-math.pi / 2))
     disc, roll = rolling_disc(rolling, rate)
     return Mechanism((disc,), (roll,), (0.0, 0.0))
@@ -59,7 +59,7 @@ def test_reactions_by_newtons_law_are_the_contacts_forces(engine: MuJoCo) -> Non
     force = np.zeros(6)  # in the contact's frame: normal first, from the ground to the body
     mujoco.mj_contactForce(built.model.compiled, built.data, 0, force)
     tangent, normal = motion.reaction[-1]
-    # The reading leaves the last sample behind. Directions agree to the slip of 1e-3 m, that is 1e-3 rad.
+    # `data` has the state of the last sample. Directions agree to the slip of 1e-3 m, that is 1e-3 rad.
     assert normal == pytest.approx(force[0], rel=5e-3)
     assert abs(tangent) == pytest.approx(float(np.hypot(force[1], force[2])), abs=5e-3 * normal)
 
@@ -69,7 +69,7 @@ def test_beyond_the_hop_and_only_there_real_contact_parts_from_the_ideal_one() -
     assert hill.hop is not None
     motion, truth = run(TUNED, hill, dt=1e-3)
     error = np.abs(motion.pose - truth.pose)[:, 0, :2].max(axis=1)
-    # MuJoCo's friction cone presses the body on where friction is asked of a vanishing normal force: some 0.06 s.
+    # MuJoCo's friction cone keeps the body in contact while friction acts at a vanishing normal force: some 0.06 s.
     assert error[motion.t < hill.hop].max() < 2e-3
     assert error[-1] > 0.05
     assert any("was lost" in warning for warning in motion.warnings)
@@ -83,9 +83,9 @@ def test_a_nearly_conformal_contact_is_followed_until_it_turns_by_a_tenth_of_a_r
         motion = EXTENDED.build(disc_in_ring(0.01), step)(20, round(0.02 / step))
         assert np.abs(motion.pose[:, 0, 2] - motion.t).max() < error
         assert any("along its curves" in warning for warning in motion.warnings) == doubted
-    lost = EXTENDED.build(disc_in_ring(1e-4), 2e-3)(20, 10)
-    assert any("along its curves" in warning for warning in lost.warnings)
-    assert not np.abs(lost.pose[:, 0, 2] - lost.t).max() < 1e-2
+    wrong = EXTENDED.build(disc_in_ring(1e-4), 2e-3)(20, 10)
+    assert any("along its curves" in warning for warning in wrong.warnings)
+    assert not np.abs(wrong.pose[:, 0, 2] - wrong.t).max() < 1e-2
 
 
 def test_a_body_that_reaches_a_corner_ends_the_run() -> None:
@@ -108,7 +108,7 @@ def test_a_skate_on_a_moving_body_is_held_by_rows_and_nearly_by_a_tendon() -> No
 
 @pytest.mark.parametrize(("mass", "length"), [(1.0, 1.0), (1e5, 1.0), (1.0, 1e-3)])
 def test_a_blade_stands_on_one_end_however_deep_the_weight_presses_it(mass: float, length: float) -> None:
-    """At two points it would not be free to turn."""
+    """A blade that touches at two points could not turn."""
     sled = Body("sled", 1.0, 0.1 * length**2, (0.0, 0.0, 0.0))
     load = Body("load", mass, 0.1 * mass, (0.0, 2 * length, 0.0))
     mechanism = Mechanism((sled, load), (Skate("blade", None, "sled", (0.0, length), 0.0),))
@@ -122,19 +122,19 @@ def test_the_softness_that_is_declared_of_a_written_row_is_what_it_slips_by():
     engine, mechanism = SOFT, SLEIGH.mechanism()
     soft = engine.regularisation(mechanism, 1e-3)
     assert soft is not None
-    found = engine.build(mechanism, 1e-3)(SLEIGH.samples, 10)
+    motion = engine.build(mechanism, 1e-3)(SLEIGH.samples, 10)
     rows = mechanism.rows(mechanism.pose)
     inverse = float(((rows / mechanism.inertias.reshape(-1)) @ rows.T)[0, 0])
-    # slip' + damping slip = compliance A F: behind a force that rises and falls, the slip reaches half of its limit.
-    limit = soft.compliance * inverse * np.abs(found.reaction).max() / soft.damping
-    assert 0.3 * limit < np.abs(mechanism.slip(found.pose, found.twist)).max() < limit
+    # slip' + damping slip = compliance A F: for a force that rises and falls, the slip reaches half of its limit.
+    limit = soft.compliance * inverse * np.abs(motion.reaction).max() / soft.damping
+    assert 0.3 * limit < np.abs(mechanism.slip(motion.pose, motion.twist)).max() < limit
 
 
-# Arms of a tenth of a micrometre, wheels as large as a town, and bodies of no weight
+# Very small arms, very large wheels, and very light bodies
 
 
 def test_a_spring_at_an_arm_of_a_tenth_of_a_micrometre_turns_its_body() -> None:
-    """MuJoCo takes a site within 1e-6 m for its body's origin when it compiles, so that there is no arm."""
+    """MuJoCo's compiler places a site within 1e-6 m at its body's origin, so that there is no arm."""
     text = """<mujoco><worldbody><body><joint type="hinge" axis="0 0 1"/><inertial pos="0 0 0" mass="1"
         diaginertia="1 1 1"/><site pos="0 {} 0"/></body></worldbody></mujoco>"""
     as_compiled = [mujoco.MjModel.from_xml_string(text.format(arm)).site_sameframe[0] for arm in (0.99e-6, 1.01e-6)]
@@ -149,12 +149,12 @@ def test_a_spring_at_an_arm_of_a_tenth_of_a_micrometre_turns_its_body() -> None:
 
 
 def test_a_drive_of_wheels_as_large_as_a_town_is_no_softer_than_that_of_small_ones() -> None:
-    """Its row's inverse inertia is so small a number of 1 / (kg m^2) that MuJoCo would not take its compliance."""
+    """In SI units the inverse inertia of its row would be so small that MuJoCo would clamp its compliance."""
     missed = []
     for size in (1.0, 1e6):
         bodies = tuple(
-            Body(name, 1.0, inertia * size**2, (place * size, 0.0, 0.0), (0.0, 0.0, rate))
-            for name, inertia, place, rate in (("large", 1.0, 0.0, -1.0), ("small", 1e-3, 3.0, -3.0))
+            Body(name, 1.0, inertia * size**2, (x * size, 0.0, 0.0), (0.0, 0.0, rate))
+            for name, inertia, x, rate in (("large", 1.0, 0.0, -1.0), ("small", 1e-3, 3.0, -3.0))
         )
         pin = Pin("pin", None, "large", (-0.5 * size, 0.0), (-0.5 * size, 0.0))
         bodies = (replace(bodies[0], twist=(0.0, -0.5 * size, -1.0)), bodies[1])
@@ -167,7 +167,7 @@ def test_a_drive_of_wheels_as_large_as_a_town_is_no_softer_than_that_of_small_on
 
 
 def test_extended_begins_with_accelerations_of_light_bodies_that_are_solved() -> None:
-    """From nothing Newton's method ends where it sees its cost no longer fall: 1e-5 of the light body's are missed."""
+    """Newton's method ends where its cost no longer falls: from zero, the light body's acceleration is 1e-5 wrong."""
     mechanism = drawn(1199539626, 2, EVERY, 4)
     dt = 0.01 * mechanism.time_scale
     run, once = EXTENDED.build(mechanism, dt), EXTENDED.model(mechanism, dt)

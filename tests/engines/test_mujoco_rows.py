@@ -1,4 +1,4 @@
-"""Rows of ours in MuJoCo: they are the mechanism's own, by numba and by Python, and one that is lost is told."""
+"""User rows in MuJoCo: they are the mechanism's rows, by numba and by Python, and a failure of them is reported."""
 
 from __future__ import annotations
 
@@ -84,25 +84,23 @@ def test_written_rows_are_the_mechanisms_rows_in_the_trees_coordinates() -> None
     for _ in range(5):
         q, v, a = random.normal(size=(3, tree.coordinates))
         jacobian, right = writer.rows(q, v)
-        for found, same in zip(late.rows(q - ahead * v, v), (jacobian, right), strict=True):
-            assert np.abs(found - same).max() < 1e-12 * np.abs(same).max()
-        own = dict(zip((None, *(body.name for body in mechanism.bodies)), range(5), strict=True))
-        # The ground first, which rests.
-        pose, twist, change = (
-            np.vstack([np.zeros(3), each[0]]) for each in tree.motion(*(each[None] for each in (q, v, a)))
-        )
-        # The mechanism's own rows, by another path: maximal coordinates, and the bias by a complex step.
+        for predicted, expected in zip(late.rows(q - ahead * v, v), (jacobian, right), strict=True):
+            assert np.abs(predicted - expected).max() < 1e-12 * np.abs(expected).max()
+        index = dict(zip((None, *(body.name for body in mechanism.bodies)), range(5), strict=True))
+        # The first body is the ground, which is at rest.
+        pose, twist, change = (np.vstack([np.zeros(3), values[0]]) for values in tree.motion(q[None], v[None], a[None]))
+        # The mechanism's rows in maximal coordinates, with the bias by a complex step.
         for row, joint in enumerate(joints):
-            ends = [own[joint.first], own[joint.second]]
+            ends = [index[joint.first], index[joint.second]]
             poses, twists, velocity, step = pose[ends], twist[ends], twist[ends].ravel(), 1e-100
             line = joint.rows(*poses)[0]
-            turned = joint.rows(*(poses + 1j * step * twists))[0].imag / step
+            line_rate = joint.rows(*(poses + 1j * step * twists))[0].imag / step
             slip = line @ velocity
-            wanted = -turned @ velocity - DAMPING * slip
+            wanted = -line_rate @ velocity - DAMPING * slip
             if not isinstance(joint, Skate):
                 wanted -= STIFFNESS * joint.gap(*poses, 0.0)[0]
             assert jacobian[row] @ v == pytest.approx(slip, rel=1e-12, abs=1e-12)
-            # J a - right is the same number in both: tree coordinates accelerate, bodies do so besides by turning.
+            # J a - right is equal in both coordinates; the accelerations of bodies have velocity terms.
             expected = line @ change[ends].ravel() - wanted
             assert jacobian[row] @ a - right[row] == pytest.approx(expected, rel=1e-11, abs=1e-11)
 
@@ -114,24 +112,25 @@ def test_written_rows_of_rolling_are_those_of_the_joint_and_its_velocity_term() 
     joint = UserRowJoint("roll", roll.first, roll.second, (100.0, 20.0), rolled(roll.rolling))
     writer = RowWriter(spanning_tree(mechanism), range(6), [joint])
     pose, twist, _ = gears.kinematics(np.linspace(0.0, 1.7, 12))
-    # The joint's rows are along e_t and e_n, ours along x and y: the same two conditions, turned.
+    # The joint's rows are along e_t and e_n, the user rows along x and y.
     contact = roll.rolling.contact(pose[:, 1, 2] - pose[:, 0, 2])
     angle = contact.tangent_angle + pose[:, 0, 2]
     for i in range(len(pose)):
         ours, right = writer.rows((pose[i] - mechanism.pose).ravel(), twist[i].ravel())
         basis = np.array([[np.cos(angle[i]), np.sin(angle[i])], [np.sin(angle[i]), -np.cos(angle[i])]])
-        # Exact motion has neither gap nor slip, so that only rounding times the gain of 100 / s^2 is added.
+        # Exact motion has neither gap nor slip: the springs add rounding times the stiffness of 100 / s^2.
         assert np.abs(basis @ ours - mechanism.rows(pose[i])).max() < 1e-13
         assert np.abs(basis @ right - mechanism.bias(pose[i], twist[i])).max() < 1e-11
 
 
 def moved() -> list[list[Any]]:
-    """Motions with rows of each kind, and one that blows up."""
-    motions = [EXTENDED.build(each.mechanism(), 1e-3)(2, 10) for each in (Cart(), RollingEllipse(), SlottedLever())]
+    """Motions with rows of each kind, and one that diverges."""
+    scenes = Cart(), RollingEllipse(), SlottedLever()
+    motions = [EXTENDED.build(scene.mechanism(), 1e-3)(2, 10) for scene in scenes]
     wild = Body("sleigh", 1.0, 1.0, (0.0, 0.0, 0.0), (9e4, 0.0, 9e4))
     skate = Skate("skate", None, "sleigh", (0.0, 0.0))
     motions.append(EXTENDED.build(Mechanism((wild,), (skate,)), 0.1)(5, 10))
-    return [[each.pose.tolist(), each.reaction.tolist(), each.reset_at, each.warnings] for each in motions]
+    return [[run.pose.tolist(), run.reaction.tolist(), run.reset_at, run.warnings] for run in motions]
 
 
 SCRIPT = """
@@ -147,7 +146,7 @@ def test_without_numba_python_writes_the_same_rows() -> None:
     plain = json.loads(subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout)
     fast = moved()
     for (pose, reaction, reset, warnings), same in zip(fast, plain, strict=True):
-        # The same sums of products, each rounded once or twice more.
+        # The operations differ in one or two roundings.
         np.testing.assert_allclose(pose, same[0], rtol=0, atol=1e-13)
         np.testing.assert_allclose(reaction, same[1], rtol=0, atol=1e-11 * np.nanmax(np.abs(reaction)))
         assert [reset, list(warnings)] == same[2:]

@@ -1,4 +1,4 @@
-"""Facts about MuJoCo itself on which the adapter relies: clamps, impedances, friction, sparse factorisation."""
+"""Properties of MuJoCo on which the adapter relies: clamps, impedances, friction, sparse factorisation."""
 
 from __future__ import annotations
 
@@ -82,10 +82,10 @@ def test_upstream_friction_has_a_rate_of_its_own_in_the_elliptic_cone_only(cone:
 # trees that branch: its Hessian's sparse Cholesky factor was wrong (changelog of 4.0.1,
 # github.com/google-deepmind/mujoco/issues/3767).
 
-# Of the largest acceleration: the two differ in the order of their sums alone, so by rounding times a condition.
+# Relative to the largest acceleration: the two differ in the order of their sums, so by rounding times a condition.
 AGREEMENT = 1e-8
-SPREAD = 0.3  # rad or m: how far the states stand from the model's own, so that no symmetry hides an entry
-# Three links on the tip of the first, a fifth on one of them, two loops across: the smallest that 4.0.0 gets wrong.
+STATE_SPREAD = 0.3  # rad or m: the distance of the states from the model's own, so that no symmetry hides an entry
+# Three links on the tip of the first, a fifth on one of them, and two loops: the smallest tree that 4.0.0 gets wrong.
 PARENTS = (-1, 0, 0, 0, 2)
 CROSSING = ((2, 1), (3, 1))
 
@@ -93,9 +93,9 @@ CROSSING = ((2, 1), (3, 1))
 def branching_tree() -> Any:
     def link(index: int) -> str:
         carried = "".join(link(child) for child, parent in enumerate(PARENTS) if parent == index)
-        place = "0 0 0" if index == 0 else "1 0 0"
+        position = "0 0 0" if index == 0 else "1 0 0"
         return (
-            f'<body name="link {index}" pos="{place}"><joint axis="0 0 1"/>'
+            f'<body name="link {index}" pos="{position}"><joint axis="0 0 1"/>'
             f'<inertial pos="0.5 0 0" mass="1" diaginertia="0.1 0.1 0.1"/>{carried}</body>'
         )
 
@@ -110,21 +110,21 @@ def disagreement(model: Any, states: int = 5) -> float:
     """The largest relative difference of accelerations in the model's own state and random ones."""
     random, worst, pairs = np.random.default_rng(0), 0.0, []
     for kind in (mujoco.mjtJacobian.mjJAC_DENSE, mujoco.mjtJacobian.mjJAC_SPARSE):
-        own = copy.copy(model)
-        own.opt.jacobian, own.opt.tolerance = kind, min(model.opt.tolerance, 1e-20)
-        pairs.append((own, mujoco.MjData(own)))
+        changed = copy.copy(model)
+        changed.opt.jacobian, changed.opt.tolerance = kind, min(model.opt.tolerance, 1e-20)
+        pairs.append((changed, mujoco.MjData(changed)))
     for state in range(states):
-        step, rates = random.normal(size=(2, model.nv)) * [[SPREAD * (state > 0)], [1.0]]
-        for own, data in pairs:
-            mujoco.mj_resetData(own, data)
-            mujoco.mj_integratePos(own, data.qpos, step, 1.0)
+        step, rates = random.normal(size=(2, model.nv)) * [[STATE_SPREAD * (state > 0)], [1.0]]
+        for changed, data in pairs:
+            mujoco.mj_resetData(changed, data)
+            mujoco.mj_integratePos(changed, data.qpos, step, 1.0)
             data.qvel[:] = rates
-            mujoco.mj_forward(own, data)
+            mujoco.mj_forward(changed, data)
         dense, sparse = (data.qacc for _, data in pairs)
         worst = max(worst, float(np.abs(dense - sparse).max() / np.abs(dense).max()))
     return worst
 
 
 def test_this_release_has_the_same_accelerations_dense_and_sparse() -> None:
-    own = TUNED.model(scene("person_two_feet").mechanism(), 1e-3).compiled
-    assert max(map(disagreement, (branching_tree(), own))) < AGREEMENT
+    person = TUNED.model(scene("person_two_feet").mechanism(), 1e-3).compiled
+    assert max(map(disagreement, (branching_tree(), person))) < AGREEMENT

@@ -1,4 +1,4 @@
-"""MuJoCo models become mechanisms: the same accelerations, element by element, or a sentence that names the element."""
+"""MuJoCo models as mechanisms: equal accelerations, element by element, or a refusal that names the element."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from engines.mujoco.reading.settings import switch_off
 from engines.reading import Reading, ReadingTerms
 from reports.check.judging import apart, refuse_disagreement, soft_motion
 
-# Both sides solve small systems of equations whose numbers differ by a factor of a thousand at most.
-ROUNDING = 1e-9
+# Engine and judge solve small systems of equations whose numbers differ by a factor of at most a thousand.
+SMALL_SYSTEM_ROUNDING = 1e-9
 PENDULUM = """
 <body name="upper"><joint name="A" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 .3 0 .1" size=".02"/>
   <body name="lower" pos=".3 0 .1"><joint name="B" axis="0 1 0"/>
@@ -42,7 +42,7 @@ def model_of(bodies, more="", option="", turned=""):
 
 
 def moving(model, seed=1):
-    """The model at its start, moving at random as its equalities allow."""
+    """The model at its start with random velocities that satisfy its equalities."""
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     wanted = np.random.default_rng(seed).uniform(-2, 2, model.nv)
@@ -55,7 +55,7 @@ def moving(model, seed=1):
 
 
 def changed(reading: Reading, **values) -> Reading:
-    """The reading with another mechanism, which is not what the model is."""
+    """The reading with a mechanism that differs from the model."""
     return replace(reading, mechanism=replace(reading.mechanism, **values))
 
 
@@ -64,12 +64,12 @@ BOX = '<inertial pos=".1 0 .05" mass="2" diaginertia=".02 .03 .03"/>'
 SLIDE, TURNED = '<joint type="slide" axis="1 0 2"/>', '<joint pos=".2 0 0"/>'
 ALONG = '<joint type="slide" axis="1 0 0"/>'
 CROSSED = f'{ALONG}<joint type="slide" axis="0 0 1"/>'
-# Each way to hang a body on its parent; a body without joints, and a slide in a moving body.
-HUNG = (SLIDE, SLIDE + TURNED, TURNED + SLIDE, CROSSED + TURNED, CROSSED, '<joint axis="0 -1 0"/>')
+# Each connection of a body with its parent; a body without joints, and a slide in a moving body.
+CONNECTIONS = (SLIDE, SLIDE + TURNED, TURNED + SLIDE, CROSSED + TURNED, CROSSED, '<joint axis="0 -1 0"/>')
 TREES = PENDULUM.replace(
     "<site",
     f'<body pos=".4 0 .2"><geom fromto="0 0 0 .1 0 .2"/></body><body pos=".1 0 0">{ALONG}{BOX}</body><site',
-) + "".join(f"<body>{joints}{BOX}</body>" for joints in HUNG)
+) + "".join(f"<body>{joints}{BOX}</body>" for joints in CONNECTIONS)
 SPRUNG = f"""<body name="upper" gravcomp=".7"><joint name="A" armature=".1"/><geom fromto="0 0 0 .3 0 .1"/>
 <body pos=".1 0 0"><joint type="slide" axis="1 0 0" stiffness="30" damping="1"/>{BOX}</body>
 <body name="lower" pos=".3 0 .1"><joint name="B" axis="0 -1 0" ref=".3" stiffness="3" springref=".4" damping=".2"/>
@@ -109,9 +109,9 @@ def test_an_element_gives_the_same_accelerations_in_any_plane(name, turned):
     data = moving(model)
     data.ctrl[:] = 0.7
     reading = read(model, data)
-    assert refuse_disagreement(reading) < ROUNDING
-    assert any(note.element == "gravity" for note in reading.notes)  # the part of it across the plane
-    # What stands in the model is felt: with all forces and all gravity taken away the accelerations are others.
+    assert refuse_disagreement(reading) < SMALL_SYSTEM_ROUNDING
+    assert any(note.element == "gravity" for note in reading.notes)  # its component across the plane
+    # Without forces and with another gravity the accelerations differ.
     with pytest.raises(Unsupported, match="differ from those of the ideal mechanism"):
         refuse_disagreement(changed(reading, gravity=(0.3, -5.0), forces=()))
 
@@ -123,7 +123,7 @@ def test_a_free_body_that_starts_in_the_plane_is_read():
     data = mujoco.MjData(model)
     data.qvel[:] = [1.0, 0.0, 2.0, 0.0, 3.0, 0.0]  # linear in the world, angular in the body's own frame
     reading = read(model, data)
-    assert refuse_disagreement(reading) < ROUNDING
+    assert refuse_disagreement(reading) < SMALL_SYSTEM_ROUNDING
     (body,) = reading.mechanism.bodies
     assert reading.mechanism.degrees_of_freedom() == (3, 3)
     assert body.inertia == pytest.approx(0.2)
@@ -191,7 +191,7 @@ def test_softness_as_declared_is_what_mujoco_does():
     reading = read(model_of(*MODELS["a connect"], 'timestep="0.0002" integrator="RK4" tolerance="1e-15"'))
     run = reading.model.run(40, 50)
     soft = soft_motion(reading.mechanism, reading.model.regularisation, run.t)
-    # RK4 at 0.2 ms: the step's own error is far below; the ideal motion is 1e-3 off.
+    # The error of RK4 at 0.2 ms is far smaller; the ideal motion differs by 1e-3.
     assert apart(reading.mechanism, soft, run.pose).max() < 1e-6
     stiffer = [replace(reading.model.regularisation(np.zeros(8), reading.mechanism.pose), compliance=np.zeros((8, 8)))]
     wrong = soft_motion(reading.mechanism, lambda gap, pose: stiffer[0], run.t)
@@ -260,7 +260,7 @@ def test_poses_go_back_to_mujocos_positions():
 
 
 def test_a_run_begins_with_the_mocap_body_where_the_state_has_it():
-    """A pendulum whose pin a keyframe has moved, and turned about the body's origin, together with the mocap body."""
+    """A keyframe has moved the mocap body and the pin of the pendulum, and turned both about the body's origin."""
     model = model_of(
         f'<body name="post" mocap="true"/><body name="bob">{CROSSED}<joint/><inertial pos=".2 0 0" mass="1" '
         'diaginertia=".1 .1 .1"/></body>',
@@ -272,13 +272,13 @@ def test_a_run_begins_with_the_mocap_body_where_the_state_has_it():
     reading = read(model, data)
     run = reading.model.run(10, 5)
     assert np.ptp(run.pose[:, 0, 2]) > 0.01
-    # As soft as a connect is as shipped: its weight opens it by a part of a millimetre.
+    # With MuJoCo's default stiffness the weight opens the connect by less than a millimetre.
     assert np.abs(reading.mechanism.gap(run.pose, run.t)).max() < 2e-3
 
 
 @pytest.mark.parametrize("sample", [11, 20])  # a sum of steps of 0.1 s is a rounding below 1.1, and above 2
 def test_the_samples_from_a_reset_on_are_no_numbers(sample):
-    """The state in which MuJoCo begins anew has a velocity above mjMAXVAL = 1e10, and would be taken for an error."""
+    """The state in which MuJoCo resets has a velocity above mjMAXVAL = 1e10, which is no error of the motion."""
     body = '<body><joint type="slide" axis="1 0 0"/><geom fromto="0 0 0 .1 0 0"/></body>'
     gravity = 1e10 / (0.1 * (sample - 0.5))
     run = read(model_of(body, option=f'gravity="{gravity} 0 0" timestep="0.1"')).model.run(30, 1)

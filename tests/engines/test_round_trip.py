@@ -1,6 +1,6 @@
-"""Scenes exported to MJCF, to a pymunk script and to URDF, and read back: the same mechanisms, to rounding.
+"""Scenes that are exported to MJCF, to a pymunk script and to URDF are read back as equal mechanisms, to rounding.
 
-A model in a file that was rounded to some digits is read as the exact plane, with a note of the effect.
+A file with rounded digits is read as a model that moves exactly in a plane, with a note of the effect.
 """
 
 from __future__ import annotations
@@ -36,39 +36,41 @@ from tests import independent
 from tests.engines.test_matrix import rod_in_a_slot
 from tests.mechanisms import ALONE
 
-# Numbers are written with all their digits. What is left is the rounding of two ways to the same place, times the
-# condition of the rows: largest, 2e-13, for ten four-bars in line, which stand 0.05 rad from a singular position.
-SAME = 1e-12
-# Neither engine has a joint for a skate or a roll: what stands for them is code of ours before every step, or a
-# contact, which gives way and slips. A contact is read as no ideal joint, and so refused.
+# Numbers are written with all their digits. The difference is rounding times the condition of the rows. It is largest,
+# 2e-13, for ten four-bars in line, which are 0.05 rad from a singular position.
+ROUND_TRIP_ROUNDING = 1e-12
+# Neither engine has a joint for a skate or a roll. Their constructions are our code before every step, or a contact,
+# which no reader takes for an ideal joint.
 WITHOUT_JOINT = (Skate, Roll)
-IDEAL = [scene for scene in SCENES if not any(isinstance(joint, WITHOUT_JOINT) for joint in scene.mechanism().joints)]
-assert len(IDEAL) >= 18
+EXPORTABLE = [
+    scene for scene in SCENES if not any(isinstance(joint, WITHOUT_JOINT) for joint in scene.mechanism().joints)
+]
+assert len(EXPORTABLE) >= 18
 ELASTIC = ("pin", "gear", "spring", "damper", "torsion-spring", "torsion-damper")
 
 
-def same(mechanism: Mechanism, again: Mechanism, but: tuple[str, ...] = ()) -> None:
-    """Equal accelerations, forces of all joints together on every body, and freedoms.
+def assert_equal(mechanism: Mechanism, other: Mechanism, driven: tuple[str, ...] = ()) -> None:
+    """Equal accelerations, total joint forces on every body, and degrees of freedom.
 
-    `but`: bodies of a known motion, of which an engine keeps no mass and no centre of mass: only their turning is
-    compared, and the forces on all others.
+    `driven`: bodies of a prescribed motion, of which an engine stores neither mass nor centre of mass: only their
+    rotations are compared, and the forces on all other bodies.
     """
-    whole = np.array([body.name not in but for body in mechanism.bodies])
-    order = [again.body_index(body.name) for body in mechanism.bodies]
-    found, loads = [], []
-    for each in (mechanism, again):
+    is_free = np.array([body.name not in driven for body in mechanism.bodies])
+    order = [other.body_index(body.name) for body in mechanism.bodies]
+    changes, loads = [], []
+    for each in (mechanism, other):
         change = accelerations(each, each.pose, each.twist, 0.0)
         reaction = each.reaction(each.pose, change, twist=each.twist)
-        found.append(change)
+        changes.append(change)
         loads.append((each.rows(each.pose).T @ reaction).reshape(-1, 3))
-    found[1], loads[1] = found[1][order], loads[1][order]
+    changes[1], loads[1] = changes[1][order], loads[1][order]
     rates = np.abs(mechanism.twist[:, 2])
-    assert (np.abs(mechanism.twist - again.twist[order])[:, 2] <= SAME * rates.max()).all()
-    assert (np.abs(found[0] - found[1])[:, 2] <= SAME * np.abs(found[0]).max()).all()
-    for first, second in (found, loads):
-        first, second = first[whole], second[whole]
-        assert np.abs(first - second).max(initial=0) <= SAME * max(np.abs(first).max(initial=0), 1e-300)
-    assert mechanism.degrees_of_freedom() == again.degrees_of_freedom()
+    assert (np.abs(mechanism.twist - other.twist[order])[:, 2] <= ROUND_TRIP_ROUNDING * rates.max()).all()
+    assert (np.abs(changes[0] - changes[1])[:, 2] <= ROUND_TRIP_ROUNDING * np.abs(changes[0]).max()).all()
+    for first, second in (changes, loads):
+        allowed = ROUND_TRIP_ROUNDING * max(np.abs(first[is_free]).max(initial=0), 1e-300)
+        assert np.abs(first[is_free] - second[is_free]).max(initial=0) <= allowed
+    assert mechanism.degrees_of_freedom() == other.degrees_of_freedom()
 
 
 def from_mjcf(text: str) -> Mechanism:
@@ -83,15 +85,18 @@ def from_script(text: str, folder) -> Mechanism:
     return read_pymunk(runpy.run_path(str(folder / "exported.py"))["make"]()).mechanism
 
 
-# Long chains take seconds, and have no other element than short ones.
-@pytest.mark.parametrize("scene", [one for one in SCENES if len(one.mechanism().bodies) < 50], ids=lambda one: one.name)
+# Long chains take seconds, and have the same elements as short ones.
+SHORT_SCENES = [scene for scene in SCENES if len(scene.mechanism().bodies) < 50]
+
+
+@pytest.mark.parametrize("scene", SHORT_SCENES, ids=lambda scene: scene.name)
 def test_a_scene_comes_back_from_mjcf_and_from_a_script_or_is_refused(scene, tmp_path):
     mechanism = scene.mechanism()
-    if scene in IDEAL:
-        engine = (DEFAULT, TUNED)[IDEAL.index(scene) % 2]
-        same(mechanism, from_mjcf(engine.text(mechanism, 1e-3)))
+    if scene in EXPORTABLE:
+        engine = (DEFAULT, TUNED)[EXPORTABLE.index(scene) % 2]
+        assert_equal(mechanism, from_mjcf(engine.text(mechanism, 1e-3)))
         again = from_script(script(PYMUNK, mechanism, 1e-3), tmp_path)
-        same(mechanism, again, but=tuple(find_cranks(mechanism)))
+        assert_equal(mechanism, again, driven=tuple(find_cranks(mechanism)))
         return
     with pytest.raises(Unsupported, match="pymunk has no such joint"):
         script(PYMUNK, mechanism, 1e-3)
@@ -103,10 +108,12 @@ def test_a_scene_comes_back_from_mjcf_and_from_a_script_or_is_refused(scene, tmp
 def test_a_drive_comes_back_from_mjcf_as_a_drive_and_an_armature_that_is_only_large_as_an_inertia():
     mechanism = scene("driven_four_bar").mechanism()
     again = from_mjcf(DEFAULT.text(mechanism, 1e-3))
-    ours, found = ([joint for joint in each.joints if isinstance(joint, Drive)] for each in (mechanism, again))
-    told = [[(joint.first, joint.second, joint.turning_rate) for joint in each] for each in (ours, found)]
-    assert told[0] == told[1]
-    assert len(ours) == 1
+    drives, again_drives = (
+        [(joint.first, joint.second, joint.turning_rate) for joint in side.joints if isinstance(joint, Drive)]
+        for side in (mechanism, again)
+    )
+    assert drives == again_drives
+    assert len(drives) == 1
     text = replace(DEFAULT, armature=1e5).text(mechanism, 1e-3)
     assert not any(isinstance(joint, Drive) for joint in from_mjcf(text).joints)
 
@@ -114,8 +121,8 @@ def test_a_drive_comes_back_from_mjcf_as_a_drive_and_an_armature_that_is_only_la
 def test_what_no_constraint_of_pymunk_stands_for_has_no_script():
     body = Body("plate", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     pushed = Mechanism((body,), (), (0.0, 0.0), (Force("push", "plate", (0.1, 0.0), (0.0, 1.0)),))
-    for mechanism, words in ((pushed, "'push' acts off the centre of mass"), (rod_in_a_slot(), "code of ours")):
-        with pytest.raises(Unsupported, match=words):
+    for mechanism, reason in ((pushed, "'push' acts off the centre of mass"), (rod_in_a_slot(), "code of ours")):
+        with pytest.raises(Unsupported, match=reason):
             script(PYMUNK, mechanism, 1e-3)
 
 
@@ -125,37 +132,37 @@ def test_a_constant_force_at_the_centre_and_a_torque_between_two_bodies_come_bac
     pushes = (Force("push", first, (0.0, 0.0), (0.3, -1 / 3)), Torque("twist", first, second, 0.7))
     pushed = replace(mechanism, forces=(*mechanism.forces, *pushes))
     again = from_script(script(PYMUNK, pushed, 1e-3), tmp_path)
-    same(pushed, again)
+    assert_equal(pushed, again)
     with pytest.raises(AssertionError):
-        same(mechanism, again)
+        assert_equal(mechanism, again)
 
 
 def test_an_exported_script_with_a_constant_torque_moves_as_the_engine_does(tmp_path):
     mechanism = scene("andrews").mechanism()
     text = script(PYMUNK, mechanism, 1e-5)
     (tmp_path / "andrews.py").write_text(text)
-    made = runpy.run_path(str(tmp_path / "andrews.py"))
-    space = made["make"]()
+    program = runpy.run_path(str(tmp_path / "andrews.py"))
+    space = program["make"]()
     for _ in range(200):
-        made["push"](space)
+        program["push"](space)
         space.step(1e-5)
     run = PYMUNK.build(mechanism, 1e-5)(1, 200)
-    own = read_pymunk(made["make"](), 1e-5).model.run(1, 200)
+    read_back = read_pymunk(program["make"](), 1e-5).model.run(1, 200)
     angles = [body.angle for body in space.bodies]
-    # The same steps of the same engine; the run turns half-step velocities into poses of whole steps by no rounding.
+    # The engine takes the same steps in all three.
     np.testing.assert_allclose(angles, run.pose[-1, :, 2], rtol=0, atol=1e-12)
-    np.testing.assert_allclose(angles, own.pose[-1, :, 2], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(angles, read_back.pose[-1, :, 2], rtol=0, atol=1e-12)
 
 
 def test_springs_dampers_gears_and_welds_come_back(tmp_path):
     kinds = set()
     for number in range(5, 14):
         mechanism = random_mechanism(31, number, (*ELASTIC, "weld"))
-        same(mechanism, from_script(script(PYMUNK, mechanism, 1e-3), tmp_path))
+        assert_equal(mechanism, from_script(script(PYMUNK, mechanism, 1e-3), tmp_path))
         kinds |= {type(part) for part in (*mechanism.joints, *mechanism.forces)}
-        # In MuJoCo a welded body is one with its parent: there is no other body to come back.
+        # MuJoCo merges a welded body with its parent, so it does not come back as a body.
         mechanism = random_mechanism(31, number, ELASTIC)
-        same(mechanism, from_mjcf(TUNED.text(mechanism, 1e-3)))
+        assert_equal(mechanism, from_mjcf(TUNED.text(mechanism, 1e-3)))
         kinds |= {type(part) for part in (*mechanism.joints, *mechanism.forces)}
     assert kinds == {Pin, Gear, Weld, Spring, Damper, TorsionSpring, TorsionDamper}
 
@@ -164,11 +171,11 @@ def test_springs_dampers_gears_and_welds_come_back(tmp_path):
 def test_a_tree_comes_back_from_urdf_at_rest(name):
     mechanism = scene(name).mechanism()
     resting = tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in mechanism.bodies)
-    still = replace(mechanism, bodies=resting, gravity=(0.5, -2.0))
-    model = mujoco.MjModel.from_xml_string(urdf(still))
-    assert "starts at rest" not in urdf(still)
+    at_rest = replace(mechanism, bodies=resting, gravity=(0.5, -2.0))
+    model = mujoco.MjModel.from_xml_string(urdf(at_rest))
+    assert "starts at rest" not in urdf(at_rest)
     assert ("starts at rest" in urdf(mechanism)) == mechanism.twist.any()
-    same(still, read_mujoco(model).mechanism)
+    assert_equal(at_rest, read_mujoco(model).mechanism)
 
 
 def test_a_weld_is_a_fixed_joint_of_urdf_and_the_file_moves_as_the_mechanism():
@@ -179,39 +186,39 @@ def test_a_weld_is_a_fixed_joint_of_urdf_and_the_file_moves_as_the_mechanism():
     for _ in range(500):
         mujoco.mj_step(model, data)
     turned = TRUTH.build(mechanism, 0.1)(5, 1).pose[-1, :, 2] - mechanism.pose[:, 2]
-    # Fourth order at 1 ms: what was seen is 1e-9; a hinge in the place of the weld is 1 rad off.
+    # The error of RK4 at 1 ms is 1e-9; with a hinge instead of the weld the difference is 1 rad.
     np.testing.assert_allclose(data.qpos, [turned[0], turned[1] - turned[0]], rtol=0, atol=1e-7)
 
 
-IN_HALVES = random_mechanism(3, 2, ("pin", "slot"))  # a loop, in which half a body and a weld hold a slot
+IN_HALVES = random_mechanism(3, 2, ("pin", "slot"))  # a loop, in which a split body and a weld hold a slot
 BY_CONTACT = ("sleigh", "cart", "rolling_ellipse")
 
 
 @pytest.mark.parametrize("name", ["in halves", "free_four_bar", "driven_slider_crank", "n_four_bar_2", *BY_CONTACT])
 def test_an_exported_model_moves_as_the_engines_and_its_bars_go_through_the_joints(name):
     mechanism = IN_HALVES if name == "in halves" else scene(name).mechanism()
-    own = DEFAULT.model(mechanism, 1e-3)
-    shown = mujoco.MjModel.from_xml_string(DEFAULT.text(mechanism, 1e-3))
-    data, start = mujoco.MjData(shown), own.start()
-    mujoco.mj_resetDataKeyframe(shown, data, 0)
+    model = DEFAULT.model(mechanism, 1e-3)
+    exported = mujoco.MjModel.from_xml_string(DEFAULT.text(mechanism, 1e-3))
+    data, engine_data = mujoco.MjData(exported), model.start()
+    mujoco.mj_resetDataKeyframe(exported, data, 0)
     for _ in range(60):
-        mujoco.mj_step(shown, data)
-        mujoco.mj_step(own.compiled, start)
-    # The engine counts masses in a power of two of its own; a tolerance of the solver is told apart from rounding. A
-    # blade's shape is pressed into the plane after the model is compiled, and one that is not is 3e-7 m and more off.
-    np.testing.assert_allclose(data.qpos, start.qpos, rtol=0, atol=1e-8)
-    assert bool(own.split_bodies) == (name == "in halves")
+        mujoco.mj_step(exported, data)
+        mujoco.mj_step(model.compiled, engine_data)
+    # The engine has another unit of mass, so the solver's tolerance makes a difference. If the plane below a blade were
+    # exported without the height that it gets after the model is compiled, the difference would be 3e-7 m and more.
+    np.testing.assert_allclose(data.qpos, engine_data.qpos, rtol=0, atol=1e-8)
+    assert bool(model.split_bodies) == (name == "in halves")
     if name in BY_CONTACT:
         return
-    assert own.compiled.ngeom == 0  # bars are in the file alone
-    assert not shown.geom_contype.any()
-    assert not shown.geom_conaffinity.any()
+    assert model.compiled.ngeom == 0  # bars are in the file alone
+    assert not exported.geom_contype.any()
+    assert not exported.geom_conaffinity.any()
     if name == "free_four_bar":
-        mujoco.mj_resetDataKeyframe(shown, data, 0)
-        mujoco.mj_kinematics(shown, data)
+        mujoco.mj_resetDataKeyframe(exported, data, 0)
+        mujoco.mj_kinematics(exported, data)
         for body, wanted in outlines.body_points(mechanism, mechanism.pose).items():
-            geom = int(shown.body(body).geomadr[0])
-            along = shown.geom_size[geom][1] * data.geom_xmat[geom].reshape(3, 3)[:, 2]
+            geom = int(exported.body(body).geomadr[0])
+            along = exported.geom_size[geom][1] * data.geom_xmat[geom].reshape(3, 3)[:, 2]
             ends = sorted((data.geom_xpos[geom] + side * along)[:2].tolist() for side in (1, -1))
             np.testing.assert_allclose(ends, sorted(wanted.tolist()), rtol=0, atol=1e-12)
 
@@ -247,16 +254,16 @@ def test_a_rounded_file_moves_as_the_exact_one_and_its_effect_is_told(name):
     angles = motion.pose[..., 2] - motion.pose[:1, :, 2]
     ours = np.column_stack([angles[:, 0], angles[:, 1] - angles[:, 0], angles[:, 2]])
     tilt = getattr(reading.model, "tilt")  # noqa: B009
-    # Neighbouring starts are 30 times as far apart after a second, and what is beside the plane moves by the tilt.
+    # The distance of neighbouring starts grows 30-fold in a second, and bodies beside the plane move by the tilt.
     assert np.abs(np.abs(ours) - np.abs(coordinates)).max() < 30 * tilt + 1e-8
     assert refuse_disagreement(reading) < 1e-9
     judged = check(reading, name, 0.5, 1e-2, plan=Plan(0.0))
-    (words,) = (note.reason for note in judged.reading.notes if note.element == "the directions of joints")
-    off, *moved = (float(number) for number in re.findall(r"(\d[\d.]*e-\d+|0\.\d+) (?:m|rad)", words))
+    (reason,) = (note.reason for note in judged.reading.notes if note.element == "the directions of joints")
+    off, *moved = (float(number) for number in re.findall(r"(\d[\d.]*e-\d+|0\.\d+) (?:m|rad)", reason))
     assert off == pytest.approx(tilt, rel=0.05)
     assert 4e-8 < tilt < 1e-5
     assert max(moved[:2]) < 100 * tilt
-    assert "with stiff loops by" in words
+    assert "with stiff loops by" in reason
 
 
 @pytest.mark.parametrize(("angle", "remedy"), [("1.57", True), ("1.3", False)])
