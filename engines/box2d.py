@@ -46,6 +46,7 @@ from reference.checks import Count, Name, NonNegative, validated
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
+from reference.trajectory import RunWarning
 
 STEP_COST = 3e-6  # s of a step of three bodies, without its sub-steps
 SUBSTEP_COST = 0.8e-6  # s
@@ -56,6 +57,7 @@ TURNED = math.pi / 4  # in a step: a faster body is slowed to it, and the bindin
 FORCES_COST = 150e-6  # s, of force elements, which are worked out by numpy
 # Of its points' frequency: a weld joint's spring that keeps it from turning in no number of steps; 0 is the stiffest.
 SLACK = 4e-9
+RATE_CUT = RunWarning("upstream: a rate was cut to an eighth of a turn in a step", "rate limit", "upstream")
 JOINTS = "https://box2d.org/documentation/group__joint.html"  # all that there are
 
 
@@ -218,7 +220,7 @@ class Box2DWorld:
         with np.errstate(all="ignore"):
             before = twist[..., 2] - acceleration[..., 2] * self.dt
             turned = np.fmax.reduce(np.abs([twist[..., 2], before]), axis=None) * self.dt
-        warnings = ("upstream: a rate was cut to an eighth of a turn in a step",) if turned > 0.999 * TURNED else ()
+        warnings = (RATE_CUT,) if turned > 0.999 * TURNED else ()
         return Recorded(pose, twist, acceleration, stepping, inertias, gravity, warnings)
 
 

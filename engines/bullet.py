@@ -32,7 +32,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engines.capability import Capability
-from engines.contract import EXACT, ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
+from engines.contract import EXACT, ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported, unresolved
 from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled_with_differences
@@ -42,6 +42,7 @@ from reference.checks import Count, Fraction, Name, validated
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
+from reference.trajectory import RunWarning
 
 ENOUGH = 1e30  # N or N m, of a point that closes a loop and of a motor: what a mechanism of any unit asks for is less
 FAST = 1e9  # rad/s, beyond what a joint reaches
@@ -50,8 +51,8 @@ FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
 ITERATION_COST = 0.1e-6  # s, of an iteration for each row of a loop
 SHIPPED_ITERATIONS, SHIPPED_ERP = 50, 0.2
 NOTHING = float(np.finfo(float).eps)  # kg or kg m^2: SIMD_EPSILON, below which the inverse of an inertia is zero
-UNMOVED = "ours: unresolved from 0 s on, bullet takes an inertia below 2.2e-16 for none and moves it by no force"
-UNTURNED = "ours: unresolved from 0 s on, a motor of bullet does nothing to an inertia above 4.5e15"
+UNMOVED = unresolved(0.0, "bullet takes an inertia below 2.2e-16 for none and moves it by no force")
+UNTURNED = unresolved(0.0, "a motor of bullet does nothing to an inertia above 4.5e15")
 NOWHERE = [0.0, 0.0, 0.0]
 
 
@@ -119,7 +120,7 @@ class Bullet(ExtraEngine):
         return BulletWorld(tree, motor_rates(tree), dt, parameters)
 
 
-def unmoved(tree: Tree, motors: Iterable[int]) -> tuple[str, ...]:
+def unmoved(tree: Tree, motors: Iterable[int]) -> tuple[RunWarning, ...]:
     """Warnings of inertias that the engine takes for none or for infinite ones, in the pose of the start.
 
     A joint moves what hangs on it, whose own joints are free: 1 / (M^-1)_jj, M of the coordinates from it outwards

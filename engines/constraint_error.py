@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE
+from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 
@@ -84,12 +85,13 @@ def largest_force(mechanism: Mechanism, pose: Array, twist: Array, reaction: Arr
         return float(np.fmax.reduce(np.abs(reaction / arm), axis=None, initial=least))
 
 
-def reaction_doubts(mechanism: Mechanism, pose: Array, twist: Array, reaction: Array, error: Array) -> list[str]:
-    """The sentence for reactions (times, rows) whose `error` is above FORCES of the `largest_force`, if it is."""
+def reaction_doubts(mechanism: Mechanism, pose: Array, twist: Array, reaction: Array, error: Array) -> list[RunWarning]:
+    """The warning of reactions (times, rows) whose `error` is above FORCES of the `largest_force`, if it is."""
     if not mechanism.row_count:
         return []
     arm = np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
     with np.errstate(all="ignore"):
         missed = np.fmax.reduce(np.abs(error / arm), axis=None, initial=0.0)
     share = missed / largest_force(mechanism, pose, twist, reaction)
-    return [f"ours: reactions are resolved to {share:.0e} of the largest force"] if share > FORCES else []
+    text = f"ours: reactions are resolved to {share:.0e} of the largest force"
+    return [RunWarning(text, "reactions", "adapter")] if share > FORCES else []

@@ -15,9 +15,10 @@
    samples of a row, or in the first alone.
 5. `Trajectory.stepping` is the CPU time of the stepping loop, recording included; reading it out afterwards is not.
    Rough runs that plan it, by which a method chooses its steps or sweeps, are part of it.
-6. An engine that resets itself reports when (`reset_at`), one that warns its `warnings`, one that estimates an error
-   above its claim from when on (`unresolved_at`); all go on. A method without an estimate, such as a single run of
-   documented settings, claims an order and no accuracy at a step.
+6. `Trajectory.reset_at` is the time at which the engine reset itself; `warnings` are its warnings, as `RunWarning`
+   or as plain strings; `unresolved_at` is the time from which its own error estimate exceeds its claim. The run goes
+   on in all three cases. A method without an estimate, such as a single run of documented settings, claims an order
+   and no accuracy at a step.
 7. `order(mechanism)` returns the expected order of its errors from its settings and the mechanism alone: a
    ConvergenceOrder, which the gate checks, or NotDeclared with the reason.
 8. `step_cost(mechanism)` is about the CPU time of a step [s]. It decides which small steps are worth running, so it is
@@ -45,7 +46,7 @@ import numpy as np
 from reference.checks import Count
 from reference.joints import Joint
 from reference.mechanism import Mechanism
-from reference.trajectory import Trajectory
+from reference.trajectory import RunWarning, Trajectory
 
 # The order of an error that no step makes: a joint between coordinates that can't part, a motion that is prescribed.
 EXACT = math.inf
@@ -53,6 +54,11 @@ EXACT = math.inf
 CLAIM = 1e-7
 
 Enforcement = Literal["engine", "engine, our rows", "ours"]
+
+
+def unresolved(time: float, reason: str) -> RunWarning:
+    """The warning of a run that may exceed its claim from `time` [s] on."""
+    return RunWarning(f"ours: unresolved from {time:.4g} s on, {reason}", "unresolved", "adapter", time)
 
 
 class Unsupported(Exception):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from engines import CLAIM, ConvergenceOrder, Engine, EngineWrapper, NotDeclared, OneShot, Run, Size
 from engines.constraint_error import closing, reaction_doubts
+from engines.contract import unresolved
 from engines.richardson import (
     LEAST,
     combine,
@@ -35,9 +36,6 @@ OPEN = (0.1, 30.0)
 RELEASED = 1.5
 # rad: a line of a spring, damper or rod that turns further in one step of the coarsest run may be missed by all runs.
 TURNED = 0.5
-UNRESOLVED = "ours: unresolved from 0 s on"
-# Beginning of the warning of a run whose solver iterations leave a part of the slowest mode at every step.
-UNCONVERGED = "ours: not converged"
 # Poses of bodies in each run that are compared at most: all steps of nearly every run.
 WATCHED = 300_000
 
@@ -165,7 +163,7 @@ class ExtrapolatedRun(OneShot):
         parts = [_part(run, count, watched * level, stride) for run, level in runs]
         whole = self._combined(parts, watched, stride)
         spent = whole.stepping
-        if not any(warning.startswith(UNCONVERGED) for warning in whole.warnings) and self._is_open(whole, parts):
+        if not whole.warnings_of("unconverged") and self._is_open(whole, parts):
             further = _part(self._build_at(self._further), count, watched * self._further, stride)
             spent += further.stepping
             whole = self._combined(parts, watched, stride, further)
@@ -215,12 +213,12 @@ class ExtrapolatedRun(OneShot):
         finest = (poses[-1, ::stride], twists[-1, ::stride], reactions[-1, ::stride])
         warnings = [warning for part in parts for warning in part.warnings]
         warnings += reaction_doubts(self._mechanism, *finest, expected_error(reactions[:, ::stride], levels, powers))
-        missed = any(warning.startswith(UNRESOLVED) for warning in warnings)  # by one run, or by all of them alike
+        missed = any(warning.time == 0 for part in parts for warning in part.warnings_of("unresolved"))
         coarsest = every * levels[0 if further is None else 1]
         unresolved_at = 0.0 if missed else self._unresolved_at(t, estimate, poses[-1], coarsest)
         if unresolved_at is not None:
             reason = "the runs are no series in the step" if lost.any() else "its own estimate is not below its claim"
-            warnings.append(f"ours: unresolved from {unresolved_at:.4g} s on, {reason}")
+            warnings.append(unresolved(unresolved_at, reason))
         resets = [part.reset_at for part in parts if part.reset_at is not None]
         return Trajectory(
             t=t,

@@ -36,7 +36,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from engines.capability import Capability
-from engines.contract import EXACT, ConvergenceOrder, NotDeclared, Size, Unsupported
+from engines.contract import EXACT, ConvergenceOrder, NotDeclared, Size, Unsupported, unresolved
 from engines.extrapolated import Extrapolated
 from engines.lagrange.dynamics import Dynamics
 from engines.motions import is_prescribed, over_three
@@ -48,11 +48,16 @@ from reference.forces import Damper, Force, ForceElement, Spring, Torque, Torsio
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
+from reference.trajectory import RunWarning
 
 Integrator = Literal["GeneralizedAlpha", "TrapezoidalIndex2"]
 AXIS = [0.0, 0.0, 1.0]  # out of the plane
 DISC = 0.1  # the radius of a skate's disc, which stands on edge
-BELOW = "ours: unresolved from 0 s on, a light body's forces are below what is resolved of the largest"
+BELOW_TOLERANCE = unresolved(0.0, "a light body's forces are below what is resolved of the largest")
+GAVE_UP = RunWarning("exudyn: the solver gave up before the end, as Newton's method did not converge", "lost")
+NO_REACTIONS = RunWarning(
+    "ours: reactions are not told, as the start's accelerations ignore velocity constraints", "reactions", "adapter"
+)
 STEP_COST = 19e-6  # s, with three bodies
 
 
@@ -313,7 +318,7 @@ class System:
             initial = {"configuration": self.exudyn.ConfigurationType.Initial}
             self.system.systemData.SetODE2Coordinates_tt((start / self.unit).reshape(-1).tolist(), **initial)
         resolved = float(np.finfo(float).eps) if engine.own_units else engine.relative
-        warnings = [BELOW] if resolved * resolved_ratio(self.original) > 1 else []
+        warnings = [BELOW_TOLERANCE] if resolved * resolved_ratio(self.original) > 1 else []
         solver = getattr(self.exudyn.DynamicSolverType, engine.integrator)
         gave_up = False
         begin = time.process_time()
@@ -322,7 +327,7 @@ class System:
                 self.system.SolveDynamic(settings, solverType=solver)
         except Exception:  # its own report of a Newton iteration that failed is pages long
             gave_up = True
-            warnings.append("exudyn: the solver gave up before the end, as Newton's method did not converge")
+            warnings.append(GAVE_UP)
         stepping = time.process_time() - begin
         states, last = np.full((3, samples + 1, len(self.nodes), 3), np.nan), 0
         for kind, sensors in enumerate(self.sensors):
@@ -335,7 +340,7 @@ class System:
             states[:, max(1, last) :] = np.nan
         if holds_velocities(self.mechanism) and not engine.consistent:
             states[2] = np.nan
-            warnings.append("ours: reactions are not told, as the start's accelerations ignore velocity constraints")
+            warnings.append(NO_REACTIONS)
         rates, loads = (states[1] / self.seconds, states[2] / self.seconds**2), self.original
         return Recorded(states[0], *rates, stepping, loads.inertias, np.array(loads.gravity), tuple(warnings))
 

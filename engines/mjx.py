@@ -56,7 +56,7 @@ from engines.mujoco.methods import DEFAULT as C_DEFAULT
 from engines.mujoco.methods import TUNED as C_TUNED
 from engines.mujoco.model import MuJoCoModel
 from engines.mujoco.releases import full_inertia
-from engines.mujoco.running import MAX_RESIDUAL
+from engines.mujoco.running import MAX_RESIDUAL, residual_warning
 from engines.sampling import sampled
 from engines.single_run import ExtraEngine, Recorded, quiet
 from engines.tree import Tree, spanning_tree
@@ -67,13 +67,18 @@ from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, Torsi
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
+from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 EVALUATION_COST = 50e-6  # s, with three bodies, once compiled
 # Times mjMINVAL, below which MuJoCo and MJX take no row's compliance (R): that of the hardest row at the start. As
 # shipped R is halved where a gap opens by a millimetre; a power of two is a quarter of a binary digit off at most.
 LEAST_COMPLIANCE = 4.0
-NO_VELOCITY_TERM = "upstream: loops lack the velocity term J-dot v in MJX, so that they are wrong at any step"
+NO_VELOCITY_TERM = RunWarning(
+    "upstream: loops lack the velocity term J-dot v in MJX, so that they are wrong at any step",
+    "known fault",
+    "upstream",
+)
 
 
 @dataclass(frozen=True)
@@ -241,7 +246,7 @@ class DeviceModel:
         motion = model.tree.motion(*(values[:, model.address] for values in (position, velocity, acceleration)))
         warnings = (NO_VELOCITY_TERM,) if lacks_velocity_terms(model.tree) else ()
         if not residual <= MAX_RESIDUAL:
-            warnings += (f"ours: the solver missed the accelerations by {residual:.1g} of themselves",)
+            warnings += (residual_warning(residual),)
         return Recorded(*motion, stepping, *model.inertias_and_gravity(), warnings)
 
 

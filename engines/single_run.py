@@ -23,7 +23,7 @@ from engines.sampling import reactions
 from reference.checks import Count, Positive, Valid, validated
 from reference.joints import Joint
 from reference.mechanism import Mechanism
-from reference.trajectory import Trajectory
+from reference.trajectory import RunWarning, Trajectory
 
 Array = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ class Recorded:
     stepping: float  # s
     inertias: Array
     gravity: Array
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[RunWarning, ...] = ()
 
 
 class SingleRun(OneShot):
@@ -97,8 +97,10 @@ class SingleRun(OneShot):
         pose[lost:], twist[lost:], acceleration[lost:] = np.nan, np.nan, np.nan
         reaction = reactions(self._mechanism, pose, twist, acceleration, recorded.inertias, recorded.gravity)
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
-        silent = lost <= samples and not recorded.warnings
-        warnings = (f"ours: at {t[lost]:.4g} s the engine holds no numbers any more",) if silent else recorded.warnings
+        warnings = recorded.warnings
+        if lost <= samples and not warnings:
+            text = f"ours: at {t[lost]:.4g} s the engine holds no numbers any more"
+            warnings = (RunWarning(text, "lost", "adapter", float(t[lost])),)
         return Trajectory(t, pose, twist, reaction, recorded.stepping, warnings)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,60 @@ Array = NDArray[np.float64]
 # Instants in a notebook's table.
 TABLE_ROWS = 6
 
+WarningKind = Literal[
+    "contact",  # a contact is lost, or turns too far in a step
+    "gap",  # a joint is open
+    "known fault",  # the release, or the engine, is known to move wrongly
+    "lost",  # the motion ends: numbers are not finite, a joint has no place, a solver gave up
+    "rank",  # rows of joints are nearly dependent, so that rounding moves them
+    "rate limit",  # a velocity was cut
+    "reactions",  # reactions are unknown or have a large error
+    "residual",  # a solver left a residual
+    "start reactions",  # the reactions at the start alone have an error
+    "stiff",  # stability and not accuracy sets the steps
+    "unconverged",  # solver iterations leave a part of the slowest mode at every step
+    "unresolved",  # the error may exceed the method's claim
+    "other",
+]
+
+
+class RunWarning(str):
+    """A warning of a run: its text, with fields that say what it is about.
+
+    kind: what it is about, one of WarningKind
+    origin: "engine" for its own message, "upstream" for a fault of the engine that our code reports, "adapter" for a
+        finding about our adapter or method
+    time [s]: from when on it holds; None if that is not known
+
+    It can be used wherever a string is expected, and two with the same text are equal. A plain string that begins with
+    "ours:" is one of the origin "adapter"; any other plain string is one of the engine.
+    """
+
+    kind: WarningKind
+    origin: Literal["engine", "upstream", "adapter"]
+    time: float | None
+
+    def __new__(
+        cls,
+        text: str,
+        kind: WarningKind = "other",
+        origin: Literal["engine", "upstream", "adapter"] = "engine",
+        time: float | None = None,
+    ) -> Self:
+        warning = super().__new__(cls, text)
+        warning.kind, warning.origin, warning.time = kind, origin, time
+        return warning
+
+    def __getnewargs__(self) -> tuple[str, WarningKind, str, float | None]:  # type: ignore[override]
+        return str(self), self.kind, self.origin, self.time
+
+    @classmethod
+    def of(cls, warning: str) -> RunWarning:
+        """The warning itself; a plain string as one of the kind "other"."""
+        if isinstance(warning, RunWarning):
+            return warning
+        return cls(warning, origin="adapter" if warning.startswith("ours:") else "engine")
+
 
 @dataclass(frozen=True)
 class Trajectory(Valid):
@@ -29,7 +83,7 @@ class Trajectory(Valid):
     twist (times, bodies, 3) [m/s, m/s, rad/s], at the same instants as the poses
     reaction (times, rows) [N or N m], M a = f + J^T reaction; NaN where unknown
     stepping [s]: CPU time of the stepping loop, recording included; NaN for a reference motion
-    warnings: the engine's own warnings
+    warnings: those of the engine and of our adapter; `RunWarning`, or plain strings
     reset_at [s]: the time at which the engine reset its state; later samples are NaN
     estimate (times, bodies, 3): the method's own estimate of its error in the poses
     unresolved_at [s]: the time from which that estimate exceeds the method's claim
@@ -42,10 +96,19 @@ class Trajectory(Valid):
     twist: Annotated[Numbers, of_shape("times", "bodies", 3)]
     reaction: Annotated[Numbers, of_shape("times", "rows")]
     stepping: Annotated[float, NOT_FINITE] = float("nan")
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[RunWarning | str, ...] = ()
     reset_at: float | None = None
     estimate: Annotated[Numbers, of_shape("times", "bodies", 3)] | None = None
     unresolved_at: float | None = None
+
+    def warnings_of(self, kind: WarningKind) -> tuple[RunWarning, ...]:
+        """The warnings of one kind."""
+        return tuple(warning for warning in map(RunWarning.of, self.warnings) if warning.kind == kind)
+
+    @property
+    def has_engine_warning(self) -> bool:
+        """Whether some warning is no finding about our adapter."""
+        return any(RunWarning.of(warning).origin != "adapter" for warning in self.warnings)
 
     def table(self) -> dict[str, Array]:
         """Times and every coordinate (times,) by a name, "t" [s], "x 0", "y 0" [m], "angle 0" [rad] and so on.

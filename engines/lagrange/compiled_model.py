@@ -27,6 +27,7 @@ from engines.rolling_table import BLOCK, FARTHEST, Table, rolled
 from reference.joints import Roll
 from reference.mechanism import Body, Mechanism
 from reference.rolling.kinematics import Rolling
+from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 
@@ -82,22 +83,25 @@ class CellWindows:
         return True
 
 
-def stopped_warning(tolerance: float | None, t: float) -> str:
+def stopped_warning(tolerance: float | None, t: float) -> RunWarning:
     """The warning of a run that stopped at t [s]; tolerance None: of a run with steps of one length."""
     if tolerance is None:
-        return f"lagrange: the motion is lost at {t:.6g} s; give a shorter step, or end the run there"
-    return (
-        f"lagrange: the tolerance {tolerance:g} can't be held beyond {t:.6g} s: "
-        "steps become too small or too many; give a larger tolerance, or end the run there"
-    )
+        text = f"lagrange: the motion is lost at {t:.6g} s; give a shorter step, or end the run there"
+    else:
+        text = (
+            f"lagrange: the tolerance {tolerance:g} can't be held beyond {t:.6g} s: "
+            "steps become too small or too many; give a larger tolerance, or end the run there"
+        )
+    return RunWarning(text, "lost", time=t)
 
 
-def open_warning(t: float) -> str:
+def open_warning(t: float) -> RunWarning:
     """The warning of a run in which a projection at t [s] did not close the joints."""
-    return (
+    text = (
         f"lagrange: at {t:.6g} s the projection onto the joints does not converge: "
         "the step is too long, or they are in a singular position"
     )
+    return RunWarning(text, "gap", time=t)
 
 
 @dataclass
@@ -149,7 +153,7 @@ class CompiledModel:
         """The smallest pivot of the row system, relative to its diagonal, since the last step began."""
         return float(self.system.status["smallest_pivot"])
 
-    def warnings(self, tolerance: float | None) -> tuple[str, ...]:
+    def warnings(self, tolerance: float | None) -> tuple[RunWarning, ...]:
         """The warnings of projections and of step control after a run."""
         status = self.system.status
         warnings = [] if np.isnan(status["open_from"]) else [open_warning(status["open_from"])]
@@ -158,14 +162,14 @@ class CompiledModel:
         if not np.isnan(status["stopped_at"]):
             warnings.append(stopped_warning(tolerance, status["stopped_at"]))
         if not np.isnan(status["stiff_from"]):
-            warnings.append(
-                f"lagrange: stiff from {status['stiff_from']:.6g} s on: stability and not accuracy sets the steps"
-            )
+            text = f"lagrange: stiff from {status['stiff_from']:.6g} s on: stability and not accuracy sets the steps"
+            warnings.append(RunWarning(text, "stiff", time=float(status["stiff_from"])))
         if status["rounding"] > 10 * tolerance:
-            warnings.append(
+            text = (
                 "lagrange: rows are so nearly dependent that rounding alone changes speeds by "
                 f"{status['rounding']:.1g} of the mechanism's own, more than the tolerance {tolerance:g}"
             )
+            warnings.append(RunWarning(text, "rank"))
         return tuple(warnings)
 
     def empty_samples(self, samples: int) -> tuple[Array, Array]:

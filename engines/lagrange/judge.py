@@ -12,7 +12,7 @@ from engines.lagrange.engine import Lagrange, Tolerance
 from engines.lagrange.running import LagrangeRun
 from reference.checks import Count, Positive, validated
 from reference.mechanism import Mechanism
-from reference.trajectory import Trajectory
+from reference.trajectory import RunWarning, Trajectory
 
 Array = NDArray[np.float64]
 
@@ -74,7 +74,8 @@ class _JudgeRun(OneShot):
         unresolved_at, warnings = None, trajectory.warnings
         if is_unresolved.any():
             unresolved_at = float(trajectory.t[int(np.argmax(is_unresolved))])
-            warnings = (*warnings, f"lagrange: unresolved from {unresolved_at:.6g} s on, {JUDGE_CLAIM:g} is not held")
+            text = f"lagrange: unresolved from {unresolved_at:.6g} s on, {JUDGE_CLAIM:g} is not held"
+            warnings = (*warnings, RunWarning(text, "unresolved", time=unresolved_at))
         return replace(trajectory, stepping=stepping, warnings=warnings, estimate=estimate, unresolved_at=unresolved_at)
 
     def _violations(self, trajectory: Trajectory) -> Array:

@@ -25,7 +25,7 @@ from engines.lagrange.dynamics import (
 from reference.checks import Count, validated
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.trajectory import Trajectory
+from reference.trajectory import RunWarning, Trajectory
 
 if TYPE_CHECKING:
     from engines.lagrange.engine import Lagrange
@@ -148,14 +148,14 @@ class LagrangeRun(OneShot):
             reactions[finite] = mechanism.reaction(poses[finite], accelerations[finite], twist=twists[finite])
         return reactions, accelerations
 
-    def _incomplete(self, t: Array, poses: Array) -> tuple[str, ...]:
+    def _incomplete(self, t: Array, poses: Array) -> tuple[RunWarning, ...]:
         """The warning of a run that stopped before its end, or in which numpy left joints open."""
         if self._dynamics is not None and not np.isnan(self._dynamics.open_from):
             return (open_warning(self._dynamics.open_from),)
         finite = np.all(np.isfinite(poses), axis=(1, 2))
         return () if finite[-1] else (stopped_warning(self._engine.tolerance, float(t[int(np.argmin(finite)) - 1])),)
 
-    def _lost_rows(self, t: Array, poses: Array, twists: Array, accelerations: Array) -> tuple[str, ...]:
+    def _lost_rows(self, t: Array, poses: Array, twists: Array, accelerations: Array) -> tuple[RunWarning, ...]:
         """The warning about joints that slip after a projection, or that accelerations open where there is none.
 
         J M^-1 J^T keeps few digits of the mass of a body whose distance from a joint is large compared with its radius
@@ -186,10 +186,11 @@ class LagrangeRun(OneShot):
         return row.max(axis=1, initial=0.0) > LOST_ROW * (np.abs(rates * size).max(axis=(1, 2)) + slow)
 
 
-def _lost_row_warning(symptom: str, times: Array) -> tuple[str, ...]:
+def _lost_row_warning(symptom: str, times: Array) -> tuple[RunWarning, ...]:
     if not len(times):
         return ()
-    return (
+    text = (
         f"lagrange: at {times[0]:.6g} s {symptom}: masses, or an arm and a radius of gyration, are so far apart that a "
-        "row is lost beside others, or the position is singular",
+        "row is lost beside others, or the position is singular"
     )
+    return (RunWarning(text, "rank", time=float(times[0])),)

@@ -58,7 +58,7 @@ def instants(
     if model.split_bodies:
         return NotDeclared("a body that is cut into halves is another mechanism at one instant")
     start, motion = model.start(), run(1, max(steps, 1))
-    if any("the solver missed" in warning for warning in motion.warnings):
+    if motion.warnings_of("residual"):
         return NotDeclared("it says itself that its solver ended too early")
     regularisation, model = engine.regularisation(mechanism, dt), replace(model, mechanism=mechanism)
     has_end = steps and motion.reset_at is None and np.isfinite(motion.pose).all()

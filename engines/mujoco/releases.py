@@ -9,6 +9,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.trajectory import RunWarning
+
 KNOWN_WRONG = "known to be wrong"  # in every warning of such a release
 UPPER_CASE = ("RK4", "PGS", "CG")  # words of MJCF that are not in lower case
 MIXED_CASE = {"EULER": "Euler", "NEWTON": "Newton"}
@@ -47,7 +49,7 @@ def spelled(constant: Any) -> str:
     return MIXED_CASE.get(word, word if word in UPPER_CASE else word.lower())
 
 
-def release_warnings() -> list[str]:
+def release_warnings() -> list[RunWarning]:
     """The warnings of every motion with the imported release."""
     fault = known_fault(mujoco.__version__)
-    return [f"ours: {fault}"] if fault else []
+    return [RunWarning(f"ours: {fault}", "known fault", "adapter")] if fault else []

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from engines import OneShot, Size
 from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts, some
+from engines.contract import unresolved
 from engines.mujoco.joints.roll import roll_warnings
 from engines.mujoco.model import MuJoCoModel
 from engines.mujoco.releases import release_warnings
@@ -21,7 +22,7 @@ from engines.mujoco.step_doubling import ORDER, Counts, StepDoubling
 from engines.sampling import sampled
 from reference.checks import Count, validated
 from reference.rows import RANK_TOLERANCE
-from reference.trajectory import Trajectory
+from reference.trajectory import RunWarning, Trajectory
 
 Array = NDArray[np.float64]
 
@@ -37,6 +38,12 @@ AT_REST = 1e-9
 MIN_DISPLACEMENT = FORCES * RANK_TOLERANCE
 # Factor on the displacement that closes the joints: regularisation also changes the motion that the joints leave free.
 RELEASED_MOTION = 1.5
+
+
+def residual_warning(residual: float) -> RunWarning:
+    """The warning of a run whose solver left a residual, relative to the accelerations, above MAX_RESIDUAL."""
+    text = f"ours: the solver missed the accelerations by {residual:.1g} of themselves"
+    return RunWarning(text, "residual", "adapter")
 
 
 @dataclass
@@ -116,7 +123,7 @@ class MuJoCoRun(OneShot):
             is_valid = ~is_late & np.all(np.isfinite(position) & np.isfinite(velocity), axis=1)
             if reset_at is not None:
                 is_valid &= t <= reset_at
-            warnings = list(log.messages)
+            warnings = [RunWarning(message) for message in log.messages]
             evaluated = is_valid & np.isin(counts, reaction_counts)
             acceleration, residual = self._accelerations(position, velocity, t, evaluated)
         pose, twist, change = model.tree.motion(*(x[:, model.address] for x in (position, velocity, acceleration)))
@@ -173,10 +180,10 @@ class MuJoCoRun(OneShot):
         steps, unresolved_at = doubling.unresolved_from(error), None
         if steps is not None:
             unresolved_at = steps * self._dt
-            warnings.append(f"ours: unresolved from {unresolved_at:.4g} s on, its own estimate is not below its claim")
+            warnings.append(unresolved(unresolved_at, "its own estimate is not below its claim"))
         return replace(run, stepping=stepping, warnings=tuple(warnings), estimate=error, unresolved_at=unresolved_at)
 
-    def _reaction_warnings(self, run: Trajectory, *displacements: Array) -> list[str]:
+    def _reaction_warnings(self, run: Trajectory, *displacements: Array) -> list[RunWarning]:
         """The warning if displacements of the poses (times, bodies, 3) change the reactions by much."""
         mechanism = self.model.mechanism
         is_valid = np.isfinite(run.reaction).any(axis=1) & np.isfinite(displacements).all(axis=(0, 2, 3))
@@ -253,7 +260,7 @@ class MuJoCoRun(OneShot):
                 residual = max(residual, solver_residual(compiled, data))
         return acceleration, residual
 
-    def _own_warnings(self, pose: Array, t: Array, residual: float) -> list[str]:
+    def _own_warnings(self, pose: Array, t: Array, residual: float) -> list[RunWarning]:
         """Warnings of which MuJoCo reports nothing: an open joint, and a solver that has not converged."""
         mechanism, warnings = self.model.mechanism, []
         gap = np.nan_to_num(np.abs(mechanism.gap(pose, t))) if len(t) else np.zeros((0, 0))
@@ -261,7 +268,8 @@ class MuJoCoRun(OneShot):
             sample, row = np.unravel_index(int(np.argmax(gap)), gap.shape)
             if gap[sample, row] > MAX_GAP * mechanism.length_scale:
                 name = mechanism.row_names[row]
-                warnings.append(f"ours: row {name!r} is open by {gap[sample, row]:.2g} at {t[sample]:.4g} s")
+                text = f"ours: row {name!r} is open by {gap[sample, row]:.2g} at {t[sample]:.4g} s"
+                warnings.append(RunWarning(text, "gap", "adapter", float(t[sample])))
         if not residual <= MAX_RESIDUAL:
-            warnings.append(f"ours: the solver missed the accelerations by {residual:.1g} of themselves")
+            warnings.append(residual_warning(residual))
         return warnings

@@ -13,12 +13,11 @@ from pymunk._chipmunk_cffi import ffi, lib
 from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
 from engines import OneShot, Size
-from engines.extrapolated import UNCONVERGED
 from engines.pymunk.model import Model
 from engines.sampling import reactions, sampled
 from reference.checks import Count, validated
 from reference.mechanism import Mechanism
-from reference.trajectory import Trajectory
+from reference.trajectory import RunWarning, Trajectory
 
 if TYPE_CHECKING:
     from engines.pymunk.engine import Pymunk
@@ -88,7 +87,7 @@ class Recording:
     after: Array  # (times, bodies, 3) velocities with the positions of t
     before: Array  # (times - 1, bodies, 3) velocities one step earlier, from the second sample on
     stepping: float  # s
-    stopped: str = ""  # the reason if stepping ended early; all later values are NaN
+    stopped: RunWarning | None = None  # the reason if stepping ended early; all later values are NaN
 
 
 def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup: Sequence[int] = ()) -> Recording:
@@ -102,7 +101,7 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup
     step, space = model.stepper(raw)
     dt /= model.unit
     visitor, before, after = recorder.visitor, recorder.velocities, recorder.states
-    stopped = ""
+    stopped: RunWarning | None = None
     # Popped from the end: the last value is the model's own.
     iterations = [model.space.iterations, *reversed(startup)] if startup else []
 
@@ -114,8 +113,9 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup
                     lib.cpSpaceSetIterations(pointer, iterations.pop())
                 step(space, dt)
         except (ValueError, ArithmeticError) as reason:  # an update before a step found no pose for its joint
-            stopped = f"ours: stopped, as a joint could no longer be placed ({reason})"
-        return bool(stopped)
+            text = f"ours: stopped, as a joint could no longer be placed ({reason})"
+            stopped = RunWarning(text, "lost", "adapter")
+        return stopped is not None
 
     stepping = sampled(
         [every] * samples,
@@ -240,12 +240,12 @@ class PymunkRun(OneShot):
             return 4 * third - 3 * fourth if leapfrog else third
 
 
-def _convergence_warning(plan: IterationPlan) -> str:
+def _convergence_warning(plan: IterationPlan) -> RunWarning | None:
     if plan.gain < 1:
-        return f"{UNCONVERGED}, {plan.iterations} sweeps leave {plan.residual:.0%} of the slowest mode"
+        text = f"ours: not converged, {plan.iterations} sweeps leave {plan.residual:.0%} of the slowest mode"
+        return RunWarning(text, "unconverged", "adapter")
     if plan.converged_residual > MAX_START_RESIDUAL:
-        return (
-            "ours: the reactions at the start are not converged, "
-            f"{plan.converged_residual:.0e} of the slowest mode is left"
-        )
-    return ""
+        left = f"{plan.converged_residual:.0e} of the slowest mode is left"
+        text = f"ours: the reactions at the start are not converged, {left}"
+        return RunWarning(text, "start reactions", "adapter")
+    return None

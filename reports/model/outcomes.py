@@ -173,8 +173,8 @@ def of_motion(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, co
     if row.gap > BLOWN * length:
         return Outcome.DIVERGED, f"a joint opened by {row.gap:.2g} m"
     if row.gap > TORN * length:
-        # Adapters begin their own findings with "ours:"; what counts here is whether the engine itself said anything.
-        quiet = "" if any(not w.startswith("ours:") for w in trajectory.warnings) else ", without a warning"
+        # Findings of our adapters do not count: the engine itself has to report it.
+        quiet = "" if trajectory.has_engine_warning else ", without a warning"
         return Outcome.TORN, f"a joint opened by {row.gap:.2g} m in a mechanism of {length:.2g} m{quiet}"
     if row.drive_gap > SATURATED:
         return Outcome.TORN, f"the drive fell behind by {row.drive_gap:.2g} rad"

@@ -314,7 +314,7 @@ def compared(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[s
     length, arm = mechanism.length_scale, np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
     missed = np.nan_to_num(np.abs(run.pose - truth.pose[at]) / [length, length, 1.0], nan=np.inf).max(axis=(1, 2))
     until = run.t < (np.inf if run.unresolved_at is None else run.unresolved_at)
-    of_reactions = [words for words in run.warnings if "reactions are" in words]
+    of_reactions = run.warnings_of("reactions")
     told = run.unresolved_at is not None or len(of_reactions) < len(run.warnings)
     out = {}
     if run.unresolved_at is not None or not told:

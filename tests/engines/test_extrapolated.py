@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from engines.richardson import combine, expected_error, extrapolation_weights
 from reference.forces import TorsionDamper
 from reference.joints import Skate
 from reference.mechanism import Mechanism
-from reference.trajectory import Trajectory
+from reference.trajectory import RunWarning, Trajectory
 from tests.mechanisms import pendulum
 from tests.present import present
 from tests.toys import Plain
@@ -60,6 +61,16 @@ class SeriesRun:
             warnings=("reset", f"at step {self.dt:.3g}") if reset else (),
             reset_at=self.dt * 100 if reset else None,
         )
+
+
+def test_a_warning_keeps_its_fields_in_another_process_and_a_plain_string_has_none():
+    moment = pickle.loads(pickle.dumps(RunWarning("upstream: late", "rate limit", "upstream", 0.5)))
+    assert (str(moment), moment.kind, moment.origin, moment.time) == ("upstream: late", "rate limit", "upstream", 0.5)
+    base = SeriesToy().build(sledge(), 0.1)(3, 1)
+    warned = replace(base, warnings=(moment, "Nan in qacc"))
+    assert warned.warnings == ("upstream: late", "Nan in qacc")
+    assert [found.time for found in warned.warnings_of("rate limit")] == [0.5]
+    assert [str(found) for found in warned.warnings_of("other")] == ["Nan in qacc"]
 
 
 def sledge() -> Mechanism:

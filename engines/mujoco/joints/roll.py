@@ -25,6 +25,7 @@ from reference.mechanism import Mechanism
 from reference.rolling.closed_curves import Ellipse
 from reference.rolling.curves import Circle, Curve, Line, Ring
 from reference.rolling.roll import Roll
+from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 Cone = Literal["pyramidal", "elliptic"]
@@ -145,14 +146,16 @@ def _add_shape(builder: ModelBuilder, roll: Roll, owner: str | None, curve: Curv
             )
 
 
-def roll_warnings(mechanism: Mechanism, step: float, t: Array, pose: Array, twist: Array, reaction: Array) -> list[str]:
+def roll_warnings(
+    mechanism: Mechanism, step: float, t: Array, pose: Array, twist: Array, reaction: Array
+) -> list[RunWarning]:
     """Warnings where a contact of a run was lost, or moved along its curves too fast for the step [s].
 
     t (times,); pose and twist (times, bodies, 3); reaction (times, rows). The contact of nearly conformal curves moves
     along them by omega / (curvature_A + curvature_B). It turns by omega dt / conformality in a step, which must be
     small even if the body turns little.
     """
-    warnings, begin = list[str](), 0
+    warnings, begin = list[RunWarning](), 0
 
     def relative(states: Array, joint: Roll) -> Array:
         first, second = (
@@ -169,15 +172,17 @@ def roll_warnings(mechanism: Mechanism, step: float, t: Array, pose: Array, twis
         is_lost = size <= NO_FORCE * size.max()
         if is_lost.any() or not size.max() > 0:
             share, first = np.count_nonzero(is_lost) / len(t), t[int(np.argmax(is_lost))]
-            warnings.append(
+            text = (
                 f"ours: the contact {joint.name!r} was lost: it carries nothing in {share:.2g} of the samples, "
                 f"first at {first:.4g} s"
             )
+            warnings.append(RunWarning(text, "contact", "adapter", float(first)))
         turned = np.abs(relative(twist, joint)) * step / joint.rolling.contact(relative(pose, joint)).conformality
         worst = int(np.argmax(turned))
         if turned[worst] > MAX_CONTACT_TURN:
-            warnings.append(
+            text = (
                 f"ours: at {t[worst]:.4g} s the contact {joint.name!r} turns by {turned[worst]:.2g} rad along its "
                 f"curves in one step; a step of {step * MAX_CONTACT_TURN / turned[worst]:.2g} s would follow it"
             )
+            warnings.append(RunWarning(text, "contact", "adapter", float(t[worst])))
     return warnings
