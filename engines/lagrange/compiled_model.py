@@ -120,8 +120,9 @@ class CompiledModel:
         """None if numpy has to evaluate the mechanism: for a pair of curves that no table represents, and for a type of
         joint or force without a compiled function.
         """
-        known = {*map(type, mechanism.joints)} <= {*JOINT_FIELDS} and {*map(type, mechanism.forces)} <= {*FORCE_FIELDS}
-        if not known:
+        if not {*map(type, mechanism.joints)} <= {*JOINT_FIELDS}:
+            return None
+        if not {*map(type, mechanism.forces)} <= {*FORCE_FIELDS}:
             return None
         system, positions = system_of(mechanism)
         if np.any(system.rolls["form"] == RollingForm.NOT_TABULATED):
@@ -226,8 +227,8 @@ class CompiledModel:
         done, moves = begin, 0
         while True:
             status["missing_roll"] = -1
-            before, done = done, call(self.system._replace(cells=self.windows.cells), done)
-            moves = moves + 1 if done == before else 0
+            begin, done = done, call(self.system._replace(cells=self.windows.cells), done)
+            moves = moves + 1 if done == begin else 0
             roll = int(status["missing_roll"])
             if roll < 0 or moves > MOST_MOVES or not self.windows.move(roll, float(status["missing_angle"])):
                 return done

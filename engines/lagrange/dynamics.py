@@ -33,7 +33,7 @@ class Tableau(NamedTuple):
     nodes: Array
 
 
-NO_STAGES = Tableau(np.zeros((0, 0)), np.zeros(0), np.zeros(0))  # stands for the semi-implicit Euler method
+NO_STAGES = Tableau(np.zeros((0, 0)), np.zeros(0), np.zeros(0))  # the semi-implicit Euler method
 RK4 = Tableau(
     np.array([[0, 0, 0, 0], [0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 1, 0]]),
     np.array([1, 2, 2, 1]) / 6,
@@ -121,9 +121,9 @@ def inverse_inertia(matrix: Array, soft: NDArray[np.bool_], least: float = LEAST
 def regularised_bias(
     regularisation: Regularisation, soft: NDArray[np.bool_], bias: Array, slip: Array, gap: Array
 ) -> Array:
-    """The bias (..., rows) of rows of which the mask (rows,) `soft` selects the regularised ones."""
-    kept = bias if regularisation.complete else np.where(soft, 0.0, bias)
-    return kept - soft * (regularisation.damping * slip + regularisation.stiffness * gap)
+    """The bias (..., rows) of rows; the mask `soft` (rows,) selects the regularised ones."""
+    ideal = bias if regularisation.complete else np.where(soft, 0.0, bias)
+    return ideal - soft * (regularisation.damping * slip + regularisation.stiffness * gap)
 
 
 class Dynamics:

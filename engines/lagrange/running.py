@@ -156,10 +156,11 @@ class LagrangeRun(OneShot):
         return () if finite[-1] else (stopped_warning(self._engine.tolerance, float(t[int(np.argmin(finite)) - 1])),)
 
     def _lost_rows(self, t: Array, poses: Array, twists: Array, accelerations: Array) -> tuple[RunWarning, ...]:
-        """The warning about joints that slip after a projection, or that accelerations open where there is none.
+        """The warning about joints that slip after a projection, or, without projections, that accelerations open.
 
         J M^-1 J^T keeps few digits of the mass of a body whose distance from a joint is large compared with its radius
-        of gyration. Below the rounding of the matrix, such a row cannot be told from one that follows from others.
+        of gyration. If these digits are below the rounding of the matrix, the row seems to follow from others, and is
+        left out.
         """
         mechanism, regularisation = self._mechanism, self._regularisation
         slow_speed = SLOW_MOTION * mechanism.length_scale / mechanism.time_scale

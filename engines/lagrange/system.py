@@ -1,6 +1,6 @@
 """The records of a mechanism.
 
-Rows stand in reversed Cuthill-McKee order, in which the matrix J M^-1 J^T has a narrow envelope: O(bodies) entries for
+The rows are in reversed Cuthill-McKee order, so that the matrix J M^-1 J^T has a narrow envelope: O(bodies) entries for
 a chain. Its entries are sums of products of two ends of rows on one body; the list of these products is made here once.
 """
 
@@ -213,7 +213,7 @@ def _terms(mechanism: Mechanism, numbers: Numbers, first_rows: Integers) -> tupl
             ends[body] = 2 * row + k if k < 2 else 2 * mechanism.row_count + len(further_ends)
             if k >= 2:
                 further_ends.append({"row": row, "body": body, "end": ends[body]})
-        # Index -1: the last end stands for the ground's in all couplings.
+        # Index -1: all couplings write their ends on the ground to the last record, which is not used.
         for k, term in enumerate(coupling.terms):
             first_end, second_end = (ends.get(numbers[name], -1) for name in (term.first, term.second))
             offset = coupling.offset if k == 0 else 0.0
@@ -271,9 +271,8 @@ def _has_dependent_rows(mechanism: Mechanism) -> bool:
 def _rolls(joints: Sequence[Joint], numbers: Numbers) -> Records:
     rolls = [joint for joint in joints if isinstance(joint, Roll)]
     ends = [{"first": numbers[roll.first], "second": numbers[roll.second]} for roll in rolls]
-    return _table(
-        ROLLING_RECORD, [own | _rolling_constants(roll.rolling) for own, roll in zip(ends, rolls, strict=True)]
-    )
+    constants = [_rolling_constants(roll.rolling) for roll in rolls]
+    return _table(ROLLING_RECORD, [pair | values for pair, values in zip(ends, constants, strict=True)])
 
 
 def _rolling_constants(rolling: Rolling) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Gap, velocity row J and bias -(dJ/dt) v of each joint, as in `reference.joints`.
 
-The bias is what the second derivative of the gap has beside the accelerations. In each function `a` and `b` are the
-arms from the bodies' centres to the joint's points, and `apart` leads from the first centre to the second body's point.
+The second derivative of a gap is J a less the bias. (ax, ay) and (bx, by) are the arms from the bodies' centres to the
+joint's points; (apart_x, apart_y) leads from the first body's centre to the point on the second body.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def angle_equation(joint, first, second, t, equation, ends, end):
 
 @inlined
 def pin_equations(first, second, ax, ay, bx, by, equations, ends, row):
-    """The two points stand at the same place: rows along x and y."""
+    """The two points coincide: rows along x and y."""
     omega, spin = first.omega, second.omega
     end = 2 * row
     ends[end].x, ends[end].turn = -1.0, ay
@@ -86,7 +86,7 @@ def pin_equations(first, second, ax, ay, bx, by, equations, ends, row):
 
 @inlined
 def rod_equation(joint, first, second, ax, ay, bx, by, equation, at_first, at_second):
-    """The two points stand `length` apart; (x, y) is the direction from the first to the second."""
+    """The distance of the two points is `length`; (x, y) is the direction from the first to the second."""
     omega, spin = first.omega, second.omega
     x, y = second.x + bx - first.x - ax, second.y + by - first.y - ay
     distance = math.sqrt(x * x + y * y)

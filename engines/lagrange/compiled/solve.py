@@ -16,8 +16,8 @@ from engines.lagrange.records import LEAST_INVERSE_INERTIA, RowLaw, RowSelection
 # The largest pivot, relative to the diagonal, of a row that follows from others, where all rows are independent at the
 # start: a thousand times the rounding of the product.
 INDEPENDENT_PIVOT = 1e-13
-# The same where some rows are dependent at the start. An open joint perturbs such a pivot by the square of its gap in
-# a step, so this is RANK_TOLERANCE of `reference.rows`.
+# The limit if some rows are dependent at the start: RANK_TOLERANCE of `reference.rows`. Within a step joints are open,
+# and each perturbs such a pivot by the square of its gap.
 DEPENDENT_PIVOT = 1e-9
 # Above this smallest pivot rounding costs less than two digits, and no correction is made.
 WELL_CONDITIONED = 1e-2
@@ -44,10 +44,11 @@ def assemble(system):
     end, x, y, turn = unsigned(len(ends)), 0.0, 0.0, 0.0
     for index in range(len(system.products)):
         product = system.products[index]
-        if product.end != end:  # the products of one end stand together
+        if product.end != end:  # products of the same end are consecutive
             end, body = product.end, system.bodies[product.body]
-            one = ends[end]
-            x, y, turn = one.x * body.inverse_mass, one.y * body.inverse_mass, one.turn * body.inverse_inertia
+            row_end = ends[end]
+            x, y = row_end.x * body.inverse_mass, row_end.y * body.inverse_mass
+            turn = row_end.turn * body.inverse_inertia
         other = ends[product.other]
         matrix[product.entry] += x * other.x + y * other.y + turn * other.turn
 
@@ -99,24 +100,24 @@ def substitute(system, vector):
     The result of a row is handed to the next in a variable: through memory this would take twice as long.
     """
     rows, matrix, inverse_pivots = system.rows, system.matrix, system.inverse_pivots
-    before = 0.0
+    neighbour = 0.0
     for row in range(len(rows)):
         first, begin, value = rows[unsigned(row)].column, rows[unsigned(row)].begin, vector[unsigned(row)]
         for column in range(first, row - 1):
             value -= matrix[unsigned(begin + column)] * vector[unsigned(column)]
         if first < row:
-            value -= matrix[unsigned(begin + row - 1)] * before
-        vector[unsigned(row)] = before = value
+            value -= matrix[unsigned(begin + row - 1)] * neighbour
+        vector[unsigned(row)] = neighbour = value
     for row in range(len(rows)):
         vector[unsigned(row)] *= inverse_pivots[unsigned(row)]
     value = vector[unsigned(len(rows) - 1)]
     for row in range(len(rows) - 1, 0, -1):
-        first, begin, before = rows[unsigned(row)].column, rows[unsigned(row)].begin, vector[unsigned(row - 1)]
+        first, begin, neighbour = rows[unsigned(row)].column, rows[unsigned(row)].begin, vector[unsigned(row - 1)]
         if first < row:
-            before -= matrix[unsigned(begin + row - 1)] * value
+            neighbour -= matrix[unsigned(begin + row - 1)] * value
         for column in range(first, row - 1):
             vector[unsigned(column)] -= matrix[unsigned(begin + column)] * value
-        vector[unsigned(row - 1)] = value = before
+        vector[unsigned(row - 1)] = value = neighbour
 
 
 @inlined
@@ -130,8 +131,8 @@ def apply_reactions(system):
         add_end(change, row.first, ends[2 * index], system.reaction[index])
         add_end(change, row.second, ends[2 * index + 1], system.reaction[index])
     for index in range(len(system.further_ends)):
-        further = system.further_ends[index]
-        add_end(change, further.body, ends[further.end], system.reaction[further.row])
+        end_record = system.further_ends[index]
+        add_end(change, end_record.body, ends[end_record.end], system.reaction[end_record.row])
     for index in range(len(bodies)):
         body, at = bodies[index], 3 * index
         change[at] *= body.inverse_mass
@@ -161,9 +162,9 @@ def row_times(system, index, vector):
         + other.turn * vector[unsigned(second + 2)]
     )
     for k in range(len(system.further_ends)):
-        further = system.further_ends[k]
-        if further.row == index:
-            end, at = system.ends[further.end], 3 * further.body
+        end_record = system.further_ends[k]
+        if end_record.row == index:
+            end, at = system.ends[end_record.end], 3 * end_record.body
             value += (
                 end.x * vector[unsigned(at)] + end.y * vector[unsigned(at + 1)] + end.turn * vector[unsigned(at + 2)]
             )
@@ -196,7 +197,7 @@ def solve(system, corrections):
     apply_reactions(system)
     if system.constants.regularised == RowLaw.COMPLIANT and not is_part:
         return  # J change differs from the right side by the compliance
-    before = math.inf
+    last_largest = math.inf
     for _ in range(corrections if pivot > WELL_CONDITIONED else MOST_CORRECTIONS):
         largest = 0.0
         for row in range(rows):
@@ -205,9 +206,9 @@ def solve(system, corrections):
             )
             residual[row] = missing
             largest = max(largest, missing * missing * system.inverse_pivots[row])
-        if not 0 < largest < 0.25 * before:
+        if not 0 < largest < 0.25 * last_largest:
             return
-        before = largest
+        last_largest = largest
         substitute(system, residual)
         for row in range(rows):
             reaction[row] += residual[row]

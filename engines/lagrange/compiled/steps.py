@@ -93,18 +93,17 @@ def project(system, pose, twist, t, iterations, pose_unit):
 def evaluate_stage(system, storage, stages, nodes, stage, t, dt):
     """Set the velocity and the acceleration of one stage of a tableau."""
     velocities, accelerations = storage.velocities, storage.accelerations
-    velocity, place = storage.stage_twist, storage.stage_pose
-    columns = len(place)
-    for k in range(columns):
-        velocity[k], place[k] = storage.twist[k], storage.pose[k]
+    pose, twist = storage.stage_pose, storage.stage_twist
+    for k in range(len(pose)):
+        pose[k], twist[k] = storage.pose[k], storage.twist[k]
     for earlier in range(stage):
         share = stages[stage, earlier] * dt
         if share != 0:
-            for k in range(columns):
-                velocity[k] += share * accelerations[earlier, k]
-                place[k] += share * velocities[earlier, k]
-    accelerate(system, place, velocity, t + nodes[stage] * dt, storage.acceleration)
-    store_stage(storage, stage, velocity)
+            for k in range(len(pose)):
+                twist[k] += share * accelerations[earlier, k]
+                pose[k] += share * velocities[earlier, k]
+    accelerate(system, pose, twist, t + nodes[stage] * dt, storage.acceleration)
+    store_stage(storage, stage, twist)
 
 
 @inlined
