@@ -1,4 +1,4 @@
-"""The judge against what is known without it: the orders of its methods, and the sag of a spring under a weight."""
+"""The gate's judge: the orders of its methods, the sag of a spring under a weight, and soft motions."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SWINGING = LinkPendulum(duration=0.3, horizon=0.3)
 def test_every_error_of_the_judge_falls_with_the_order_of_its_method(order):
     coarse, fine = errors(SWINGING, order, 1), errors(SWINGING, order, 2)
     observed = {name: np.log2(coarse[name] / fine[name]) for name in QUANTITY_NAMES}
-    # The next power of the step is a thirtieth of the leading one at a hundredth of a second.
+    # At a hundredth of a second the next power of the step is a thirtieth of the leading one.
     assert observed == pytest.approx(dict.fromkeys(QUANTITY_NAMES, order), abs=0.1)
 
 
@@ -38,20 +38,20 @@ def test_a_projection_leaves_the_joints_closed_and_the_motion_as_exact_as_before
 
 
 def test_a_motion_that_is_lost_has_no_finite_error_and_is_not_stepped_to_its_end():
-    # A step of half a second is a quarter of a period: a projection of second order throws the bob off for good.
+    # A step of half a second is a quarter of a period: the motion diverges.
     scene = PointPendulum()
     assert errors(scene, 2, 1, project=True) == dict.fromkeys(QUANTITY_NAMES, np.inf)
     with np.errstate(all="ignore"):
-        found = in_numpy(scene.mechanism(), scene.samples, scene.spacing, 2, 1, None, True)
-    finite = np.isfinite(found.pose).all(axis=(1, 2))
+        run = in_numpy(scene.mechanism(), scene.samples, scene.spacing, 2, 1, None, True)
+    finite = np.isfinite(run.pose).all(axis=(1, 2))
     last = int(finite.argmin())
     assert 0 < last < 100
-    assert np.isnan(found.pose[last + 1 :]).all()
+    assert np.isnan(run.pose[last + 1 :]).all()
 
 
 @dataclass(frozen=True)
 class HeavyDisc(Disc):
-    """Four kilograms at rest on a pin through the centre: a row there feels an inverse inertia of 1/4 kg."""
+    """Four kilograms at rest on a pin through the centre: the inverse inertia of its rows is 1/4 kg."""
 
     rate: float = 0.0
     duration: float = 0.4
@@ -63,15 +63,15 @@ class HeavyDisc(Disc):
 
 
 def test_a_soft_joint_sags_by_its_compliance_and_carries_the_weight():
-    # At rest 0 = -stiffness gap - compliance A reaction: 0.01 * 40 N / 4 kg / 2500 s^-2, after twenty of its times.
-    found = integrate(HeavyDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.01, (True, True)))
-    assert found.pose[-1, 0] == pytest.approx([0.0, -4e-5, 0.0], rel=1e-6)
-    assert found.reaction[-1] == pytest.approx([0.0, 40.0], rel=1e-6)
+    # At rest 0 = -stiffness gap - compliance A reaction: 0.01 * 40 N / 4 kg / 2500 s^-2, after 20 time constants.
+    run = integrate(HeavyDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.01, (True, True)))
+    assert run.pose[-1, 0] == pytest.approx([0.0, -4e-5, 0.0], rel=1e-6)
+    assert run.reaction[-1] == pytest.approx([0.0, 40.0], rel=1e-6)
 
 
-def test_rows_that_do_not_give_way_hold_while_others_sag():
-    found = integrate(HeavyDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.01, (True, False)))
-    assert found.pose[-1, 0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-15)
+def test_rigid_rows_stay_closed_while_soft_ones_sag():
+    run = integrate(HeavyDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.01, (True, False)))
+    assert run.pose[-1, 0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-15)
 
 
 @dataclass(frozen=True)
@@ -84,12 +84,12 @@ class TurningDisc(HeavyDisc):
 
 
 @pytest.mark.parametrize("complete", [True, False])
-def test_a_joint_without_the_term_of_velocities_gives_way_to_what_turns_on_it(complete):
+def test_a_soft_joint_opens_by_the_centripetal_acceleration_if_the_bias_is_left_out(complete):
     mechanism = TurningDisc().mechanism()
-    found = integrate(TurningDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.0, (True, True), complete))
-    opened = np.hypot(*mechanism.gap(found.pose[-1], found.t[-1]))
-    # The bias is the centripetal acceleration, 0.1 m * 4 rad^2/s^2, and without it the spring of 2500 s^-2 has to give.
-    # Its damper resists too, as the gap turns with the disc: 2 rad/s * 100 s^-1 is 8 %, at right angles.
+    run = integrate(TurningDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.0, (True, True), complete))
+    opened = np.hypot(*mechanism.gap(run.pose[-1], run.t[-1]))
+    # The bias is the centripetal acceleration, 0.1 m * 4 rad^2/s^2. Without it the spring of 2500 s^-2 must provide it,
+    # and the damper acts at right angles, as the gap turns with the disc: 2 rad/s * 100 s^-1, 8 % of the stiffness.
     assert opened == pytest.approx(0.0 if complete else 0.4 / np.hypot(2500, 200), rel=1e-2, abs=1e-7)
 
 
@@ -97,36 +97,36 @@ compiled = pytest.mark.skipif(not installed(), reason="numba, the extra 'fast', 
 
 
 @compiled
-def test_refined_steps_end_where_short_ones_of_one_length_do():
+def test_refined_steps_agree_with_short_fixed_steps():
     soft = Regularisation(2500.0, 100.0, 0.01, (True,) * 4)
-    found = refined(SWINGING.mechanism(), SWINGING.samples, SWINGING.spacing, soft)
-    assert found is not None
-    by_short = integrate(SWINGING, 4, 60, soft)
-    # A third of the step changes a tenth of a sample by less than 1e-6, so what is kept is wrong by an eightieth of it.
-    assert np.abs(found.pose - by_short.pose).max() < 1e-6
-    assert np.abs(found.reaction - by_short.reaction).max() < 1e-4 * np.abs(by_short.reaction).max()
+    run = refined(SWINGING.mechanism(), SWINGING.samples, SWINGING.spacing, soft)
+    assert run is not None
+    short_steps = integrate(SWINGING, 4, 60, soft)
+    # A third of the step changes a tenth of a sample by less than 1e-6, so the error is an eightieth of that.
+    assert np.abs(run.pose - short_steps.pose).max() < 1e-6
+    assert np.abs(run.reaction - short_steps.reaction).max() < 1e-4 * np.abs(short_steps.reaction).max()
 
 
 THROUGH = NFourBar(duration=1.0, horizon=1.0)  # the cranks lie along the couplers once, after 0.714 s
 
 
 def spring(mechanism: Mechanism) -> Regularisation:
-    """As an engine closes loops with pins of the first loop: the others hold."""
-    gives = tuple(name.split()[-2] == "left" for name in mechanism.row_names)
-    return Regularisation(4e4, 400.0, 1e-4, gives)
+    """Soft rows of the joints called left, as of an engine that closes loops there; the others are rigid."""
+    rows = tuple(name.split()[-2] == "left" for name in mechanism.row_names)
+    return Regularisation(4e4, 400.0, 1e-4, rows)
 
 
 @compiled
 def test_a_soft_motion_passes_a_singular_position_and_shorter_steps_change_it_little(monkeypatch):
     soft = spring(THROUGH.mechanism())
     assert 0 < sum(soft.rows) < len(soft.rows)
-    found = errors_as_soft(THROUGH, soft)
-    assert 1e-6 < found["angle"] < 1e-5  # 5.4e-6, as by steps of 1e-4 s throughout
+    coarse = errors_as_soft(THROUGH, soft)
+    assert 1e-6 < coarse["angle"] < 1e-5  # 5.4e-6, as by steps of 1e-4 s throughout
     monkeypatch.setattr(judge, "SAME", judge.SAME / 10)
-    monkeypatch.setattr(judge, "PARTS", 1)  # pieces of 0.01 s, which a third of does not pass
+    monkeypatch.setattr(judge, "PARTS", 1)  # pieces of 0.01 s
     finer = errors_as_soft(THROUGH, soft)
-    assert dict(finer) == pytest.approx(dict(found), rel=0.1)
-    # Steps of one length, with which the springs are stable, are thrown off there.
+    assert dict(finer) == pytest.approx(dict(coarse), rel=0.1)
+    # Fixed steps, which are short enough for the springs, diverge there.
     assert errors(THROUGH, 4, 2, soft)["reaction"] > 100 * finer["reaction"]
 
 

@@ -1,9 +1,8 @@
-"""A witness beside the judge: random mechanisms by Newton's law with multipliers, through scipy's DOP853 and Radau.
+"""The judge and an independent witness in random mechanisms: Newton's law with multipliers, integrated by scipy.
 
-It shares no code with `engines.lagrange`, nor with the rows that the judge takes from the mechanism: from that it reads
-names and numbers. Velocities are those of points of rigid bodies, as in chapter 18; the rows are what these velocities
-are for a unit of each coordinate's rate, and their rates are complex steps. Rolling contacts are left out: there the
-scenes' closed forms are the witness.
+The witness shares no code with `engines.lagrange`, nor with `Mechanism.rows`: from a mechanism it reads names and
+numbers only. Rows are relative velocities of points of rigid bodies, as in chapter 18, for a unit of each coordinate's
+rate; their derivatives are complex steps. Rolling contacts are left out: the scenes' closed forms check those.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ from reports.search.mechanisms import mechanism as random_mechanism
 from reports.search.parts import EVERY
 
 H = 1e-30  # of a complex step
-MOST_ASKED = {"DOP853": 3_000, "Radau": 60_000}  # accelerations; others take 500, and 30,000
+MOST_EVALUATIONS = {"DOP853": 3_000, "Radau": 60_000}  # of accelerations; resolved motions take 500 and 30,000
 KINDS = tuple(kind for kind in EVERY if kind != "roll")
 
 
@@ -54,7 +53,7 @@ def moving(body: BodyState, place: tuple[Any, Any]) -> tuple[Any, Any]:
 
 
 def slip(part: Any, first: BodyState, second: BodyState) -> list[Any]:
-    """How fast a joint's rows, or the ends of a force element, move against each other, a value a row."""
+    """The relative velocity of each row of a joint, or of the ends of a force element."""
     turning = second.omega - first.omega
     match part:
         case Drive() | Torque() | TorsionSpring() | TorsionDamper():
@@ -129,21 +128,21 @@ class Witness:
             load = load + strength * slip(force, *self.between(pose, self.units, force))[0]
         later = pose + 1j * H * twist
         bias = [-np.imag(s) / H for joint in mechanism.joints for s in slip(joint, *self.between(later, twist, joint))]
-        whole = np.block([[np.diag(self.mass), -rows.T], [rows, np.zeros((len(rows), len(rows)))]])
-        found = np.linalg.solve(whole, np.concatenate([load, bias]))
-        return found[:n].reshape(-1, 3), found[n:]
+        kkt = np.block([[np.diag(self.mass), -rows.T], [rows, np.zeros((len(rows), len(rows)))]])
+        solution = np.linalg.solve(kkt, np.concatenate([load, bias]))
+        return solution[:n].reshape(-1, 3), solution[n:]
 
     def motion(self, t: Any, method: str = "DOP853", tolerance: float = 1e-13) -> tuple[Any, Any]:
         """Poses and twists (times, bodies, 3); fewer times where the method gives up.
 
-        Raises ArithmeticError where it asks for more than MOST_ASKED accelerations: rounding is above its tolerance.
+        Raises ArithmeticError after MOST_EVALUATIONS accelerations: then rounding is above its tolerance.
         """
-        asked = 0
+        evaluations = 0
 
         def rates(_: float, state: Any) -> Any:
-            nonlocal asked
-            asked += 1
-            if asked > MOST_ASKED[method]:
+            nonlocal evaluations
+            evaluations += 1
+            if evaluations > MOST_EVALUATIONS[method]:
                 raise ArithmeticError("the witness does not come to its end")
             pose, twist = state.reshape(2, -1, 3)
             return np.concatenate([state[state.size // 2 :], self.solved(pose, twist)[0].reshape(-1)])
@@ -154,7 +153,8 @@ class Witness:
         return pose, twist
 
 
-SAMPLES, SPAN, EVERY_STEP = 2, 0.4, 40  # and parts of the mechanism's own time scale
+SAMPLES, STEPS_PER_SAMPLE = 2, 40
+SPAN = 0.4  # of a motion, in units of the mechanism's time scale
 CASES = (0, 2, 4, 5, 6, 7, 8, 9, 10, 13)  # every kind of joint and force
 
 
@@ -163,16 +163,16 @@ def test_the_judge_moves_random_mechanisms_as_newtons_law_does(number: int) -> N
     mechanism = random_mechanism(31, number, KINDS)
     witness, spacing = Witness(mechanism), SPAN * mechanism.time_scale / SAMPLES
     pose, twist = witness.motion(np.arange(SAMPLES + 1) * spacing)
-    coarse = stepped(mechanism, SAMPLES, spacing, 4, EVERY_STEP)
+    coarse = stepped(mechanism, SAMPLES, spacing, 4, STEPS_PER_SAMPLE)
     size = np.array([1.0, 1.0, mechanism.length_scale])
     unit = np.abs(pose - mechanism.pose).max() + mechanism.length_scale
     for judge in (stepped, in_numpy):
-        fine = judge(mechanism, SAMPLES, spacing, 4, 2 * EVERY_STEP)
-        # Half the step leaves a fifteenth of the change at fourth order; a third leaves room for the next power.
+        fine = judge(mechanism, SAMPLES, spacing, 4, 2 * STEPS_PER_SAMPLE)
+        # At fourth order the error of half the step is a fifteenth of the change; a third allows for the next power.
         for name, expected, scale in (("pose", pose, 1.0), ("twist", twist, mechanism.time_scale)):
-            left = np.abs((getattr(fine, name) - getattr(coarse, name)) * size).max() / 3
-            apart = np.abs((getattr(fine, name) - expected) * size).max()
-            assert scale * apart < scale * left + 1e-10 * unit, name
+            allowed = np.abs((getattr(fine, name) - getattr(coarse, name)) * size).max() / 3
+            error = np.abs((getattr(fine, name) - expected) * size).max()
+            assert scale * error < scale * allowed + 1e-10 * unit, name
         for sample in range(SAMPLES + 1):
             acceleration, reaction = witness.solved(pose[sample], twist[sample])
             pushed = witness.rows(pose[sample]).T @ (fine.reaction[sample] - reaction)
@@ -183,19 +183,20 @@ def test_the_judge_moves_random_mechanisms_as_newtons_law_does(number: int) -> N
 
 
 class WitnessedCase(NamedTuple):
-    """In radians and parts of the mechanism's length, velocities in its time: by how much judge and witness are
-    `apart`, and the witness from itself at another tolerance; NaN where one of them stops. `resolved`: whether the
-    judge claims to hold JUDGE_CLAIM.
+    """A comparison, in radians and in units of the mechanism's length and time; NaN if a motion ends early.
+
+    resolved: whether the judge claims JUDGE_CLAIM; difference: between judge and witness; doubt: between the witness
+    and itself at another tolerance.
     """
 
     number: int
     resolved: bool
-    apart: float
+    difference: float
     doubt: float
 
 
 def witnessed(mechanism: Mechanism, t: Any, method: str, tolerance: float) -> tuple[Any, Any]:
-    """Poses and twists of the witness; none where it does not come to its end."""
+    """Poses and twists of the witness; empty arrays if it gives up."""
     try:
         return Witness(mechanism).motion(t, method, tolerance)
     except ArithmeticError:
@@ -205,54 +206,55 @@ def witnessed(mechanism: Mechanism, t: Any, method: str, tolerance: float) -> tu
 def compared(
     number: int, mechanism: Mechanism, span: float, method: str, tolerances: tuple[float, float]
 ) -> WitnessedCase:
-    """Over a `span` [s], by the witness's method at two tolerances, the tighter one last."""
+    """Judge and witness over a `span` [s]; the witness at two tolerances, the tighter one last."""
     t = np.linspace(0.0, span, SAMPLES + 1)
     with np.errstate(all="ignore"):
         judge = TRUTH.build(mechanism, t[1])(SAMPLES, 1)
         loose, tight = (witnessed(mechanism, t, method, tolerance) for tolerance in tolerances)
     size = mechanism.pose_unit
 
-    def apart(one: Any, other: Any) -> float:
-        if not len(one[0]) == len(other[0]) == len(t):
+    def difference(first: Any, second: Any) -> float:
+        if not len(first[0]) == len(second[0]) == len(t):
             return np.nan
-        places, rates = (np.abs(mine - yours).max(axis=(0, 1)) / size for mine, yours in zip(one, other, strict=True))
-        return float(np.maximum(places, mechanism.time_scale * rates).max())
+        poses, rates = (np.abs(a - b).max(axis=(0, 1)) / size for a, b in zip(first, second, strict=True))
+        return float(np.maximum(poses, mechanism.time_scale * rates).max())
 
-    here = (judge.pose, judge.twist)
-    return WitnessedCase(number, judge.unresolved_at is None, apart(here, tight), apart(loose, tight))
-
-
-SEED = 291528136  # the first eight digits of a commit's hash, so that nobody chose it
-STIFF_CASES = (59, 114, 237, 411)  # 10 to 3,204 times faster than gravity and their start, and cheap
+    is_resolved = judge.unresolved_at is None
+    return WitnessedCase(number, is_resolved, difference((judge.pose, judge.twist), tight), difference(loose, tight))
 
 
-def held(found: list[WitnessedCase]) -> list[WitnessedCase]:
-    """Those that can be compared: the judge claims them, and the witness knows them better than the claim."""
-    both = [one for one in found if one.resolved and one.doubt < JUDGE_CLAIM]
-    wrong = [one for one in both if not one.apart < JUDGE_CLAIM + one.doubt]
-    assert wrong == [], f"{len(wrong)} of {len(found)}"
-    return both
+SEED = 291528136  # the first eight digits of a commit's hash: not chosen
+STIFF_CASES = (59, 114, 237, 411)  # 10 to 3,204 times faster than without springs, and cheap
+
+
+def confirmed(cases: list[WitnessedCase]) -> list[WitnessedCase]:
+    """The cases that the judge claims and that the witness knows better than the claim; fails if one is wrong."""
+    comparable = [case for case in cases if case.resolved and case.doubt < JUDGE_CLAIM]
+    wrong = [case for case in comparable if not case.difference < JUDGE_CLAIM + case.doubt]
+    assert wrong == [], f"{len(wrong)} of {len(cases)}"
+    return comparable
 
 
 def test_the_judge_holds_what_it_claims_in_random_mechanisms() -> None:
-    drawn = [(number, random_mechanism(SEED, number, KINDS)) for number in range(24)]
-    found = [compared(number, own, SPAN * own.time_scale, "DOP853", (1e-12, 1e-13)) for number, own in drawn]
-    assert len(held(found)) >= 23
+    mechanisms = [random_mechanism(SEED, number, KINDS) for number in range(24)]
+    spans = [SPAN * mechanism.time_scale for mechanism in mechanisms]
+    cases = [compared(i, mechanisms[i], spans[i], "DOP853", (1e-12, 1e-13)) for i in range(24)]
+    assert len(confirmed(cases)) >= 23
 
 
 def test_the_judge_holds_what_it_claims_of_a_stiff_mechanism_far_beyond_its_own_time() -> None:
-    """Over SPAN of what it would take without springs and dampers."""
-    found = []
+    """Over SPAN of the time scale that it would have without springs and dampers."""
+    cases = []
     for number in STIFF_CASES:
-        own = random_mechanism(SEED, number, KINDS)
-        slow = time_scale(own.length_scale, own.gravity, own.bodies, own.joints)
-        assert slow > 10 * own.time_scale
-        found.append(compared(number, own, SPAN * slow, "Radau", (1e-9, 1e-11)))
-    assert len(held(found)) == len(STIFF_CASES)
+        mechanism = random_mechanism(SEED, number, KINDS)
+        slow = time_scale(mechanism.length_scale, mechanism.gravity, mechanism.bodies, mechanism.joints)
+        assert slow > 10 * mechanism.time_scale
+        cases.append(compared(number, mechanism, SPAN * slow, "Radau", (1e-9, 1e-11)))
+    assert len(confirmed(cases)) == len(STIFF_CASES)
 
 
 def test_the_mechanisms_have_every_kind() -> None:
-    drawn = [random_mechanism(31, number, KINDS) for number in CASES]
-    parts = {type(part) for mechanism in drawn for part in (*mechanism.joints, *mechanism.forces)}
+    mechanisms = [random_mechanism(31, number, KINDS) for number in CASES]
+    parts = {type(part) for mechanism in mechanisms for part in (*mechanism.joints, *mechanism.forces)}
     forces = {Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}
     assert parts == {Pin, Slot, Skate, Drive, Rod, Gear, Weld} | forces

@@ -21,11 +21,14 @@ from tests.mechanisms import four_bar, pendulum
 from tests.present import present
 
 
-@pytest.fixture(autouse=True, params=["compiled", "numpy"])
+@pytest.fixture(params=["compiled", "numpy"])
 def code(request, monkeypatch):
-    """Every test is run with both; where numba is missing, both are numpy."""
+    """Compiled code, then numpy; without numba both are numpy."""
     if request.param == "numpy":
         monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
+
+
+in_both_codes = pytest.mark.usefixtures("code")
 
 
 def swinging_angle(t, amplitude):
@@ -34,6 +37,7 @@ def swinging_angle(t, amplitude):
     return 2 * np.arcsin(np.sin(amplitude / 2) * ellipj(ellipk(modulus) - frequency * t, modulus)[0])
 
 
+@in_both_codes
 def test_a_swinging_bar_agrees_with_elliptic_functions():
     run = TRUTH.build(pendulum(angle=-np.pi / 2 + 1.0), 0.1)(30, 1)
     # 3 s at a tolerance of 1e-13 a step: a few 1e-13.
@@ -44,29 +48,32 @@ def test_a_swinging_bar_agrees_with_elliptic_functions():
     np.testing.assert_allclose(run.reaction, pendulum().bodies[0].mass * pull, rtol=0, atol=1e-10)
 
 
+@in_both_codes
 @pytest.mark.parametrize(("tolerance", "resolved"), [(1e-13, True), (1e-6, False)])
-def test_a_judge_estimates_its_error_and_says_from_when_on_it_does_not_hold_its_claim(tolerance, resolved):
+def test_a_judge_estimates_its_error_and_reports_when_it_exceeds_its_claim(tolerance, resolved):
     run = Judge(tolerance=tolerance).build(pendulum(angle=-np.pi / 2 + 1.0), 0.5)(6, 1)
-    wrong = np.abs(run.pose[:, 0, 2] + np.pi / 2 - swinging_angle(run.t, 1.0))
+    error = np.abs(run.pose[:, 0, 2] + np.pi / 2 - swinging_angle(run.t, 1.0))
     estimate = present(run.estimate)[:, 0, 2]
-    # What the second run is off by, and rounding. In numpy steps end at samples, so that it is hardly looser.
-    assert wrong.max() < 2 * estimate.max() + 1e-12
+    # In numpy all steps end at samples, so that the error of the second run is hardly larger. 1e-12: rounding.
+    assert error.max() < 2 * estimate.max() + 1e-12
     assert (run.unresolved_at is None) is resolved
     assert any("unresolved" in warning for warning in run.warnings) is not resolved
     if run.unresolved_at is not None:
         assert np.all(estimate[run.t < run.unresolved_at] < JUDGE_CLAIM)
 
 
+@in_both_codes
 @pytest.mark.parametrize("method", ["euler", "rk4", "dop853"])
-def test_steps_of_one_length_tell_of_a_dead_end_and_of_a_motion_that_is_lost(method):
+def test_a_run_of_fixed_steps_reports_a_singular_position_or_a_diverged_motion(method):
     run = Lagrange(method).build(OverdrivenFourBar().mechanism(), 1e-2)(40, 5)
     assert any("does not converge" in warning or "is lost" in warning for warning in run.warnings)
     assert Lagrange(method).build(pendulum(), 1e-2)(40, 5).warnings == ()
 
 
-@pytest.mark.parametrize(("gyration", "held"), [(1.0, True), (1e-6, False)])
+@in_both_codes
+@pytest.mark.parametrize(("gyration", "is_closed"), [(1.0, True), (1e-6, False)])
 @pytest.mark.parametrize("method", ["euler none", "rk4 baumgarte", "dop853 projection"])
-def test_a_joint_whose_row_is_lost_beside_others_is_reported(method, gyration, held):
+def test_a_joint_whose_row_is_lost_beside_others_is_reported(method, gyration, is_closed):
     """A body 2.5 km from its pin, on a slope: the force along its arm is m (gyration / arm)^2 of that across."""
     c, s = np.cos(0.7), np.sin(0.7)
     light = Body("light", 1.0, gyration**2, (0.0, 0.0, 0.7), (82 * c, 82 * s, 0.03))
@@ -75,10 +82,11 @@ def test_a_joint_whose_row_is_lost_beside_others_is_reported(method, gyration, h
     pair = Mechanism((light, other), (Pin("pin", "light", "other", (0.0, -2500.0), (0.0, 500.0)),))
     run = Lagrange(*method.split()).build(pair, 0.02)(5, 1)
     if "projection" in method:
-        assert bool(np.abs(slip(pair, run)).max() < 1e-6) is held
-    assert (run.warnings == ()) is held
+        assert bool(np.abs(slip(pair, run)).max() < 1e-6) is is_closed
+    assert (run.warnings == ()) is is_closed
 
 
+@in_both_codes
 @pytest.mark.parametrize(("integrator", "order"), [("euler", 1), ("rk4", 4)])
 @pytest.mark.parametrize("stabilisation", ["none", "projection"])
 def test_the_error_falls_with_the_integrators_order(integrator, order, stabilisation):
@@ -95,12 +103,12 @@ def test_the_error_falls_with_the_integrators_order(integrator, order, stabilisa
 
 def test_projection_closes_wide_gaps_and_takes_from_a_velocity_only_what_does_work_against_the_joints():
     mechanism, random = four_bar(), np.random.default_rng(3)
-    apart = mechanism.pose + 0.05 * random.normal(size=mechanism.pose.shape)
+    open_pose = mechanism.pose + 0.05 * random.normal(size=mechanism.pose.shape)
     wild = random.normal(size=mechanism.twist.shape)
-    pose, twist = Dynamics(mechanism).project(apart, wild, 0.0)
+    pose, twist = Dynamics(mechanism).project(open_pose, wild, 0.0)
     assert np.max(np.abs(mechanism.gap(pose, 0.0))) < 1e-14
     assert np.max(np.abs(mechanism.slip(pose, twist))) < 1e-13
-    # The nearest in the metric of the masses: what is taken away carries no momentum along what is left.
+    # The nearest twist in the metric of the masses: the removed part is orthogonal to the rest.
     assert np.sum(mechanism.inertias * (wild - twist) * twist) == pytest.approx(0, abs=1e-13)
 
 
@@ -110,7 +118,7 @@ def test_constrained_acceleration_solves_newtons_law_with_the_rows_ideal_or_soft
     twist, rows = random.normal(size=mechanism.twist.shape), mechanism.rows(pose)
     soft = np.arange(mechanism.row_count) % 3 == 0
     inertia = inverse_inertia((rows / mechanism.inertias.reshape(-1)) @ rows.T, soft)
-    # Of the soft row 0 alone, a unit force gives this acceleration along itself if the rigid rows hold.
+    # A unit force in the soft row 0 gives this acceleration along that row while the rigid rows hold.
     rigid = np.delete(rows, np.flatnonzero(soft), axis=0) / np.sqrt(mechanism.inertias.reshape(-1))
     push = rows[0] / np.sqrt(mechanism.inertias.reshape(-1))
     push = push - rigid.T @ np.linalg.lstsq(rigid.T, push, rcond=None)[0]
@@ -120,17 +128,19 @@ def test_constrained_acceleration_solves_newtons_law_with_the_rows_ideal_or_soft
         acceleration, reaction = constrained_acceleration(mechanism, pose, twist, target, compliance)
         force = mechanism.inertias * (acceleration - mechanism.unconstrained(pose, twist))
         assert force.reshape(-1) == pytest.approx(rows.T @ reaction, abs=1e-12)
-        left = rows @ acceleration.reshape(-1) + (compliance + np.zeros_like(rows @ rows.T)) @ reaction
-        assert left == pytest.approx(mechanism.bias(pose, twist) if target is None else target, abs=1e-11)
+        left_side = rows @ acceleration.reshape(-1) + (compliance + np.zeros_like(rows @ rows.T)) @ reaction
+        assert left_side == pytest.approx(mechanism.bias(pose, twist) if target is None else target, abs=1e-11)
     dynamics = Dynamics(mechanism, Regularisation(0.0, 3.0, 0.2, tuple(soft)), soft)
     assert dynamics.acceleration(pose, twist, 0.0) == pytest.approx(acceleration, abs=1e-11)
 
 
 def test_baumgarte_closes_an_open_joint_critically_damped():
-    # A bar pulled off its pin along its own axis, nothing turning it: one coordinate, gap'' = -2 gap'/T - gap/T^2.
+    # A bar pulled off its pin along its own axis, without any torque: one coordinate, gap'' = -2 gap'/T - gap/T^2.
     mechanism, constant = replace(pendulum(angle=0.0), gravity=(0.0, 0.0)), 0.1
-    softness = Lagrange("rk4", "baumgarte").regularisation(mechanism, constant / 5)  # its time constant is five steps
-    step = runge_kutta(Dynamics(mechanism, softness), RK4)
+    regularisation = Lagrange("rk4", "baumgarte").regularisation(
+        mechanism, constant / 5
+    )  # its time constant is five steps
+    step = runge_kutta(Dynamics(mechanism, regularisation), RK4)
     pose, twist, dt = mechanism.pose + np.array([0.02, 0.0, 0.0]), mechanism.twist, constant / 50
     for i in range(150):
         pose, twist = step(pose, twist, i * dt, dt)
@@ -139,17 +149,19 @@ def test_baumgarte_closes_an_open_joint_critically_damped():
     assert mechanism.gap(pose, 0.0)[0] == pytest.approx(0.02 * (1 + times) * np.exp(-times), rel=1e-5)
 
 
+@in_both_codes
 def test_baumgartes_spring_knows_the_drives_angle_at_every_stage():
     mechanism = four_bar(crank_rate=10.0, drive=10.0)
     run = Lagrange("rk4", "baumgarte").build(mechanism, 1e-3)(20, 5)
-    # A drive turns evenly, which every stage of a step follows to rounding, if it is asked for its own time.
+    # A drive turns at a constant rate: if each stage uses its own time, the gap is rounding.
     assert np.max(np.abs(joint_gap(mechanism, run)[:, -1])) < 1e-13
 
 
-def test_eulers_method_drifts_with_the_velocity_after_its_kick():
+@in_both_codes
+def test_the_semi_implicit_euler_method_moves_a_pose_with_the_new_velocity():
     mechanism = Mechanism((Body("stone", 2.0, 1.0, (0, 0, 0), (1.0, 0.0, 3.0)),), (), (0.0, -9.81))
     run = Lagrange("euler", "none").build(mechanism, 0.1)(10, 1)
-    # Ten kicks of g dt, each felt by the drift of its own step: g dt^2 (1 + 2 + ... + 10), not (0 + 1 + ... + 9).
+    # Each step moves the pose by the velocity after its change of g dt: g dt^2 (1 + ... + 10), not (0 + ... + 9).
     np.testing.assert_allclose(run.pose[-1, 0], [1.0, -9.81 * 0.01 * 55, 3.0], rtol=1e-14)
 
 
@@ -165,8 +177,8 @@ def test_a_constrained_motion_obeys_its_rows_and_newtons_law(give):
     state = mechanism.pose, mechanism.twist
     rows, right, free = mechanism.rows(mechanism.pose), mechanism.bias(*state), mechanism.unconstrained(*state)
     soft = None if give is None else give * np.eye(len(rows))[:, :3]
-    found = constrained(rows, right, mechanism.inertias, free, soft)
-    given = 0.0 if soft is None else soft @ soft.T @ found.force
-    assert rows @ found.motion.reshape(-1) == pytest.approx(right - given, abs=1e-11)
-    newton = mechanism.inertias * (found.motion - free)
-    assert newton.reshape(-1) == pytest.approx(rows.T @ found.force, abs=1e-11)
+    solution = constrained(rows, right, mechanism.inertias, free, soft)
+    compliance = 0.0 if soft is None else soft @ soft.T @ solution.force
+    assert rows @ solution.motion.reshape(-1) == pytest.approx(right - compliance, abs=1e-11)
+    newton = mechanism.inertias * (solution.motion - free)
+    assert newton.reshape(-1) == pytest.approx(rows.T @ solution.force, abs=1e-11)

@@ -1,4 +1,4 @@
-"""The compiled judge against its numpy twin and against sixty digits: random mechanisms, steps, softness."""
+"""The compiled judge against numpy: random mechanisms, all methods, regularisations; tables, windows, warnings."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ pytestmark = pytest.mark.skipif(not loading.installed(), reason="numba, the extr
 
 
 def differences(mechanism: Mechanism, method: Lagrange, dt: float, every: int = 2) -> tuple[float, float]:
-    """How far compiled poses are from those of numpy, and twists, in parts of the mechanism's own length and speed."""
+    """Differences of compiled poses and twists from those of numpy, in units of the mechanism's length and speed."""
     unit = mechanism.pose_unit
     runs = [replace(method, compiled=compiled).build(mechanism, dt)(2, every) for compiled in (True, False)]
-    pose, twist = (np.abs((getattr(runs[0], what) - getattr(runs[1], what)) / unit).max() for what in ("pose", "twist"))
+    pose, twist = (np.abs((getattr(runs[0], name) - getattr(runs[1], name)) / unit).max() for name in ("pose", "twist"))
     return float(pose), float(twist * mechanism.time_scale)
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
 def test_every_method_gives_the_numbers_of_numpy(method):
-    # Baumgarte's spring divides roundings by its time constant, 5e-3 s, squared, and a step multiplies them by 1e-3 s.
+    # Baumgarte's spring divides rounding errors by the square of 5e-3 s, and a step multiplies them by 1e-3 s.
     allowed = 1e-11 if method.stabilisation == "baumgarte" else 1e-13
     assert max(differences(four_bar(crank_rate=3.0), method, 1e-3, 5)) < allowed
 
@@ -53,8 +53,8 @@ def test_random_mechanisms_of_all_joints_links_and_forces_move_as_in_numpy(numbe
 
 
 def test_the_random_mechanisms_have_every_joint_link_and_force_of_the_compiled_code():
-    drawn = [random_mechanism(21, number, EVERY) for number in range(12)]
-    kinds = {type(part) for mechanism in drawn for part in (*mechanism.joints, *mechanism.forces)}
+    mechanisms = [random_mechanism(21, number, EVERY) for number in range(12)]
+    kinds = {type(part) for mechanism in mechanisms for part in (*mechanism.joints, *mechanism.forces)}
     assert kinds == {*JOINT_FIELDS, *FORCE_FIELDS} - {Coupling, CoupledForce}  # see tests/engines/test_couplings.py
 
 
@@ -63,7 +63,7 @@ def test_rows_that_follow_from_others_change_no_motion_and_share_the_reaction():
     twice = replace(mechanism, joints=(*mechanism.joints, replace(mechanism.joints[2], name="C again")))
     once, again = (Lagrange("rk4").build(m, 1e-3)(10, 2) for m in (mechanism, twice))
     np.testing.assert_allclose(again.pose, once.pose, rtol=0, atol=1e-13)
-    # The smallest reactions: each of the two pins carries half.
+    # The minimum-norm solution: each of the two pins carries half.
     np.testing.assert_allclose(again.reaction[:, 4:6], once.reaction[:, 4:6] / 2, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(again.reaction[:, 8:], once.reaction[:, 4:6] / 2, rtol=1e-9, atol=1e-9)
 
@@ -72,17 +72,19 @@ def test_rows_that_follow_from_others_change_no_motion_and_share_the_reaction():
 def test_a_long_chain_is_factorised_in_a_narrow_band(links):
     scene = LongPendulum(links=links)
     system, _ = system_of(scene.mechanism())
-    assert len(system.matrix) < 4 * len(system.rows)  # a pin's two rows meet those of its two neighbours
+    assert len(system.matrix) < 4 * len(
+        system.rows
+    )  # the two rows of a pin are coupled with those of its two neighbours
     run = Lagrange("rk4").build(scene.mechanism(), 1e-4)(2, 2)
     truth = scene.motion(run.t)
-    # 2e-4 s after its release the chain has hardly turned; what is compared is how its links begin to differ.
+    # 2e-4 s after its release the chain has hardly turned: the differences of the links' rates are compared.
     assert np.max(np.abs(run.twist - truth.twist)) < 1e-9 * links
 
 
 def test_a_projection_with_the_factor_of_the_rows_before_it_leaves_no_slip():
     mechanism = HundredLinks().mechanism()
     run = Lagrange("euler").build(mechanism, 1e-3)(4, 25)
-    # Without the correction that makes up for the older factor it is 3e-12 m/s.
+    # Without the correction for the older factor it is 3e-12 m/s.
     assert np.abs(slip(mechanism, run)).max() < 1e-13
     assert np.abs(joint_gap(mechanism, run)).max() < 1e-13
 
@@ -92,27 +94,25 @@ def test_a_body_that_rolls_beyond_its_table_gets_another_window_and_moves_as_bef
     model = present(CompiledModel.of(mechanism))
     steps = model.empty_samples(10), model.empty_samples(10)
     model.fixed_steps(RK4, 8, 1e-3, 2, 0, *steps[0])
-    model.windows.cells[:] = np.nan  # as if it had come to where there are no cells yet
+    model.windows.cells[:] = np.nan  # as at a rotation without cells
     model.system.rolls["first_cell"] = model.system.rolls["cell_count"] = 0
     model.fixed_steps(RK4, 8, 1e-3, 2, 0, *steps[1])
     np.testing.assert_array_equal(steps[0], steps[1])
 
 
-def test_where_a_table_has_no_cell_numpy_goes_on(monkeypatch):
+def test_if_a_table_has_no_cell_numpy_completes_the_run(monkeypatch):
     mechanism = RollingEllipse().mechanism()
     expected = Lagrange("rk4", compiled=False).build(mechanism, 1e-3)(4, 2)
     monkeypatch.setattr("engines.lagrange.compiled_model.CellWindows.move", lambda self, which, theta: False)
-    found = Lagrange("rk4").build(mechanism, 1e-3)(4, 2)
-    np.testing.assert_array_equal(found.pose, expected.pose)
-    np.testing.assert_array_equal(found.reaction, expected.reaction)
+    run = Lagrange("rk4").build(mechanism, 1e-3)(4, 2)
+    np.testing.assert_array_equal(run.pose, expected.pose)
+    np.testing.assert_array_equal(run.reaction, expected.reaction)
 
 
 @pytest.mark.parametrize("compiled", [True, False])
-def test_a_pendulum_that_no_step_can_follow_is_told_and_ends(compiled, monkeypatch):
-    monkeypatch.setattr(
-        "engines.lagrange.dynamics.MOST_NUMPY_STEPS", 200
-    )  # of the interpreted path: reached as well, sooner
-    # A bar of a micrometre on a bar of a metre: its period is a thousandth, and the tolerance asks for every swing.
+def test_a_run_ends_with_a_warning_if_the_tolerance_needs_too_many_steps(compiled, monkeypatch):
+    monkeypatch.setattr("engines.lagrange.dynamics.MOST_NUMPY_STEPS", 200)  # numpy then ends sooner
+    # A bar of a micrometre on a bar of a metre: its period is a thousandth, and the tolerance needs steps for each swing.
     fast = replace(pendulum(length=1e-12), gravity=(0.0, -1e6))
     hopeless = Lagrange(tolerance=1e-14, compiled=compiled).build(fast, 1.0)(2, 1)
     assert np.isnan(hopeless.pose[-1]).all()
@@ -130,10 +130,10 @@ REGULARISATIONS = (
 @pytest.mark.parametrize("project", [False, True])
 def test_the_gates_judge_is_the_same_compiled_and_in_numpy(soft, project):
     scene = FreeFourBar(duration=0.05)
-    found = integrate(scene, 4, 4, soft, project)
-    expected = in_numpy(scene.mechanism(), len(found.t) - 1, scene.spacing, 4, 4, soft, project)
-    np.testing.assert_allclose(found.pose, expected.pose, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(found.reaction, expected.reaction, rtol=0, atol=1e-10 * np.abs(expected.reaction).max())
+    run = integrate(scene, 4, 4, soft, project)
+    expected = in_numpy(scene.mechanism(), len(run.t) - 1, scene.spacing, 4, 4, soft, project)
+    np.testing.assert_allclose(run.pose, expected.pose, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(run.reaction, expected.reaction, rtol=0, atol=1e-10 * np.abs(expected.reaction).max())
 
 
 def test_a_command_that_steps_nothing_imports_no_numba():
@@ -142,11 +142,8 @@ def test_a_command_that_steps_nothing_imports_no_numba():
     assert done.stdout.split() == ["False"]
 
 
-# Where steps of their own size are hard: beside singular positions, and with springs a million times as stiff
-
-
-def test_a_step_that_stability_sets_and_not_accuracy_is_told():
-    # A damper that stops a body in a millionth of the time in which gravity moves it: an explicit method creeps.
+def test_steps_that_are_limited_by_stability_and_not_by_accuracy_are_reported():
+    # A damper that stops a body in a millionth of the time in which gravity moves it: explicit steps are short.
     scene = FreeFourBar()
     damped = replace(
         scene.mechanism(),
