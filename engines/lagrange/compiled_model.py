@@ -157,11 +157,11 @@ class CompiledModel:
     def warnings(self, tolerance: float | None) -> tuple[RunWarning, ...]:
         """The warnings of projections and of step control after a run."""
         status = self.system.status
-        warnings = [] if np.isnan(status["open_from"]) else [open_warning(status["open_from"])]
+        warnings = [] if np.isnan(status["open_from"]) else [open_warning(float(status["open_from"]))]
         if tolerance is None:
             return tuple(warnings)
         if not np.isnan(status["stopped_at"]):
-            warnings.append(stopped_warning(tolerance, status["stopped_at"]))
+            warnings.append(stopped_warning(tolerance, float(status["stopped_at"])))
         if not np.isnan(status["stiff_from"]):
             text = f"lagrange: stiff from {status['stiff_from']:.6g} s on: stability and not accuracy sets the steps"
             warnings.append(RunWarning(text, "stiff", time=float(status["stiff_from"])))

@@ -72,9 +72,7 @@ def test_rows_that_follow_from_others_change_no_motion_and_share_the_reaction():
 def test_a_long_chain_is_factorised_in_a_narrow_band(links):
     scene = LongPendulum(links=links)
     system, _ = system_of(scene.mechanism())
-    assert len(system.matrix) < 4 * len(
-        system.rows
-    )  # the two rows of a pin are coupled with those of its two neighbours
+    assert len(system.matrix) < 4 * len(system.rows)  # a pin's two rows are coupled with those of its neighbours
     run = Lagrange("rk4").build(scene.mechanism(), 1e-4)(2, 2)
     truth = scene.motion(run.t)
     # 2e-4 s after its release the chain has hardly turned: the differences of the links' rates are compared.
@@ -112,7 +110,7 @@ def test_if_a_table_has_no_cell_numpy_completes_the_run(monkeypatch):
 @pytest.mark.parametrize("compiled", [True, False])
 def test_a_run_ends_with_a_warning_if_the_tolerance_needs_too_many_steps(compiled, monkeypatch):
     monkeypatch.setattr("engines.lagrange.dynamics.MOST_NUMPY_STEPS", 200)  # numpy then ends sooner
-    # A bar of a micrometre on a bar of a metre: its period is a thousandth, and the tolerance needs steps for each swing.
+    # A bar of a micrometre on a bar of a metre: its period is a thousandth, and the tolerance needs steps for each.
     fast = replace(pendulum(length=1e-12), gravity=(0.0, -1e6))
     hopeless = Lagrange(tolerance=1e-14, compiled=compiled).build(fast, 1.0)(2, 1)
     assert np.isnan(hopeless.pose[-1]).all()
