@@ -1,7 +1,7 @@
-"""The import contract of engines, for import-linter: of the reference they may reach an allow-list, and nothing else.
+"""The import contract of engines, for import-linter: they may import only an allow-list of the reference.
 
-A list of what is forbidden forgets what is added later. Here a closed form is refused whatever its name is, also when
-an adapter reaches it through another module. pyproject.toml names this class and the list.
+A list of forbidden modules would not cover new ones. With an allow-list every closed form is refused, also when an
+adapter imports it through another module. pyproject.toml names this class and the list.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class AllowListContract(Contract):
         return any(self._matches(name, entry) for entry in self._entries())
 
     def _entries(self) -> list[str]:
-        # An instance holds the list itself in the field's place, which the field's type doesn't tell.
+        # An instance has the list itself in place of the field, which the type of the field does not express.
         return [str(entry) for entry in cast(Iterable[object], self.allowed)]
 
     @staticmethod

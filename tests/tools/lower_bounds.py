@@ -14,10 +14,10 @@ def lower_bounds(text: str) -> list[str]:
     project = tomllib.loads(text)["project"]
     out = []
     for requirement in (*project["dependencies"], *project["optional-dependencies"]["test"]):
-        found = re.match(r"([A-Za-z0-9_.-]+)\s*>=\s*([0-9.]+)", requirement)
-        if not found:
+        bound = re.match(r"([A-Za-z0-9_.-]+)\s*>=\s*([0-9.]+)", requirement)
+        if not bound:
             raise ValueError(f"pyproject: {requirement!r} has no lower bound; write it as 'name>=version'")
-        out.append("==".join(found.groups()))
+        out.append("==".join(bound.groups()))
     return out
 
 

@@ -1,12 +1,14 @@
-"""Our wheel and somebody else's in an environment of their own: it runs, reports and tests; theirs has its place.
+"""The wheel of this checkout and a third party's wheel in an environment of their own run, report and test.
 
-Their distribution is the code of our how-to pages: an engine, of which they register two variants, and a scene with a
-page. Not a line is changed here for it. Nothing comes from the network, and the environment is made once for this file.
+The third party's distribution is the code of our how-to pages: an engine, of which it registers two variants, and a
+scene with a page. It needs no change of ours. Nothing comes from the network, and the environment is made once for this
+file.
 """
 
 from __future__ import annotations
 
 import csv
+import json
 import os
 import re
 import shutil
@@ -21,16 +23,16 @@ import pytest
 from tests import ROOT
 from tests.reports.test_check import FOUR_BAR
 
-OLDEST_BUILDER = 77  # of setuptools, as in the build-system table of pyproject.toml
-# Beyond what is committed: build and result folders of the checkout.
-NOT_COPIED = (".*", "__pycache__", "build", "dist", "*.egg-info", "crosscheck-results", "tests")
+OLDEST_SETUPTOOLS = 77  # as in the build-system table of pyproject.toml
+# Build and result folders, which are not committed, and folders that no wheel contains.
+LEFT_OUT_OF_CHECKOUT = (".*", "__pycache__", "build", "dist", "*.egg-info", "crosscheck-results", "tests")
 BUILD = "import sys; from setuptools import build_meta; build_meta.build_wheel(sys.argv[1])"
-STEPS = ("--every", "1", "--every", "3", "--every", "10")
-PACKAGES = ("engines", "reference", "reports")
-# The gate's baseline, and the sources of the pages of versions and of the atlas.
-SHIPPED = ("errors", "timings", "versions", "atlas")
-MODULES = ("planar_crosscheck.py", "planar_crosscheck_pytest.py")
-# With every warning an error.
+THREE_STEPS = ("--every", "1", "--every", "3", "--every", "10")
+OUR_PACKAGES = ("engines", "reference", "reports")
+# Results in the wheel: the gate's baseline, and the sources of the pages of versions and of the atlas.
+SHIPPED_RESULTS = ("errors", "timings", "versions", "atlas")
+OUR_MODULES = ("planar_crosscheck.py", "planar_crosscheck_pytest.py")
+# Every warning is an error.
 PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "-W", "error")
 
 THEIR_PROJECT = """
@@ -78,11 +80,18 @@ THEIR_TEMPLATE = """{% extends "base.md" %}
 Their engine reaches {{ best("turning_wheel", "multipliers", "closed").angle | number }} rad.
 {% endblock %}
 """
-METHODS = ("multipliers default", "multipliers closed")
+THEIR_METHODS = ("multipliers default", "multipliers closed")
+# Several commands in one interpreter, because each start takes longer than the command; then its status in a line.
+COMMANDS_IN_ONE_PROCESS = """
+import json, sys
+from reports.cli.commands import invoke
+for words in json.loads(sys.argv[1]):
+    print("status", invoke(words), "of", words[0], flush=True)
+"""
 
 
 def write_their_distribution(folder: Path) -> Path:
-    """Somebody else's distribution, ready to be built."""
+    """Write the third party's distribution, ready to be built."""
     pages = [
         (ROOT / "reports" / "site" / "howto" / f"add_{name}.md").read_text("utf-8") for name in ("an_engine", "a_scene")
     ]
@@ -96,23 +105,23 @@ def write_their_distribution(folder: Path) -> Path:
 
 
 def build_wheel(source: Path, folder: Path) -> Path:
-    """Build the distribution whose pyproject.toml lies in `source`; the test is skipped where no wheel can be built."""
+    """Build the distribution in `source`; skips the test where no wheel can be built."""
     try:
         version = metadata.version("setuptools")
     except metadata.PackageNotFoundError:
         pytest.skip("setuptools is not installed; the extra 'test' of pyproject.toml has it")
-    if int(version.split(".")[0]) < OLDEST_BUILDER:
-        pytest.skip(f"setuptools {version} is older than {OLDEST_BUILDER}, which pyproject.toml asks for")
+    if int(version.split(".")[0]) < OLDEST_SETUPTOOLS:
+        pytest.skip(f"setuptools {version} is older than {OLDEST_SETUPTOOLS}, which pyproject.toml requires")
     subprocess.run([sys.executable, "-c", BUILD, folder], cwd=source, check=True, capture_output=True, text=True)
     (wheel,) = folder.glob("*.whl")
     return wheel
 
 
 def create_environment(folder: Path, *wheels: Path) -> Path:
-    """An environment with these wheels, above the packages that are installed here without this project; its programs.
+    """The folder of programs of an environment with these wheels and with the packages that are installed here.
 
-    Folders of packages are named in a .pth file; .pth files in them, which lead to this checkout, are not read. numba
-    is hidden: a new installation would compile its code first, for a quarter of a minute.
+    A .pth file names the folders of these packages. Python does not read the .pth files in them, which lead to this
+    checkout. numba is hidden, because a new installation would compile its code for a quarter of a minute.
     """
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder], check=True)
     programs = folder / ("Scripts" if os.name == "nt" else "bin")
@@ -130,7 +139,7 @@ def create_environment(folder: Path, *wheels: Path) -> Path:
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory):
     folder = tmp_path_factory.mktemp("ours")
-    checkout = shutil.copytree(ROOT, folder / "checkout", ignore=shutil.ignore_patterns(*NOT_COPIED))
+    checkout = shutil.copytree(ROOT, folder / "checkout", ignore=shutil.ignore_patterns(*LEFT_OUT_OF_CHECKOUT))
     return build_wheel(checkout, folder / "built")
 
 
@@ -143,12 +152,12 @@ def programs(wheel, tmp_path_factory):
 
 @pytest.fixture
 def call(programs, tmp_path):
-    """Runs an installed program in an empty folder, with nothing of ours on the path; gives status, stdout, stderr."""
+    """Runs an installed program in an empty folder, without this checkout; returns status, stdout and stderr."""
 
     def run(program, *words, folder=tmp_path, path=None):
-        kept = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
-        kept |= {} if path is None else {"PYTHONPATH": str(path)}
-        ended = subprocess.run([programs / program, *words], cwd=folder, env=kept, capture_output=True, text=True)
+        variables = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+        variables |= {} if path is None else {"PYTHONPATH": str(path)}
+        ended = subprocess.run([programs / program, *words], cwd=folder, env=variables, capture_output=True, text=True)
         return ended.returncode, ended.stdout, ended.stderr
 
     return run
@@ -157,32 +166,32 @@ def call(programs, tmp_path):
 def test_every_template_snippet_asset_and_baseline_of_the_checkout_is_in_the_wheel(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
     files = [path for part in ("pages", "site") for path in (ROOT / "reports" / part).rglob("*") if path.is_file()]
-    files += [path for part in PACKAGES for path in (ROOT / part).rglob("*.py")]
+    files += [path for part in OUR_PACKAGES for path in (ROOT / part).rglob("*.py")]
     assert {path.relative_to(ROOT).as_posix() for path in files if "__pycache__" not in path.parts} <= names
     results = {name for name in names if name.startswith("reports/results/") and not name.endswith(".py")}
-    assert results == {f"reports/results/{name}.csv" for name in SHIPPED}
-    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {*PACKAGES, *MODULES}
+    assert results == {f"reports/results/{name}.csv" for name in SHIPPED_RESULTS}
+    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {*OUR_PACKAGES, *OUR_MODULES}
 
 
-def test_an_installation_has_all_that_the_checkout_registers_in_the_same_order(call):
+def test_an_installation_registers_the_same_entries_in_the_same_order_as_the_checkout(call):
     from engines.registry import ENGINES, VARIANTS, method_name
     from reports.model.catalogue import PAGES, SCENES
 
     code = (
         "from engines.registry import ENGINES, VARIANTS, method_name; from reports.model.catalogue import *;"
-        "ours = lambda found: [name for name in found if 'multipliers' not in name and 'wheel' not in name.split('_')];"
+        "ours = lambda names: [name for name in names if 'multipliers' not in name and 'wheel' not in name.split('_')];"
         "print(ours(map(method_name, VARIANTS)), ours(map(method_name, ENGINES)), ours(s.name for s in SCENES),"
         "ours(p.name for p in PAGES), TROUBLES, sep='\\n'); import reports; print(reports.__file__)"
     )
     status, out, err = call("python", "-c", code)
     assert (status, err) == (0, "")
-    *registered, place = out.splitlines()
-    assert not place.startswith(str(ROOT / "reports"))
-    here = ([method_name(e) for e in VARIANTS], [method_name(e) for e in ENGINES], [s.name for s in SCENES])
-    assert registered == [*map(str, (*here, [page.name for page in PAGES])), "()"]
+    *registered, file = out.splitlines()
+    assert not file.startswith(str(ROOT / "reports"))
+    expected = ([method_name(e) for e in VARIANTS], [method_name(e) for e in ENGINES], [s.name for s in SCENES])
+    assert registered == [*map(str, (*expected, [page.name for page in PAGES])), "()"]
 
 
-def test_publishing_from_an_installation_and_another_package_of_one_of_our_names_are_refused(call, tmp_path):
+def test_publishing_from_an_installation_and_a_foreign_package_with_one_of_our_names_are_refused(call, tmp_path):
     status, out, err = call("crosscheck", "report", "--publish")
     assert (status, out) == (2, "")
     assert err.startswith("crosscheck: --publish is for a checkout")
@@ -195,28 +204,30 @@ def test_publishing_from_an_installation_and_another_package_of_one_of_our_names
     assert line.startswith(
         f"crosscheck: the package 'engines' is another one, at {tmp_path / 'engines'}, and ours is at "
     )
-    for way in (["crosscheck"], ["python", "-m", "planar_crosscheck"]):  # neither looks in the current folder
-        assert call(*way, "--help")[0] == 0
+    for program in (["crosscheck"], ["python", "-m", "planar_crosscheck"]):  # neither imports from the current folder
+        assert call(*program, "--help")[0] == 0
 
 
-def test_their_engine_and_scenes_are_listed_conform_are_run_and_stand_on_pages(call, tmp_path):
-    status, out, err = call("crosscheck", "list", "turning_wheel", "spare_wheel")
-    assert (status, err) == (0, "")
-    assert "Multipliers(variant='closed')" in out
-    status, out, err = call("crosscheck", "conform", "multipliers", "--variant", "closed")
-    assert (status, err, out.splitlines()[-1].strip()) == (0, "", "every check holds"), out
-    for words in (
-        ("run", "turning_wheel", "spare_wheel", "free_four_bar", "--engine", "multipliers", *STEPS),
+def test_their_engine_and_scenes_are_listed_conform_are_run_and_have_rows_on_pages(call, tmp_path):
+    commands = (
+        ("list", "turning_wheel", "spare_wheel"),
+        ("conform", "multipliers", "--variant", "closed"),
+        ("run", "turning_wheel", "spare_wheel", "free_four_bar", "--engine", "multipliers", *THREE_STEPS),
         ("run", "turning_wheel", "--engine", "lagrange", "--every", "1"),
         ("report",),
         ("show", "free_four_bar", "--engine", "multipliers"),
-    ):
-        status, out, err = call("crosscheck", *words)
-        assert (status, err) == (0, "")
-    assert out.count("multipliers") > 3
+    )
+    status, out, err = call("python", "-c", COMMANDS_IN_ONE_PROCESS, json.dumps(commands))
+    assert (status, err) == (0, "")
+    parts = re.split(r"^status (\d+) of (\w+)\n", out, flags=re.MULTILINE)
+    assert parts[1::3] == ["0"] * len(commands), out
+    listed, conformed, shown = (parts[3 * index] for index in (0, 1, 5))
+    assert "Multipliers(variant='closed')" in listed
+    assert conformed.splitlines()[-1].strip() == "every check holds", conformed
+    assert shown.count("multipliers") > 3
     assert {path.name for path in tmp_path.iterdir()} == {"crosscheck-results"}
-    found = (tmp_path / "crosscheck-results").iterdir()
-    texts = {path.name: path.read_text(encoding="utf-8") for path in found if path.suffix in (".md", ".csv")}
+    files = (tmp_path / "crosscheck-results").iterdir()
+    texts = {path.name: path.read_text(encoding="utf-8") for path in files if path.suffix in (".md", ".csv")}
     rows = [row for row in csv.DictReader(texts["errors.csv"].splitlines()) if row["engine"] == "multipliers"]
     scenes = ("turning_wheel", "spare_wheel", "free_four_bar")
     cells = {(row["scene"], row["variant"], int(row["every"])) for row in rows}
@@ -225,27 +236,27 @@ def test_their_engine_and_scenes_are_listed_conform_are_run_and_stand_on_pages(c
     assert "skate.md" not in texts
     for page, title in (("four_bar", ""), ("wheel", "# Their wheel\n"), ("spare_wheel", "# spare_wheel\n")):
         assert texts[f"{page}.md"].startswith(title)
-        assert all(f"| {method} |" in texts[f"{page}.md"] for method in METHODS)
+        assert all(f"| {method} |" in texts[f"{page}.md"] for method in THEIR_METHODS)
     assert re.search(r"Their engine reaches \d", texts["wheel.md"])  # from their template
     assert "rate=3" in texts["descriptions.csv"]
     assert "- [Their wheel](wheel.md). A disc on an axle, which every engine should hold." in texts["index.md"]
     assert "| scene | multipliers as shipped |" in texts["index.md"]
 
 
-def test_their_engine_one_in_a_file_and_ours_are_held_to_promises_and_the_baseline_in_the_wheel(call, tmp_path):
+def test_the_gate_of_the_wheel_tests_their_engine_one_in_a_file_and_ours(call, tmp_path):
     text = "from their_suite import Multipliers\n\nOWN = Multipliers(variant='half')\n"
     (tmp_path / "own_engine.py").write_text(text, encoding="utf-8")
     engines = ("--engine", "multipliers", "--engine", "own_engine.py:OWN", "--engine", "pymunk tuned")
     scenes = ("--scene", "turning_wheel", "--scene", "free_four_bar")
     status, out, err = call("python", *PYTEST, "-m", "crosscheck", *engines, *scenes)
     assert status == 0, out + err
-    # Four methods in two scenes, of theory and of change; and that no cell of the baseline is missing.
+    # Four methods in two scenes, each against theory and against the baseline; and one test for missing cells.
     assert f"{4 * 2 * 2 + 1} passed" in out
     assert "multipliers half" in out
     assert "free_four_bar  pymunk tuned" in out
 
 
-OWN = """
+OWN_TESTS = """
 from engines.importers import mujoco
 
 def test_the_linkage_is_right(crosscheck):
@@ -256,8 +267,8 @@ def test_it_is_read():
 """
 
 
-def test_a_project_of_ones_own_has_the_fixture_and_keeps_an_option_of_the_grids_name(call, tmp_path):
-    (tmp_path / "test_own.py").write_text(OWN, encoding="utf-8")
+def test_another_project_has_the_fixture_and_keeps_its_option_that_has_the_name_of_one_of_ours(call, tmp_path):
+    (tmp_path / "test_own.py").write_text(OWN_TESTS, encoding="utf-8")
     (tmp_path / "model.xml").write_text(FOUR_BAR, encoding="utf-8")
     (tmp_path / "conftest.py").write_text("def pytest_addoption(parser): parser.addoption('--engine')\n")
     status, out, _ = call("python", *PYTEST, "--engine", "mine", "-m", "not crosscheck")

@@ -1,4 +1,4 @@
-"""Each deliberate mistake can be made in the code as it is, and names a test that exists."""
+"""Each deliberate mistake can be made in the present code, and names a test that exists."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import pytest
 from tests import ROOT
 from tests.tools.mutants.mistakes import BadList, read_mistakes
 
-MISTAKES = read_mistakes()
+MUTATIONS = read_mistakes()
 
 
-@pytest.mark.parametrize("mistake", MISTAKES, ids=lambda mistake: mistake.mistake.replace(" ", "-"))
+@pytest.mark.parametrize("mistake", MUTATIONS, ids=lambda mistake: mistake.mistake.replace(" ", "-"))
 def test_every_mistake_fits_the_code_and_names_a_test(mistake):
     file, wrong = mistake.locate()
     assert ast.dump(ast.parse(wrong)) != ast.dump(ast.parse((ROOT / file).read_bytes()))
     if not mistake.survives:
-        path, *names = mistake.noticed_by.split("::")  # a file alone: the mistake stops its import
+        path, *names = mistake.noticed_by.split("::")  # only a file: the mistake breaks its import
         text = (ROOT / path).read_text(encoding="utf-8")
         assert not names or f"def {names[-1]}(" in text
 
@@ -27,7 +27,7 @@ def test_every_mistake_fits_the_code_and_names_a_test(mistake):
     [
         ('[["Drive.gap"]]\nmistake = "m"\nold = "1"', "missing 1 required positional argument: 'new'"),
         ('[["Drive.gap"]]\nmistake = "m"\nold = "1"\nnew = "2"\nodd = 3', "unexpected keyword argument 'odd'"),
-        ('[["Drive.gap"]]\nmistake = "m"\nold = "not_there"\nnew = "2"', "stands 0 times"),
+        ('[["Drive.gap"]]\nmistake = "m"\nold = "not_there"\nnew = "2"', "occurs 0 times"),
         ('[["Drive.gap"]]\nmistake = "m"\nold = "t"\nnew = "1 +"', "not valid Python"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Windows and macOS as far as they can be had here, the oldest packages, and the layers of imports."""
+"""Missing features of Windows and macOS, lower bounds of dependencies, and the layers of imports."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import pytest
 from tests import ROOT
 from tests.tools.lower_bounds import PYPROJECT, lower_bounds
 
-# A script whose workers import it again before anything else, so that the same is hidden there.
-WITHOUT = """
+# Removes what Windows lacks. Its worker processes import it first, so it is removed there too.
+SCRIPT_WITHOUT_UNIX = """
 import multiprocessing
 import os
 import signal
@@ -21,10 +21,10 @@ import sys
 import time
 from pathlib import Path
 
-# What Windows has of signals, see the documentation of the module; with SIGKILL multiprocessing ends processes here.
-KEPT = {"SIGKILL", "SIGABRT", "SIGFPE", "SIGILL", "SIGINT", "SIGSEGV", "SIGTERM", "SIG_DFL", "SIG_IGN"}
+# The signals of Windows (documentation of the module `signal`), and SIGKILL, which multiprocessing needs here.
+SIGNALS = {"SIGKILL", "SIGABRT", "SIGFPE", "SIGILL", "SIGINT", "SIGSEGV", "SIGTERM", "SIG_DFL", "SIG_IGN"}
 for name in dir(signal):
-    if name.startswith(("SIG", "ITIMER")) and name not in KEPT:
+    if name.startswith(("SIG", "ITIMER")) and name not in SIGNALS:
         delattr(signal, name)
 for name in ("setitimer", "getitimer", "alarm", "pthread_sigmask", "pthread_kill"):
     delattr(signal, name)
@@ -49,11 +49,11 @@ if __name__ == "__main__":
 """
 
 
-def test_without_fork_server_timers_and_most_signals_cells_end_in_the_same_outcomes(tmp_path):
+def test_cells_have_the_same_outcomes_without_fork_timers_and_most_signals(tmp_path):
     folder = tmp_path / "Ergebnisse mit Größe"
     folder.mkdir()
-    (folder / "script.py").write_text(WITHOUT, encoding="utf-8")
-    # Neither the folder of the logs nor the locale is what everybody has.
+    (folder / "script.py").write_text(SCRIPT_WITHOUT_UNIX, encoding="utf-8")
+    # An unusual folder for temporary files, and another locale.
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(folder), "LC_ALL": "C", "PYTHONUTF8": "0"}
     environment |= {"PYTHONCOERCECLOCALE": "0", "PYTHONWARNINGS": "error"}
     command = [sys.executable, folder / "script.py", folder]
@@ -68,7 +68,7 @@ def test_without_fork_server_timers_and_most_signals_cells_end_in_the_same_outco
     assert sorted(path.name for path in folder.iterdir()) == ["cells.sqlite", "script.py", "truths"]
 
 
-def test_every_dependency_has_a_lower_bound_that_can_be_tried():
+def test_every_dependency_has_a_lower_bound():
     bounds = lower_bounds(PYPROJECT.read_text(encoding="utf-8"))
     assert "numpy==2.0" in bounds
     assert len(bounds) == len(set(bounds)) > 10
@@ -76,6 +76,7 @@ def test_every_dependency_has_a_lower_bound_that_can_be_tried():
         lower_bounds('[project]\ndependencies = ["loose"]\noptional-dependencies = {test = []}')
 
 
+# By file, an import that a contract forbids.
 FORBIDDEN = {
     "engines/extrapolated.py": "from reference.scenes.catalogue import SCENES",
     "reference/rolling/roll.py": "import reference.scenes.rolling.body",  # engines reach it through this module

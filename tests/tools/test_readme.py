@@ -1,4 +1,4 @@
-"""The readme and the lecture keep their promises: what they show runs and is so; help loads no more than it needs."""
+"""README, CONTRIBUTING and the lecture: their code runs, their claims and links are right; help imports little."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ from reports.pages.index import COMPARED_PICTURE
 from reports.pages.your_loop.page import LINE_FILES
 from tests import ROOT
 
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+README_TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
-def test_the_python_example_runs_and_says_what_the_reader_expects(capsys):
-    (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+def test_the_python_example_runs_and_prints_a_small_error(capsys):
+    (example,) = re.findall(r"```python\n(.*?)```", README_TEXT, re.DOTALL)
     exec(compile(example, "README.md", "exec"), {})
-    said = capsys.readouterr().out
-    # RK4 at a step of 1e-3 s with the stiffness tied to it: of the order of 1e-6 to 1e-5.
-    (angle,) = re.findall(r"^ *angle, rad +(\S+)", said, re.MULTILINE)
+    printed = capsys.readouterr().out
+    # RK4 with a step of 1e-3 s and the stiffness of that step: 1e-6 to 1e-5.
+    (angle,) = re.findall(r"^ *angle, rad +(\S+)", printed, re.MULTILINE)
     assert 0 < float(angle) < 1e-4
 
 
-def test_the_readme_is_short_and_leads_to_the_lines_to_paste_to_the_lecture_and_to_the_site():
-    lines = README.splitlines()
+def test_the_readme_is_short_and_links_to_the_lines_to_paste_the_lecture_and_the_site():
+    lines = README_TEXT.splitlines()
     assert len(lines) <= 160
-    links = re.findall(r"\]\(([^)]+)\)", README)
+    links = re.findall(r"\]\(([^)]+)\)", README_TEXT)
     assert links[0] == "reports/results/your_loop.md"
     first = "\n".join(lines[: len(lines) // 3])
     assert "](lecture.ipynb)" in first
@@ -49,52 +49,52 @@ def test_the_readme_is_short_and_leads_to_the_lines_to_paste_to_the_lecture_and_
     assert [
         link for link in local - {f"reports/results/{name}" for name in written} if not (ROOT / link).exists()
     ] == []
-    for name in ("options", "close", "choose"):  # the lines that a test pastes
-        assert (LINE_FILES / f"{name}.txt").read_text(encoding="utf-8").strip() in README
+    for name in ("options", "close", "choose"):  # which another test pastes into a script
+        assert (LINE_FILES / f"{name}.txt").read_text(encoding="utf-8").strip() in README_TEXT
 
 
 @pytest.mark.parametrize("file", ["action.yml", "try.sh"])
-def test_the_example_of_an_action_gives_compare_words_that_it_knows(file):
+def test_the_example_of_an_action_gives_compare_valid_options(file):
     text = (ROOT / "examples" / "compare_build" / file).read_text(encoding="utf-8")
     (line,) = re.findall(r"^ *crosscheck compare (.*) > comparison\.md$", text, re.MULTILINE)
-    given = command("compare").make_context("compare", shlex.split(line.replace("$COST", "1.5"))).params
-    assert (given["cost"], given["as_markdown"], list(given["scenes"])) == (1.5, True, [])
+    options = command("compare").make_context("compare", shlex.split(line.replace("$COST", "1.5"))).params
+    assert (options["cost"], options["as_markdown"], list(options["scenes"])) == (1.5, True, [])
 
 
-CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+CONTRIBUTING_TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 
-def test_contributing_is_short_and_names_files_groups_and_targets_that_are_there():
-    assert len(CONTRIBUTING.splitlines()) < 120
-    paths = set(re.findall(r"`((?:reports|reference|engines|tests)/[\w/.]+)", CONTRIBUTING))
+def test_contributing_is_short_and_names_files_groups_and_targets_that_exist():
+    assert len(CONTRIBUTING_TEXT.splitlines()) < 120
+    paths = set(re.findall(r"`((?:reports|reference|engines|tests)/[\w/.]+)", CONTRIBUTING_TEXT))
     assert paths
     assert [path for path in paths if not (ROOT / path).exists()] == []
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert set(re.findall(r"`(crosscheck\.\w+)`", CONTRIBUTING)) <= set(project["entry-points"])
+    assert set(re.findall(r"`(crosscheck\.\w+)`", CONTRIBUTING_TEXT)) <= set(project["entry-points"])
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    assert all(f"\n{target}:" in makefile for target in re.findall(r"\bmake (\w+)", CONTRIBUTING))
+    assert all(f"\n{target}:" in makefile for target in re.findall(r"\bmake (\w+)", CONTRIBUTING_TEXT))
 
 
-def test_their_commands_are_the_programs():
-    pairs = re.findall(r"^crosscheck ([a-z]+)\b|`crosscheck ([a-z]+)\b", README + CONTRIBUTING, re.MULTILINE)
+def test_commands_in_both_texts_exist():
+    pairs = re.findall(r"^crosscheck ([a-z]+)\b|`crosscheck ([a-z]+)\b", README_TEXT + CONTRIBUTING_TEXT, re.MULTILINE)
     words = {word for pair in pairs for word in pair if word}
     assert {"run", "report", "conform", "list", "show"} <= words
     assert words <= COMMANDS.keys()
 
 
-CELLS = json.loads((ROOT / "lecture.ipynb").read_text(encoding="utf-8"))["cells"]
+NOTEBOOK_CELLS = json.loads((ROOT / "lecture.ipynb").read_text(encoding="utf-8"))["cells"]
 
 
 @pytest.fixture(scope="module")
 def lecture() -> Any:
-    """The names that the cells leave behind, and the text that they print."""
+    """The module of the notebook after all cells, and the printed text."""
     module, printed = ModuleType("lecture"), io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(printed):
         patch.setitem(sys.modules, "lecture", module)
         matplotlib.use("agg")
         import matplotlib.pyplot as plt
 
-        for number, cell in enumerate(CELLS):
+        for number, cell in enumerate(NOTEBOOK_CELLS):
             if cell["cell_type"] == "code":
                 assert cell["outputs"] == []
                 exec(compile("".join(cell["source"]), f"cell {number}", "exec"), vars(module))
@@ -102,20 +102,20 @@ def lecture() -> Any:
     return module, printed.getvalue()
 
 
-def test_every_cell_runs_and_its_claims_on_engines_are_so(lecture):
+def test_every_cell_runs_and_its_claims_about_engines_are_right(lecture):
     module, printed = lecture
     assert "rows and coordinates: (8, 9)  freedoms of place and of velocity: (1, 1)" in printed
     assert max(module.apart, module.slip, module.gap, module.drift) < 1e-9
     # The first order of the engine as shipped; tuned, MuJoCo's follows the square of the step.
     assert module.slopes["pymunk default"] == pytest.approx(1.0, abs=0.35)
     assert module.slopes["mujoco tuned"] == pytest.approx(2.0, abs=0.35)
-    # A plateau: thirty times as many steps, and hardly a smaller error. With the integrator as shipped two errors
-    # cancel at one step, and documented settings win more than a step a tenth as large.
+    # A plateau: with thirty times as many steps the error is hardly smaller. With the shipped integrator two errors
+    # cancel at one step; documented settings reduce the error more than a step a tenth as large.
     plateau = module.swept["mujoco RK4"]
     assert plateau.min() > plateau.max() / 2
     assert module.swept["mujoco default"][-1] < plateau[-1]
     assert module.swept["mujoco tuned"][0] < plateau[2]
-    # Luck at 1 ms, from which the error comes back by ten times and more, to the plateau of the spring alone.
+    # The errors cancel at 1 ms; at smaller steps the error is ten times larger, the plateau of the soft joint.
     errors = dict(zip(module.fine, module.lucky["default"], strict=True))
     assert errors[100] * 10 < errors[1000] < module.lucky["RK4"][-1] < 1.2 * errors[1000]
     assert module.astray > 1
@@ -125,26 +125,28 @@ def test_every_cell_runs_and_its_claims_on_engines_are_so(lecture):
     assert rough > 10 * good
 
 
-def test_the_exercises_on_rolling_and_skates_have_the_answers_that_are_known_otherwise(lecture):
+def test_the_exercises_on_rolling_and_skates_have_the_known_answers(lecture):
     module, printed = lecture
-    # a / b + 1 outside and a / b - 1 inside, the other way round than the centre goes; by 2,000 points of a round.
+    # a / b + 1 turns outside and a / b - 1 inside, there against the centre's direction; from 2,000 points of a round.
     assert module.turns == pytest.approx({"disc": 3.0, "hole": -1.0}, abs=1e-3)
     # omega^2 / (1/b + kA): kA = 1/a on the disc, 0 on flat ground, -1/a in the hole.
     assert module.starts == pytest.approx({"disc": 1 / 6, "flat": 1 / 4, "hole": 1 / 2}, rel=1e-12)
     assert "8: (Move(turn=1.57" in printed
     # Differences of second order over a millisecond: an error of 1e-6 times rates near 1.
     assert module.factor == pytest.approx(1.0, abs=1e-4)
-    # The solution's sech has died away; a turning rate of 1e-3 rad/s at the start is its first part.
+    # The sech of the solution has decayed; the initial rate of 1e-3 rad/s is its first part.
     assert module.turned == pytest.approx(math.pi * module.gyration / 0.5, rel=1e-3)
 
 
-# numpy alone takes as long to load as all that help needs; what follows from it, ten times as long.
-HEAVY = ("numpy", "scipy", "matplotlib", "pymunk", "mujoco", "numba", "reference.joints", "engines")
+# numpy alone takes as long to import as all that the help needs, and the others ten times as long.
+SLOW_TO_IMPORT = ("numpy", "scipy", "matplotlib", "pymunk", "mujoco", "numba", "reference.joints", "engines")
 
 
-def test_the_list_of_commands_loads_nothing_that_a_run_needs():
+def test_the_list_of_commands_imports_nothing_that_only_a_run_needs():
     code = "import sys\nfrom reports.__main__ import main\nsys.argv[1:] = ['--help']\ntry:\n    main()\n"
-    code += f"except SystemExit:\n    print(*[name for name in {HEAVY!r} if name in sys.modules], file=sys.stderr)"
+    code += (
+        f"except SystemExit:\n    print(*[name for name in {SLOW_TO_IMPORT!r} if name in sys.modules], file=sys.stderr)"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "Usage" in done.stdout
     assert done.stderr.split() == []

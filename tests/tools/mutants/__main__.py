@@ -16,17 +16,18 @@ import tempfile
 from pathlib import Path
 
 from tests import ROOT
-from tests.tools.mutants.mistakes import BadList, Mistake, read_mistakes
+from tests.tools.mutants.mistakes import BadList, Mutation, read_mistakes
 
-NOT_COPIED = (".git", ".venv*", "__pycache__", "*.egg-info", ".*_cache", "*.sqlite*", "crosscheck-results")
-OPTIONS = ("-q", "-x", "--no-header", "--tb=no", "-rfE", "-p", "no:cacheprovider", "-m", "not slow and not crosscheck")
-NO_TEST = (4, 5)  # pytest's status where the name stands for no test
-LIMIT = 300.0  # s, for the tests of one file
+EXCLUDED_FROM_COPY = (".git", ".venv*", "__pycache__", "*.egg-info", ".*_cache", "*.sqlite*", "crosscheck-results")
+PYTEST_OPTIONS = ("-q", "-x", "--no-header", "--tb=no", "-rfE", "-p", "no:cacheprovider")
+FAST_TESTS = ("-m", "not slow and not crosscheck")
+NO_TEST = (4, 5)  # exit statuses of pytest if it collects no test
+TEST_TIMEOUT = 300.0  # s, for one run of pytest
 
 
 def copy_tree(folder: Path) -> Path:
-    """A copy of the tree whose bytecode is checked by contents, since a mistake may keep the date and the size."""
-    shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*NOT_COPIED))
+    """A copy of the tree with bytecode that Python checks by contents: a mistake may keep a file's date and size."""
+    shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*EXCLUDED_FROM_COPY))
     compileall.compile_dir(folder, quiet=2, invalidation_mode=py_compile.PycInvalidationMode.CHECKED_HASH)
     return folder
 
@@ -35,18 +36,18 @@ def run_tests(tree: Path, tests: str) -> tuple[bool, str]:
     """Whether a test failed, and the first failed test, or the reason for which none ran."""
     environment = {**os.environ, "PYTHONPATH": str(tree), "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
     environment["NUMBA_CACHE_DIR"] = str(tree.parent / "numba")
-    command = [sys.executable, "-m", "pytest", *OPTIONS, tests]
+    command = [sys.executable, "-m", "pytest", *PYTEST_OPTIONS, *FAST_TESTS, tests]
     try:
-        run = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, timeout=LIMIT)
+        run = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, timeout=TEST_TIMEOUT)
     except subprocess.TimeoutExpired:
-        return True, f"{tests} (no end within {LIMIT:g} s)"
+        return True, f"{tests} (not finished within {TEST_TIMEOUT:g} s)"
     if run.returncode in NO_TEST:
         return False, f"{tests}: no such test"
     failed = re.search(r"^(?:FAILED|ERROR) (\S+?)(?:\[.*|$| - .*)", run.stdout, re.MULTILINE)
     return run.returncode != 0, failed[1] if failed else tests
 
 
-def run_mistake(tree: Path, mistake: Mistake, test: str) -> tuple[bool, str]:
+def run_mistake(tree: Path, mistake: Mutation, test: str) -> tuple[bool, str]:
     """Make the mistake in the tree, run the test or the file of tests, and restore the source."""
     if not test:
         return False, "no test is named"

@@ -1,13 +1,13 @@
 """Mistakes that people make in mechanics, written by hand in `physics.toml`.
 
-    [["Mechanism.bias"]]                      # the function's qualified name; "gate.change:NAME" where several have it
-    mistake = "the bias term is left out"     # a sentence that stands once in the list
+    [["Mechanism.bias"]]                      # the function's qualified name, "gate.change:NAME" if it is ambiguous
+    mistake = "the bias term is left out"     # a sentence, unique in the list
     noticed_by = "tests/x.py::test_y"         # a test that fails with the mistake
     old = "-np.imag(rates) / step"            # an expression or statements, in any layout
     new = "0 * rates"                         # the replacement; "" removes a statement
 
-`[[""]]` stands for the code outside of functions. `old` has to stand once in all functions of that name.
-`survives` is the reason for which no test can notice the mistake.
+`[[""]]` is the code outside of functions. `old` has to occur once in all functions of that name. `survives` is the
+reason why no test can notice the mistake.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class BadList(ValueError):
 
 
 @dataclass(frozen=True)
-class Mistake:
+class Mutation:
     """One entry of the list."""
 
     function: str
@@ -58,22 +58,22 @@ class Mistake:
                 nodes = [node for name, node in _walk(tree, "") if name == function] if function else [tree]
                 hits += sum(_replace(node, old, new, inside=bool(function)) for node in nodes) * [(file, tree)]
         if len(hits) != 1:
-            raise BadList(f"{self.mistake}: {self.old!r} stands {len(hits)} times in functions named {self.function!r}")
+            raise BadList(f"{self.mistake}: {self.old!r} occurs {len(hits)} times in functions named {self.function!r}")
         file, tree = hits[0]
         return file, ast.unparse(tree).encode()
 
 
-def read_mistakes(path: Path = LIST) -> tuple[Mistake, ...]:
-    """Every entry; raises BadList for a missing or unknown field and for a sentence that stands twice."""
-    entries: dict[str, Mistake] = {}
+def read_mistakes(path: Path = LIST) -> tuple[Mutation, ...]:
+    """All entries; raises BadList for a missing or unknown field and for a repeated sentence."""
+    entries: dict[str, Mutation] = {}
     for function, tables in tomllib.loads(path.read_text(encoding="utf-8")).items():
         for fields in tables:
             try:
-                entry = Mistake(function, **fields)
+                entry = Mutation(function, **fields)
             except TypeError as reason:
                 raise BadList(f"{function}: {reason}") from None
             if entry.mistake in entries:
-                raise BadList(f"{entry.mistake}: the sentence stands twice")
+                raise BadList(f"{entry.mistake}: the sentence is repeated")
             entries[entry.mistake] = entry
     return tuple(entries.values())
 
@@ -104,7 +104,7 @@ def _parse(code: str) -> list[Any]:
 
 
 def _replace(node: ast.AST, old: list[Any], new: list[Any], inside: bool) -> int:
-    """Replace `old` wherever it stands below a node, and count the places; `inside`: in functions below it as well."""
+    """Replace `old` below a node and return the number of occurrences; `inside`: in nested functions as well."""
     kind = ast.expr if isinstance(old[0], ast.expr) else ast.stmt
     wanted, count = [ast.unparse(part) for part in old], 0
     for name, value in list(ast.iter_fields(node)):
