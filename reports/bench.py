@@ -34,7 +34,7 @@ from reports.model.spending import taken
 from reports.site.folder import MARKER, compressed_size, server
 
 BARE_LOOP = Kind("bare loop", lambda value: "" if callable(value) else "it can't be called")
-TURNS = 7  # of each, alternating, so that a slow spell of the machine meets both
+TURNS = 7  # of each, alternating, so that a slow period of the machine affects both
 COMMAND_TURNS = 3
 ROOT = Path(__file__).resolve().parents[1]
 LESSON, SCENE, STEP = "lessons/four_bar.html", 1, 4e-3  # the linkage that is released, which moves for a second [s]
@@ -103,17 +103,17 @@ def measure_grid(cells: Iterable[Cell]) -> dict[str, dict[str, float]]:
 
 
 def measure_judge(links: Sequence[int] = (100, 300, 1000), turns: int = TURNS) -> list[Row]:
-    """An evaluation, a second of the free four-bar, and steps of chains by exact multipliers.
+    """CPU time of the judge: of one evaluation, of a second of the free four-bar, of steps of chains.
 
     Raises BadInput without numba.
     """
     scene = FreeFourBar(duration=1.0)
     mechanism = scene.mechanism()
-    machine = CompiledModel.of(mechanism) if Lagrange().in_machine_code else None
-    if machine is None:
+    model = CompiledModel.of(mechanism) if Lagrange().in_machine_code else None
+    if model is None:
         raise BadInput("the judge is timed as compiled code: install numba, the extra 'fast'")
-    rows = [("four-bar: one evaluation", 1e6 * _least(lambda: _measure_evaluation(machine), turns), "us")]
-    # Steps of 1e-2 s are too long for an error of 1e-12 rad at order 8; half of that step holds it.
+    rows = [("four-bar: one evaluation", 1e6 * _least(lambda: _measure_evaluation(model), turns), "us")]
+    # At order 8 the error is 1e-12 rad with steps of 5e-3 s, and larger with steps of 1e-2 s.
     for engine, every in ((Lagrange("rk4"), 10), (Lagrange(), 1), (Lagrange(), 2), (Lagrange(tolerance=1e-12), 1)):
         step = f"step {1e-2 / every:g} s" if engine.tolerance is None else "samples 0.01 s apart"
         name = f"four-bar: a second by {engine.variant}, {step}"
@@ -147,12 +147,12 @@ def measure_truths(scenes: Iterable[Scene]) -> list[Row]:
     return sorted(rows, key=lambda row: -row[1])
 
 
-def _measure_evaluation(machine: CompiledModel, count: int = 2000) -> float:
+def _measure_evaluation(model: CompiledModel, count: int = 2000) -> float:
     """CPU seconds of rows, bias, J M^-1 J^T, its factor, reactions and accelerations at the start."""
-    poses, twists = machine.empty_samples(count)
+    poses, twists = model.empty_samples(count)
     poses[:], twists[:] = poses[0], twists[0]
     begin = time.process_time()
-    machine.reactions(1e-3, poses, twists)
+    model.reactions(1e-3, poses, twists)
     return (time.process_time() - begin) / (count + 1)
 
 

@@ -31,10 +31,14 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 
-STEP_SHARE = 0.1  # local tolerance over tolerance: errors of steps add up, and the sum then about holds the tolerance
-LEAST_STEP_TOLERANCE = 2e-15  # about ten roundings
-MOST_MOVES = 8  # of a table's window for one sample; a body that turns farther between two samples is lost
-MOST_CELLS = 2**15  # in the window of a table: 10 MB
+# The tolerance of a step as a share of that of the run: errors of steps add up to about the tolerance.
+STEP_SHARE = 0.1
+# The smallest tolerance of a step: about ten roundings.
+LEAST_STEP_TOLERANCE = 2e-15
+# Moves of a table's window for one sample; a body that turns farther between two samples has diverged.
+MOST_MOVES = 8
+# Cells in the window of a table: 10 MB.
+MOST_CELLS = 2**15
 
 
 class CellWindows:

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 from engines.user_cache import cache_folder
 
-FOLDER = Path(__file__).parent
+SOURCE_FOLDER = Path(__file__).parent
 
 
 @cache
@@ -62,7 +62,7 @@ def compiled() -> CompiledFunctions:
 def _digest() -> str:
     """A digest of the sources of the compiled functions and of their records."""
     digest = hashlib.sha256()
-    for source in (FOLDER / "records.py", *sorted((FOLDER / "compiled").glob("*.py"))):
+    for source in (SOURCE_FOLDER / "records.py", *sorted((SOURCE_FOLDER / "compiled").glob("*.py"))):
         digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 
@@ -77,7 +77,7 @@ def _temporary_folder() -> tempfile.TemporaryDirectory[str]:
 def _cache_folder() -> Path:
     """The folder for machine code; it exists and can be written to."""
     configured = os.environ.get("NUMBA_CACHE_DIR")
-    for parent in [Path(configured)] if configured else [FOLDER / "__pycache__", cache_folder()]:
+    for parent in [Path(configured)] if configured else [SOURCE_FOLDER / "__pycache__", cache_folder()]:
         folder = parent / f"lagrange-{_digest()}"
         try:
             folder.mkdir(parents=True, exist_ok=True)

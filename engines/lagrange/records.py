@@ -66,6 +66,7 @@ def _record(integers: str, reals: str = "", complexes: str = "", unsigned: str =
 # Points of the first and of the second body, in their own frames [m].
 POINT_FIELDS = "first_x first_y second_x second_y "
 # Units are those of the fields of `reference.joints`, `reference.forces` and `reference.couplings`.
+# `dependent`: whether rows are dependent at the start; `regularised`: a RowLaw.
 CONSTANT_RECORD = _record("dependent regularised holonomic_rows", "gravity_x gravity_y")
 # The state is that of the last call of `set_bodies`.
 BODY_RECORD = _record("", "inverse_mass inverse_inertia x y angle cos sin vx vy omega")
@@ -74,6 +75,7 @@ FORCE_RECORD = _record("kind first second first_term term_count", POINT_FIELDS +
 TERM_RECORD = _record("row first second first_end second_end sliding", "factor line_angle offset " + POINT_FIELDS)
 # `column` is the first column of the row's envelope; the entry in a column is matrix[begin + column].
 ROW_RECORD = _record("first second holonomic column begin")
+# The state and the regularisation of a row; its bias is left out if `without_bias` is 1.
 EQUATION_RECORD = _record("", "gap bias rate stiffness damping compliance without_bias inverse_inertia")
 # The derivatives of a row by the coordinates of one body.
 END_RECORD = _record("", "x y turn")
@@ -85,6 +87,12 @@ PRODUCT_RECORD = _record("", unsigned="entry end other body")
 ROLLING_RECORD = _record(
     "form first second first_cell cell_count cell_begin", "start angle turning width", "origin along radius middle"
 )
+# Results of calls; a time is NaN if there was none.
+# missing_roll, missing_angle [rad]: a roll, by number, whose table has no cell at this rotation; -1 if none is missing
+# selection: the RowSelection of the last factor
+# smallest_pivot, factor_pivot: relative to the diagonal, in a step, and in the last factor
+# stopped_at, stiff_from, open_from [s]: steps became too small or too many; the motion stiff; joints stayed open
+# rounding: the change of speeds by rounding, in units of the mechanism's own speed
 STATUS_RECORD = _record(
     "missing_roll accepted_steps selection",
     "missing_angle smallest_pivot factor_pivot stopped_at stiff_from rounding open_from",

@@ -24,7 +24,7 @@ from reports.search.parts import EVERY
 
 H = 1e-30  # of a complex step
 MOST_EVALUATIONS = {"DOP853": 3_000, "Radau": 60_000}  # of accelerations; resolved motions take 500 and 30,000
-KINDS = tuple(kind for kind in EVERY if kind != "roll")
+WITNESSED_KINDS = tuple(kind for kind in EVERY if kind != "roll")
 
 
 class BodyState(NamedTuple):
@@ -153,27 +153,27 @@ class Witness:
         return pose, twist
 
 
-SAMPLES, STEPS_PER_SAMPLE = 2, 40
-SPAN = 0.4  # of a motion, in units of the mechanism's time scale
-CASES = (0, 2, 4, 5, 6, 7, 8, 9, 10, 13)  # every kind of joint and force
+WITNESS_SAMPLES, JUDGE_STEPS = 2, 40
+WITNESS_SPAN = 0.4  # of a motion, in units of the mechanism's time scale
+WITNESSED_NUMBERS = (0, 2, 4, 5, 6, 7, 8, 9, 10, 13)  # every kind of joint and force
 
 
-@pytest.mark.parametrize("number", CASES)
+@pytest.mark.parametrize("number", WITNESSED_NUMBERS)
 def test_the_judge_moves_random_mechanisms_as_newtons_law_does(number: int) -> None:
-    mechanism = random_mechanism(31, number, KINDS)
-    witness, spacing = Witness(mechanism), SPAN * mechanism.time_scale / SAMPLES
-    pose, twist = witness.motion(np.arange(SAMPLES + 1) * spacing)
-    coarse = stepped(mechanism, SAMPLES, spacing, 4, STEPS_PER_SAMPLE)
+    mechanism = random_mechanism(31, number, WITNESSED_KINDS)
+    witness, spacing = Witness(mechanism), WITNESS_SPAN * mechanism.time_scale / WITNESS_SAMPLES
+    pose, twist = witness.motion(np.arange(WITNESS_SAMPLES + 1) * spacing)
+    coarse = stepped(mechanism, WITNESS_SAMPLES, spacing, 4, JUDGE_STEPS)
     size = np.array([1.0, 1.0, mechanism.length_scale])
     unit = np.abs(pose - mechanism.pose).max() + mechanism.length_scale
     for judge in (stepped, in_numpy):
-        fine = judge(mechanism, SAMPLES, spacing, 4, 2 * STEPS_PER_SAMPLE)
+        fine = judge(mechanism, WITNESS_SAMPLES, spacing, 4, 2 * JUDGE_STEPS)
         # At fourth order the error of half the step is a fifteenth of the change; a third allows for the next power.
         for name, expected, scale in (("pose", pose, 1.0), ("twist", twist, mechanism.time_scale)):
             allowed = np.abs((getattr(fine, name) - getattr(coarse, name)) * size).max() / 3
             error = np.abs((getattr(fine, name) - expected) * size).max()
             assert scale * error < scale * allowed + 1e-10 * unit, name
-        for sample in range(SAMPLES + 1):
+        for sample in range(WITNESS_SAMPLES + 1):
             acceleration, reaction = witness.solved(pose[sample], twist[sample])
             pushed = witness.rows(pose[sample]).T @ (fine.reaction[sample] - reaction)
             needed = np.abs(witness.mass * acceleration.reshape(-1)).max()
@@ -207,9 +207,9 @@ def compared(
     number: int, mechanism: Mechanism, span: float, method: str, tolerances: tuple[float, float]
 ) -> WitnessedCase:
     """Judge and witness over a `span` [s]; the witness at two tolerances, the tighter one last."""
-    t = np.linspace(0.0, span, SAMPLES + 1)
+    t = np.linspace(0.0, span, WITNESS_SAMPLES + 1)
     with np.errstate(all="ignore"):
-        judge = TRUTH.build(mechanism, t[1])(SAMPLES, 1)
+        judge = TRUTH.build(mechanism, t[1])(WITNESS_SAMPLES, 1)
         loose, tight = (witnessed(mechanism, t, method, tolerance) for tolerance in tolerances)
     size = mechanism.pose_unit
 
@@ -223,8 +223,8 @@ def compared(
     return WitnessedCase(number, is_resolved, difference((judge.pose, judge.twist), tight), difference(loose, tight))
 
 
-SEED = 291528136  # the first eight digits of a commit's hash: not chosen
-STIFF_CASES = (59, 114, 237, 411)  # 10 to 3,204 times faster than without springs, and cheap
+WITNESS_SEED = 291528136  # the first eight digits of a commit's hash: not chosen
+STIFF_NUMBERS = (59, 114, 237, 411)  # 10 to 3,204 times faster than without springs, and cheap
 
 
 def confirmed(cases: list[WitnessedCase]) -> list[WitnessedCase]:
@@ -236,25 +236,25 @@ def confirmed(cases: list[WitnessedCase]) -> list[WitnessedCase]:
 
 
 def test_the_judge_holds_what_it_claims_in_random_mechanisms() -> None:
-    mechanisms = [random_mechanism(SEED, number, KINDS) for number in range(24)]
-    spans = [SPAN * mechanism.time_scale for mechanism in mechanisms]
+    mechanisms = [random_mechanism(WITNESS_SEED, number, WITNESSED_KINDS) for number in range(24)]
+    spans = [WITNESS_SPAN * mechanism.time_scale for mechanism in mechanisms]
     cases = [compared(i, mechanisms[i], spans[i], "DOP853", (1e-12, 1e-13)) for i in range(24)]
     assert len(confirmed(cases)) >= 23
 
 
 def test_the_judge_holds_what_it_claims_of_a_stiff_mechanism_far_beyond_its_own_time() -> None:
-    """Over SPAN of the time scale that it would have without springs and dampers."""
+    """Over WITNESS_SPAN of the time scale that it would have without springs and dampers."""
     cases = []
-    for number in STIFF_CASES:
-        mechanism = random_mechanism(SEED, number, KINDS)
+    for number in STIFF_NUMBERS:
+        mechanism = random_mechanism(WITNESS_SEED, number, WITNESSED_KINDS)
         slow = time_scale(mechanism.length_scale, mechanism.gravity, mechanism.bodies, mechanism.joints)
         assert slow > 10 * mechanism.time_scale
-        cases.append(compared(number, mechanism, SPAN * slow, "Radau", (1e-9, 1e-11)))
-    assert len(confirmed(cases)) == len(STIFF_CASES)
+        cases.append(compared(number, mechanism, WITNESS_SPAN * slow, "Radau", (1e-9, 1e-11)))
+    assert len(confirmed(cases)) == len(STIFF_NUMBERS)
 
 
 def test_the_mechanisms_have_every_kind() -> None:
-    mechanisms = [random_mechanism(31, number, KINDS) for number in CASES]
+    mechanisms = [random_mechanism(31, number, WITNESSED_KINDS) for number in WITNESSED_NUMBERS]
     parts = {type(part) for mechanism in mechanisms for part in (*mechanism.joints, *mechanism.forces)}
     forces = {Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}
     assert parts == {Pin, Slot, Skate, Drive, Rod, Gear, Weld} | forces

@@ -12,15 +12,20 @@ from engines.lagrange.compiled import entry, inlined, merged
 from engines.lagrange.compiled.dense import fill_samples
 from engines.lagrange.compiled.steps import accelerate, add_stages, evaluate_stage, project, store_stage
 
-SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0  # of a new step length
-MOST_TRIES = 20_000  # steps, accepted or rejected, between two samples: a second of CPU time for a few bodies
-# Accepted steps of a run may be MOST_TRIES and this number for each sample before.
-STEPS_PER_SAMPLE = 1_000
-EPSILON = 2.2e-16  # of double precision
-# rad: if a stage needs a contact turned by more than this from the start of the step, the step is far too long.
+# The next step is this share of the step for which the error estimate equals the tolerance.
+STEP_SAFETY = 0.9
+# The smallest and the largest ratio of a step to the step before.
+LEAST_STEP_FACTOR, LARGEST_STEP_FACTOR = 0.2, 10.0
+# Steps between two samples, accepted or rejected: a second of CPU time for a few bodies.
+MOST_TRIES = 20_000
+# A run may have MOST_TRIES accepted steps, and this number for each completed sample.
+FURTHER_STEPS_PER_SAMPLE = 1_000
+# The relative rounding of double precision.
+DOUBLE_EPSILON = 2.2e-16
+# A stage that needs a contact at a rotation [rad] so far from the start of the step shows that the step is too long.
 FARTHEST_STAGE = 1.0
-STIFF_PRODUCT = 6.1  # step times largest eigenvalue at the border of stability
-STIFF_STEPS = 15  # consecutive steps at the border before the motion is called stiff
+# Step times largest eigenvalue at the border of stability, and the consecutive steps there that make a motion stiff.
+STIFF_PRODUCT, STIFF_STEPS = 6.1, 15
 
 
 @entry
@@ -33,16 +38,16 @@ def adaptive_steps(system, storage, method, iterations, tolerance, spacing, begi
     while sample < last:
         if step < 0:  # the first step, and its first stage
             step = first_step(system, storage, t, tolerance, min(spacing * 10, spacing * last - t))
-        shortest = 16 * EPSILON * max(abs(t), spacing)
+        shortest = 16 * DOUBLE_EPSILON * max(abs(t), spacing)
         tries += 1
-        steps_allowed = MOST_TRIES + STEPS_PER_SAMPLE * sample
+        steps_allowed = MOST_TRIES + FURTHER_STEPS_PER_SAMPLE * sample
         if not step > shortest or tries > MOST_TRIES or status.accepted_steps > steps_allowed:
             status.stopped_at = t
             return sample
         dt, end = step_length(step, t, spacing, sample, last)
         evaluate_stages(system, storage, method, t, dt)
         if is_astray(system, storage.pose):
-            step, was_rejected = LEAST_FACTOR * dt, True
+            step, was_rejected = LEAST_STEP_FACTOR * dt, True
             continue
         copy_state(storage.pose, storage.twist, storage.new_pose, storage.new_twist)
         add_stages(storage, method.weights, dt, storage.new_pose, storage.new_twist)
@@ -50,10 +55,10 @@ def adaptive_steps(system, storage, method, iterations, tolerance, spacing, begi
             return sample
         error = dt * error_rate(storage, method, tolerance)
         if not error < 1:
-            step = dt * (max(LEAST_FACTOR, SAFETY * error**-0.125) if error < 1e300 else LEAST_FACTOR)
+            step = dt * (max(LEAST_STEP_FACTOR, STEP_SAFETY * error**-0.125) if error < 1e300 else LEAST_STEP_FACTOR)
             was_rejected = True
             continue
-        factor = LARGEST_FACTOR if error == 0 else min(LARGEST_FACTOR, SAFETY * error**-0.125)
+        factor = LARGEST_STEP_FACTOR if error == 0 else min(LARGEST_STEP_FACTOR, STEP_SAFETY * error**-0.125)
         step = dt * (min(1.0, factor) if was_rejected else factor)
         was_rejected = False
         status.rounding += step_rounding(storage, status.smallest_pivot)
@@ -124,7 +129,7 @@ def step_rounding(storage, smallest_pivot):
     moved = 0.0
     for k in range(len(storage.pose)):
         moved = max(moved, abs(storage.new_twist[k] - storage.twist[k]) / storage.twist_unit[k])
-    return moved * EPSILON / math.sqrt(max(smallest_pivot, EPSILON))
+    return moved * DOUBLE_EPSILON / math.sqrt(max(smallest_pivot, DOUBLE_EPSILON))
 
 
 @merged

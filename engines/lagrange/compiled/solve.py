@@ -23,6 +23,7 @@ DEPENDENT_PIVOT = 1e-9
 WELL_CONDITIONED = 1e-2
 # More rows than this are always corrected once: the condition of a long chain is not visible in its pivots.
 FEW_ROWS = 24
+# Each correction has to halve the residual; four of them reach rounding.
 MOST_CORRECTIONS = 4
 
 
