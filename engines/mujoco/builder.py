@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 Callback = Callable[[Any, Any], None]  # of (mujoco.MjModel, mujoco.MjData)
 RowKind = Literal["skate", "slot", "rod", "roll"]
+PLACEHOLDER = "written row"  # the name, before a number, of the tendons that reserve the solver's rows
 
 
 @dataclass(frozen=True)
@@ -156,6 +157,18 @@ class ModelBuilder:
         """The tree coordinates that move one of a joint's bodies, ascending."""
         links = (link for name in (joint.first, joint.second) for link in self.tree.path_to_ground(name))
         return sorted({column for link in links for column in link.columns})
+
+    def reserve_user_rows(self) -> None:
+        """Reserve solver rows for `user_rows`; to be called after every other equality, so that they come last.
+
+        They are equalities of tendons, since each of these has a scale of compliance of its own (`tendon_invweight0`).
+        """
+        columns = [self.moving_columns(joint)[0] for joint in self.user_rows for _ in range(joint.size)]
+        for number, column in enumerate(columns):
+            name, impedance = f"{PLACEHOLDER} {number}", list(self.stiffness.impedance)
+            self.add_fixed_tendon(name, {column: 1.0})
+            tendon, kind = mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtEq.mjEQ_TENDON
+            self.spec.add_equality(type=kind, objtype=tendon, name1=name, solimp=impedance)
 
 
 def add_body(parent: Any, name: str, mass: float, inertia: float, position: Sequence[float] = (0.0, 0.0)) -> Any:

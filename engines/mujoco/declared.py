@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from engines import Instant, NotDeclared, Regularisation
 from engines.constrained import Constrained, constrained
+from engines.mujoco.builder import PLACEHOLDER
 from engines.mujoco.joints.skate import STEPWISE, slip_damping
 from engines.mujoco.model import MuJoCoModel
 from reference.joints import Drive, Joint, Skate
@@ -244,7 +245,7 @@ class _JointRows:
 def _is_user_row(compiled: Any, equality: int) -> bool:
     """Whether callbacks write the row of an equality."""
     is_tendon = compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_TENDON
-    return bool(is_tendon and compiled.tendon(compiled.eq_obj1id[equality]).name.startswith("written row"))
+    return bool(is_tendon and compiled.tendon(compiled.eq_obj1id[equality]).name.startswith(PLACEHOLDER))
 
 
 def _rows_in_span(solver_rows: Array, candidates: list[int], rows: Array, columns: list[int]) -> list[int]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
 import mujoco
@@ -132,9 +131,7 @@ def build_model(
             add_joints(builder, joints)
     for force in scaled.forces:
         FORCE_CONSTRUCTIONS[type(force)](builder, force)
-    if builder.user_rows:
-        # The placeholders come last: the number of rows before them in the solver is then known.
-        user_rows().add_placeholders(builder)
+    builder.reserve_user_rows()
     compiled = _compiled(builder)
     address = [int(compiled.joint(f"coordinate {column}").qposadr[0]) for column in range(tree.coordinates)]
     steady = [address[driven.column] for driven in builder.driven]
@@ -143,8 +140,9 @@ def build_model(
     multiply_compliances(compiled, settings.stiffness.softening)
     hooks = sum((make_hooks(compiled, address) for make_hooks in builder.hook_makers), Hooks())
     if builder.user_rows:
-        callback = user_rows().row_callback(compiled, tree, address, builder.user_rows, settings.stiffness.softening)
-        hooks += Hooks(callback)
+        from engines.mujoco.user_rows import row_callback  # it imports numba
+
+        hooks += Hooks(row_callback(compiled, tree, address, builder.user_rows, settings.stiffness.softening))
     return MuJoCoModel(
         mechanism,
         tree,
@@ -239,11 +237,6 @@ def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
     free = np.delete(compiled.dof_M0, steady)
     if steady and len(free):
         compiled.opt.tolerance *= float(free.sum() / compiled.dof_M0.sum())
-
-
-def user_rows() -> Any:
-    """The module `engines.mujoco.user_rows`, imported only where rows are written: it imports numba."""
-    return import_module("engines.mujoco.user_rows")
 
 
 def unit_of_mass(mechanism: Mechanism) -> float:

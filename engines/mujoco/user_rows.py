@@ -8,7 +8,8 @@ builds its matrix earlier.
 
 `write_rows` computes the motion of the bodies from the tree's coordinates, evaluates the row of each joint, and
 transforms it back to the coordinates. numba compiles this where it is installed; otherwise Python does the same on
-lists. The place of a rolling body is evaluated before, in Python.
+lists. The place of a rolling body is evaluated before, in Python. All compiled functions are in this file, since
+numba's cache does not notice a change in another one.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.mujoco.builder import Callback, ModelBuilder, UserRowJoint
+from engines.mujoco.builder import PLACEHOLDER, Callback, UserRowJoint
 from engines.tree import Tree
 
 try:
@@ -35,25 +36,22 @@ State = tuple[float, float, float, float, float, float]
 # Factors of the accelerations of x, y and angle of the first body and of the second, and the value of J a.
 Row = tuple[float, float, float, float, float, float, float]
 
-PLACEHOLDER = "written row {}"
 ROW_KINDS = ("skate", "slot", "rod", "roll")
 SKATE, SLOT, _, ROLL = range(len(ROW_KINDS))
-# A plan is one array of four parts: the header, LINK numbers for each link, JOINT numbers for each joint, and MOTION
-# numbers for the motion of each link and of the ground.
-# Header: numbers of links and joints, index of the first row in MuJoCo's arrays, prediction time [s] of the pose.
-HEADER = 4
-# Link: index of its parent; columns of the two slides and of the rotation, -1 for none; pose of the body at the start;
-# arm, anchor and direction in the tree.
-LINK = 13
-# Joint: kind of row, indices of its two bodies, and the numbers of its function below.
-JOINT = 11
-# Motion: x, y, angle since the start; their rates; acceleration of x and y with zero accelerations of the coordinates;
-# the point about which the rotation turns the link; the direction of the slide; the angle.
-MOTION = 13
+# A plan is one array: a header, LINK numbers for each link, JOINT numbers for each joint, and MOTION numbers for the
+# motion of each link and of the ground. The names below are indices in these parts.
+LINK_COUNT, JOINT_COUNT, FIRST_ROW, AHEAD, HEADER = range(5)  # AHEAD: the prediction time [s] of the pose
+# The parent's index; columns of the slides and of the rotation, -1 for none; the start; numbers of the tree.
+PARENT, SLIDE, ACROSS, ROTATION, START_X, START_Y, START_ANGLE = range(7)
+ARM_X, ARM_Y, ANCHOR_X, ANCHOR_Y, DIRECTION_X, DIRECTION_Y, LINK = range(7, 14)
+KIND, FIRST, SECOND, NUMBERS, JOINT = 0, 1, 2, 3, 11  # the kind of row, both bodies, the numbers of its function
+# The angle since the start is TURNED; accelerations are those with zero accelerations of the coordinates; PIVOT is the
+# point about which the rotation turns the link, and ALONG the direction of its slide.
+X, Y, TURNED, VX, VY, OMEGA, AX, AY, PIVOT_X, PIVOT_Y, ALONG_X, ALONG_Y, ANGLE, MOTION = range(14)
 FREE = -1  # the parent of a link that moves freely
 
 
-def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     if njit is None:
         return function
     try:
@@ -62,14 +60,19 @@ def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
         return njit(error_model="numpy")(function)
 
 
-@_compiled
+@compiled
+def _rotated(angle: float, x: float, y: float) -> tuple[float, float]:
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return cosine * x - sine * y, sine * x + cosine * y
+
+
+@compiled
 def skate_row(numbers: Any, first: State, second: State) -> Row:
     """The row of a skate; numbers: its point on the second body [m], its angle there [rad], damping of slip [1/s]."""
     point_x, point_y, blade, damping = numbers[0], numbers[1], numbers[2], numbers[3]
     x1, y1, _, vx1, vy1, omega1 = first
     x2, y2, angle, vx2, vy2, omega2 = second
-    cosine, sine = math.cos(angle), math.sin(angle)
-    own_x, own_y = cosine * point_x - sine * point_y, sine * point_x + cosine * point_y
+    own_x, own_y = _rotated(angle, point_x, point_y)
     ahead_x, ahead_y = math.cos(angle + blade), math.sin(angle + blade)
     vx2, vy2 = vx2 - omega2 * own_y, vy2 + omega2 * own_x  # of the blade's point
     arm_x, arm_y = x2 + own_x - x1, y2 + own_y - y1
@@ -86,21 +89,19 @@ def skate_row(numbers: Any, first: State, second: State) -> Row:
     )  # fmt: skip
 
 
-@_compiled
+@compiled
 def _points(numbers: Any, first: State, second: State) -> tuple[float, ...]:
     """The arms of a point on each body, in world directions, and the relative velocity of the second point."""
     _, _, angle1, vx1, vy1, omega1 = first
     _, _, angle2, vx2, vy2, omega2 = second
-    cosine, sine = math.cos(angle1), math.sin(angle1)
-    own_x1, own_y1 = cosine * numbers[0] - sine * numbers[1], sine * numbers[0] + cosine * numbers[1]
-    cosine, sine = math.cos(angle2), math.sin(angle2)
-    own_x2, own_y2 = cosine * numbers[2] - sine * numbers[3], sine * numbers[2] + cosine * numbers[3]
+    own_x1, own_y1 = _rotated(angle1, numbers[0], numbers[1])
+    own_x2, own_y2 = _rotated(angle2, numbers[2], numbers[3])
     rate_x = vx2 - omega2 * own_y2 - vx1 + omega1 * own_y1
     rate_y = vy2 + omega2 * own_x2 - vy1 - omega1 * own_x1
     return own_x1, own_y1, own_x2, own_y2, rate_x, rate_y
 
 
-@_compiled
+@compiled
 def slot_row(numbers: Any, first: State, second: State) -> Row:
     """The row of a slot; numbers: a point on each body [m], line angle [rad], stiffness [1/s^2], damping [1/s]."""
     own_x1, own_y1, own_x2, own_y2, rate_x, rate_y = _points(numbers, first, second)
@@ -122,7 +123,7 @@ def slot_row(numbers: Any, first: State, second: State) -> Row:
     )  # fmt: skip
 
 
-@_compiled
+@compiled
 def rod_row(numbers: Any, first: State, second: State) -> Row:
     """The row of a rod; numbers: a point on each body [m], the length [m], stiffness [1/s^2], damping [1/s]."""
     own_x1, own_y1, own_x2, own_y2, rate_x, rate_y = _points(numbers, first, second)
@@ -141,7 +142,7 @@ def rod_row(numbers: Any, first: State, second: State) -> Row:
     )  # fmt: skip
 
 
-@_compiled
+@compiled
 def roll_rows(numbers: Any, first: State, second: State) -> tuple[Row, Row]:
     """The rows, in x and in y, of z_2 - z_1 - e^(i phi_1) P(phi_2 - phi_1) = 0.
 
@@ -165,81 +166,85 @@ def roll_rows(numbers: Any, first: State, second: State) -> tuple[Row, Row]:
     )
 
 
-@_compiled
+@compiled
 def _move(plan: Any, at: int, moving: int, to: int, q: Any, v: Any) -> None:
     """Write the motion of the link at `at`, at q + ahead v, to `to`. Its parent's motion has been written before."""
-    parent, slide, rotation, ahead = int(plan[at]), int(plan[at + 1]), int(plan[at + 3]), plan[3]
+    parent, slide, rotation = int(plan[at + PARENT]), int(plan[at + SLIDE]), int(plan[at + ROTATION])
+    ahead = plan[AHEAD]
     turn, spin = (0.0, 0.0) if rotation < 0 else (q[rotation] + ahead * v[rotation], v[rotation])
-    along, speed = (0.0, 0.0) if slide < 0 else (q[slide] + ahead * v[slide], v[slide])
+    way, speed = (0.0, 0.0) if slide < 0 else (q[slide] + ahead * v[slide], v[slide])
     ax, ay, dx, dy = 0.0, 0.0, 0.0, 0.0
     if parent == FREE:
-        across = int(plan[at + 2])
-        x, y = plan[at + 4] + along, plan[at + 5] + q[across] + ahead * v[across]
+        across = int(plan[at + ACROSS])
+        x, y = plan[at + START_X] + way, plan[at + START_Y] + q[across] + ahead * v[across]
         pivot_x, pivot_y, turned, vx, vy, omega = x, y, turn, speed, v[across], spin
     else:
-        base = moving + MOTION * parent
-        turned, omega = plan[base + 2], plan[base + 5]
-        cosine, sine = math.cos(turned), math.sin(turned)
-        dx, dy = cosine * plan[at + 11] - sine * plan[at + 12], sine * plan[at + 11] + cosine * plan[at + 12]
-        arm_x = cosine * plan[at + 7] - sine * plan[at + 8] + along * dx
-        arm_y = sine * plan[at + 7] + cosine * plan[at + 8] + along * dy
+        m = moving + MOTION * parent
+        turned, omega = plan[m + TURNED], plan[m + OMEGA]
+        dx, dy = _rotated(turned, plan[at + DIRECTION_X], plan[at + DIRECTION_Y])
+        arm_x, arm_y = _rotated(turned, plan[at + ARM_X], plan[at + ARM_Y])
+        arm_x, arm_y = arm_x + way * dx, arm_y + way * dy
         coriolis, square = 2 * omega * speed, omega * omega
-        vx, vy = plan[base + 3] + speed * dx - omega * arm_y, plan[base + 4] + speed * dy + omega * arm_x
-        ax, ay = plan[base + 6] - coriolis * dy - square * arm_x, plan[base + 7] + coriolis * dx - square * arm_y
-        pivot_x, pivot_y = plan[base] + arm_x, plan[base + 1] + arm_y
+        vx, vy = plan[m + VX] + speed * dx - omega * arm_y, plan[m + VY] + speed * dy + omega * arm_x
+        ax, ay = plan[m + AX] - coriolis * dy - square * arm_x, plan[m + AY] + coriolis * dx - square * arm_y
+        pivot_x, pivot_y = plan[m + X] + arm_x, plan[m + Y] + arm_y
         turned, omega = turned + turn, omega + spin
-        cosine, sine = math.cos(turned), math.sin(turned)
-        own_x = cosine * plan[at + 9] - sine * plan[at + 10]
-        own_y = sine * plan[at + 9] + cosine * plan[at + 10]
+        own_x, own_y = _rotated(turned, plan[at + ANCHOR_X], plan[at + ANCHOR_Y])
         square = omega * omega
         x, y, vx, vy = pivot_x - own_x, pivot_y - own_y, vx + omega * own_y, vy - omega * own_x
         ax, ay = ax + square * own_x, ay + square * own_y
-    plan[to], plan[to + 1], plan[to + 2], plan[to + 3], plan[to + 4], plan[to + 5] = x, y, turned, vx, vy, omega
-    plan[to + 6], plan[to + 7], plan[to + 8], plan[to + 9] = ax, ay, pivot_x, pivot_y
-    plan[to + 10], plan[to + 11], plan[to + 12] = dx, dy, plan[at + 6] + turned
+    plan[to + X], plan[to + Y], plan[to + TURNED], plan[to + ANGLE] = x, y, turned, plan[at + START_ANGLE] + turned
+    plan[to + VX], plan[to + VY], plan[to + OMEGA], plan[to + AX], plan[to + AY] = vx, vy, omega, ax, ay
+    plan[to + PIVOT_X], plan[to + PIVOT_Y], plan[to + ALONG_X], plan[to + ALONG_Y] = pivot_x, pivot_y, dx, dy
 
 
-@_compiled
+@compiled
 def _write_row(plan: Any, moving: int, ends: tuple[int, int], row: Row, jacobian: Any, line: int, width: int) -> float:
     """Write the row of a joint in the tree's coordinates from index `line` on; returns the value of J a there."""
-    links, right = int(plan[0]), row[6]
+    links, right = int(plan[LINK_COUNT]), row[6]
     for column in range(line, line + width):
         jacobian[column] = 0.0
     for end in range(2):
-        own = ends[end]
-        along_x, along_y, turning = row[3 * end], row[3 * end + 1], row[3 * end + 2]
-        m = moving + MOTION * own
-        x, y = plan[m], plan[m + 1]
-        right -= along_x * plan[m + 6] + along_y * plan[m + 7]
-        while FREE < own < links:  # the ground comes after the last link
-            at, m = HEADER + LINK * own, moving + MOTION * own
-            own, slide, rotation = int(plan[at]), int(plan[at + 1]), int(plan[at + 3])
-            if own == FREE:
-                jacobian[line + slide] += along_x
-                jacobian[line + int(plan[at + 2])] += along_y
+        link = ends[end]
+        row_x, row_y, row_angle = row[3 * end], row[3 * end + 1], row[3 * end + 2]
+        m = moving + MOTION * link
+        x, y = plan[m + X], plan[m + Y]
+        right -= row_x * plan[m + AX] + row_y * plan[m + AY]
+        while FREE < link < links:  # the ground comes after the last link
+            at, m = HEADER + LINK * link, moving + MOTION * link
+            link, slide, rotation = int(plan[at + PARENT]), int(plan[at + SLIDE]), int(plan[at + ROTATION])
+            if link == FREE:
+                jacobian[line + slide] += row_x
+                jacobian[line + int(plan[at + ACROSS])] += row_y
             elif slide >= 0:
-                jacobian[line + slide] += along_x * plan[m + 10] + along_y * plan[m + 11]
+                jacobian[line + slide] += row_x * plan[m + ALONG_X] + row_y * plan[m + ALONG_Y]
             if rotation >= 0:
-                jacobian[line + rotation] += turning + along_y * (x - plan[m + 8]) - along_x * (y - plan[m + 9])
+                jacobian[line + rotation] += (
+                    row_angle + row_y * (x - plan[m + PIVOT_X]) - row_x * (y - plan[m + PIVOT_Y])
+                )
     return right
 
 
-@_compiled
+@compiled
+def _state(plan: Any, m: int) -> State:
+    """The state of the body whose motion begins at index `m`."""
+    return plan[m + X], plan[m + Y], plan[m + ANGLE], plan[m + VX], plan[m + VY], plan[m + OMEGA]
+
+
+@compiled
 def write_rows(plan: Any, q: Any, v: Any, jacobian: Any, reference: Any) -> None:
     """Write the rows of all joints into MuJoCo's arrays; all NaN if one is, so that MuJoCo resets."""
-    links, joints, first_row, width = int(plan[0]), int(plan[1]), int(plan[2]), len(v)
+    links, first_row, width = int(plan[LINK_COUNT]), int(plan[FIRST_ROW]), len(v)
     all_joints = HEADER + LINK * links
-    moving, row = all_joints + JOINT * joints, first_row
+    moving, row = all_joints + JOINT * int(plan[JOINT_COUNT]), first_row
     if len(reference) <= first_row:
         return  # MuJoCo has no memory for its rows, and warns of it
-    for own in range(links):
-        _move(plan, HEADER + LINK * own, moving, moving + MOTION * own, q, v)
+    for link in range(links):
+        _move(plan, HEADER + LINK * link, moving, moving + MOTION * link, q, v)
     for at in range(all_joints, moving, JOINT):
-        kind, ends = int(plan[at]), (int(plan[at + 1]), int(plan[at + 2]))
-        m, n = moving + MOTION * ends[0], moving + MOTION * ends[1]
-        first = plan[m], plan[m + 1], plan[m + 12], plan[m + 3], plan[m + 4], plan[m + 5]
-        second = plan[n], plan[n + 1], plan[n + 12], plan[n + 3], plan[n + 4], plan[n + 5]
-        numbers = plan[at + 3 : at + JOINT]
+        kind, ends = int(plan[at + KIND]), (int(plan[at + FIRST]), int(plan[at + SECOND]))
+        first, second = _state(plan, moving + MOTION * ends[0]), _state(plan, moving + MOTION * ends[1])
+        numbers = plan[at + NUMBERS : at + JOINT]
         if kind == ROLL:
             across, joint_row = roll_rows(numbers, first, second)
             reference[row] = _write_row(plan, moving, ends, across, jacobian, row * width, width)
@@ -286,9 +291,11 @@ class RowWriter:
         for joint in joints:
             if joint.rolled is not None:
                 signs = [(address[column], sign) for column, sign in tree.turning(joint.first, joint.second).items()]
-                rolls.append((len(plan) + 5, joint.rolled.place, angle[joint.second] - angle[joint.first], signs))
+                rolls.append(
+                    (len(plan) + NUMBERS + 2, joint.rolled.place, angle[joint.second] - angle[joint.first], signs)
+                )
             plan += [ROW_KINDS.index(joint.kind), index[joint.first], index[joint.second], *joint.numbers]
-            plan += [0.0] * (JOINT - 3 - len(joint.numbers))
+            plan += [0.0] * (JOINT - NUMBERS - len(joint.numbers))
         self._plan = np.array([*plan, *[0.0] * (MOTION * (len(tree.links) + 1))])
         self._rolls = [(self._plan[at : at + 6].view(complex), *others) for at, *others in rolls]
 
@@ -303,7 +310,7 @@ class RowWriter:
             return
         # Python reads and writes lists faster than arrays.
         plan, rows, right = self._plan.tolist(), [0.0] * (self.size * len(v)), [0.0] * self.size
-        first_row, plan[2] = int(plan[2]), 0
+        first_row, plan[FIRST_ROW] = int(plan[FIRST_ROW]), 0
         try:
             write_rows(plan, q.tolist(), v.tolist(), rows, right)
         except (ValueError, OverflowError, ZeroDivisionError):  # numba returns infinity or NaN instead
@@ -317,19 +324,6 @@ class RowWriter:
         jacobian, reference = np.zeros(self.size * len(v)), np.zeros(self.size)
         self.write(q, v, jacobian, reference)
         return jacobian.reshape(self.size, len(v)), reference
-
-
-def add_placeholders(builder: ModelBuilder) -> None:
-    """Reserve the joints' rows; to be called after every other equality, so that theirs come last.
-
-    They are equalities of tendons, since each of these has a scale of compliance of its own (`tendon_invweight0`).
-    """
-    columns = [builder.moving_columns(joint)[0] for joint in builder.user_rows for _ in range(joint.size)]
-    for number, column in enumerate(columns):
-        name, impedance = PLACEHOLDER.format(number), list(builder.stiffness.impedance)
-        builder.add_fixed_tendon(name, {column: 1.0})
-        tendon, kind = mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtEq.mjEQ_TENDON
-        builder.spec.add_equality(type=kind, objtype=tendon, name1=name, solimp=impedance)
 
 
 def row_callback(
@@ -348,7 +342,7 @@ def row_callback(
     inverses, sizes = np.sum(jacobian * moved, axis=1), [joint.size for joint in joints]
     means = np.repeat([part.mean() for part in np.split(inverses, np.cumsum(sizes)[:-1])], sizes)
     for number, inverse in enumerate(means):
-        compiled.tendon_invweight0[compiled.tendon(PLACEHOLDER.format(number)).id] = softening * inverse
+        compiled.tendon_invweight0[compiled.tendon(f"{PLACEHOLDER} {number}").id] = softening * inverse
     rows_of = {int(mujoco.mjtEq.mjEQ_CONNECT): 3, int(mujoco.mjtEq.mjEQ_WELD): 6}
     first_row = sum(rows_of.get(int(kind), 1) for kind in compiled.eq_type) - len(jacobian)
     write = RowWriter(tree, address, joints, first_row).write

@@ -72,7 +72,7 @@ def _add_predicted_tendons(builder: ModelBuilder, joints: Sequence[UserRowJoint]
     MuJoCo holds a tendon's length. Here the stiffness is almost zero and only the damping acts, so that the length,
     which changes with the coefficients, has no effect and need not be reset.
     """
-    from engines.mujoco.user_rows import RowWriter
+    from engines.mujoco.user_rows import RowWriter  # it imports numba
 
     tree, spec, width = builder.tree, builder.spec, builder.tree.coordinates
     # The coefficients at the start set the scale of the compliance when the model is compiled.

@@ -66,13 +66,13 @@ def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: boo
         reading = read(model, planar.data, without, closing=False)
         return replace(reading, notes=(closed[1], *reading.notes))
     try:
-        mechanism, jumped = with_consistent_start(*elements)
+        mechanism, start_notes = with_consistent_start(*elements)
     except OpenStart as reason:
-        words = "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed"
-        raise InvalidMechanism(f"{reason}: {words}") from None
-    own = OwnMuJoCo(planar, mechanism, users, tilt)
-    refuse_at_start(own, mechanism)
-    return Reading(mechanism, own, (*jumped, *planar.notes), model.names.split(b"\x00")[0].decode())
+        advice = "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed"
+        raise InvalidMechanism(f"{reason}: {advice}") from None
+    own_model = OwnMuJoCo(planar, mechanism, users, tilt)
+    refuse_at_start(own_model, mechanism)
+    return Reading(mechanism, own_model, (*start_notes, *planar.notes), model.names.split(b"\x00")[0].decode())
 
 
 def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarModel, Any, float]:
@@ -87,8 +87,8 @@ def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarMod
     if model.nv == 0:
         raise refuse("the model", "nothing in it can move")
     if model.opt.enableflags & int(mujoco.mjtEnableBit.mjENBL_SLEEP):
-        words = "MuJoCo stops a tree of bodies that is slow, even a pendulum at its turning point, which no joint does"
-        raise refuse("flag sleep", f"{words}; {left_out('sleep')}")
+        reason = "MuJoCo stops a tree of bodies that is slow, even a pendulum at its turning point, which no joint does"
+        raise refuse("flag sleep", f"{reason}; {left_out('sleep')}")
     _refuse_not_finite(model, started)
     # Contacts and the solver are not evaluated yet: a model of thousands of bodies is refused before.
     mujoco.mj_kinematics(model, started)
@@ -144,8 +144,10 @@ def _note_limits_and_contacts(planar: PlanarModel) -> None:
         planar.note(element, f"its force is limited; {limit}")
     low, high = model.jnt_range.T
     for index in np.flatnonzero((low == high) & (low != 0) & (model.jnt_limited == 0)):
-        words = f"MuJoCo does not limit it, since both ends of its range are {low[index]:g}; an equality holds it there"
-        planar.note(name_of(model, JOINT, index), words)
+        reason = (
+            f"MuJoCo does not limit it, since both ends of its range are {low[index]:g}; an equality holds it there"
+        )
+        planar.note(name_of(model, JOINT, index), reason)
     if is_off(model, "CONSTRAINT"):
         return
     for kind, limited in ((JOINT, model.jnt_limited), (TENDON, model.tendon_limited)):
@@ -178,8 +180,8 @@ def _with_armature(planar: PlanarModel) -> tuple[tuple[Any, ...], list[Force]]:
                 label = planar.names.new(f"{body.name}: armature has no weight")
                 weights.append(Force(label, body.name, (0.0, 0.0), weight))
         else:
-            words = "its armature is an inertia of a relative motion, which no body has"
-            raise refuse(element, f"{words}; {left_out('armature')}")
+            reason = "its armature is an inertia of a relative motion, which no body has"
+            raise refuse(element, f"{reason}; {left_out('armature')}")
     return tuple(bodies), weights
 
 
