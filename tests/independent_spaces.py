@@ -1,6 +1,6 @@
-"""Motions of pymunk spaces by equations that share no code with the judge: absolute coordinates, multipliers, DOP853.
+"""Motions of pymunk spaces without our code: absolute coordinates, Lagrange multipliers, DOP853.
 
-Rows of joints are differentiated by complex steps; only the numbers are the space's.
+Rows of joints are derivatives by complex steps; parameters come from the space.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pymunk.constraints import (
 from scipy.integrate import solve_ivp
 
 Array = NDArray[Any]
-TINY = 1e-30
+IMAGINARY_STEP = 1e-30
 
 
 class Equations:
@@ -61,7 +61,7 @@ class Equations:
         return self._pose(q, joint.b)[2] - self._pose(q, joint.a)[2]
 
     def _measured(self, q: Array, joint: Any) -> list[Array]:
-        """What a joint keeps, or the length or angle along which a spring acts."""
+        """The coordinates that a joint constrains, or the length or angle of a spring."""
         match joint:
             case PivotJoint():
                 return [*self._between(q, joint)]
@@ -90,7 +90,7 @@ class Equations:
         return self._all(q, self.springs)
 
     def _slopes(self, function: Any, q: Array) -> Array:
-        return np.imag(function(q[:, None] + TINY * 1j * np.eye(q.size))) / TINY
+        return np.imag(function(q[:, None] + IMAGINARY_STEP * 1j * np.eye(q.size))) / IMAGINARY_STEP
 
     def forces(self, q: Array, speed: Array) -> Array:
         slopes, lengths = self._slopes(self._springs, q), self._springs(q[:, None])[:, 0]
@@ -101,28 +101,28 @@ class Equations:
         return out
 
     def _held(self, q: Array, speed: Array, wanted: Array) -> Array:
-        """The least change of speeds (or accelerations), by mass, that brings the rows' rates to `wanted`."""
+        """Speeds or accelerations after the least change, by mass, with which the rows' rates are `wanted`."""
         root = np.sqrt(self.inverse)
         rows = self._slopes(self._rows, q)
         return speed + root * np.linalg.lstsq(rows * root, wanted - rows @ speed, rcond=1e-11)[0]
 
     def nearest_speeds(self) -> Array:
-        """The speeds that the joints allow, after the least impulse."""
+        """The speeds that satisfy the joints after the least impulse."""
         return self._held(self.start, self.speed, self.rates)
 
     def accelerations(self, q: Array, speed: Array) -> Array:
-        step = 1e-3 / (np.abs(speed[2::3]).max() + 1e-6)  # an angle of 1e-3: the stencil is good to 1e-12
+        step = 1e-3 / (np.abs(speed[2::3]).max() + 1e-6)  # an angle of 1e-3: the error of the stencil is 1e-12
 
         def rates(ahead: float) -> Array:
-            return np.imag(self._rows((q + (ahead + TINY * 1j) * speed)[:, None]))[:, 0] / TINY
+            return np.imag(self._rows((q + (ahead + IMAGINARY_STEP * 1j) * speed)[:, None]))[:, 0] / IMAGINARY_STEP
 
         bias = (8 * (rates(step) - rates(-step)) - rates(2 * step) + rates(-2 * step)) / (12 * step)
         return self._held(q, self.inverse * self.forces(q, speed), -bias)
 
     def motion(self, t: Array) -> Array:
-        """Poses (times, bodies, 3), from the nearest speeds that the joints allow."""
+        """Poses (times, bodies, 3), from `nearest_speeds` on."""
         count = self.start.size
-        found = solve_ivp(
+        solution = solve_ivp(
             lambda _, state: np.concatenate([state[count:], self.accelerations(*np.split(state, 2))]),
             (0.0, float(t[-1])),
             np.concatenate([self.start, self.nearest_speeds()]),
@@ -131,4 +131,4 @@ class Equations:
             rtol=1e-11,
             atol=1e-11,
         )
-        return found.y[:count].T.reshape(len(t), -1, 3)
+        return solution.y[:count].T.reshape(len(t), -1, 3)

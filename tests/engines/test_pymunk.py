@@ -1,6 +1,6 @@
-"""The pymunk adapter: what it builds and refuses, rolls by contacts and pivots, skates by grooves.
+"""The pymunk adapter: models, refusals, rolls by contacts and pivots, skates by grooves, declared orders.
 
-Which order and error each method reaches stands in `test_matrix`.
+Errors and orders of each method in motion are tested in `test_matrix`.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ def test_the_default_is_the_engine_as_shipped():
     assert pivot.error_bias == DEFAULT.error_bias == pytest.approx(0.9**60, rel=1e-5)  # it rounds 0.1 to single
 
 
-def test_no_more_is_built_than_the_mechanism_has():
-    # The crank's pin and drive are its motion, as is the block's angle: pins and a groove are left to forces.
+def test_prescribed_motions_need_no_constraints():
+    # The motion of the crank and the angle of the block are prescribed; pins and a groove remain as constraints.
     for mechanism, rows in ((FREE, 8), (DRIVEN, 6), (DrivenSliderCrank().mechanism(), 5)):
         for method in (DEFAULT, EXTENDED):
             assert method.build(mechanism, 1e-3).size == Size(3, 9, rows, rows)
@@ -64,17 +64,17 @@ def test_no_more_is_built_than_the_mechanism_has():
 
 
 @pytest.mark.parametrize("grounded_first", [True, False])
-def test_a_crank_turns_about_its_pin_whatever_the_order_of_its_joints(grounded_first):
-    centre, rate, own = np.array([2.0, -1.0]), -3.0, (0.3, 0.1)
+def test_a_crank_turns_about_its_pin_in_each_order_of_its_joints(grounded_first):
+    centre, rate, own_point = np.array([2.0, -1.0]), -3.0, (0.3, 0.1)
     angle = 0.7
-    arm = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ own
+    arm = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ own_point
     position, velocity = centre - arm, -rate * np.array([-arm[1], arm[0]])
     (x, y), (along, up) = map(float, position), map(float, velocity)
     body = Body("crank", 2.0, 0.5, (x, y, angle), (along, up, rate))
     joints = (
-        (Pin("A", None, "crank", (2.0, -1.0), own), Drive("drive", None, "crank", rate, angle))
+        (Pin("A", None, "crank", (2.0, -1.0), own_point), Drive("drive", None, "crank", rate, angle))
         if grounded_first
-        else (Drive("drive", "crank", None, -rate, -angle), Pin("A", "crank", None, own, (2.0, -1.0)))
+        else (Drive("drive", "crank", None, -rate, -angle), Pin("A", "crank", None, own_point, (2.0, -1.0)))
     )
     mechanism = Mechanism((body,), joints, (0.0, -9.81))
     for method in METHODS:
@@ -90,13 +90,13 @@ def test_a_crank_turns_about_its_pin_whatever_the_order_of_its_joints(grounded_f
         torque = sign * 2.0 * 9.81 * swing[:, 0]
         error = np.abs(trajectory.reaction[:, order] - np.column_stack([force, torque]))
         assert error[1:].max() < 1e-9  # rounding
-        # Before the first sample no step lies: there stands the third step's force, 0.09 rad on, or what the third and
-        # fourth extrapolate to, 6 (rate dt)^2 of the force away, or that extrapolated, with a fifth of the step.
+        # At the first sample: the third step's force, 0.09 rad later; in a leapfrog, extrapolated from the third and
+        # fourth steps, with an error of 6 (rate dt)^2; in extended, extrapolated again to zero step.
         assert error[0].max() < {DEFAULT: 0.09, TUNED: 0.09, LEAPFROG: 6e-3, EXTENDED: 1e-9}[method] * 2.0 * 9.81
 
 
 @every_method
-def test_a_motion_that_blows_up_is_a_result_and_not_an_exception(method):
+def test_an_unstable_motion_is_a_result_and_no_exception(method):
     heavy = replace(MOVING, bodies=(*MOVING.bodies[:2], replace(MOVING.bodies[2], mass=1e-6, inertia=1e-9)))
     trajectory = method.build(heavy, 1e200)(20, 2)
     assert trajectory.pose.shape == (21, 3, 3)
@@ -105,7 +105,7 @@ def test_a_motion_that_blows_up_is_a_result_and_not_an_exception(method):
 
 
 def thrown(mass: float | None = None) -> Mechanism:
-    """A sleigh that goes too far at once, or two links of masses too far apart for numbers."""
+    """A sleigh with a velocity beyond floating point, or two links with such a ratio of masses."""
     if mass is None:
         sled = ChaplyginSleigh().mechanism()
         return replace(sled, bodies=(replace(sled.bodies[0], twist=(1e150, 0.0, 0.0)),))
@@ -124,7 +124,7 @@ def thrown(mass: float | None = None) -> Mechanism:
     ],
     ids=["ellipse", "hill", "sleigh", "light", "heavy"],
 )
-def test_so_is_one_of_contacts_of_blades_and_of_masses_too_far_apart(methods, wild, step):
+def test_an_unstable_motion_of_contacts_blades_or_extreme_masses_is_a_result(methods, wild, step):
     for method in methods:
         with np.errstate(all="ignore"):
             assert method.build(wild, step)(5, 2).pose.shape == (6, len(wild.bodies), 3)
@@ -138,15 +138,15 @@ def test_the_bare_loop_takes_all_steps_of_a_run(engine, levels, monkeypatch):
     assert steps == [20 * level for level in levels]
 
 
-def test_no_space_is_left_for_the_end_of_the_interpreter():
-    """Freeing one there may crash the process after it has said all, and its exit status is another."""
+def test_the_import_leaves_no_space_or_body():
+    """Freeing one at the end of the interpreter may crash the process and change its exit status."""
     code = """
 import gc, pymunk, engines.registry
 gc.collect()
 print([each for each in gc.get_objects() if isinstance(each, (pymunk.Space, pymunk.Body))])
 """
-    told = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-    assert (told.returncode, told.stdout, told.stderr) == (0, "[]\n", "")
+    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert (run.returncode, run.stdout, run.stderr) == (0, "[]\n", "")
 
 
 ELLIPSE, DISC, HILL = RollingEllipse(), RollingDisc(), RollingOnCircle()
@@ -166,14 +166,14 @@ def angle_error(engine, scene: Scene, every: int) -> float:
     return largest(run(engine, scene, every).pose[..., 2] - truth(scene).pose[..., 2])
 
 
-def test_a_pivot_is_aimed_at_where_two_turning_bodies_will_touch():
-    """By what both turn until then: as if they stood there already."""
+def test_a_pivot_is_placed_at_the_contact_after_the_drift_of_two_bodies():
+    """The anchors are those of bodies that are already at the poses after the drift."""
     joint = next(joint for joint in EllipticGears().mechanism().joints if isinstance(joint, Roll))
 
-    def anchors(ahead: float, gone: float) -> list[float]:
+    def anchors(ahead: float, elapsed: float) -> list[float]:
         bodies = [pymunk.Body(1.0, 1.0) for _ in range(2)]
         for body, angle, rate in zip(bodies, (0.3, -0.4), (2.0, -1.5), strict=True):
-            body.angle, body.angular_velocity = angle + gone * rate, rate
+            body.angle, body.angular_velocity = angle + elapsed * rate, rate
         pivot = MovedPivot(joint, bodies[0], bodies[1], ((0.0, 0.0), (0.0, 0.0)))
         pivot(ahead)
         return [*pivot.constraint.anchor_a, *pivot.constraint.anchor_b]
@@ -182,19 +182,19 @@ def test_a_pivot_is_aimed_at_where_two_turning_bodies_will_touch():
     assert anchors(0.1, 0.0) != pytest.approx(anchors(0.0, 0.0), rel=1e-3)
 
 
-def test_a_polygon_stays_away_from_the_ellipse_by_its_corners_however_small_the_step():
+def test_the_error_of_a_polygon_falls_with_its_corners_and_not_with_the_step():
     plateaus = {}
     for engine in methods.ROLL_FACETED:
         coarse, fine = (angle_error(engine, ELLIPSE, every) for every in (10, 30))
         plateaus[engine.contact.vertices] = fine
         if engine.contact.vertices == 128:
-            assert fine == pytest.approx(coarse, rel=0.1)  # the step is not what is wrong
+            assert fine == pytest.approx(coarse, rel=0.1)  # the step has little effect
     assert plateaus[8] > plateaus[32] > plateaus[128] > plateaus[512] > 0.03
     assert plateaus[512] < 0.2
 
 
-def test_upstream_on_ground_without_thickness_a_fine_polygon_stops_dead():
-    """At some contact the wrong normal is found; on a segment with a radius, whose surface is the same, it never is."""
+def test_upstream_a_fine_polygon_stops_on_ground_without_thickness():
+    """Chipmunk computes a wrong normal at some contact; on a segment with a radius and the same surface it does not."""
     fine = methods.ROLL_FACETED[-1]
     on_thin_ground = replace(fine, contact=replace(fine.contact, thickness=0.0))
     thin, thick = (run(engine, ELLIPSE, 10).twist[5, 0, 2] for engine in (on_thin_ground, fine))
@@ -202,7 +202,7 @@ def test_upstream_on_ground_without_thickness_a_fine_polygon_stops_dead():
     assert thick == pytest.approx(truth(ELLIPSE).twist[5, 0, 2], rel=0.05)
 
 
-def test_a_round_body_leaves_the_hill_where_the_contact_would_have_to_pull():
+def test_a_round_body_leaves_the_hill_where_the_contact_force_becomes_zero():
     trajectory = run(TUNED, HILL, 30)
     gap = np.abs(HILL.mechanism().gap(trajectory.pose, trajectory.t))[:, 1]
     assert HILL.hop is not None
@@ -221,22 +221,22 @@ def side_by_side(places, rates) -> Mechanism:
     return Mechanism(bodies, joints, (0.0, -9.81))
 
 
-def test_shapes_of_different_contacts_do_not_see_each_other():
-    """The second disc reaches half into the first: each rolls as if alone."""
+def test_shapes_of_different_rolls_do_not_collide():
+    """The second disc overlaps half of the first, and each rolls as if alone."""
     for engine in METHODS:
         trajectory = engine.build(side_by_side((0.0, 0.4), (1.0, 2.0)), 1e-3)(10, 10)
         assert largest(trajectory.twist[:, :, 2] - [1.0, 2.0]) < 1e-2
         assert largest(trajectory.twist[:, :, 0] + [0.4, 0.8]) < 1e-2
 
 
-def test_thirty_two_contacts_are_told_apart_and_one_more_is_refused():
+def test_thirty_two_contacts_are_built_and_one_more_is_refused():
     assert DEFAULT.build(side_by_side(range(32), [0.0] * 32), 1e-3).size.rows == 64
     with pytest.raises(Unsupported, match="has 32 categories, one for each roll"):
         DEFAULT.build(side_by_side(range(33), [0.0] * 33), 1e-3)
 
 
-def test_an_ellipse_a_hundred_thousand_times_as_large_turns_by_the_same_angles():
-    """In gravity as much stronger. Ground of a fixed thickness turns it by a radian otherwise."""
+def test_a_scaled_ellipse_turns_by_the_same_angles():
+    """With gravity scaled likewise. Ground of a fixed thickness would change the angle by a radian."""
     scale = 1e5
     x, y = ELLIPSE.gravity
     large = replace(ELLIPSE, along_x=scale * 0.5, along_y=scale * 0.3, gravity=(scale * x, scale * y))
@@ -246,37 +246,37 @@ def test_an_ellipse_a_hundred_thousand_times_as_large_turns_by_the_same_angles()
 
 
 def test_a_pair_that_cannot_roll_on_is_stopped_with_a_warning():
-    """A flat side under a disc ends: beyond its corner there is no contact to aim a pivot at."""
+    """A disc rolls over the end of a flat side, beyond which there is no contact at which to place the pivot."""
     rolling = Rolling.at_arcs(Circle(0.4), Placed(Side(1.0), turn=math.pi), 0.0, 0.0)
     disc, roll = rolling_disc(rolling, 4.0)
     mechanism = Mechanism((disc,), (roll,))
     trajectory = LEAPFROG.build(mechanism, 1e-2)(50, 1)
-    there = np.isfinite(trajectory.pose[:, 0, 0])
+    is_finite = np.isfinite(trajectory.pose[:, 0, 0])
     # It rolls at 1.6 m/s and the corner is 0.5 m away.
-    assert trajectory.t[there].max() == pytest.approx(0.5 / 1.6, abs=0.02)
-    assert largest(trajectory.pose[there, 0, 2] - disc.pose[2] - 4.0 * trajectory.t[there]) < 1e-9
+    assert trajectory.t[is_finite].max() == pytest.approx(0.5 / 1.6, abs=0.02)
+    assert largest(trajectory.pose[is_finite, 0, 2] - disc.pose[2] - 4.0 * trajectory.t[is_finite]) < 1e-9
     assert any("could no longer be placed" in warning for warning in trajectory.warnings)
 
 
 @pytest.mark.parametrize("step", [1e-3, 3e-4])
-def test_the_first_force_of_a_contact_is_swept_until_its_points_agree(step):
-    found, truth = TUNED.build(DISC.mechanism(), step)(1, 1), DISC.motion(np.array([0.0]))
-    # First order in the step: 1.4e-3 of the force at a millisecond. With five sweeps a whole force is missing.
-    assert largest(found.reaction[0] - truth.reaction[0]) < 3e-3 * largest(truth.reaction[0])
+def test_the_first_force_of_a_contact_is_converged(step):
+    run, truth = TUNED.build(DISC.mechanism(), step)(1, 1), DISC.motion(np.array([0.0]))
+    # First order in the step: 1.4e-3 of the force at a millisecond. With five iterations half of the force is missing.
+    assert largest(run.reaction[0] - truth.reaction[0]) < 3e-3 * largest(truth.reaction[0])
 
 
 # Skates
 
 
-def test_a_skate_on_a_body_that_moves_is_held_by_rows_alone():
+def test_a_skate_on_a_moving_body_has_no_slip():
     mechanism = blade_on_a_board()
     trajectory = EXTENDED.build(mechanism, 1e-2)(50, 1)
     assert largest(mechanism.slip(trajectory.pose, trajectory.twist)) < 1e-8
 
 
-def test_a_blade_that_is_aimed_closes_no_gap_and_so_adds_no_noise():
-    # It closed what rounding shows of a gap within a step: 1e-16 m in 1e-4 s, and reactions are changes of velocity
-    # over a step. They were wrong by 1e-6 N here, and are by 2e-10 N.
+def test_a_placed_blade_corrects_no_gap_and_adds_no_noise():
+    # A correction of a gap of 1e-16 m, which is rounding, within 1e-4 s changes reactions by 1e-6 N, since they are
+    # changes of velocity over a step. Without it the error is 2e-10 N.
     scene = ChaplyginSleigh(duration=3.0, horizon=3.0)
     trajectory = methods.SKATE_GROOVE_EXTRAPOLATED.build(scene.mechanism(), 1e-3)(100, 30)
     right = scene.motion(trajectory.t)

@@ -1,4 +1,4 @@
-"""Slots and chains in pymunk: the groove joint's trap, bodies that keep their angle, and how many sweeps are enough."""
+"""Convergence and stability of pymunk's iterations: numbers of iterations, gains, and bodies of prescribed angle."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from reports.search.parts import EVERY
 from tests.engines.test_pymunk import every_method, largest
 from tests.mechanisms import four_bar
 
-MOTOR = (451161196, 54)  # seed and number of a motor among pins and a gear
+WITH_MOTOR = (451161196, 54)  # seed and number of a motor among pins and a gear
 
 
 @every_method
-def test_what_hangs_on_a_body_that_is_driven_without_a_pin_does_not_turn_it(method):
+def test_a_load_on_a_body_that_is_driven_without_a_pin_does_not_turn_it(method):
     block = Body("block", 1.0, 0.1, (0.0, 0.0, 0.0))
     pendulum = Body("pendulum", 2.0, 0.1, (0.8, 0.0, 0.0))
     joints = (
@@ -41,37 +41,37 @@ def test_what_hangs_on_a_body_that_is_driven_without_a_pin_does_not_turn_it(meth
         Pin("hook", "block", "pendulum", (0.3, 0.0), (-0.5, 0.0)),
     )
     trajectory = method.build(Mechanism((block, pendulum), joints, (0.0, -9.81)), 1e-3)(20, 10)
-    # The bar falls from level, 0.3 m off the block's middle: its weight would turn the block if it could be turned.
+    # The bar falls from a level position, 0.3 m off the block's middle: its weight would turn a free block.
     assert largest(trajectory.pose[:, 0, 2]) < 1e-12
     assert largest(trajectory.pose[-1, 1, 2]) > 0.1
 
 
 @pytest.mark.parametrize("links", [2, 10, 80])
-def test_sweeps_over_a_chain_of_equal_links_converge_as_a_relaxation_does(links):
+def test_the_convergence_factor_of_a_chain_of_equal_links(links):
     rho = convergence_factor(LinkPendulum(links=links).mechanism())
-    # cos^2 of half the step of the slowest wave on a chain held at one end.
+    # The slowest mode is the longest wave on a chain that is fixed at one end.
     assert rho == pytest.approx(math.cos(math.pi / (2 * links)) ** 2, abs=1e-6)
 
 
-def test_sweeps_are_counted_for_the_joints_that_forces_must_find():
-    assert convergence_factor(LinkPendulum(links=1).mechanism()) == 0  # one joint feels no other
+def test_the_convergence_factor_counts_no_prescribed_motion_and_depends_on_masses():
+    assert convergence_factor(LinkPendulum(links=1).mechanism()) == 0  # a single joint
     driven, free = (convergence_factor(four_bar(10.0, drive=drive)) for drive in (10.0, None))
     assert driven < free < 1
     # A hundredfold mass on a light link converges a hundred times slower.
     assert 1 - convergence_factor(LinkPendulum(tip=100.0).mechanism()) == pytest.approx(0.01, rel=0.05)
 
 
-def test_sweeps_are_counted_for_the_worst_pose_of_the_motion():
-    """The free four-bar of the chapter folds on its way: there 0.81 is left by a sweep, at its start 0.59."""
+def test_iterations_are_those_of_the_worst_pose_of_the_motion():
+    """The free four-bar of the chapter folds during its motion: there the factor is 0.81, at the start 0.59."""
     scene = FreeFourBar()
     mechanism = scene.mechanism()
     passed = scene.motion(np.linspace(0, scene.duration, 200)).pose
     worst = max(convergence_factor_at(mechanism, pose) for pose in passed)
     assert iterations_in_step(convergence_factor(mechanism)) < iterations_in_step(worst)
-    # A rough run of soft joints looks at some poses, beside those of the motion: it may count one sweep more or less.
+    # The pilot run samples other poses than the motion, so the number of iterations may differ by one.
     assert abs(iterations_in_step(worst_factor(mechanism, scene.duration)) - iterations_in_step(worst)) <= 1
     assert worst_factor(mechanism, 0.0) == convergence_factor(mechanism)
-    # The same motion in bars a thousand times as long: gaps of metres are as small a part of them.
+    # The same motion of bars a thousand times as long: the largest gap of the pilot run is relative to the length.
     longer = {name: 1e3 * getattr(scene, name) for name in ("crank", "coupler", "rocker")}
     larger = replace(scene, **longer, ground=(1200.0, 0.0), gravity=(0.0, -9810.0)).mechanism()
     assert worst_factor(larger, scene.duration) == pytest.approx(worst_factor(mechanism, scene.duration))
@@ -80,7 +80,7 @@ def test_sweeps_are_counted_for_the_worst_pose_of_the_motion():
 
 
 @pytest.mark.parametrize("iterations", [2, 10])
-def test_the_gain_by_rule_is_stable_and_closing_all_of_a_gap_with_as_few_sweeps_feeds_energy_in(iterations):
+def test_the_gain_by_rule_is_stable_and_a_gain_of_one_adds_energy_with_few_iterations(iterations):
     mechanism, dt = TenLinks().mechanism(), 1e-3
 
     def gained(closed: float) -> float:
@@ -92,42 +92,43 @@ def test_the_gain_by_rule_is_stable_and_closing_all_of_a_gap_with_as_few_sweeps_
     assert gained(1.0) > 500
 
 
-@pytest.mark.parametrize(("seed", "number"), [(77777, 239), (77777, 255), (77777, 266), MOTOR])
-def test_welds_and_motors_do_not_blow_up_however_short_steps_are_and_where_they_do_nothing_is_promised(seed, number):
-    """Welds' modes are complex: swept as if these were real, 255 missed its motion by a thousandfold of it.
+@pytest.mark.parametrize(("seed", "number"), [(77777, 239), (77777, 255), (77777, 266), WITH_MOTOR])
+def test_welds_and_motors_are_stable_at_short_steps_or_no_order_is_declared(seed, number):
+    """Welds have complex modes, and motors correct no gap.
 
-    A motor closes no gap: swept as if it did, a step four times as short missed five hundred times as much.
+    If complex modes counted as real ones, mechanism 255 would have an error of a thousand times its motion. If motors
+    counted as correcting a gap, the error would be five hundred times larger at a quarter of the step.
     """
-    own = mechanism(seed, number, EVERY)
-    span = 0.4 * own.time_scale
-    truth = TRUTH.build(own, span)(1, 1)
+    mixed = mechanism(seed, number, EVERY)
+    span = 0.4 * mixed.time_scale
+    truth = TRUTH.build(mixed, span)(1, 1)
 
     def missed(engine: Pymunk, steps: int) -> float:
-        return largest(engine.build(own, span / steps)(1, steps).pose[-1] - truth.pose[-1])
+        return largest(engine.build(mixed, span / steps)(1, steps).pose[-1] - truth.pose[-1])
 
     assert missed(TUNED, 640) < 0.3 * missed(TUNED, 160)
-    assert isinstance(TUNED.order(own), ConvergenceOrder)
-    assert isinstance(DEFAULT.order(own), ConvergenceOrder) == (missed(DEFAULT, 640) < missed(DEFAULT, 160))
+    assert isinstance(TUNED.order(mixed), ConvergenceOrder)
+    assert isinstance(DEFAULT.order(mixed), ConvergenceOrder) == (missed(DEFAULT, 640) < missed(DEFAULT, 160))
 
 
-@pytest.mark.parametrize(("seed", "number", "few"), [(*MOTOR, 30), (31, 655, 9), (31, 981, 8)])
-def test_impulses_grow_in_the_engine_as_the_map_of_a_step_says_where_motors_and_blades_close_no_gap(seed, number, few):
-    own = mechanism(seed, number, EVERY)
-    of_gaps = corrects_gap(own, rolls_are_contacts=True)
-    assert 0 < of_gaps.mean() < 1
+@pytest.mark.parametrize(("seed", "number", "few"), [(*WITH_MOTOR, 30), (31, 655, 9), (31, 981, 8)])
+def test_impulses_grow_by_the_spectral_radius_of_the_step_where_motors_and_blades_correct_no_gap(seed, number, few):
+    mixed = mechanism(seed, number, EVERY)
+    corrected = corrects_gap(mixed, rolls_are_contacts=True)
+    assert 0 < corrected.mean() < 1
 
     def grown(iterations: int) -> float:
-        """A step's factor, from two thirds of a run whose steps are so short that rows hardly change."""
-        twist = replace(TUNED, iterations=iterations, error_bias=0.0).build(own, 1e-7 * own.time_scale)(66, 1).twist
+        """The factor of a step, from the last two thirds of a run with steps in which rows hardly change."""
+        twist = replace(TUNED, iterations=iterations, error_bias=0.0).build(mixed, 1e-7 * mixed.time_scale)(66, 1).twist
         change = np.abs(np.diff(twist, axis=0)).max(axis=(1, 2))
         return float((change[-1] / change[20]) ** (1 / 45))
 
-    # What the fastest mode begins with is not all there is, and modes turn: a few per cent, of 5 to 25 in a step.
-    assert grown(few) == pytest.approx(step_spectral_radius(own, own.pose, few, of_gaps), abs=0.02)
-    enough = TUNED.plan(own).iterations
+    # The growth is 5 to 25 per cent in a step; other modes change it by at most two per cent.
+    assert grown(few) == pytest.approx(step_spectral_radius(mixed, mixed.pose, few, corrected), abs=0.02)
+    enough = TUNED.plan(mixed).iterations
     assert grown(enough) < 1.01
-    # Left to fewer sweeps, not all of a gap is closed, and it is said.
-    short = replace(TUNED, iterations=few).build(own, 1e-3 * own.time_scale)(2, 2)
+    # With fewer iterations only a fraction of the gap is corrected, with a warning.
+    short = replace(TUNED, iterations=few).build(mixed, 1e-3 * mixed.time_scale)(2, 2)
     assert any("not converged" in warning for warning in short.warnings)
 
 

@@ -1,6 +1,6 @@
-"""pymunk spaces become mechanisms: the same accelerations, or a sentence that names what can't be.
+"""Reading of pymunk spaces: a mechanism with the same accelerations, or a refusal that names the element.
 
-A script that starts half a step ahead is read as it was before.
+Also scripts that start half a step ahead, and the settings that are offered for a space.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -32,8 +32,8 @@ from engines.pymunk.reading import READER, read
 from engines.reading import AS_IT_IS
 from reports.check.judging import errors, judged, refuse_disagreement
 
-# Two small steps, extrapolated: what is left is of the order of the step squared, a hundred-millionth.
-STEPPED = 1e-6
+# The accelerations are extrapolated from two small steps: their error is about 1e-8, the square of the step.
+ACCELERATION_ERROR = 1e-6
 
 
 def space_of(*makers, spin=0.7):
@@ -50,14 +50,14 @@ def space_of(*makers, spin=0.7):
     first.angular_velocity = spin
     first.velocity = (-0.1 * spin, 0.3 * spin)
     for maker in makers:
-        made = maker(space, first, second)
-        if made is not None:
-            space.add(made)
+        constraint = maker(space, first, second)
+        if constraint is not None:
+            space.add(constraint)
     return space
 
 
 def riding(space, first, second):
-    """The second body moves as if it were one with the first."""
+    """Give the second body the velocity of a point of the first."""
     spin = first.angular_velocity
     second.velocity, second.angular_velocity = (-spin * second.position.y, spin * second.position.x), spin
 
@@ -122,13 +122,13 @@ def steady(space, first, second):
 
 
 def off_centre(space, first, second):
-    """Bodies whose anchors count from another point than the centre of mass."""
+    """A body whose anchors are relative to another point than the centre of mass."""
     odd = pymunk.Body(2.0, 0.3)
     odd.center_of_gravity = (0.1, -0.2)
     odd.position, odd.angle = (2.0, 2.0), 0.5
     space.add(odd)
-    place = odd.local_to_world((0.3, 0.3))
-    return PivotJoint(space.static_body, odd, (place.x, place.y), (0.3, 0.3))
+    world = odd.local_to_world((0.3, 0.3))
+    return PivotJoint(space.static_body, odd, (world.x, world.y), (0.3, 0.3))
 
 
 MAKERS = {
@@ -138,10 +138,10 @@ MAKERS = {
 
 
 @pytest.mark.parametrize("name", MAKERS)
-def test_a_constraint_gives_the_same_accelerations(name):
-    assert refuse_disagreement(read(space_of(MAKERS[name], spin=0.0), 0.01)) < STEPPED
+def test_a_constraint_is_read_as_elements_with_the_same_accelerations(name):
+    assert refuse_disagreement(read(space_of(MAKERS[name], spin=0.0), 0.01)) < ACCELERATION_ERROR
     reading = read(space_of(MAKERS[name]), 0.01)
-    assert refuse_disagreement(reading) < STEPPED
+    assert refuse_disagreement(reading) < ACCELERATION_ERROR
     wrong = replace(reading, mechanism=replace(reading.mechanism, gravity=(0.3, -5.0), forces=()))
     with pytest.raises(Unsupported, match="differ from those of the ideal mechanism"):
         refuse_disagreement(wrong)
@@ -149,11 +149,11 @@ def test_a_constraint_gives_the_same_accelerations(name):
 
 def test_a_groove_through_a_centre_of_mass_is_a_slot():
     reading = read(space_of(grooved, spin=0.0), 0.01)
-    assert refuse_disagreement(reading) < STEPPED
+    assert refuse_disagreement(reading) < ACCELERATION_ERROR
     assert reading.mechanism.joints[-1].size == 1
 
 
-def test_a_groove_beside_the_centre_of_mass_is_named_since_chipmunk_pushes_otherwise():
+def test_a_groove_beside_the_centre_of_mass_is_named_as_not_ideal():
     def beside(space, first, second):
         return GrooveJoint(space.static_body, second, (-9, 1), (9, 1), second.world_to_local((1.3, 1.0)))
 
@@ -161,15 +161,15 @@ def test_a_groove_beside_the_centre_of_mass_is_named_since_chipmunk_pushes_other
         refuse_disagreement(read(space_of(beside, spin=0.0), 0.01))
 
 
-def test_a_force_that_stands_on_a_body_is_constant_and_told():
+def test_a_force_on_a_body_is_read_as_constant_with_a_note():
     def pushed(space, first, second):
         second.force, second.torque = (1.0, 0.5), -0.25
 
     reading = read(space_of(pushed), 0.01)
     assert [type(force).__name__ for force in reading.mechanism.forces] == ["Force", "Torque"]
     assert any(note.element == "the force or torque that stands on body 2" for note in reading.notes)
-    assert refuse_disagreement(reading) < STEPPED
-    # In a second the push alone moves the body by half a metre: it is there in every step, or the runs differ.
+    assert refuse_disagreement(reading) < ACCELERATION_ERROR
+    # The push alone moves the body by half a metre in a second, so a push in the first step only would be noticed.
     own, ideal = reading.model.run(10, 10), TRUTH.build(reading.mechanism, 0.1)(10, 1)
     assert np.abs(own.pose - ideal.pose).max() < 0.1
 
@@ -189,7 +189,7 @@ def test_names_and_static_bodies_are_kept():
     reading = read(space, 0.01)
     assert [body.name for body in reading.mechanism.bodies] == ["crank", "body 2"]
     assert reading.mechanism.joints[-1].first is None
-    assert refuse_disagreement(reading) < STEPPED
+    assert refuse_disagreement(reading) < ACCELERATION_ERROR
 
 
 def test_the_users_own_space_is_run_and_never_changed():
@@ -248,20 +248,20 @@ def own_spring(space, first, second):
         (own_spring, "DampedSpring 1: its force is a function"),
     ],
 )
-def test_what_has_no_ideal_counterpart_is_named(make, sentence):
+def test_an_element_without_ideal_counterpart_is_refused_by_name(make, sentence):
     with pytest.raises(Unsupported) as reason:
         read(space_of(make), 0.01)
     assert sentence in str(reason.value)
 
 
-def test_the_step_that_is_named_comes_before_the_last_one_and_that_before_the_usual_one():
+def test_a_given_step_has_priority_over_the_last_and_that_over_the_usual_one():
     space = space_of()
     assert [read(space, step).model.dt for step in (None, 0.01)] == [1 / 60, 0.01]
     space.step(1e-6)
     assert [read(space, step).model.dt for step in (None, 0.01)] == [1e-6, 0.01]
 
 
-SCRIPT = """
+FOUR_BAR_SCRIPT = """
 import pymunk
 space = pymunk.Space()
 space.gravity = (0, -900)
@@ -281,10 +281,10 @@ for a, b, at in (
 ):
     space.add(pymunk.PivotJoint(a, b, at))
 """
-LINES = Path(__file__).parents[2] / "reports" / "pages" / "your_loop" / "lines"
-CLOSE = (LINES / "close.txt").read_text(encoding="utf-8")
-# The lines of earlier releases, which held bodies by a position_func.
-EARLIER = """
+LINE_FOLDER = Path(__file__).parents[2] / "reports" / "pages" / "your_loop" / "lines"
+CLOSE_CODE = (LINE_FOLDER / "close.txt").read_text(encoding="utf-8")
+# The lines of earlier releases, which stopped the drift by a position_func.
+OLD_CODE = """
 for joint in space.constraints:
     joint.error_bias = 0
 space.iterations = 16
@@ -296,32 +296,38 @@ def start(space, dt):
         body.position_func = pymunk.Body.update_position
 start(space, 1e-3)
 """
-LOOP = "\nfor _ in range(10):\n    space.step(1e-3)\n"
-PASTED = {
-    "the lines of the page": f"{CLOSE}\n{(LINES / 'choose.txt').read_text(encoding='utf-8')}{LOOP}",
-    "close alone": f"{CLOSE}\nclose(space, 1e-3, 16){LOOP}",
-    "close alone without a loop": f"{CLOSE}\nclose(space, 1e-3, 16)\n",
-    "earlier lines": f"{EARLIER}{LOOP}",
-    "earlier lines with a name for a loop's function": f"{EARLIER}\ndef play():\n    space.step(1e-3)\nplay()\n",
+LOOP_CODE = "\nfor _ in range(10):\n    space.step(1e-3)\n"
+PASTED_CODE = {
+    "the lines of the page": f"{CLOSE_CODE}\n{(LINE_FOLDER / 'choose.txt').read_text(encoding='utf-8')}{LOOP_CODE}",
+    "close alone": f"{CLOSE_CODE}\nclose(space, 1e-3, 16){LOOP_CODE}",
+    "close alone without a loop": f"{CLOSE_CODE}\nclose(space, 1e-3, 16)\n",
+    "earlier lines": f"{OLD_CODE}{LOOP_CODE}",
+    "earlier lines with a name for a loop's function": f"{OLD_CODE}\ndef play():\n    space.step(1e-3)\nplay()\n",
 }
 
 
-@pytest.mark.parametrize(("pasted", "word"), [(name, ("x.py", "x.py:space")[i % 2]) for i, name in enumerate(PASTED)])
-def test_a_script_with_the_lines_that_start_ahead_is_read_as_it_was_before_them(pasted, word, tmp_path):
-    (tmp_path / "x.py").write_text(SCRIPT.replace("SPIN", "0") + PASTED[pasted], encoding="utf-8")
+@pytest.mark.parametrize(
+    ("pasted", "word"), [(name, ("x.py", "x.py:space")[i % 2]) for i, name in enumerate(PASTED_CODE)]
+)
+def test_a_script_that_starts_half_a_step_ahead_is_read_in_the_state_before(pasted, word, tmp_path):
+    (tmp_path / "x.py").write_text(FOUR_BAR_SCRIPT.replace("SPIN", "0") + PASTED_CODE[pasted], encoding="utf-8")
     reading = READER.read(word, tmp_path, AS_IT_IS)
     assert (reading.model.dt, reading.model.ahead) == (1e-3, True)
     mechanism = reading.mechanism
     assert mechanism.pose[0] == pytest.approx([0, 25, 0], abs=1e-12)
     assert np.abs(mechanism.twist).max() < 1e-12
     truth = judged(mechanism, 50, 1e-2).trajectory
-    # As shipped it is off by 0.1; without the half step by 0.006, as the step treats velocities as those of later.
+    # With the shipped settings the error is 0.1; without the half step, 0.006.
     assert errors(mechanism, truth, reading.model.run(50, 10)).largest < 1e-3
 
 
-def test_a_start_ahead_of_a_space_in_motion_is_undone_and_another_first_step_is_none(tmp_path):
-    moving = SCRIPT.replace("SPIN", "3")
-    for lines, ahead in ((f"{CLOSE}\nclose(space, 1e-3, 16){LOOP}", True), (f"{EARLIER}{LOOP}", True), (LOOP, False)):
+def test_a_start_ahead_of_a_moving_space_is_undone_and_no_other_first_step(tmp_path):
+    moving = FOUR_BAR_SCRIPT.replace("SPIN", "3")
+    for lines, ahead in (
+        (f"{CLOSE_CODE}\nclose(space, 1e-3, 16){LOOP_CODE}", True),
+        (f"{OLD_CODE}{LOOP_CODE}", True),
+        (LOOP_CODE, False),
+    ):
         (tmp_path / "x.py").write_text(moving + lines, encoding="utf-8")
         reading = READER.read("x.py", tmp_path, AS_IT_IS)
         assert (reading.model.dt, reading.model.ahead) == (1e-3, ahead)
@@ -335,18 +341,18 @@ def test_a_start_ahead_of_a_space_in_motion_is_undone_and_another_first_step_is_
 def rope():
     space = pymunk.Space()
     space.gravity = (0, -9.81)
-    before, end = space.static_body, (0.0, 0.0)
+    previous, end = space.static_body, (0.0, 0.0)
     for number in range(30):
         body = pymunk.Body(1, 1 / 12)
         body.position = (number + 0.5, 0)
-        space.add(body, PivotJoint(before, body, end))
-        before, end = body, (number + 1.0, 0.0)
+        space.add(body, PivotJoint(previous, body, end))
+        previous, end = body, (number + 1.0, 0.0)
     return read(space, 1e-3).model
 
 
-def test_settings_that_a_mechanism_can_not_bear_are_not_offered():
+def test_unstable_settings_are_not_offered():
     changes = rope().changes(1e-4)
     closed = {dict(change.options)["iterations"] for change in changes if dict(change.options)["bias"] == 0}
-    # Thirty links: 1 - rho = pi^2 / (4 N^2), so that a quarter of the slowest mode is left after about 500 sweeps.
+    # Thirty links: 1 - rho = pi^2 / (4 N^2), so a quarter of the slowest mode is left after about 500 iterations.
     assert min(closed) > 100
     assert {dict(change.options)["iterations"] for change in changes} >= {10, 50}
