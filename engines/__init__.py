@@ -1,4 +1,4 @@
-"""Engines under test, and what the suite asks of one: `engines.contract`, in numbered sentences."""
+"""Engines under test. `engines.contract` has the contract of an engine in numbered sentences."""
 
 from engines.contract import (
     CLAIM,
@@ -6,7 +6,6 @@ from engines.contract import (
     ConvergenceOrder,
     Enforcement,
     Engine,
-    EngineWrapper,
     Instant,
     NotDeclared,
     OneShot,
@@ -17,6 +16,7 @@ from engines.contract import (
     method_name,
     refuse_forces,
 )
+from engines.wrapper import EngineWrapper
 
 __all__ = [
     "CLAIM",

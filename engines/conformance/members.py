@@ -29,7 +29,7 @@ from engines.conformance.check import (
     stepped,
 )
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World, rolling
-from engines.contract import flaw_of_shapes
+from engines.trajectory_check import flaw_of_shapes
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Line

@@ -30,7 +30,7 @@ from engines.conformance.check import (
     stepped,
 )
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World
-from engines.contract import flaw_of_times
+from engines.trajectory_check import flaw_of_times
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism

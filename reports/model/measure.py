@@ -19,7 +19,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from engines import Unsupported
-from engines.contract import flaw
+from engines.trajectory_check import flaw
 from reference.checks import freeze
 from reference.mechanism import Mechanism
 from reference.scene import NoMotion, Scene

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, Unsupported
-from engines.contract import flaw
+from engines.trajectory_check import flaw
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell, estimated_cost
 from reports.model.fingerprint import LONG, OURS, digest, fingerprint

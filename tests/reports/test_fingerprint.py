@@ -88,10 +88,10 @@ def theirs(tmp_path, monkeypatch):
 @pytest.mark.parametrize(("name", "counts"), [("helping.py", True), ("numbers.txt", True), ("notes.txt", False)])
 def test_a_changed_file_of_somebody_s_engine_makes_its_rows_stale(theirs, tmp_path, name, counts):
     @dataclass(frozen=True)
-    class EngineWrapper:
+    class EngineInTuple:
         held: tuple[Any, ...]
 
-    engines = (theirs, Altered(theirs, Nudge(1)), EngineWrapper((theirs,)))  # wherever it is held
+    engines = (theirs, Altered(theirs, Nudge(1)), EngineInTuple((theirs,)))  # wherever it is held
     before = [key(Disc(), engine) for engine in engines]
     other = key(Disc(), DEFAULT)
     (tmp_path / name).write_text((tmp_path / name).read_text() + "# more\n")
