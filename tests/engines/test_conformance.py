@@ -26,9 +26,12 @@ SPECIAL = (
 # Daily one of each adapter, and one that is extrapolated; the others differ by settings alone.
 DAILY = (
     *(pymunk.DEFAULT, pymunk.EXTENDED, mujoco.DEFAULT, lagrange.Lagrange("rk4", "projection")),
-    *(each for each in registry.OTHERS if each.build_time < SLOW_TO_BUILD and each.variant == "default"),
+    *(engine for engine in registry.OTHERS if engine.build_time < SLOW_TO_BUILD and engine.variant == "default"),
 )
-ALL = (*DAILY, *(pytest.param(each, marks=pytest.mark.slow) for each in (*METHODS, *SPECIAL) if each not in DAILY))
+ALL = (
+    *DAILY,
+    *(pytest.param(engine, marks=pytest.mark.slow) for engine in (*METHODS, *SPECIAL) if engine not in DAILY),
+)
 DESCRIPTIONS = {
     "moved": Isometry(turn=0.7, shift=(3.7, -2.9)),
     "mirrored": Isometry(turn=-2.5, shift=(0.3, 0.4), mirrored=True),
@@ -41,8 +44,8 @@ DESCRIPTIONS = {
 
 def failures(engine: Engine) -> list[str]:
     """A line for each case that fails."""
-    found = ((case, case.result()) for case in cases(engine))
-    return [f"{case}: {result.sentence}" for case, result in found if result.status == "fails"]
+    results = ((case, case.result()) for case in cases(engine))
+    return [f"{case}: {result.sentence}" for case, result in results if result.status == "fails"]
 
 
 @pytest.mark.parametrize("engine", ALL, ids=method_name)
@@ -70,8 +73,8 @@ def test_the_exact_motions_are_those_of_the_judge_in_every_description(world):
 
 def first_failure(among: Iterable[Case]) -> tuple[str, str]:
     """The first check that fails, and its sentence; raises StopIteration if none does."""
-    found = ((case.check.name, case.result()) for case in among)
-    return next((name, result.sentence) for name, result in found if result.status == "fails")
+    results = ((case.check.name, case.result()) for case in among)
+    return next((name, result.sentence) for name, result in results if result.status == "fails")
 
 
 @pytest.mark.parametrize("mistake", WRONG)
@@ -90,10 +93,10 @@ def test_every_check_finds_a_mistake_and_the_right_engine_passes():
 
 
 def test_an_engine_that_spoils_its_mechanism_spoils_no_other_check():
-    kept = [repr(world.mechanism) + repr(world.mechanism.twist) for world in WORLDS]
+    remaining = [repr(world.mechanism) + repr(world.mechanism.twist) for world in WORLDS]
     failed = {line.split(": ")[1] for line in failures(cast(Engine, Wrong("the mechanism is written into")))}
     assert failed == {"leaves_the_mechanism_alone"}
-    assert kept == [repr(world.mechanism) + repr(world.mechanism.twist) for world in WORLDS]
+    assert remaining == [repr(world.mechanism) + repr(world.mechanism.twist) for world in WORLDS]
 
 
 def test_a_case_that_is_not_supported_does_not_hold():
@@ -113,18 +116,18 @@ def conform(capsys, *words: str) -> tuple[int, list[str], str]:
 
 
 def test_the_command_prints_a_line_a_check_and_a_refusal_once(capsys, monkeypatch):
-    few = [check for check in CHECKS if check.name in ("builds_or_refuses", "has_a_name", "first_pose_is_the_start")]
-    monkeypatch.setattr(conformance, "CHECKS", few)
+    some = [check for check in CHECKS if check.name in ("builds_or_refuses", "has_a_name", "first_pose_is_the_start")]
+    monkeypatch.setattr(conformance, "CHECKS", some)
     status, lines, error = conform(capsys, "mujoco", "--variant", "tuned")
     assert (status, error) == (0, "")
     assert (lines[0], lines[-1]) == ("mujoco tuned", "  every check holds")
-    assert [line.split()[1] for line in lines if line.startswith("  holds")] == [check.name for check in few]
+    assert [line.split()[1] for line in lines if line.startswith("  holds")] == [check.name for check in some]
     assert len([line for line in lines if "disc in a hole (roll)" in line]) == 1
 
 
 def test_the_command_ends_with_1_where_a_check_fails(capsys, monkeypatch):
-    few = [check for check in CHECKS if check.name == "twists_stand_at_their_instants"]
-    monkeypatch.setattr(conformance, "CHECKS", few)
+    some = [check for check in CHECKS if check.name == "twists_stand_at_their_instants"]
+    monkeypatch.setattr(conformance, "CHECKS", some)
     status, lines, error = conform(capsys, "tests.wrong.adapters:HALF_A_STEP_LATE")
     assert status == 1
     assert error == "crosscheck: wrong velocities are half a step late: not as the contract of an engine says\n"

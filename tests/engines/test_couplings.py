@@ -75,9 +75,9 @@ def test_rows_are_the_gaps_derivative_and_machine_code_moves_as_numpy(name):
             way[column] = 1.0
             moved = mechanism.gap(mechanism.pose + 1j * step * way.reshape(-1, 3), 0.0)
             assert rows[:, column] == pytest.approx(np.imag(moved) / step, abs=1e-14)
-    runs = [replace(Lagrange("rk4"), compiled=own).build(mechanism, 1e-3)(4, 25) for own in (True, False)]
-    for what in ("pose", "twist", "reaction"):
-        ours, theirs = (getattr(run, what) for run in runs)
+    runs = [replace(Lagrange("rk4"), compiled=linkage).build(mechanism, 1e-3)(4, 25) for linkage in (True, False)]
+    for subject in ("pose", "twist", "reaction"):
+        ours, theirs = (getattr(run, subject) for run in runs)
         assert ours == pytest.approx(theirs, abs=1e-12 * max(1.0, np.abs(theirs).max(initial=0.0)))
     if not mechanism.applied.dissipate:  # the truth, compiled
         motion = TRUTH.build(mechanism, 0.05)(20, 1)
@@ -94,7 +94,7 @@ def test_reactions_in_the_band_are_those_of_the_dense_rows():
     excess, poses = np.random.default_rng(5).normal(size=(3, 4, 3)), np.repeat(mechanism.pose[None], 3, axis=0)
     ours = banded_reaction(mechanism.joint_rows, poses, excess, mechanism.inertias)
     rows, mass = mechanism.rows(mechanism.pose), mechanism.inertias.reshape(-1)
-    wanted = [np.linalg.solve((rows / mass) @ rows.T, rows @ each.reshape(-1)) for each in excess]
+    wanted = [np.linalg.solve((rows / mass) @ rows.T, rows @ acceleration.reshape(-1)) for acceleration in excess]
     assert ours == pytest.approx(np.array(wanted), rel=1e-9, abs=1e-9)
 
 
@@ -109,10 +109,10 @@ def test_no_other_engine_leaves_a_coupling_out():
 
 
 def test_a_pinion_has_the_length_of_its_radius_where_nothing_else_has_one():
-    terms = Term(None, "b", -2.0, True), Term(None, "a", 0.1)
+    addends = Term(None, "b", -2.0, True), Term(None, "a", 0.1)
     free = tuple(Body(name, 1.0, 1.0, (0.0, 0.0, 0.0)) for name in "ab")
-    assert Mechanism(free, (Coupling("teeth", terms),)).length_scale == pytest.approx(0.05)
-    assert Mechanism(free, (Coupling("teeth", terms[1:]),)).length_scale == 1.0
+    assert Mechanism(free, (Coupling("teeth", addends),)).length_scale == pytest.approx(0.05)
+    assert Mechanism(free, (Coupling("teeth", addends[1:]),)).length_scale == 1.0
 
 
 OPTION = '<option timestep="0.001"/><default><geom contype="0" conaffinity="0"/></default>'
@@ -182,7 +182,7 @@ def test_a_coupling_in_mujoco_moves_as_its_tree_with_multipliers(name):
         places = centres(reading.model.planar, data) @ reading.model.planar.frame.both.T
         assert ours.pose[sample, :, :2] == pytest.approx(places, abs=1e-8 * max(1.0, unit))
     names = [name for joint in reading.mechanism.joints for name in [type(joint).__name__] * joint.size]
-    coupled = [place for place, kind in enumerate(names) if kind == "Coupling"]
+    coupled = [index for index, kind in enumerate(names) if kind == "Coupling"]
     assert len(coupled) == len(sums)
     # Ours is counted along the same sum, so the force is MuJoCo's own.
     assert ours.reaction[:, coupled] == pytest.approx(

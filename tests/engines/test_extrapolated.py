@@ -106,20 +106,21 @@ def test_an_error_in_the_named_powers_vanishes_from_poses_twists_and_reactions()
     assert min(errors(inner)) > 1e-2
     assert max(errors(run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), (2, 3))))) < 1e-13  # rounding
     right = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3, 4), (2, 3, 4)))
-    assert present(right.estimate).max() < 1e-12  # what all steps together may round
-    # What (2, 4) leaves of 2 t dt^3 is 2 * 3 * 1e-3 / 60; of others more remains, and the estimate shows it.
+    assert present(right.estimate).max() < 1e-12  # rounding of all steps
+    # With the powers (2, 4) the term 2 t dt^3 leaves an error of 2 * 3 * 1e-3 / 60, with the others a larger one; the
+    # estimate shows it.
     for powers in ((2, 4), (1, 3), (3, 4)):
-        left = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), powers))
-        assert min(errors(left)) > 0.9e-4
-        assert present(left.estimate).max() > 1e-5
+        extrapolated = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), powers))
+        assert min(errors(extrapolated)) > 0.9e-4
+        assert present(extrapolated.estimate).max() > 1e-5
     # A series in the step is resolved whatever its size.
     for size in (1e-6, 1.0, 30.0):
         toy = SeriesToy({2: size, 3: -2 * size, 4: size})
-        told = [
+        trajectories = [
             run(Extrapolated(toy, "extended", (1, 2), (2,))),
             run(Extrapolated(toy, "extended", (1, 2, 3, 4), (2, 3, 4))),
         ]
-        assert not any("no series" in words for each in told for words in each.warnings)
+        assert not any("no series" in warning for trajectory in trajectories for warning in trajectory.warnings)
 
 
 def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_on():
@@ -136,7 +137,7 @@ def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_o
         assert np.array_equal(getattr(turned, name)[late], getattr(finest, name)[late])
         assert not np.array_equal(getattr(turned, name)[~late], getattr(finest, name)[~late])
     assert turned.estimate is not None
-    # The other runs are 1 rad away, which is what the finest may be wrong by.
+    # The other runs differ from the finest one by 1 rad, which is the estimate.
     assert np.all(np.abs(turned.estimate[late] - 1) < 0.1)
     assert turned.estimate[~late].max() < 1e-3
 
@@ -144,16 +145,16 @@ def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_o
 @pytest.mark.parametrize("every", [1, 2, 3, 10])
 def test_how_often_it_is_sampled_changes_neither_the_motion_nor_the_estimate_nor_what_is_told(every):
     method = Extrapolated(SeriesToy({2: 1.0, 3: 300.0, 4: 100.0, 5: 5000.0}), "extended", (1, 2, 3, 4), (2, 3, 4))
-    each, sampled = (method.build(sledge(), 0.025)(60 // count, count) for count in (1, every))
+    dense, sampled = (method.build(sledge(), 0.025)(60 // count, count) for count in (1, every))
     for name in ("t", "pose", "twist", "estimate"):
-        assert np.array_equal(present(getattr(sampled, name)), present(getattr(each, name))[::every])
+        assert np.array_equal(present(getattr(sampled, name)), present(getattr(dense, name))[::every])
     # At this instant its own estimate passes the claim, whether it is a sample or not.
-    assert sampled.unresolved_at == each.unresolved_at
-    assert 0 < present(each.unresolved_at) < each.t[-1]
+    assert sampled.unresolved_at == dense.unresolved_at
+    assert 0 < present(dense.unresolved_at) < dense.t[-1]
     # It is unresolved from before its estimate is above the claim.
-    above = np.max(present(each.estimate), axis=(1, 2)) > CLAIM
-    assert present(each.unresolved_at) < each.t[np.argmax(above)]
-    assert f"ours: unresolved from {each.unresolved_at:.4g} s on, its own estimate is not below its claim" in (
+    above = np.max(present(dense.estimate), axis=(1, 2)) > CLAIM
+    assert present(dense.unresolved_at) < dense.t[np.argmax(above)]
+    assert f"ours: unresolved from {dense.unresolved_at:.4g} s on, its own estimate is not below its claim" in (
         sampled.warnings
     )
 
@@ -182,26 +183,26 @@ def test_the_estimate_is_near_the_error_of_a_series_also_where_it_is_no_longer_a
 
 def test_runs_that_step_over_a_damper_are_unresolved_from_the_start():
     # 1 / 3 kg m^2 about the pin, and so strong a damper: what moves is at rest after a third of a millisecond.
-    own = replace(sledge(), forces=(TorsionDamper("damper", None, "bar", 1e3),))
+    linkage = replace(sledge(), forces=(TorsionDamper("damper", None, "bar", 1e3),))
     exact = Extrapolated(SeriesToy({2: 0.0}), "extended", (1, 2, 3), (2, 3))
-    assert exact.build(own, 0.9 * own.time_scale)(10, 1).unresolved_at is None
-    over = exact.build(own, 1.1 * own.time_scale)(10, 1)
+    assert exact.build(linkage, 0.9 * linkage.time_scale)(10, 1).unresolved_at is None
+    over = exact.build(linkage, 1.1 * linkage.time_scale)(10, 1)
     assert over.unresolved_at == 0
-    assert any("unresolved from 0 s on" in words for words in over.warnings)
+    assert any("unresolved from 0 s on" in warning for warning in over.warnings)
 
 
 def test_reactions_are_told_by_the_forces_that_act_and_not_by_themselves(monkeypatch):
-    own, plain = sledge(), SeriesRun.__call__
-    weight = own.bodies[0].mass * 9.81
-    for size, told in ((weight, True), (1e-9 * weight, False)):
+    linkage, plain = sledge(), SeriesRun.__call__
+    weight = linkage.bodies[0].mass * 9.81
+    for size, is_reported in ((weight, True), (1e-9 * weight, False)):
 
         def noisy(self: SeriesRun, samples: int, every: int, size: float = size) -> Trajectory:
-            found = plain(self, samples, every)  # no two runs agree on the reactions
-            return replace(found, reaction=np.full_like(found.reaction, size * np.sin(1e4 * self.dt)))
+            run_result = plain(self, samples, every)  # no two runs agree on the reactions
+            return replace(run_result, reaction=np.full_like(run_result.reaction, size * np.sin(1e4 * self.dt)))
 
         monkeypatch.setattr(SeriesRun, "__call__", noisy)
-        found = Extrapolated(SeriesToy({2: 0.0}), "extended", (1, 2, 3), (2, 3)).build(own, 0.01)(10, 3)
-        assert any("reactions are resolved" in words for words in found.warnings) == told
+        run_result = Extrapolated(SeriesToy({2: 0.0}), "extended", (1, 2, 3), (2, 3)).build(linkage, 0.01)(10, 3)
+        assert any("reactions are resolved" in warning for warning in run_result.warnings) == is_reported
 
 
 def test_a_level_that_fails_makes_the_samples_not_a_number_and_is_not_dropped():
@@ -236,10 +237,12 @@ def test_differences_that_are_small_by_chance_are_decided_by_a_further_run():
     """The terms of orders 5 and 6 cancel in the last difference and not in the error that is left."""
     levels, powers, dt = (1, 2, 3, 4), (2, 3, 4), 0.1
     steps = dt / np.array(levels)
-    left = {power: float(extrapolation_weights(levels, powers) @ steps**power) for power in (5, 6)}
+    residual = {power: float(extrapolation_weights(levels, powers) @ steps**power) for power in (5, 6)}
     without = {power: float(extrapolation_weights(levels[1:], powers[:-1]) @ steps[1:] ** power) for power in (5, 6)}
-    last = {power: left[power] - without[power] for power in (5, 6)}
-    size = 3 * CLAIM / abs(left[5] - left[6] * last[5] / last[6])  # the error is 3 claims after a second, and grows
+    last = {power: residual[power] - without[power] for power in (5, 6)}
+    size = (
+        3 * CLAIM / abs(residual[5] - residual[6] * last[5] / last[6])
+    )  # the error is 3 claims after a second, and grows
     toy = SeriesToy({2: 1e-3, 3: -2e-3, 4: 1e-3, 5: size, 6: -size * last[5] / last[6]})
     trajectory = run(Extrapolated(toy, "extended", levels, powers), dt)
     error = np.abs(trajectory.pose - np.cos(trajectory.t)[:, None, None]).max(axis=(1, 2))

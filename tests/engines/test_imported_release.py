@@ -101,13 +101,13 @@ def overlaid(monkeypatch):
 
 @pytest.mark.usefixtures("overlaid")
 def test_no_command_runs_another_release_than_it_names(here, capfd):  # noqa: F811
-    for words in (
+    for text in (
         "run free_four_bar --engine mujoco --every 10",
         "search --engine mujoco --cases 2",
         "conform mujoco --variant default",
         "atlas",
     ):
-        assert call(*words.split()) == REFUSED
+        assert call(*text.split()) == REFUSED
         sentence = one_line(capfd.readouterr().err)
         assert "3.17.0" in sentence
         assert "pip install --force-reinstall --no-deps mujoco-core==" in sentence

@@ -1,7 +1,7 @@
-"""What each construction of pymunk and MuJoCo reaches on each joint: one table of orders, errors and floors.
+"""Accuracy of each construction of pymunk and MuJoCo on each joint: a table of orders, errors and floors.
 
-A row is held against the textbook's own motion, or exact multipliers where no scene has the mechanism. What an engine
-promises, and keeps, is asked by `test_promised`; what no number here says stands in the engine's own files.
+A row is compared with the exact motion of a scene, or with the exact solver if no scene has the mechanism.
+`test_promised` tests the declared orders of all engines.
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ def placed(name: str, mass: float, inertia: float, centre: Any, angle: float, ve
 
 def far_drive() -> Mechanism:
     """A four-bar whose coupler is driven against the ground, over two coordinates of a tree."""
-    own = four_bar(crank_rate=10.0)
-    return replace(own, joints=(*own.joints, Drive("far", None, "coupler", -5.0, own.bodies[1].pose[2])))
+    linkage = four_bar(crank_rate=10.0)
+    return replace(linkage, joints=(*linkage.joints, Drive("far", None, "coupler", -5.0, linkage.bodies[1].pose[2])))
 
 
 def blade_on_a_board() -> Mechanism:
@@ -89,18 +89,18 @@ def blade_on_a_board() -> Mechanism:
 
 def rod_in_a_slot() -> Mechanism:
     """The slider-crank without a slider: the end of its rod runs in the slot."""
-    scene, own = DrivenSliderCrank(), DrivenSliderCrank().mechanism()
+    scene, linkage = DrivenSliderCrank(), DrivenSliderCrank().mechanism()
     guide = Slot("guide", None, "rod", (0.0, 0.0), 0.0, (scene.rod / 2, 0.0))
-    return Mechanism(own.bodies[:2], (*own.joints[:2], guide, own.joints[5]), own.gravity)
+    return Mechanism(linkage.bodies[:2], (*linkage.joints[:2], guide, linkage.joints[5]), linkage.gravity)
 
 
 def plate() -> Mechanism:
     """It turns about the ground's point (0.3, 0.1), which slides in it, pulled by gravity."""
-    angle, rate, line, own = 0.5, 2.0, 0.7, (0.25, -0.1)
-    offset = turned(angle, *own)
+    angle, rate, line, linkage = 0.5, 2.0, 0.7, (0.25, -0.1)
+    offset = turned(angle, *linkage)
     velocity = 0.4 * turned(angle + line, 1.0, 0.0) - rate * across(offset)
     body = placed("plate", 0.8, 0.03, np.array([0.3, 0.1]) - offset, angle, velocity, rate)
-    return Mechanism((body,), (Slot("slot", "plate", None, own, line, (0.3, 0.1)),), (0.0, -9.81))
+    return Mechanism((body,), (Slot("slot", "plate", None, linkage, line, (0.3, 0.1)),), (0.0, -9.81))
 
 
 TRAMMEL, BEAD = (
@@ -155,7 +155,7 @@ OF_PYMUNK = (
     # Truncation h^6 with h = 1/2000 s and rates of 10/s is 1e-12 and below; rounding of 8000 steps a second the same. A
     # force is a difference of velocities over a step of 1e-4 s: rounding grows by 1e4.
     *on(pymunk.EXTENDED, (FREE, DRIVEN, MOVING), pose=1e-11, twist=1e-9, reaction=1e-8),
-    # The first samples have what is left of the first steps, which is no series in the step.
+    # The first samples have the error of the first steps, which is no series in the step.
     *on(pymunk.EXTENDED, ROLLING, 3, pose=1e-11, reaction=1e-8, since=2),
     *on(methods.ROLL_PIVOT, ROLLING[:2], order=(2,), room=0.2),
     # 3e-11 here; 7e-10 if the contact is foreseen as on a ground that rests.
@@ -210,7 +210,7 @@ OF_MUJOCO = (
     Row(mujoco.EXTENDED, blade_on_a_board(), pose=1e-9),
     *on(mujoco.EXTENDED, (SLIDER,), 25, pose=1e-10, reaction=1e-8),
     Row(TUNED_FREE, SLIDER, pose=1e-4),
-    # The drive of the rod gives way by the least compliance; in the tree the slot is no constraint.
+    # The drive of the rod has the least compliance; in the tree the slot is no constraint.
     Row(mujoco.TUNED, BEAD, pose=1e-8, twist=1e-7, reaction=1e-7, span=0.2),
     Row(FREE_HALVES, BEAD, pose=1e-9, reaction=1e-7, span=0.2),
     Row(TUNED_FREE, BEAD, pose=1e-6, order=(2,), room=0.3, span=0.2),  # a gap of the weld and of the slot
@@ -219,7 +219,7 @@ OF_MUJOCO = (
     Row(HALVES, plate(), pose=1e-8, reaction=1e-2, span=0.2),
     *on(mujoco.EXTENDED, (TRAMMEL, plate()), pose=1e-8, reaction=1e-2, span=0.2),
     *on(SLOTS[0], (SlottedLever(),), order=(2,), room=0.3),  # the spring is tied to the step, as that of the weld
-    # Flat at about 0.7 s: the rows lose rank there, and what stands for the missing ones is rounding.
+    # Flat at about 0.7 s: the rows lose rank there, and rounding replaces the missing ones.
     Row(mujoco.EXTENDED, NFourBar(), pose=1e-6, span=1.5),
     # Ten milliseconds: first order errs by about a dt^2 / 2 per step, and the shipped loops by their softness.
     *on(mujoco.DEFAULT, CHAINS, pose=5e-3, span=0.01),
@@ -235,33 +235,33 @@ def exact(subject: Scene | Mechanism, samples: int) -> Trajectory:
 
 
 def errors(row: Row, every: int) -> list[float]:
-    """Of poses, twists and reactions, at so many steps a sample."""
+    """Return the errors of poses, twists and reactions with `every` steps a sample."""
     mechanism = row.subject if isinstance(row.subject, Mechanism) else row.subject.mechanism()
     end = row.span if isinstance(row.subject, Mechanism) else min(row.span, row.subject.duration)
     samples = max(1, math.floor(end / SPACING + 1e-9))
     run, right = row.engine.build(mechanism, SPACING / every)(samples, every), exact(row.subject, samples)
     off = [np.abs(getattr(run, name) - getattr(right, name)) for name in ("pose", "twist", "reaction")]
-    known = np.abs(right.reaction[:, ~np.isnan(right.reaction).any(axis=0)])
-    off[2] = off[2][row.since :] / max(known.max(initial=0.0), 1.0)
-    return [float(np.nanmax(each, initial=0.0)) for each in off]
+    reaction = np.abs(right.reaction[:, ~np.isnan(right.reaction).any(axis=0)])
+    off[2] = off[2][row.since :] / max(reaction.max(initial=0.0), 1.0)
+    return [float(np.nanmax(difference, initial=0.0)) for difference in off]
 
 
 @pytest.mark.parametrize("row", [*OF_PYMUNK, *OF_MUJOCO], ids=str)
 def test_a_construction_reaches_what_the_table_says_and_no_more(row: Row) -> None:
-    found = errors(row, row.every)
-    for off, allowed in zip(found, (row.pose, row.twist, row.reaction), strict=True):
+    coarse_errors = errors(row, row.every)
+    for off, allowed in zip(coarse_errors, (row.pose, row.twist, row.reaction), strict=True):
         assert off < allowed
-    assert found[0] > row.floor
+    assert coarse_errors[0] > row.floor
     if not row.order:
         return
     finer = errors(row, 4 * row.every)
-    for coarse, fine, order in zip(found, finer, row.order, strict=False):
+    for coarse, fine, order in zip(coarse_errors, finer, row.order, strict=False):
         if order is not None:
             assert np.log2(coarse / fine) / 2 == pytest.approx(order, abs=row.room)
     assert finer[0] > row.floor
 
 
-# ------------------------------------------------------------------------------------- what a construction can not do
+# ------------------------------------------------------------------------------------- limits of constructions
 
 
 def disc_on_a_plank() -> Mechanism:

@@ -1,4 +1,4 @@
-"""Scenes and engines that nobody registered: by a module, a file or other numbers, and what may be wrong with them."""
+"""Scenes and engines without registration: of a module, of a file, with other parameters, and invalid ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from reports.model.ending import FINE, REFUSED
 from tests.reports.test_command_line import call, one_line
 from tests.toys import Toy
 
-# Files as a user writes them: a scene and an engine in a few lines, made of ours.
+# Files as a user writes them: a scene and an engine that inherit from classes of this project.
 FALLING = """
 from dataclasses import dataclass
 from typing import ClassVar
@@ -46,12 +46,12 @@ ENGINES = [Mine("euler", "projection"), Mine("rk4", "projection")]
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """An empty current folder; modules imported from it, and its place on the path, are forgotten afterwards."""
+    """An empty current folder; afterwards modules imported from it, and its entry in the path, are removed."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
-    known = set(sys.modules)
+    loaded = set(sys.modules)
     yield tmp_path
-    for name in set(sys.modules) - known:
+    for name in set(sys.modules) - loaded:
         if str(getattr(sys.modules[name], "__file__", None) or "").startswith(str(tmp_path)):
             del sys.modules[name]
 
@@ -111,29 +111,32 @@ def test_a_name_that_can_not_be_printed_in_a_table_is_no_engines_name(word):
 def test_what_is_no_engine_is_one_sentence_with_its_place(here, text, reference, telling):
     written(here, "broken.py", text)
     written(here, "json.py", FALLING)
-    with pytest.raises(ValueError, match=r"\w") as told:
+    with pytest.raises(ValueError, match=r"\w") as refused:
         registry.load(reference)
-    assert telling in str(told.value)
-    assert "\n" not in str(told.value)
+    assert telling in str(refused.value)
+    assert "\n" not in str(refused.value)
 
 
 def test_a_file_gives_all_scenes_of_its_top_level_once(here):
-    # A class stands for its defaults, unless one of it is there already; what is imported stands for nothing.
+    # A class without an instance in the file is a scene with its default values; imported names are no scenes.
     path = written(
         here, "several.py", FALLING + "\nclass Other(Falling):\n    name = 'other'\n\nSHORT = Other(length=0.5)"
     )
-    assert [(each.name, each.length) for each in load(str(path), catalogue.SCENE)] == [("falling", 1.0), ("other", 0.5)]
+    assert [(entry.name, entry.length) for entry in load(str(path), catalogue.SCENE)] == [
+        ("falling", 1.0),
+        ("other", 0.5),
+    ]
 
 
 def test_numbers_are_set_by_name_and_called_in_the_order_of_the_fields():
-    one = with_settings(scene("free_four_bar"), {"rate": "3", "crank": "0.45", "gravity": "(0, -1.5)"})
+    changed = with_settings(scene("free_four_bar"), {"rate": "3", "crank": "0.45", "gravity": "(0, -1.5)"})
     other = with_settings(scene("free_four_bar"), {"gravity": "[0, -1.5]", "crank": "4.5e-1", "rate": "3.0"})
-    assert one == other == FreeFourBar(crank=0.45, rate=3.0, gravity=(0.0, -1.5))
-    assert one.name == other.name == "free_four_bar crank=0.45 rate=3 gravity=(0,-1.5)"
+    assert changed == other == FreeFourBar(crank=0.45, rate=3.0, gravity=(0.0, -1.5))
+    assert changed.name == other.name == "free_four_bar crank=0.45 rate=3 gravity=(0,-1.5)"
     assert FreeFourBar.name == scene("free_four_bar").name == "free_four_bar"
     assert with_settings(scene("car_and_trailer"), {"redundant": "True"}).name == "car_and_trailer redundant=True"
-    own = scene("free_four_bar")  # set to what it is, it stays as it is
-    assert with_settings(own, {"crank": "0.4"}) is own
+    unchanged = scene("free_four_bar")  # a value that it has already
+    assert with_settings(unchanged, {"crank": "0.4"}) is unchanged
 
 
 @pytest.mark.parametrize(
@@ -148,9 +151,9 @@ def test_numbers_are_set_by_name_and_called_in_the_order_of_the_fields():
     ],
 )
 def test_a_number_that_can_not_be_is_a_sentence(name, text, telling):
-    with pytest.raises(ValueError, match=r"\w") as told:
+    with pytest.raises(ValueError, match=r"\w") as refused:
         with_settings(scene("free_four_bar"), {name: text})
-    assert telling in str(told.value)
+    assert telling in str(refused.value)
 
 
 RUN = ("--engine", "lagrange", "--variant", "rk4 projection", "--every", "1")
@@ -159,7 +162,7 @@ PAGE_OF_IT = "pendulum_1_length_0.5_rate_2"
 
 @pytest.fixture
 def no_pages(monkeypatch):
-    """No page of ours, since rendering them is not the subject."""
+    """No pages, since this test is not about rendering."""
     monkeypatch.setattr(catalogue, "PAGES", ())
 
 
@@ -187,9 +190,9 @@ def test_a_scene_and_an_engine_of_a_file_are_run_and_reported_until_the_file_is_
     assert call("run", "below/mine_3.py", "--engine", "below/mine_3.py:ENGINES", "--every", "1") == FINE
     assert "2 of 2 cells run" in capfd.readouterr().out
     assert call("show", "falling", "--engine", "mine", "--variant", "rk4 projection") == FINE
-    told = capfd.readouterr().out
-    assert "mine rk4" in told
-    assert "mine euler" not in told
+    output = capfd.readouterr().out
+    assert "mine rk4" in output
+    assert "mine euler" not in output
     assert call("report") == FINE
     assert capfd.readouterr().err == ""
     assert "| mine rk4 projection |" in (here / "crosscheck-results" / "falling.md").read_text(encoding="utf-8")
@@ -235,18 +238,18 @@ class Registered:
     ],
 )
 def test_an_entry_point_that_can_not_be_used_is_one_line_and_the_others_stay(here, monkeypatch, value, telling):
-    more = (
+    extra = (
         "\nfrom dataclasses import replace\nfrom engines import pymunk\nFALLING = Falling()"
         "\nOURS = replace(pymunk.DEFAULT, iterations=11)\nclass Other(Mine): ..."
         "\nTWICE = [ENGINES[0], Other('rk4', 'projection')]"
     )
-    written(here, "theirs_4.py", FALLING + more)
+    written(here, "theirs_4.py", FALLING + extra)
     monkeypatch.syspath_prepend(here)
     points = [Registered("theirs", "good", "theirs_4:ENGINES"), Registered("theirs", "other", value)]
     monkeypatch.setattr(loading.metadata, "entry_points", lambda group: points)
-    found = loading.registered("crosscheck.engines", registry.ENGINE, method_name)
-    assert methods(found.values) == [*methods(registry.VARIANTS), "mine euler projection", "mine rk4 projection"]
-    (line,) = found.troubles
+    entries = loading.registered("crosscheck.engines", registry.ENGINE, method_name)
+    assert methods(entries.values) == [*methods(registry.VARIANTS), "mine euler projection", "mine rk4 projection"]
+    (line,) = entries.troubles
     assert line.startswith("crosscheck.engines: 'other' of the distribution theirs")
     assert telling in line
 

@@ -1,7 +1,7 @@
 """Every engine against the judge: each element, joint and configuration moves with the promised order or is refused.
 
 A joint or a force element that an adapter does not know is refused by name, never left out of the model.
-What is not installed is skipped with the sentence that says which extra installs it. A model of MJX takes tens of
+Tests of an engine that is not installed are skipped with the name of its extra. A model of MJX takes tens of
 seconds to compile, so its tests are slow ones, in tests/engines/test_other_engines.py.
 """
 
@@ -62,8 +62,8 @@ def meshed(ratio: float, first: str = "a", second: str = "b") -> Mechanism:
     return Mechanism(WHEELS, (*AXLES, gear), GRAVITY, (Torque("motor", None, "a", 1.7),))
 
 
-# What a second configuration shows: a drive or a slot named from the other body than the joint beside it, an angle
-# beyond a turn, two forces on one body, a speed that an engine's own limits stop or put to sleep.
+# Further configurations: a drive or a slot whose bodies have the other order than the joint beside it, an angle beyond
+# a turn, two forces on one body, a speed at which limits of an engine or its sleep could act.
 CONFIGURATIONS = {
     "a drive against its pin": Mechanism(TWO, (*HUNG, Drive("motor", "second", "first", 2.0, 0.0)), GRAVITY),
     "a held angle against its slot": Mechanism(
@@ -95,7 +95,7 @@ CONFIGURATIONS = {
     # Free, driven, with a slider, and chains.
     **{name: scene(name).mechanism() for name in ("free_four_bar", "driven_slider_crank", "pendulum_2", "pendulum_10")},
     "weld that closes a loop": replace(
-        ALONE["weld in a loop"], joints=tuple(each for each in ALONE["weld in a loop"].joints if each.name != "weld")
+        ALONE["weld in a loop"], joints=tuple(joint for joint in ALONE["weld in a loop"].joints if joint.name != "weld")
     ),
 }
 MECHANISMS = {**ALONE, "all": ALL, "all damped": DAMPED, **CONFIGURATIONS}
@@ -128,8 +128,8 @@ SMALL = {
 
 
 def span(name: str) -> float:
-    """Of a scene a tenth: an error grows no faster than linearly there. Others move for 0.3 s."""
-    return 0.1 * scene(name).duration if name in {each.name for each in SCENES} else SAMPLES * SPACING
+    """Return the duration [s]: a tenth of a scene, in which an error grows at most linearly, or 0.3 s."""
+    return 0.1 * scene(name).duration if name in {scene_.name for scene_ in SCENES} else SAMPLES * SPACING
 
 
 @cache
@@ -163,22 +163,22 @@ def label(value: Engine | str) -> str:
 @pytest.mark.parametrize(("engine", "name"), CELLS, ids=label)
 def test_an_engine_moves_with_the_order_it_promises_or_refuses_by_name(engine: Engine, name: str) -> None:
     installed(engine)
-    own = MECHANISMS[name]
+    linkage = MECHANISMS[name]
     if name not in BUILDS.get(engine.name, MECHANISMS):
-        named = [repr(part.name) for part in (*own.joints, *own.bodies, *own.forces)]
+        named = [repr(part.name) for part in (*linkage.joints, *linkage.bodies, *linkage.forces)]
         with pytest.raises(Unsupported) as refused:
-            engine.build(own, 1e-3)
-        assert any(word in str(refused.value) for word in named), str(refused.value)
+            engine.build(linkage, 1e-3)
+        assert any(element_name in str(refused.value) for element_name in named), str(refused.value)
         return
-    # Steps at which the first order is far above what the second leaves, and the fourth far above rounding.
-    coarse, fine = (missed(engine, own, name, every) for every in (40, 80))
-    way = np.abs(exact(name) - exact(name)[0]).max() / own.length_scale
-    promise = engine.order(own)
-    soft = [engine.regularisation(own, span(name) / SAMPLES / every) for every in (40, 80)]
+    # At these steps an error of first order is far above one of second order, and one of fourth far above rounding.
+    coarse, fine = (missed(engine, linkage, name, every) for every in (40, 80))
+    way = np.abs(exact(name) - exact(name)[0]).max() / linkage.length_scale
+    promise = engine.order(linkage)
+    soft = [engine.regularisation(linkage, span(name) / SAMPLES / every) for every in (40, 80)]
     if not isinstance(promise, ConvergenceOrder) or (
         soft[0] is not None and soft[0] == soft[1] and soft[0].compliance > 1e-6
     ):
-        assert fine < max(0.05, 0.1 * way)  # a joint that gives way whatever the step: its spring's error stays
+        assert fine < max(0.05, 0.1 * way)  # a compliance that does not depend on the step: its error is a plateau
         return
     order = promise.of("angle")
     assert fine < max(SMALL[engine.name] * max(1.0, way), 1.3 * coarse / 2 ** min(order, 4)) or order == EXACT
@@ -189,10 +189,10 @@ def test_an_engine_moves_with_the_order_it_promises_or_refuses_by_name(engine: E
 
 
 def in_units(engine: Engine, name: str, length: float = 1.0, mass: float = 1.0) -> list[np.ndarray]:
-    """Poses, twists and reactions of the scene in other units, told in metres and kilograms."""
-    own = in_other_units(scene(name), (length, 1.0, mass)).mechanism()
-    run = engine.build(own, 1e-3)(5, 10)
-    unit, arm = np.array([length, length, 1.0]), np.where(own.is_angular, length**2, length)
+    """Return poses, twists and reactions of the scene in other units, converted to metres and kilograms."""
+    linkage = in_other_units(scene(name), (length, 1.0, mass)).mechanism()
+    run = engine.build(linkage, 1e-3)(5, 10)
+    unit, arm = np.array([length, length, 1.0]), np.where(linkage.is_angular, length**2, length)
     return [run.pose / unit, run.twist / unit, run.reaction / (mass * arm)]
 
 
@@ -204,11 +204,13 @@ UNITS = [(2.0**-10, 1.0), (1.0, 1e6)]
 @pytest.mark.parametrize("name", ["free_four_bar", "driven_slider_crank", "car_and_trailer"])
 @pytest.mark.parametrize("engine", OWN, ids=label)
 def test_units_of_length_and_mass_change_no_method(engine: Engine, name: str) -> None:
-    own = in_units(engine, name)
+    linkage = in_units(engine, name)
     for length, mass in UNITS:
         # Other numbers round, a stiff spring amplifies that, and a reaction is a difference of velocities over 1e-4 s.
-        for found, right, allowed in zip(in_units(engine, name, length, mass), own, (1e-9, 1e-9, 1e-6), strict=True):
-            assert np.abs(found - right).max() < allowed * max(1.0, np.abs(right).max())
+        for changed, right, allowed in zip(
+            in_units(engine, name, length, mass), linkage, (1e-9, 1e-9, 1e-6), strict=True
+        ):
+            assert np.abs(changed - right).max() < allowed * max(1.0, np.abs(right).max())
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What an engine promises, and who holds a joint, follows from its settings and the mechanism: no scene is asked."""
+"""Declared orders and enforcement follow from the settings of an engine and the mechanism, without a scene."""
 
 from __future__ import annotations
 
@@ -92,7 +92,12 @@ def test_every_method_promises_its_order_and_says_who_holds_each_joint(golden):
 def test_a_motion_is_known_by_its_joints_loads_and_start():
     motions = [FREE, MECHANISMS["moving"], DRIVEN, SPINNING]
     assert [starts_at_rest(motion) for motion in motions] == [True, False, False, False]
-    assert [is_prescribed(each) for each in (FREE, DRIVEN, SKATE, MECHANISMS["gears"])] == [False, True, False, True]
+    assert [is_prescribed(mechanism_) for mechanism_ in (FREE, DRIVEN, SKATE, MECHANISMS["gears"])] == [
+        False,
+        True,
+        False,
+        True,
+    ]
     # Two blades leave a body one velocity, about the point where they meet across, and a drive none.
     # Its poses are free.
     blades = (Skate("right", None, "body", (1.0, 0.0), 0.0), Skate("up", None, "body", (0.0, 1.0), math.pi / 2))
@@ -102,7 +107,11 @@ def test_a_motion_is_known_by_its_joints_loads_and_start():
     assert not is_prescribed(driven)
     lagrange = Lagrange("rk4", "projection")
     assert lagrange.order(driven) == lagrange.order(SKATE) != lagrange.order(DRIVEN)
-    assert [turns_steadily(each) for each in (SPINNING, MECHANISMS["hanging"], SKATE)] == [True, False, False]
+    assert [turns_steadily(mechanism_) for mechanism_ in (SPINNING, MECHANISMS["hanging"], SKATE)] == [
+        True,
+        False,
+        False,
+    ]
     assert not turns_steadily(replace(SPINNING, gravity=(0.0, -9.81)))
     assert not turns_steadily(replace(SPINNING, forces=(Torque("brake", None, "disc", -1.0),)))
     arm = Body("arm", 1.0, 0.5, (1.0, 0.0, 0.0), (0.0, 2.0, 0.0))

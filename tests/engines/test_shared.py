@@ -62,7 +62,7 @@ def as_complex(vectors: np.ndarray) -> np.ndarray:
 
 
 def far_and_back(rolling: Rolling) -> np.ndarray:
-    """Rotations [rad] in both directions, far beyond what a table lays at first, and in leaps."""
+    """Return rotations [rad] in both directions, with jumps, far beyond the first cells of a table."""
     theta = rolling.theta + np.concatenate([np.linspace(-9.0, 9.0, 203), [7.3, -2.0, 4.0]])
     low, high = rolling.limits
     return theta[(low < theta) & (theta < high)]
@@ -71,21 +71,21 @@ def far_and_back(rolling: Rolling) -> np.ndarray:
 @every_pair
 def test_places_contacts_and_arms_are_the_references_to_rounding(rolling: Rolling) -> None:
     theta = far_and_back(rolling)
-    place, first, second = (
+    index, first, second = (
         np.array(values) for values in zip(*map(rolled(rolling).place, theta.tolist()), strict=True)
     )
     rate = np.ones_like(theta)
     # Lengths of about 1 m and a few roundings each; of pairs in a hole the contact runs round four times as fast as
     # the body turns, and the reference finds it by a search to 1e-14.
-    assert np.abs(place - as_complex(rolling.pose(theta))).max() < 2e-14
+    assert np.abs(index - as_complex(rolling.pose(theta))).max() < 2e-14
     assert np.abs(first - as_complex(rolling.velocity(theta, rate))).max() < 1e-13
     assert np.abs(second - as_complex(rolling.acceleration(theta, rate, 0 * rate))).max() < 5e-13
     fast, exact = rolled(rolling), rolling.contact(theta)
     for angle, point, arm in zip(theta.tolist(), as_complex(exact.point), as_complex(exact.arm), strict=True):
-        ground, own = fast.contact(angle)
+        ground, linkage = fast.contact(angle)
         assert abs(ground - point) < 1e-13  # m: rounding of an arc of a few metres
         assert abs(fast.arm(angle) - arm) < 1e-13
-        assert abs(own + arm * cmath.rect(1.0, -angle)) < 1e-13
+        assert abs(linkage + arm * cmath.rect(1.0, -angle)) < 1e-13
 
 
 def test_a_pair_that_fits_too_closely_for_a_table_asks_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -130,10 +130,10 @@ def test_twists_and_accelerations_are_the_derivatives_of_the_poses(mechanism):
     pose, twist, change = tree.motion(way + rate * t + gain * t**2 / 2, rate + gain * t, np.tile(gain, (3, 1)))
     for values, derivative in ((pose, twist), (twist, change)):
         differences = (values[2] - values[0]) / (2 * h)
-        # What the difference misses is h^2 times a third derivative: cubes of rates, which are sums over many links.
+        # The error of the difference is h^2 times a third derivative: cubes of rates, which are sums over many links.
         np.testing.assert_allclose(differences, derivative[1], rtol=0, atol=1e-4 * np.abs(derivative).max())
-    for found, expected in zip(tree.instant(way, rate), (pose[1], twist[1]), strict=True):
-        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
+    for result, expected in zip(tree.instant(way, rate), (pose[1], twist[1]), strict=True):
+        np.testing.assert_allclose(result, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
 
 
 def test_what_is_pushed_is_what_the_force_elements_do_there_and_nothing_where_a_coordinate_is_none():
