@@ -67,7 +67,10 @@ def instants(
     with model.callback_installed():
         for sample, data in enumerate((start, run.data) if has_end else (start,)):
             mujoco.mj_forward(model.compiled, data)
-            state = DeclaredState.of(mechanism, model, data, regularisation)
+            try:
+                state = DeclaredState.of(mechanism, model, data, regularisation)
+            except DependentRows as reason:
+                return NotDeclared(str(reason))
             law = state.law(velocity_term=check != NO_VELOCITY_TERMS)
             computed = state.motion(data.qacc if accelerations is None else accelerations(model, data))
             at, scales = (state.pose, state.twist), (state.free, state.twist / mechanism.time_scale)
@@ -75,6 +78,10 @@ def instants(
             if accelerations is None:
                 out.append(Instant("reaction", at, motion.reaction[sample], law.force))
     return tuple(out)
+
+
+class DependentRows(RuntimeError):
+    """Rows of one joint depend on one another in the coordinates of the tree, so their forces are not determined."""
 
 
 def why_no_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> str:
@@ -112,7 +119,10 @@ class DeclaredState:
     def of(
         cls, mechanism: Mechanism, model: MuJoCoModel, data: Any, regularisation: Regularisation | None
     ) -> DeclaredState:
-        """The state of `data` after mj_forward. Raises RuntimeError where MuJoCo's rows are not the mechanism's."""
+        """The state of `data` after mj_forward.
+
+        Raises DependentRows, and RuntimeError where MuJoCo's rows are not the mechanism's.
+        """
         pose, twist, _ = _motion(model, data, data.qacc)
         rows = _declared_rows(mechanism, model, data, regularisation, pose, twist)
         return cls(mechanism, model, data, pose, twist, mechanism.unconstrained(pose, twist), *rows)
@@ -182,6 +192,10 @@ def _declared_rows(
             compliance[part, part] = 1 / np.sqrt(compiled.dof_armature[columns[0]] * model.unit)
             continue
         numbers = _rows_in_span(solver_rows, unused, in_tree[part], model.address)[: joint.size]
+        if len(numbers) < joint.size and np.linalg.matrix_rank(in_tree[part]) < joint.size:
+            raise DependentRows(
+                f"the rows of joint {joint.name!r} depend on one another in the coordinates of the tree"
+            )
         if len(numbers) < joint.size:
             raise RuntimeError(f"MuJoCo has {len(numbers)} constraints for {joint.name!r}, not {joint.size}")
         unused, by_solver[part] = [number for number in unused if number not in numbers], True
@@ -223,7 +237,7 @@ class _JointRows:
 
     @property
     def compliance(self) -> Array:
-        """The matrix (size, size) of which C C^T is the compliance; a clock adds the inverse of its inertia."""
+        """A matrix C (size, size) with C C^T the compliance; a clock adds the inverse of its inertia."""
         clock = np.sum(self.rows[:, self.beside] ** 2 / self.model.compiled.dof_M0[self.beside], axis=1)
         roots = np.sqrt((self.data.efc_R[self.numbers] + clock) / self.model.unit)
         return np.asarray(np.linalg.solve(self.factors, np.diag(roots)), dtype=np.float64)

@@ -53,7 +53,7 @@ class MuJoCoModel:
 
     `address`: the index of each tree coordinate in qpos and qvel. `rows`: scalar constraints that forces hold, drives
     not counted; `has_user_rows`: some of them are written by a callback. `start_rates`: the rates at t = 0 of
-    coordinates of no body of the mechanism, by index in qvel. `unit` [kg]: masses, forces and torques of the compiled
+    coordinates of auxiliary bodies, by index in qvel. `unit` [kg]: masses, forces and torques of the compiled
     model are in this unit. `split_bodies`: auxiliary bodies, and the body from which each was split. `softening`: the
     factor on MuJoCo's compliances.
     """

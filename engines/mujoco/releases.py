@@ -1,4 +1,4 @@
-"""Releases of MuJoCo: known faults, of which every motion of these releases warns, and differences in the interface."""
+"""Releases of MuJoCo: their known faults, for warnings of every motion, and differences in their interfaces."""
 
 from __future__ import annotations
 

@@ -32,9 +32,9 @@ MAX_GAP = 1e-3
 MAX_RESIDUAL = 1e-5
 # The number of instants, beside the samples, at which the error is estimated: all, where there are fewer double steps.
 ESTIMATE_INSTANTS = 1000
-# Relative to the largest acceleration so far, or to a usual one: smaller accelerations are those of a motion at rest.
+# Relative to the largest acceleration so far: smaller accelerations are rounding, in a motion that has come to rest.
 AT_REST = 1e-9
-# Relative to the mechanism's length: smaller displacements change no independent row by 1/1000 of its smallest part.
+# Relative to the mechanism's length: smaller displacements change the reactions by less than is reported.
 MIN_DISPLACEMENT = FORCES * RANK_TOLERANCE
 # Factor on the displacement that closes the joints: regularisation also changes the motion that the joints leave free.
 RELEASED_MOTION = 1.5
@@ -159,7 +159,9 @@ class MuJoCoRun(OneShot):
         return difference, stepping
 
     def _with_estimate(self, run: Trajectory, counts: Counts, watched: Counts) -> Trajectory:
-        """The run, which has a pose after each of `counts` steps, with its estimate and the time from which it is bad.
+        """The run with its error estimate, and the time from which that is above CLAIM.
+
+        `counts` (times,): the steps before each pose; `watched`: the indices in it at which the order is checked.
 
         If the difference to the run with double steps exceeds CLAIM, two runs cannot confirm the order, and a third run
         with half steps is made. See `engines.mujoco.step_doubling`.
@@ -261,7 +263,7 @@ class MuJoCoRun(OneShot):
         return acceleration, residual
 
     def _own_warnings(self, pose: Array, t: Array, residual: float) -> list[RunWarning]:
-        """Warnings of which MuJoCo reports nothing: an open joint, and a solver that has not converged."""
+        """Warnings that MuJoCo does not give: of an open joint, and of a solver that has not converged."""
         mechanism, warnings = self.model.mechanism, []
         gap = np.nan_to_num(np.abs(mechanism.gap(pose, t))) if len(t) else np.zeros((0, 0))
         if gap.size:

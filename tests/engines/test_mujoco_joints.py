@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from engines import NotDeclared
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from engines.mujoco.methods import ROLLS, SKATES
 from reference.forces import Spring, Torque
@@ -20,6 +21,7 @@ from reference.joints import Drive, Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
+from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import (
     RollingDisc,
     RollingDownhill,
@@ -180,3 +182,10 @@ def test_extended_begins_with_accelerations_of_light_bodies_that_are_solved() ->
         mujoco.mj_forward(run.model.compiled, run.data)
     assert np.abs(first - run.data.qacc).max() > 1e-7 * np.abs(first).max()
     assert np.abs(solved - run.data.qacc).max() < 1e-12 * np.abs(first).max()
+
+
+def test_dependent_rows_of_a_joint_declare_no_law_of_an_instant() -> None:
+    """Both wheels turn on fixed pins, so that one of the two rows of their contact moves nothing."""
+    mechanism = EllipticGears().mechanism()
+    answer = EXTENDED.instants(mechanism, 1e-3 * mechanism.time_scale, 2)
+    assert answer == NotDeclared("the rows of joint 'mesh' depend on one another in the coordinates of the tree")

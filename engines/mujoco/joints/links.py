@@ -43,7 +43,7 @@ def add_pins(builder: ModelBuilder, pins: Sequence[Pin | Weld]) -> None:
         names = [builder.spec_name(name) for name in (pin.first, pin.second)]
         name, point = (pin.second, pin.second_point) if pin.second is not None else (pin.first, pin.first_point)
         if pin.second is None:
-            # The anchor is given in the frame of name1; on a body it stays as exact as the body's frame.
+            # The anchor is in the frame of name1. In the frame of a body it has the rounding of this frame alone.
             names.reverse()
         connect = builder.add_equality(mujoco.mjtEq.mjEQ_CONNECT, names[1], names[0], rows=2)
         connect.data[:3] = [*world_offset(builder.mechanism, name, point), 0.0]
@@ -57,7 +57,7 @@ def add_welds(builder: ModelBuilder, welds: Sequence[Weld]) -> None:
 
 
 def add_gears(builder: ModelBuilder, gears: Sequence[Gear]) -> None:
-    """Hold the second body's angle less `ratio` times the first's at its value of the start."""
+    """Hold the second body's angle less `ratio` times the first's at the value that it has at the start."""
     for gear in gears:
         factors = dict(builder.tree.turning(None, gear.second))
         for column, sign in builder.tree.turning(None, gear.first).items():

@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 Cone = Literal["pyramidal", "elliptic"]
 # The distance, relative to the mechanism's length, up to which shapes collide: above the rounding of a closed contact.
 TOUCH = 1e-12
-# The share of the largest reaction up to which a contact counts as lost: above the rounding of a reaction of zero.
+# Relative to the largest reaction: a contact with a smaller one counts as lost. The limit is far above rounding.
 NO_FORCE = 1e-9
 # The turn of the curves at the contact in one step [rad] beyond which a method of order 4 does not reach its order.
 MAX_CONTACT_TURN = 0.1
