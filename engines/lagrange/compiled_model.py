@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -178,9 +179,9 @@ class CompiledModel:
         return tuple(warnings)
 
     def empty_samples(self, samples: int) -> tuple[Array, Array]:
-        """Poses and twists (samples + 1, coordinates): the start, and NaN after it. The ground's coordinates are 0."""
-        poses, twists = np.full((2, samples + 1, len(self.storage.pose)), np.nan)
-        poses[0], twists[0] = (np.append(start, np.zeros(3)) for start in (self.mechanism.pose, self.mechanism.twist))
+        """Poses and twists (samples + 1, bodies, 3): the start, and NaN after it."""
+        poses, twists = np.full((2, samples + 1, *self.mechanism.pose.shape), np.nan)
+        poses[0], twists[0] = self.mechanism.pose, self.mechanism.twist
         return poses, twists
 
     def fixed_steps(
@@ -188,50 +189,36 @@ class CompiledModel:
     ) -> int:
         """Fill samples after `begin` by steps of dt [s], `every` for a sample, with up to `iterations` of projection.
 
-        Returns the last completed sample; at the next one only numpy can evaluate a contact, or the motion is lost.
+        poses, twists: contiguous arrays (samples, bodies, 3). Returns the last completed sample; at the next one only
+        numpy can evaluate a contact, or the motion is lost.
         """
-
-        def call(system: System, sample: int) -> int:
-            return self.functions.fixed_steps(
-                system, self.storage, tableau, iterations, dt, every, sample, poses, twists
-            )
-
-        return self._call_repeatedly(call, begin)
+        return self._call(self.functions.fixed_steps, begin, poses, twists, tableau, iterations, dt, every)
 
     def adaptive_steps(self, tolerance: float, spacing: float, begin: int, poses: Array, twists: Array) -> int:
         """Fill samples `spacing` [s] apart by adaptive steps; otherwise as `fixed_steps`."""
         step_tolerance = max(STEP_SHARE * tolerance, LEAST_STEP_TOLERANCE)
         self.system.status["accepted_steps"] = 0
-
-        def call(system: System, sample: int) -> int:
-            return self.functions.adaptive_steps(
-                *(system, self.storage, ADAPTIVE_DOP853, PROJECTION_ITERATIONS, step_tolerance, spacing),
-                *(sample, poses, twists),
-            )
-
-        return self._call_repeatedly(call, begin)
+        settings = ADAPTIVE_DOP853, PROJECTION_ITERATIONS, step_tolerance, spacing
+        return self._call(self.functions.adaptive_steps, begin, poses, twists, *settings)
 
     def reactions(self, dt: float, poses: Array, twists: Array) -> tuple[Array, Array]:
         """Reactions (samples, rows) and accelerations (samples, bodies, 3) of states dt [s] apart; NaN if unknown."""
         reactions = np.full((len(poses), len(self.positions)), np.nan)
-        accelerations = np.full_like(poses, np.nan)
+        accelerations = np.full((len(poses), 3 * len(self.mechanism.bodies)), np.nan)
+        self._call(self.functions.evaluate_samples, 0, poses, twists, dt, reactions, accelerations)
+        return reactions[:, self.positions], accelerations.reshape(poses.shape)
 
-        def call(system: System, sample: int) -> int:
-            return self.functions.evaluate_samples(
-                system, self.storage, dt, sample, poses, twists, reactions, accelerations
-            )
-
-        if len(poses):
-            self._call_repeatedly(call, 0)
-        return reactions[:, self.positions], accelerations[:, :-3].reshape(len(poses), -1, 3)
-
-    def _call_repeatedly(self, call: Callable[[System, int], int], begin: int) -> int:
+    def _call(self, function: Callable[..., int], begin: int, poses: Array, twists: Array, *settings: Any) -> int:
         """Call from the last completed sample, as long as the window of a missing contact can be moved."""
+        if not (poses.flags.c_contiguous and twists.flags.c_contiguous):
+            raise ValueError("poses and twists are written to, so they must be contiguous arrays")
+        states = poses.reshape(len(poses), -1), twists.reshape(len(twists), -1)
         status = self.system.status
         done, moves = begin, 0
         while True:
             status["missing_roll"] = -1
-            begin, done = done, call(self.system._replace(cells=self.windows.cells), done)
+            system = self.system._replace(cells=self.windows.cells)
+            begin, done = done, function(system, self.storage, done, *states, *settings)
             moves = moves + 1 if done == begin else 0
             roll = int(status["missing_roll"])
             if roll < 0 or moves > MOST_MOVES or not self.windows.move(roll, float(status["missing_angle"])):

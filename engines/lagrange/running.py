@@ -79,15 +79,13 @@ class LagrangeRun(OneShot):
 
     def _motion(self, samples: int, every: int) -> tuple[Array, Array]:
         """Poses and twists (samples + 1, bodies, 3); NaN after the last completed sample."""
-        shape = (samples + 1, *self._mechanism.pose.shape)
         if self._model is None:
-            poses, twists = np.full((2, *shape), np.nan)
+            poses, twists = np.full((2, samples + 1, *self._mechanism.pose.shape), np.nan)
             poses[0], twists[0] = self._mechanism.pose, self._mechanism.twist
             self._step_in_numpy(poses, twists, 0, every)
             return poses, twists
-        pose_table, twist_table = self._model.empty_samples(samples)
-        completed = self._step_compiled(self._model, pose_table, twist_table, every)
-        poses, twists = (table[:, :-3].reshape(shape) for table in (pose_table, twist_table))
+        poses, twists = self._model.empty_samples(samples)
+        completed = self._step_compiled(self._model, poses, twists, every)
         if self._model.lacks_contact:
             self._step_in_numpy(poses, twists, completed, every)
         return poses, twists
@@ -134,9 +132,7 @@ class LagrangeRun(OneShot):
         model = self._model
         if model is not None:
             count = len(t) - int(np.argmax(finite[::-1]))
-            pose_table, twist_table = np.zeros((2, count, 3 * len(mechanism.bodies) + 3))
-            pose_table[:, :-3], twist_table[:, :-3] = (states[:count].reshape(count, -1) for states in (poses, twists))
-            reactions[:count], accelerations[:count] = model.reactions(float(t[1]), pose_table, twist_table)
+            reactions[:count], accelerations[:count] = model.reactions(float(t[1]), poses[:count], twists[:count])
             if not model.lacks_contact:
                 if model.has_dependent_rows:
                     reactions[:count] = mechanism.reaction(poses[:count], accelerations[:count], twist=twists[:count])

@@ -113,7 +113,7 @@ def _compiled(
     reactions, _ = machine.reactions(spacing, poses, twists)
     if not np.all(np.isfinite(reactions)) or machine.smallest_pivot < RANK_TOLERANCE:
         return None
-    return _trajectory(mechanism, spacing, poses, twists, reactions)
+    return Trajectory(np.arange(samples + 1, dtype=np.float64) * spacing, poses, twists, reactions)
 
 
 def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel | None:
@@ -122,13 +122,6 @@ def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel
     if machine is not None and soft is not None:
         machine.regularise(soft, giving_way(mechanism, soft))
     return machine
-
-
-def _trajectory(mechanism: Mechanism, spacing: float, poses: Array, twists: Array, reactions: Array) -> Trajectory:
-    """Of a machine's poses and twists (times, coordinates and the ground's three), `spacing` [s] apart."""
-    shape = (len(poses), *mechanism.pose.shape)
-    t = np.arange(len(poses), dtype=np.float64) * spacing
-    return Trajectory(t, poses[:, :-3].reshape(shape), twists[:, :-3].reshape(shape), reactions)
 
 
 def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Regularisation) -> Trajectory | None:
@@ -141,7 +134,7 @@ def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Regularisa
     if machine is None:
         return None
     poses, twists = machine.empty_samples(samples * PARTS)
-    length, unit = spacing / PARTS, np.tile(mechanism.pose_unit, len(mechanism.bodies) + 1)
+    length = spacing / PARTS
     taken, steps = 0, 1
 
     def stepped(part: int, count: int) -> tuple[Array, Array] | None:
@@ -157,13 +150,14 @@ def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Regularisa
                 return None
             fine = stepped(part, 3 * steps)
             if coarse is not None and fine is not None:
-                away = np.abs(np.subtract(fine, coarse)) / unit
+                away = np.abs(np.subtract(fine, coarse)) / mechanism.pose_unit
                 if max(away[0].max(), away[1].max() * mechanism.time_scale) < SAME:
                     break
             coarse, steps = fine, 3 * steps
         steps = max(1, steps // 3)
     reactions, _ = machine.reactions(length, poses, twists)
-    return _trajectory(mechanism, spacing, poses[::PARTS], twists[::PARTS], reactions[::PARTS])
+    t = np.arange(samples + 1, dtype=np.float64) * spacing
+    return Trajectory(t, poses[::PARTS], twists[::PARTS], reactions[::PARTS])
 
 
 def in_numpy(

@@ -10,7 +10,7 @@ import math
 
 from engines.lagrange.compiled import entry, inlined, merged
 from engines.lagrange.compiled.dense import fill_samples
-from engines.lagrange.compiled.steps import accelerate, add_stages, evaluate_stage, project, store_stage
+from engines.lagrange.compiled.steps import accelerate, add_stages, copy_state, evaluate_stage, project, store_stage
 
 # The next step is this share of the step for which the error estimate equals the tolerance.
 STEP_SAFETY = 0.9
@@ -29,8 +29,8 @@ STIFF_PRODUCT, STIFF_STEPS = 6.1, 15
 
 
 @entry
-def adaptive_steps(system, storage, method, iterations, tolerance, spacing, begin, poses, twists):
-    """From the sample `begin` on, samples `spacing` apart into rows of poses and twists; returns the last completed."""
+def adaptive_steps(system, storage, begin, poses, twists, method, iterations, tolerance, spacing):
+    """Fill poses and twists (samples, 3 bodies), `spacing` apart, after the sample `begin`; returns the last one."""
     status, last = system.status, len(poses) - 1
     copy_state(poses[begin], twists[begin], storage.pose, storage.twist)
     t, sample, tries, stiff, step = spacing * begin, begin, 0, 0, -1.0
@@ -76,12 +76,6 @@ def adaptive_steps(system, storage, method, iterations, tolerance, spacing, begi
         t = end
         advance(storage)
     return sample
-
-
-@inlined
-def copy_state(pose, twist, to_pose, to_twist):
-    for k in range(len(pose)):
-        to_pose[k], to_twist[k] = pose[k], twist[k]
 
 
 @merged

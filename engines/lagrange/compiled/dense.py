@@ -15,7 +15,7 @@ def fill_samples(system, storage, method, iterations, t, dt, end, spacing, sampl
     while sample < len(poses) - 1 and end >= spacing * (sample + 1):
         instant = spacing * (sample + 1)
         if instant == end:
-            for k in range(len(pose)):
+            for k in range(poses.shape[1]):
                 poses[sample + 1, k], twists[sample + 1, k] = storage.new_pose[k], storage.new_twist[k]
         else:
             if not has_stages:
@@ -26,11 +26,11 @@ def fill_samples(system, storage, method, iterations, t, dt, end, spacing, sampl
             interpolate(storage.pose, storage.new_pose, storage.velocities, method.dense, dt, part, pose)
             interpolate(storage.twist, storage.new_twist, storage.accelerations, method.dense, dt, part, twist)
             project(system, pose, twist, instant, iterations, storage.pose_unit)
-            for k in range(len(pose)):
+            for k in range(poses.shape[1]):
                 poses[sample + 1, k], twists[sample + 1, k] = pose[k], twist[k]
         if system.status.missing_roll >= 0:
             return sample
-        for k in range(len(pose)):
+        for k in range(poses.shape[1]):
             if not math.isfinite(poses[sample + 1, k]):
                 return sample
         sample += 1

@@ -55,7 +55,7 @@ def project(system, pose, twist, t, iterations, pose_unit):
     rows = len(system.rows)
     if rows == 0:
         return
-    right, change = system.right, system.change
+    right, change, moving = system.right, system.change, len(pose) - 3
     last_pose = iterations if system.constants.holonomic_rows > 0 else 0
     all_holonomic = system.constants.holonomic_rows == rows
     keeps_factor = False
@@ -70,7 +70,7 @@ def project(system, pose, twist, t, iterations, pose_unit):
         factorise_rows(system)
         solve(system, 1 if keeps_factor else 0)
         largest = 0.0
-        for k in range(len(change)):
+        for k in range(moving):
             pose[k] += change[k]
             largest = max(largest, abs(change[k]) / pose_unit[k])
         if not largest > CLOSED:
@@ -85,8 +85,14 @@ def project(system, pose, twist, t, iterations, pose_unit):
     if not keeps_factor or system.status.factor_pivot < WELL_CONDITIONED:
         factorise_rows(system)
     solve(system, 1 if keeps_factor else 0)
-    for k in range(len(change)):
+    for k in range(moving):
         twist[k] += change[k]
+
+
+@inlined
+def copy_state(pose, twist, to_pose, to_twist):
+    for k in range(len(pose)):
+        to_pose[k], to_twist[k] = pose[k], twist[k]
 
 
 @inner
@@ -125,16 +131,15 @@ def add_stages(storage, weights, dt, pose, twist):
 
 
 @entry
-def fixed_steps(system, storage, tableau, iterations, dt, every, begin, poses, twists):
-    """Steps of `dt` from the sample `begin` on, `every` steps for a sample, into rows of poses and twists.
+def fixed_steps(system, storage, begin, poses, twists, tableau, iterations, dt, every):
+    """Steps of `dt` from the sample `begin` on, `every` for a sample, into poses and twists (samples, 3 bodies).
 
     Without stages it is the semi-implicit Euler method. iterations: of Newton's method after a step, 0 for no
     projection. Returns the last completed sample: the last one, that before a pose that is not finite, or that before a
     contact without a cell in its table (`missing_roll`).
     """
     pose, twist = storage.pose, storage.twist
-    for k in range(len(pose)):
-        pose[k], twist[k] = poses[begin, k], twists[begin, k]
+    copy_state(poses[begin], twists[begin], pose, twist)
     for sample in range(begin, len(poses) - 1):
         for step in range(every):
             t = (sample * every + step) * dt
@@ -151,7 +156,7 @@ def fixed_steps(system, storage, tableau, iterations, dt, every, begin, poses, t
                 project(system, pose, twist, t + dt, iterations, storage.pose_unit)
             if system.status.missing_roll >= 0:
                 return sample
-        for k in range(len(pose)):
+        for k in range(poses.shape[1]):
             if not math.isfinite(pose[k]):
                 return sample
             poses[sample + 1, k], twists[sample + 1, k] = pose[k], twist[k]
@@ -159,16 +164,15 @@ def fixed_steps(system, storage, tableau, iterations, dt, every, begin, poses, t
 
 
 @entry
-def evaluate_samples(system, storage, dt, begin, poses, twists, reactions, accelerations):
+def evaluate_samples(system, storage, begin, poses, twists, dt, reactions, accelerations):
     """Set the reactions and accelerations at samples `dt` apart; returns the last one completed, as `fixed_steps`."""
     for sample in range(begin, len(poses)):
-        for k in range(len(storage.pose)):
-            storage.pose[k], storage.twist[k] = poses[sample, k], twists[sample, k]
+        copy_state(poses[sample], twists[sample], storage.pose, storage.twist)
         accelerate(system, storage.pose, storage.twist, sample * dt, storage.acceleration)
         if system.status.missing_roll >= 0:
             return sample
         for row in range(len(system.reaction)):
             reactions[sample, row] = system.reaction[row]
-        for k in range(len(storage.pose)):
+        for k in range(accelerations.shape[1]):
             accelerations[sample, k] = storage.acceleration[k]
     return len(poses) - 1
