@@ -32,7 +32,7 @@ from reference.scenes.four_bar.scenes import OverdrivenFourBar
 from reports.cli.selection import choose_engines
 from reports.model.catalogue import SCENES
 from reports.model.ending import BadInput
-from reports.pages.engines.experiments import reactions_with, started_anew
+from reports.pages.engines.page import reactions_with, started_at
 from reports.search import motions
 from reports.search.mechanisms import mechanism
 from reports.search.parts import EVERY
@@ -308,7 +308,7 @@ def test_forces_of_a_loop_are_those_of_its_declared_compliance_without_the_veloc
     scene = BY_NAME["free_four_bar"]
     truth = scene.motion(np.linspace(0.2, 1.0, 4) * scene.duration)
     for pose, twist in zip(truth.pose, truth.twist, strict=True):
-        now = started_anew(scene.mechanism(), pose, twist)
+        now = started_at(scene.mechanism(), pose, twist)
         soft = present(MJX_TUNED.regularisation(now, 1e-3))
         model = MJX_TUNED.settings.model(now, 1e-3)
         declared = np.zeros(now.row_count)

@@ -14,6 +14,8 @@ from engines import mujoco, pymunk, registry
 from engines.lagrange import Lagrange
 from engines.pymunk import methods as pymunk_methods
 from reference.checks import InvalidMechanism
+from reference.forces import FORCES
+from reference.joints import JOINTS
 from reference.scenes.pendulum.scenes import SpinningRing
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingEllipse, RollingOnCircle, SquareOnCatenaries
@@ -26,8 +28,7 @@ from reports.model.page import Failure, Material
 from reports.model.tasks import Motion, trajectory_of
 from reports.pages import claims, common
 from reports.pages.centrodes import page as centrodes
-from reports.pages.engines.experiments import ASKED, Capabilities
-from reports.pages.engines.page import MATRIX, verdict
+from reports.pages.engines.page import EXAMPLES, MATRIX, Capabilities, verdict
 from reports.pages.four_bar import page as four_bar
 from reports.pages.n_four_bar import page as n_four_bar
 from reports.pages.rolling import page as rolling
@@ -217,20 +218,22 @@ def test_an_experiment_without_its_section_of_text_is_refused(tmp_path):
 # --- capabilities of engines ---
 
 
-def test_every_kind_is_asked_of_an_engine_that_builds_all_but_one():
+def test_the_table_of_engines_has_a_line_for_each_joint_and_force_and_the_judge_builds_all():
+    elements = {type(element) for example in EXAMPLES.values() for element in (*example.joints, *example.forces)}
+    assert elements == {*JOINTS, *FORCES}
     lagrange = next(engine for engine in registry.VARIANTS if engine.name == "lagrange")
     answers = Capabilities(lagrange).run()
-    assert [answers[kind] for kind in ASKED] == ["yes"] * len(ASKED)
+    assert [answers[kind] for kind in EXAMPLES] == ["yes"] * len(EXAMPLES)
 
 
-def test_a_lack_is_the_engines_only_where_its_documentation_is_named():
+def test_an_engine_lacks_an_element_only_if_its_documentation_is_named():
     built = {task.method.name: task.run() for task in MATRIX if not task.method.missing and task.method.build_time < 1}
-    for sentence in {str(answers[kind]) for answers in built.values() for kind in ASKED}:
-        word, documented = verdict(sentence), "https://" in sentence
-        assert (word == "**has none**") == documented
-        assert (word == "not built") == ("our adapter" in sentence and not documented), sentence
-    kinds = ("loop", "disc rolls on a line", "skate")
-    assert [built["pymunk"][kind] for kind in kinds] == ["yes", "by contact", "with code of ours"]
+    for result in {str(answers[line]) for answers in built.values() for line in EXAMPLES}:
+        refused = result not in ("yes", "by contact", "with code of ours")
+        assert (verdict(result) == "**has none**") == ("https://" in result)
+        assert (verdict(result) == "not built") == (refused and "https://" not in result)
+    lines = ("loop", "disc rolls on a line", "skate")
+    assert [built["pymunk"][line] for line in lines] == ["yes", "by contact", "with code of ours"]
 
 
 def test_a_release_without_what_the_adapter_calls_is_too_old(monkeypatch):

@@ -33,7 +33,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_context
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task
-from reports.pages.engines.experiments import ASKED
+from reports.pages.engines.page import EXAMPLES
 from reports.pages.errata import page as referees
 from reports.pages.faults.page import Offsets
 from reports.pages.findings import findings
@@ -267,7 +267,7 @@ def still(task: Task, lost: bool = False) -> Answer:
         case _:
             numbers = [*(quantity.name for quantity in QUANTITIES), "error", "expected", "found", "evaluations", "when"]
             values = dict.fromkeys(numbers, np.asarray(0.5)) | dict.fromkeys(("t", "with", "without"), np.ones(2))
-            values |= dict.fromkeys((*ASKED, "reactions", "width", "version", "stopped"), "yes")
+            values |= dict.fromkeys((*EXAMPLES, "reactions", "width", "version", "stopped"), "yes")
     if lost and isinstance(task, (Motion, referees.Refereed)):
         for name in ("pose", "twist"):
             values[name][len(values[name]) // 2 :] = np.nan

@@ -1,40 +1,229 @@
-"""The page of engines; each table is made from rows or answers, and empty where there are none."""
+"""The page of engines: the elements that each engine builds, error against CPU time, and the velocity term of loops.
+
+The velocity term of loops: reactions at instants of the exact motion, where every gap and slip is zero, are compared
+with two equations. In the tree's coordinates q the rows of a loop are J q'' = -J' q' with the term, and J q'' = 0
+without it. Rows that an engine does not declare as regularised are exact. Both equations need no time step.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from math import inf
-from typing import Any
+from typing import Any, ClassVar
 
-from engines import method_name, registry
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Unsupported, method_name, registry
+from engines.conformance.moving import FORCES as FORCE_EXAMPLES
+from engines.conformance.worlds import MOVING, WORLDS
+from engines.tree import spanning_tree
+from reference.couplings import Coupling, Term
+from reference.forces import CoupledForce
+from reference.joints import Gear, Pin, Rod, Skate, Weld
+from reference.mechanism import Body, Mechanism
+from reference.rolling.roll import Roll
+from reference.scene import Scene
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reports.model.cells import FULL, SLOW_TO_BUILD, Cell, beside_cells, sweep_cells
+from reports.model.ending import describe
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
-from reports.model.tasks import Answer
-from reports.pages.engines.experiments import (
-    ASKED,
-    BORROWED,
-    CHARTED,
-    CODE,
-    COMPILED,
-    CONTACT,
-    FREE,
-    SWEPT,
-    TOO_OLD,
-    YES,
-    Capabilities,
-    VelocityTerm,
-)
+from reports.model.tasks import Answer, Values
+from reports.pages.common import OfMethod
 from reports.plots.theme import svg
 from reports.plots.work_precision import work_precision
 from reports.write.columns import Column, column_of
 from reports.write.provenance import engine_versions
 from reports.write.tables import markdown, number
 
+Array = NDArray[np.float64]
+
+
+class BuildingTask(OfMethod):
+    """A task that costs little more than building the engine's model."""
+
+    @property
+    def cost(self) -> float:
+        return 0.1 + self.method.build_time
+
+
+BUILD_STEP = 1e-2  # s
+WORLD = {world.name: world.mechanism for world in (*WORLDS, *MOVING)}
+_WHEELS = tuple(Body(name, 1.0, 0.1, (x, 0.0, 0.0)) for name, x in (("first", 0.0), ("second", 1.0)))
+_AXLES = tuple(Pin(f"axle of the {body.name}", None, body.name, body.pose[:2], (0.0, 0.0)) for body in _WHEELS)
+_TURNS = (Term(None, "first", 1.0), Term(None, "second", 2.0))  # angle of the first wheel + 2 times that of the second
+_DOWN = (0.0, -10.0)
+# Line of the table -> a mechanism with this element, from the conformance checks or as small as possible. A test
+# demands an example of each class of joints and of force elements.
+EXAMPLES = {
+    "hinge": WORLD["swinging bar"],
+    "loop": WORLD["swinging parallelogram"],
+    "drive": WORLD["driven crank"],
+    "slot": WORLD["sliding block"],
+    "slot in a loop": WORLD["trammel"],
+    "rod": Mechanism(_WHEELS[1:], (Rod("rod", None, "second", (0.0, 0.0), (0.0, 0.0), 1.0),), _DOWN),
+    "weld": Mechanism(_WHEELS, (_AXLES[0], Weld("weld", "first", "second", (0.5, 0.0), (-0.5, 0.0))), _DOWN),
+    "gear": Mechanism(_WHEELS, (*_AXLES, Gear("gear", "first", "second", -2.0))),
+    "coupling": Mechanism(_WHEELS, (*_AXLES, Coupling("coupling", _TURNS))),
+    **{
+        force.name: Mechanism(_WHEELS[:1], _AXLES[:1], _DOWN, (replace(force, second="first"),))
+        for force in FORCE_EXAMPLES
+    },
+    "coupled force": Mechanism(_WHEELS, _AXLES, _DOWN, (CoupledForce("coupled force", _TURNS, force=1.0),)),
+    "skate": WORLD["sleigh"],
+    "disc rolls on a line": WORLD["disc on a slope"],
+    "disc rolls in a ring": WORLD["disc in a hole"],
+}
+
+# Engines with a velocity constraint for blades or rims. All others replace it by contact, or lack it.
+ROLLING_JOINTS = {"lagrange", "exudyn"}
+YES, CONTACT, CODE = "yes", "by contact", "with code of ours"
+TOO_OLD = "this release lacks what our adapter calls"
+
+
+@dataclass(frozen=True)
+class Capabilities(BuildingTask):
+    """The elements that an engine builds.
+
+    The values are YES, CONTACT, CODE or the reason of a refusal, by the lines of EXAMPLES; and `reactions` and `width`
+    from a run. A refusal comes from the engine's table of capabilities (`engines.capability`).
+    """
+
+    what: ClassVar[str] = "what it builds"
+
+    def run(self) -> Values:
+        values: dict[str, str] = {line: self._build(mechanism) for line, mechanism in EXAMPLES.items()}
+        run = self.method.build(WORLD["swinging bar"], BUILD_STEP)(4, 1)
+        finite = [bool(np.isfinite(reaction).all()) for reaction in run.reaction]
+        values["reactions"] = "yes" if all(finite) else "not at the start" if all(finite[1:]) else "no"
+        # Velocities are numbers of the engine itself; poses may be computed from coordinates by our code.
+        velocity = run.twist[1:]
+        values["width"] = "32 bits" if np.array_equal(velocity, velocity.astype(np.float32)) else "64 bits"
+        return values
+
+    def _build(self, mechanism: Mechanism) -> str:
+        try:
+            self.method.build(mechanism, BUILD_STEP)
+        except Unsupported as reason:
+            return str(reason)
+        except (AttributeError, ImportError, TypeError) as error:
+            return f"{TOO_OLD}: {describe(error)}"
+        rolls = any(isinstance(joint, Skate | Roll) for joint in mechanism.joints)
+        result = CONTACT if rolls and self.method.name not in ROLLING_JOINTS else YES
+        with suppress(ValueError):
+            enforcement = {self.method.enforcement(joint, mechanism) for joint in mechanism.joints}
+            if mechanism.forces:
+                enforcement.add(self.method.forces_by)
+            result = result if enforcement == {"engine"} else CODE
+        return result
+
+
+COMPARED_INSTANTS = 12
+TERM_STEP = 1e-3  # s, for building a model; no step is made
+
+
+def started_at(mechanism: Mechanism, pose: Array, twist: Array) -> Mechanism:
+    """The mechanism with these poses and twists (bodies, 3) as its start."""
+    bodies = tuple(
+        replace(body, pose=tuple(body_pose.tolist()), twist=tuple(body_twist.tolist()))
+        for body, body_pose, body_twist in zip(mechanism.bodies, pose, twist, strict=True)
+    )
+    return replace(mechanism, bodies=bodies)
+
+
+def reactions_with(
+    mechanism: Mechanism, soft: tuple[bool, ...], complete: bool, compliance: Array | float = 0.0
+) -> Array:
+    """The reactions (rows,) [N] at the start.
+
+    Args:
+        soft: the regularised rows.
+        complete: whether these have their velocity term.
+        compliance: of each row (rows,) [1/kg].
+    """
+    rows = mechanism.rows(mechanism.pose)
+    bias = mechanism.bias(mechanism.pose, mechanism.twist)
+    if not complete:
+        tree = spanning_tree(mechanism)
+        zero = np.zeros((1, tree.coordinates))
+        _, _, acceleration = tree.motion(zero, tree.start_rates()[None], zero)
+        bias = np.where(soft, rows @ acceleration.reshape(-1), bias)
+    weight = 1 / mechanism.inertias.reshape(-1)
+    right: Array = bias - rows @ mechanism.free_fall.reshape(-1)
+    inverse = (rows * weight) @ rows.T + np.diag(np.broadcast_to(compliance, right.shape))
+    return np.asarray(np.linalg.solve(inverse, right), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class VelocityTerm(BuildingTask):
+    """Differences of an engine's reactions (instants,) to those with and without the velocity term, relative."""
+
+    what: ClassVar[str] = "the velocity term of a loop"
+
+    def run(self) -> Values:
+        scene = FreeFourBar()
+        mechanism = scene.mechanism()
+        regularisation = self.method.regularisation(mechanism, TERM_STEP)
+        if regularisation is None:
+            raise ValueError(f"{method_name(self.method)} declares no regularised rows: its loops are exact")
+        t = np.linspace(0.2, 1.0, COMPARED_INSTANTS) * scene.duration
+        truth = scene.motion(t)
+        differences: dict[str, list[float]] = {"with": [], "without": []}
+        for pose, twist in zip(truth.pose, truth.twist, strict=True):
+            started = started_at(mechanism, pose, twist)
+            reaction = self.method.build(started, TERM_STEP)(1, 1).reaction[0]
+            for name, complete in (("with", True), ("without", False)):
+                expected = reactions_with(started, regularisation.rows, complete)
+                differences[name].append(float(np.abs(reaction - expected).max() / np.abs(expected).max()))
+        return {"t": t, **{name: np.array(values) for name, values in differences.items()}}
+
+
+FREE_LOOP = FreeFourBar()
+MILLISECOND = round(FREE_LOOP.spacing / 1e-3)  # steps between samples
+
+# Quantity of the chart -> a scene of every mechanism whose page compares this quantity.
+CHARTED = {
+    "angle": (
+        *("free_four_bar", "driven_slider_crank", "pendulum_2", "pendulum_10", "n_four_bar_2"),
+        *("person_two_feet", "rolling_disc"),
+    ),
+    "position": ("sleigh", "cart"),
+}
+SCENE_BY_NAME: dict[str, Scene] = {scene.name: scene for scene in SCENES}
+CHARTED_SCENES = tuple(SCENE_BY_NAME[name] for names in CHARTED.values() for name in names)
+
+# A model that takes tens of seconds to compile is run at one step of two scenes: one with a loop, one without.
+COMPILED_CELLS = tuple(
+    Cell(SCENE_BY_NAME[name], engine, MILLISECOND, "beside")
+    for name in ("free_four_bar", "pendulum_2")
+    for engine in registry.OTHERS
+    if engine.build_time >= SLOW_TO_BUILD
+)
+
+# One method of each engine, as shipped if there is such a variant: settings hardly change what is built.
+MATRIX = tuple(
+    map(
+        Capabilities,
+        tuple({engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}.values())[::-1],
+    )
+)
+# Engines that declare a compliance of their loops, with the settings that make it small.
+VELOCITY_TERMS = tuple(
+    VelocityTerm(engine)
+    for engine in (*registry.VARIANTS, *registry.OTHERS)
+    if engine.variant == "tuned"
+    and (regularisation := engine.regularisation(FREE_LOOP.mechanism(), TERM_STEP)) is not None
+    and regularisation.compliance
+)
+
 
 def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
-    """The rows of these scenes in all engines, those beside the grid as if they were of it; no user's tricks."""
+    """The rows of these scenes in all engines, also those beside the grid, as sweeps; without naive methods."""
     names = {*scenes}
     return [
         replace(row, purpose="sweep")
@@ -45,116 +234,101 @@ def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
     ]
 
 
-def missed(row: Measurement | None, field: str = "angle") -> float:
+def comparable_error(row: Measurement | None, field: str = "angle") -> float:
     """The error of a run that can be compared; infinite for any other."""
     usable = row is not None and Outcome(row.outcome).comparable and getattr(row, field) > 0
     return getattr(row, field) if usable else inf
 
 
 def matrix(answers: Mapping[Capabilities, Answer]) -> str:
-    """A column an engine, from what it built; empty where nothing was asked yet."""
+    """A column for each engine with the elements that it builds; empty without answers."""
     engines = [task.method for task in answers]
-    body = [[what, *(verdict(str(answer.values[what])) for answer in answers.values())] for what in ASKED]
-    body += [[what, *(str(answer.values[what]) for answer in answers.values())] for what in ("reactions", "width")]
+    body = [[line, *(verdict(str(answer.values[line])) for answer in answers.values())] for line in EXAMPLES]
+    body += [[line, *(str(answer.values[line]) for answer in answers.values())] for line in ("reactions", "width")]
     body.append(["version", *(engine_versions([engine]) for engine in engines)])
     return markdown(["", *(engine.name for engine in engines)], body, left=len(engines) + 1) if engines else ""
 
 
-def verdict(told: str) -> str:
-    """The word of a cell. The engine lacks a thing only where the sentence names a place in its documentation."""
-    if told in (YES, CONTACT, CODE):
-        return told
-    if told.startswith(TOO_OLD):
+def verdict(result: str) -> str:
+    """The text of a cell. A reason with a link names the engine's documentation, so the engine lacks the element."""
+    if result in (YES, CONTACT, CODE):
+        return result
+    if result.startswith(TOO_OLD):
         return "too old"
-    return "**has none**" if "https://" in told else "not built"
+    return "**has none**" if "https://" in result else "not built"
 
 
-def sentences(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str, str]]:
-    """(engine, what, the word, the sentence) of what is not built."""
+def refusals_of(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str, str]]:
+    """(engine, line, verdict, reason) of each element that is not built."""
     return [
-        (task.method.name, what, verdict(told), told)
+        (task.method.name, line, verdict(reason), reason)
         for task, answer in answers.items()
-        for what in ASKED
-        if (told := str(answer.values[what])) not in (YES, CONTACT, CODE)
+        for line in EXAMPLES
+        if (reason := str(answer.values[line])) not in (YES, CONTACT, CODE)
     ]
 
 
-NAME = "engines"
-# One of each, as shipped where that is a variant: what is built does not depend on settings, but for constructions.
-ASKED_OF = tuple({engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}.values())[::-1]
-MATRIX = tuple(map(Capabilities, ASKED_OF))
-# Of what declares a compliance of its loops, which a law can follow; the settings that make it small.
-TERMS = tuple(
-    VelocityTerm(engine)
-    for engine in (*registry.VARIANTS, *registry.OTHERS)
-    if engine.variant == "tuned"
-    and (soft := engine.regularisation(FREE.mechanism(), 1e-3)) is not None
-    and soft.compliance
-)
-EXPERIMENTS = (
-    Failure(
-        title="Compiled models",
-        expected="The same model as in C, with an error that no step makes smaller where a loop turns.",
-        cells=COMPILED,
-        columns=("angle", "gap", "reaction"),
-    ),
-)
-
-
-def shown(rows: Sequence[Measurement], field: str) -> set[tuple[str, str]]:
-    """(scene, method) of each engine as shipped, and of the variant of it that comes nearest to the truth."""
+def charted_methods(rows: Sequence[Measurement], field: str) -> set[tuple[str, str]]:
+    """(scene, method) of each engine as shipped and of its most accurate variant."""
     chosen: set[tuple[str, str]] = set()
     for scene, engine in dict.fromkeys((row.scene, row.engine) for row in rows):
-        own = [row for row in rows if (row.scene, row.engine) == (scene, engine)]
-        best = min(own, key=lambda row: missed(row, field))
-        chosen |= {(scene, best.method)} | {(scene, row.method) for row in own if row.variant == "default"}
+        of_engine = [row for row in rows if (row.scene, row.engine) == (scene, engine)]
+        best = min(of_engine, key=lambda row: comparable_error(row, field))
+        chosen |= {(scene, best.method)} | {(scene, row.method) for row in of_engine if row.variant == "default"}
     return chosen
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Work and precision by quantity."""
-    drawn: dict[str, str] = {}
+    """Error against CPU time, by quantity."""
+    pictures: dict[str, str] = {}
     for field, names in CHARTED.items():
-        rows = [row for row in rows_of(material, names) if missed(row, field) < inf and row.cpu > 0]
+        rows = [row for row in rows_of(material, names) if comparable_error(row, field) < inf and row.cpu > 0]
         if rows:
-            chosen = shown(rows, field)
+            chosen = charted_methods(rows, field)
             figure = work_precision(rows, lambda row, chosen=chosen: (row.scene, row.method) in chosen, field)
-            drawn[f"work_{field}"] = svg(
-                figure, f"Each engine as shipped and at its best: {field} error against CPU time"
-            )
-    return drawn
+            title = f"Each engine as shipped and at its best: {field} error against CPU time"
+            pictures[f"work_{field}"] = svg(figure, title)
+    return pictures
 
 
-def _terms(material: Material) -> str:
+def velocity_terms(material: Material) -> str:
+    """A line for each of VELOCITY_TERMS with its largest differences; empty without answers."""
     body = [
         [method_name(task.method), *(number(float(answer.array(name).max())) for name in ("with", "without"))]
-        for task in TERMS
+        for task in VELOCITY_TERMS
         if (answer := material.finished(task)) is not None
     ]
-    header = ["method", "from the law with the velocity term", "from the law without it"]
+    header = ["method", "to the equation with the velocity term", "to the equation without it"]
     return markdown(header, body) if body else ""
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Tables by name, each empty where nothing was run."""
+    """The tables by name, each empty where nothing was run."""
     answers = {task: answer for task in MATRIX if (answer := material.finished(task)) is not None}
     return {
         "matrix": matrix(answers),
-        "refused": sentences(answers),
-        "terms": _terms(material),
+        "refused": refusals_of(answers),
+        "terms": velocity_terms(material),
         "absent": list(registry.ABSENT.values()),
     }
 
 
 PAGE = Page(
-    name=NAME,
+    name="engines",
     title="Engines side by side",
-    lesson="What each engine builds, what it costs, how near it comes; and why engines of one order differ twentyfold.",
-    companions=(FREE,),
-    borrowed=BORROWED,
-    cells=SWEPT,
-    failures=EXPERIMENTS,
+    lesson="What each engine builds, its cost and error, and why engines of equal order differ by a factor of twenty.",
+    companions=(FREE_LOOP,),
+    borrowed=sweep_cells(CHARTED_SCENES, registry.VARIANTS, FULL),
+    cells=beside_cells(CHARTED_SCENES, registry.OTHERS, sweep=True),
+    failures=(
+        Failure(
+            title="Compiled models",
+            expected="The same model as in C; where a loop rotates, its error does not fall with the step.",
+            cells=COMPILED_CELLS,
+            columns=("angle", "gap", "reaction"),
+        ),
+    ),
     figures=figures,
     context=context,
-    tasks=(*MATRIX, *TERMS),
+    tasks=(*MATRIX, *VELOCITY_TERMS),
 )
