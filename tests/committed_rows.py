@@ -27,20 +27,20 @@ def _lines(name: str) -> list[dict[str, str]]:
 
 @cache
 def _stored() -> dict[tuple[str, ...], list[dict[str, str]]]:
-    """Errors and timings joined, by what names a cell apart from its numbers and settings."""
-    found: dict[tuple[str, ...], list[dict[str, str]]] = {}
+    """Errors and timings, joined; by scene, engine, variant, samples and steps per sample."""
+    lines: dict[tuple[str, ...], list[dict[str, str]]] = {}
     for errors, timings in zip(_lines("errors.csv"), _lines("timings.csv"), strict=True):
         line = errors | timings
         key = (line["scene"], line["engine"], line["variant"], line["samples"], line["every"])
-        found.setdefault(key, []).append(line)
-    return found
+        lines.setdefault(key, []).append(line)
+    return lines
 
 
 def committed_rows(cells: Iterable[Cell]) -> dict[Cell, Measurement]:
     """The committed row of each cell that has one.
 
-    Several cells differ in the scene's numbers or the engine's settings alone: their digests tell them apart. Where
-    settings have changed since, the only row with these numbers stands in until the next publishing.
+    Cells that differ only in the scene's numbers or the engine's settings are distinguished by digests. If the settings
+    have changed since, the only row with these numbers is used until the next publishing.
     """
     return {cell: row for cell in cells if (row := _row(cell)) is not None}
 
@@ -64,18 +64,18 @@ def _lines_of(cell: Cell) -> list[dict[str, str]]:
 
 
 def _line(cell: Cell) -> dict[str, str] | None:
-    alike = [line for line in _lines_of(cell) if line["parameters"] == digest(repr(cell.scene), SHORT)]
-    own = [line for line in alike if line["settings"] == digest(repr(cell.engine), SHORT)]
-    return own[0] if own else alike[0] if len(alike) == 1 else None
+    of_scene = [line for line in _lines_of(cell) if line["parameters"] == digest(repr(cell.scene), SHORT)]
+    exact = [line for line in of_scene if line["settings"] == digest(repr(cell.engine), SHORT)]
+    return exact[0] if exact else of_scene[0] if len(of_scene) == 1 else None
 
 
 def _row(cell: Cell) -> Measurement | None:
     line = _line(cell)
     if line is None:
         return None
-    told = {
+    numbers = {
         f.name: KINDS[str(f.type)](line[f.name])
         for f in fields(Measurement)
         if f.name in line and f.name not in ("purpose", "variant", "parameters", "settings", "step")
     }
-    return replace(blank(cell), **told | {"outcome": Outcome(line["outcome"])})
+    return replace(blank(cell), **numbers | {"outcome": Outcome(line["outcome"])})

@@ -223,7 +223,7 @@ FAULTS_OF_SCRIPTS: Mapping[str, str] = {
     "pymunk_kinetic_energy": "`Body.kinetic_energy` is twice the kinetic energy",
     "mujoco_joint_equality": "a curved `equality/joint` lacks its velocity term",
     "mujoco_tendon_equality": "so does `equality/tendon`",
-    "mujoco_site_near_origin": "a site within a micrometre of its body's origin is put there",
+    "mujoco_site_near_origin": "a site within a micrometre of its body's origin is moved to the origin",
 }
 
 

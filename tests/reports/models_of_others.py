@@ -1,4 +1,4 @@
-"""Models that we did not write, as a user would try them: what each is read as, or why it is refused.
+"""Models of other authors, as a user would try them: the mechanism that is read, or the reason of a refusal.
 
 `python -m tests.reports.models_of_others` writes the table of the page `your_model`. It asks pip for two packages,
 unpacks them, and runs pymunk's examples without their windows; nothing of theirs is kept.

@@ -1,4 +1,4 @@
-"""The failure atlas: what a column tells, the lines that explain it by a second method, its files, its page."""
+"""The failure atlas: its columns, predictions against a second method, its file, its page, its command."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ TOYS = StabilityMap(
 def line(
     value: float, outcomes: str, engine: str = "toy", gives: float = math.nan, left: float = math.nan
 ) -> StoredColumn:
-    counts = tuple(10 * 2**place for place in range(len(outcomes)))
+    counts = tuple(10 * 2**index for index in range(len(outcomes)))
     errors = tuple(-1.5 if letter == "·" else math.nan for letter in outcomes)
     return StoredColumn("toys", engine, "default", value, 0.1, counts, outcomes, errors, gives, left)
 
@@ -68,7 +68,7 @@ def test_every_map_has_scenes_steps_and_a_frequency_over_its_whole_range():
 
 
 def test_lines_of_the_map_are_rates_that_closed_forms_and_fine_grids_give():
-    # Of two equal bars the squared frequencies are (3 +- 6/sqrt(7)) g/l; of one, 3/2 g/l.
+    # The squared frequencies of two equal bars are (3 +- 6/sqrt(7)) g/l, that of one bar is 3/2 g/l.
     assert stiffest_hanging(LinkPendulum(links=1)) == pytest.approx(math.sqrt(1.5 * 9.81), rel=1e-12)
     two = LinkPendulum(links=2, length=0.7)
     assert stiffest_hanging(two) == pytest.approx(math.sqrt((3 + 6 / math.sqrt(7)) * 9.81 / 0.7), rel=1e-12)
@@ -122,23 +122,23 @@ def test_softness_without_the_velocity_term_gives_where_the_centripetal_accelera
 
 
 def drawn_of(outcomes: str, stride: int) -> tuple[str, str]:
-    """(letters as a column with these outcomes is kept, the letters that are drawn)."""
+    """(stored letters of a column with these outcomes, letters as they are drawn)."""
     column = MapColumn(TOYS, 1.0, Disc(), Toy(), tuple((10, every) for every in range(1, len(outcomes) + 1)))
     run = lambda cells: {cell: SimpleNamespace(outcome=outcomes[cell.every - 1]) for cell in cells}  # noqa: E731
     rows: Any = run_columns([column], run, stride)[0]  # type: ignore[arg-type]
-    kept = "".join(rows[place].outcome if place in rows else NOT_RUN for place in range(len(outcomes)))
-    assert line(1.0, kept).run_count == len(rows)
-    return kept, "".join(outcome.letter for outcome in line(1.0, kept).outcome_of_steps)
+    stored = "".join(rows[index].outcome if index in rows else NOT_RUN for index in range(len(outcomes)))
+    assert line(1.0, stored).run_count == len(rows)
+    return stored, "".join(outcome.letter for outcome in line(1.0, stored).outcome_of_steps)
 
 
 def test_borders_are_as_sharp_as_if_every_point_had_been_run():
     for border in range(1, 21):
         outcomes = "T" * border + "S" * 7 + "·" * (27 - border)
-        kept, drawn = drawn_of(outcomes, 4)
-        assert drawn == outcomes
-        assert NOT_RUN in kept
+        stored, displayed = drawn_of(outcomes, 4)
+        assert displayed == outcomes
+        assert NOT_RUN in stored
         assert drawn_of(outcomes, 1) == (outcomes, outcomes)
-    # What is narrower than the stride may be missed, and nothing else.
+    # Only a region narrower than the stride may be missed.
     assert drawn_of("····S····", 4) == ("·=··S··=·", "····S····")  # one that is run
     assert drawn_of("··S······", 4) == ("·===·===·", "·········")  # one between two that are alike
     assert drawn_of("SS", 4) == ("SS", "SS")
@@ -150,7 +150,7 @@ def test_a_column_keeps_errors_of_answers_and_an_abort_costs_its_own_cells():
     columns = [MapColumn(TOYS, 2.0, Disc(), engine, steps) for engine in (Toy(), FailingToy("abort"))]
     rows = run_columns(columns, lambda cells: dict(run_items(cells, workers=1)), 4)
     lines = [stored_column(column, some) for column, some in zip(columns, rows, strict=True)]
-    assert [one.outcomes for one in lines] == ["·===·", "A===A"]
+    assert [stored.outcomes for stored in lines] == ["·===·", "A===A"]
     assert [math.isnan(error) for error in lines[0].errors] == [letter == NOT_RUN for letter in lines[0].outcomes]
     assert lines[0].errors[0] == pytest.approx(math.log10(rows[0][0].angle), abs=0.05)
     assert all(math.isnan(error) for error in lines[1].errors)

@@ -1,6 +1,6 @@
 """Charts and drawings read back from their axes: which numbers and poses are drawn, where, and by which method.
 
-The numbers of the charts of invented rows stand in tests/golden/charts.md.
+The numbers of the charts of invented rows are in tests/golden/charts.md.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def described(figure: Figure) -> Iterator[str]:
         for text in panel.texts:
             at = (
                 getattr(text, "xy", ()) if not text.get_text().isdigit() else ()
-            )  # a number of a guide stands beside it
+            )  # the number of a guide is beside its line
             yield f"- {text.get_text()!r} {at}"
     for found in figure.legends:
         lines = [handle for handle in found.legend_handles if isinstance(handle, Line2D)]
@@ -113,7 +113,7 @@ def compared() -> Figure:
 
 
 def posed() -> Figure:
-    """Three poses, one of which a method misses."""
+    """Three poses; a method has an error in one of them."""
     mechanism = four_bar()
     truth = np.stack([mechanism.pose, mechanism.pose + 0.1, mechanism.pose - 0.1])
     other = truth + np.array([0.2, 0.0, 0.0]) * np.array([0, 1, 0])[:, None, None]
@@ -144,7 +144,7 @@ def test_each_chart_draws_its_numbers_in_its_panel_by_the_look_of_its_method(gol
     golden(
         "charts.md", "\n".join(line for name, figure in found.items() for line in (f"## {name}", *described(figure)))
     )
-    # What is not framed does not stretch the picture.
+    # A path that is not framed does not enlarge the picture.
     left = found["Paths in a plane"].axes[0]
     assert left.get_xlim()[1] < 2
     assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))

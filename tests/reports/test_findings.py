@@ -1,4 +1,4 @@
-"""Findings, symptoms and guides from the committed rows: what the rows contradict or do not have is not said."""
+"""Findings, symptoms and guides from the committed rows: a claim that rows contradict or lack is left out."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def falls(name, row):
 
 
 def changes(names):
-    """What may be wrong with the rows of one method."""
+    """Possible errors in the rows of one method."""
     yield lambda rows: rows[:1]
     for name in names:
         yield partial(map, partial(falls, name))
@@ -107,7 +107,7 @@ def test_without_rows_findings_are_dropped_and_those_of_other_sources_stay():
     assert findings({}) == []
     assert {each.name for each in findings({VERSIONS: Material({})})} == OF_RELEASES - {"faults"}
     failed = findings(changed(lambda row: replace(row, outcome=Outcome.TORN)))
-    # Errors of failed runs may still speak of energy: a pendulum that is off by a radian has lost what it has lost.
+    # The energy error of a failed run may be used: a pendulum with an angle error of a radian has lost energy too.
     assert {each.name for each in failed} - OF_RELEASES <= {"energy"}
 
 

@@ -97,7 +97,7 @@ def prose(text: str) -> str:
 
 
 def complaints(page: str, files: Mapping[str, str]) -> list[str]:
-    """What a reader would stumble over on a page."""
+    """Defects of a page that a reader would notice."""
     text = prose(files[f"{page}.md"])
     sentences = re.sub(r"^\|.*$", "TABLE", text, flags=re.MULTILINE)
     found = [f"{word} in the text" for word in ("{{", "{%", MARK, NOT_MEASURED) if word in text]
@@ -148,7 +148,7 @@ def test_a_page_can_be_read_whatever_rows_and_answers_it_is_written_from(page, u
 
 @pytest.mark.parametrize("page", FROM_ROWS[::3], ids=lambda page: page.name)
 def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
-    """Really drawn: what is cheap to draw, since a chart of little is where axes and legends break."""
+    """Charts of few rows are drawn, because these break axes and legends, and are cheap."""
     chance, rows = random.Random(page.name), page_rows(page)
     few = {cell: rows[cell] for cell in chance.sample(list(rows), 12)}
     for cell in list(few)[::2]:
@@ -218,7 +218,7 @@ def test_a_forgotten_guard_says_so_and_a_clause_without_its_number_vanishes(temp
     assert without_marks(environment().from_string(template).render(given)) == said
 
 
-# Of a user's model of which no setting that was tried is exact enough, and one gave up.
+# The check of a user's model for which no setting is accurate enough and one run failed.
 STILL = Pose([[[0.0, 0.0], [1.0, 0.0]]], [], [])
 ERRORS = {"angle": [0.0, 1e-3]}
 SHOWN = PictureData([0.0, 1.0], ERRORS, [0.0, 1.0], ERRORS, [], None, None, 1.0, [[0.0, 0.0]], STILL, STILL)
@@ -289,7 +289,7 @@ def some_answers(tasks: Iterable[Task], chance: random.Random) -> dict[Task, Ans
 def test_a_motion_that_can_not_be_read_says_so_in_its_line():
     cell = Motion(turning_round.TURNING_ROUND[0]).cell
     material = Material({}, {Motion(cell): still(Motion(cell))})
-    with pytest.raises(ZeroDivisionError):  # a mistake of ours is no observation
+    with pytest.raises(ZeroDivisionError):  # an error of our code must not become an observation
         observe(material, cell, "a step", lambda run: f"{1 / 0}")
     lost = Material({}, {Motion(cell): still(Motion(cell), lost=True)})
     [line] = observe(lost, cell, "a step", lambda run: "all is well")

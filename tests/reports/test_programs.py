@@ -24,7 +24,7 @@ named = pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
 
 
 def run(source: str) -> tuple[dict, str]:
-    """The names that a program has at its end, and what it printed."""
+    """The global names of a program after its run, and its output."""
     names, printed = {"__name__": "__main__"}, io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(compile(source, "a page", "exec"), names)

@@ -1,4 +1,4 @@
-"""Published problems, and a user's own model: each number is held against a second way or is what was found."""
+"""Published problems and a user's own model: numbers agree with an independent computation or with the check."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from tests.reports.models_of_others import models, spaces, unpacked
 
 @pytest.fixture(scope="module")
 def answers():
-    """Of RK4 by hand, and of three methods."""
+    """The answers of RK4 without an engine and of three methods."""
     methods = (DEFAULT, TUNED, PYMUNK)
     tasks = (DirectRK4(), *map(Acrobot, methods), *map(Newton, methods))
     return {task: answered(task) for task in tasks}
@@ -51,7 +51,7 @@ def test_the_second_published_number_follows_and_the_third_is_rounding(answers):
     hand = answers[DirectRK4()]
     assert hand.array("drift")[1] == pytest.approx(PUBLISHED[1], rel=0.1)
     assert hand.array("drift")[2] < PUBLISHED[2] / 10
-    # Of states in numbers of 32 bits: their rounding is 2^-24 = 6e-8 of each, in parts of the first energy less.
+    # The rounding of states in 32 bits is 2^-24 = 6e-8; relative to the first energy it is smaller.
     assert PUBLISHED[2] / 3 < hand.array("rounded")[2] < 3 * PUBLISHED[2]
 
 
@@ -72,7 +72,7 @@ def test_freudensteins_rocker_is_the_scenes():
 def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none():
     told = answered(Newton(TRUTH))
     assert all(largest_step(told, name) == max(NEWTON_STEPS) for name in NEWTON_BOUNDS)
-    # What is left of the period's measure is the cosine: a swing by 0.05 rad is slower by 0.05^2/16 than a small one.
+    # The cosine alone causes this error of the period: a swing by 0.05 rad is slower by 0.05^2/16 than a small one.
     assert told.array("period") == pytest.approx(1.1e-3, rel=0.05)
     wrong = np.degrees(freudenstein(np.zeros(1)) - NEWTON_FOUR_BAR.motion([0.0]).pose[0, 2, 2] + 0.01)
     assert np.abs(wrong) > NEWTON_BOUNDS["angle"]

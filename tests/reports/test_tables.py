@@ -1,6 +1,6 @@
 """Tables, CSV files and columns of engines from rows by hand, each with another number in every field.
 
-What is printed stands in tests/golden/tables.md; what it has to say, beside the rows that say it.
+The printed tables are in tests/golden/tables.md; comments beside the rows state what the tables must show.
 """
 
 from __future__ import annotations
@@ -104,15 +104,15 @@ def tuned(step: float, **changes):
 
 
 def at_steps() -> Iterator[list[Measurement]]:
-    """Rows of MuJoCo's documented settings: what a cell of the table at equal step has to say of them."""
+    """Rows of MuJoCo's documented settings, each set for another content of a cell in the table at equal step."""
     yield falling("mujoco tuned", POWER)
     yield falling("mujoco tuned", (1e-2, 1e-13))  # falls to rounding
     yield falling("mujoco tuned", (1e-2, 3e-5, 2e-5, 2e-5))
     yield falling("mujoco tuned", (1e-2, 3e-5, 2.9e-5))  # levels off
     yield falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3))  # least at 1 ms
-    # Two errors that cancel at the second step: the limit is told, and that what lies below it is luck.
+    # Two errors cancel at the second step: the cell has the limit, and the remark that a smaller error is luck.
     yield falling("mujoco tuned", (1e-2, 1e-4, 1e-3, 1.1e-3, 1.11e-3))
-    # Luck is told only of errors that stand there.
+    # The remark refers only to errors in the cell.
     yield falling("mujoco tuned", (1e-2, 2e-3, 1.6e-3, 1e-5, 1.4e-3, 1.5e-3, 1.5e-3))
     # A row at a usual step leaves the order alone.
     yield [*falling("mujoco tuned", POWER), tuned(1e-4, angle=0.3, purpose="usual")]
@@ -122,7 +122,7 @@ def at_steps() -> Iterator[list[Measurement]]:
     failed = [tuned(10.0**-i, outcome=Outcome.SATURATED) for i in (1, 2, 3)]
     yield failed + [tuned(10.0**-i, angle=10.0 ** (2 - i)) for i in (4, 5, 6)]
     yield [tuned(1e-2, outcome=outcome) for outcome in (Outcome.TORN, Outcome.TORN, Outcome.RESET)]
-    # No other step stands for one that was not run.
+    # A step that was not run is not replaced by another.
     moved = [row for row in falling("mujoco tuned", (*POWER, 1e-8)) if row.step not in (1e-1, 1e-3)]
     yield [*moved, tuned(9e-2, angle=7e-3), tuned(9.95e-4, angle=8e-6)]
 
@@ -231,7 +231,7 @@ def test_what_is_printed_of_rows_is_as_it_was(golden):
 
 
 def test_the_order_of_rows_changes_no_cell():
-    for rows in list(at_steps())[:-2]:  # outcomes alone stand in the order of their rows
+    for rows in list(at_steps())[:-2]:  # outcomes alone have the order of their rows
         assert cell_of(rows[::-1]) == cell_of(rows)
 
 
@@ -307,7 +307,7 @@ def test_a_users_trick_does_not_bear_the_usual_name_of_an_engine_on_any_page():
     assert displayed_variant(SLEIGH, SKATE_POINT) == SKATE_POINT.variant
     cell = Cell(SLEIGH, pymunk.DEFAULT, 1)
     assert with_displayed_variants({cell: row_of("pymunk default")})[cell].method == "pymunk naive"
-    # A stand-in for documented settings is named, and a usual variant is not.
+    # An unusual variant under the documented settings is named, a usual one is not.
     (line,) = (
         line
         for line in engine_lines([(SKATE, falling("mujoco default", POWER, "position", scene="sleigh"))])
@@ -328,7 +328,7 @@ def test_within_a_cpu_time_the_least_error_counts_that_no_smaller_step_exceeds()
 
 def test_a_line_of_the_picture_never_runs_backwards():
     rough = falling("mujoco extended", (1e-2, 1e-5, 1e-7))
-    rough[0] = replace(rough[0], cpu=0.05)  # a rough run made the largest step dearer than the next
+    rough[0] = replace(rough[0], cpu=0.05)  # a pilot run made the largest step cost more than the next one
     points = error_by_cost([rough, falling("mujoco tuned", (1e-1, 1e-3, 1e-3))], "angle")
     assert points == sorted(points)
     assert [error for _, error in points] == sorted((error for _, error in points), reverse=True)

@@ -99,7 +99,7 @@ CASES = {case.scene.name: (case, other) for case, other in zip(MUJOCO_CASES, PYM
 def test_the_lines_for_a_compiled_model_of_mujoco_give_the_error_of_the_page(scene):
     case, _ = CASES[scene.name]
     shipped = MJCF.write(scene.mechanism(), STEP, "default")
-    # Of RK4 with as many digits in the file as there are: what the solver's tolerance and the file round is far below.
+    # The error of RK4, with all digits in the file: the solver's tolerance and the rounding of the file are far below.
     assert in_mujoco(scene, shipped, lines("compiled")) == pytest.approx(row(case, case.after), rel=0.02)
 
 

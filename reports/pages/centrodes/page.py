@@ -191,7 +191,7 @@ def context(material: Material) -> Mapping[str, Any]:
     body = [
         [method_name(cell.engine), *map(number, (cell.step, centre, angle, rate))] for cell, centre, angle, rate in rows
     ]
-    header = ["method", "step [s]", "centre off by [m]", "angle [rad]", "rate [rad/s]"]
+    header = ["method", "step [s]", "centre error [m]", "angle error [rad]", "rate error [rad/s]"]
     return {
         "arc": ARC,
         "samples": ARC_SAMPLES,
@@ -210,7 +210,7 @@ def _lesson(rows: list[tuple[Cell, float, float, float]]) -> str:
     _, (cell, centre, angle, _) = max(known, key=lambda pair: pair[0])
     return (
         f"An angle can be right while the velocities are not. {method_name(cell.engine)} at a step of "
-        f"{number(cell.step)} s has the angle to {number(angle)} rad and the centre to {number(centre)} m."
+        f"{number(cell.step)} s has an angle error of {number(angle)} rad and a centre error of {number(centre)} m."
     )
 
 

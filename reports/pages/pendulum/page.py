@@ -140,7 +140,7 @@ def answers() -> str:
             answer = getattr(solution, name)
             miss = np.abs(answer - derivative(position, 0.0, order)).max()
             body.append([f"{problem} {part}", f"({answer[0]:.5f}, {answer[1]:.5f}) {unit}", number(float(miss))])
-    return markdown(["problem", "answer", "off the derivative by"], body, left=2)
+    return markdown(["problem", "answer", "difference to the derivative"], body, left=2)
 
 
 def context(material: Material) -> Mapping[str, Any]:
@@ -152,7 +152,7 @@ def context(material: Material) -> Mapping[str, Any]:
 PAGE = scene_page(
     "pendulum",
     title="Pendulums of 1, 2, 10 and 100 links",
-    lesson="Open chains: in a tree of coordinates the joints are exact, and pymunk finds their impulses by iteration.",
+    lesson="Open chains: in reduced coordinates the joints are exact; pymunk computes their impulses by iteration.",
     scenes=(BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks(), PointPendulum()),
     advised="pendulum_2",
     engines=(*VARIANTS, *FREE_COORDINATES),
