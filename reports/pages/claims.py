@@ -85,12 +85,12 @@ def _is_of(row: Measurement, scene: str) -> bool:
 
 def settings_of_a_loop(material: Material) -> bool:
     """Whether one change alone gains little, both gain much, and implicitfast has the errors of Euler."""
-    rows = Rows(material.sweep((guides.LOOP,)))
+    rows = Rows(material.sweep((guides.SETTINGS_LOOP,)))
 
     def method(name: str) -> Rows:
-        return rows.of(guides.LOOP.name, name)
+        return rows.of(guides.SETTINGS_LOOP.name, name)
 
-    def at(name: str, every: int = guides.STEPS_PER_SAMPLE) -> Any:
+    def at(name: str, every: int = guides.MILLISECONDS_PER_SAMPLE) -> Any:
         return next((row for row in method(name) if row.every == every), UNMEASURED)
 
     euler, implicit, tuned = (f"mujoco {name}" for name in ("stiff Euler", "stiff implicitfast", "tuned"))
@@ -98,7 +98,7 @@ def settings_of_a_loop(material: Material) -> bool:
     return (
         min(at("mujoco RK4 alone").angle, at(euler).angle) > shipped / 2
         and at(tuned).angle < 1e-3 * shipped
-        and all(abs(at(implicit, n).angle / at(euler, n).angle - 1) < 0.01 for n in (1, guides.STEPS_PER_SAMPLE))
+        and all(abs(at(implicit, n).angle / at(euler, n).angle - 1) < 0.01 for n in (1, guides.MILLISECONDS_PER_SAMPLE))
         and all(abs(method(name).sweep().order - n) < 0.1 for name, n in ((euler, 1), (implicit, 1), (tuned, 2)))
         and not method(tuned).sweep().plateau > 0
         and method(tuned).sweep("reaction").plateau > 10 * at(tuned).angle

@@ -22,7 +22,7 @@ from reports.model.tasks import Answer, Task
 from reports.write.rows import lookups
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
-ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
+MAIN_METHODS: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
 # The engines' variants that are run in every scene; `lagrange`, which has ideal constraints, is left out.
 ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engine.name != "lagrange")
 

@@ -32,7 +32,7 @@ from reports.versions.table import ACCELERATION, Entry, relative_cost, released
 from reports.write.page_tables import COMPARED_STEP, advice
 from reports.write.rows import Rows, rows_of_pages
 from reports.write.templates import environment, template
-from reports.write.unmeasured import MARK, UNMEASURED
+from reports.write.unmeasured import UNKNOWN_MARK, UNMEASURED
 
 # Size of a picture in inches: 360 pixels wide in a browser, so that a telephone shows it unscaled.
 PICTURE_WIDTH, PICTURE_HEIGHT = 3.75, 2.55
@@ -135,7 +135,7 @@ class Finding:
     @property
     def is_sound(self) -> bool:
         """Whether all its numbers are known and all its claims are confirmed."""
-        return not self.contradicted and MARK not in self.text
+        return not self.contradicted and UNKNOWN_MARK not in self.text
 
     @property
     def picture(self) -> str:
@@ -231,7 +231,7 @@ def faults(sources: Sources) -> dict[str, Any]:
     """Faults of the installed releases, from the answers of their scripts."""
     wrong, missing = [], 0
     for title in ("pymunk", "MuJoCo"):
-        shown, release = [], MARK
+        shown, release = [], UNKNOWN_MARK
         for name, sentence in FAULTS_OF_SCRIPTS.items():
             if name.startswith(title.lower()):
                 answer = sources.answers.get(SCRIPTS[name])
@@ -267,7 +267,7 @@ FURTHER_NAMES: Mapping[str, Callable[[Sources], dict[str, Any]]] = {
     "faults": faults,
     "exact": exact,
 }
-FINDINGS: Mapping[str, Mapping[str, Any]] = tomllib.loads(
+FINDING_PLANS: Mapping[str, Mapping[str, Any]] = tomllib.loads(
     Path(__file__).with_name("findings.toml").read_text(encoding="utf-8")
 )
 
@@ -279,7 +279,7 @@ def _expression(text: str) -> Callable[..., Any]:
 
 def finding(name: str, sources: Sources) -> Finding:
     """The finding of this name with numbers from these rows."""
-    plan = FINDINGS[name]
+    plan = FINDING_PLANS[name]
     names = {**EXPRESSION_NAMES, **(FURTHER_NAMES[name](sources) if name in FURTHER_NAMES else {})}
     names |= {rows: sources.rows.of(*selection) for rows, selection in plan.get("rows", {}).items()}
     for number, expression in plan.get("let", {}).items():
@@ -299,7 +299,7 @@ def finding(name: str, sources: Sources) -> Finding:
 def findings(pages: Mapping[Page, Material]) -> list[Finding]:
     """The findings that these rows confirm and one of these pages explains, in the order of `findings.toml`."""
     sources, names = Sources.of(pages), {page.name for page in pages}
-    candidates = (finding(name, sources) for name in FINDINGS)
+    candidates = (finding(name, sources) for name in FINDING_PLANS)
     return [candidate for candidate in candidates if candidate.is_sound and candidate.page in names]
 
 

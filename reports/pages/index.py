@@ -38,7 +38,7 @@ from reports.write.columns import (
 )
 from reports.write.page_tables import COMPARED_STEP, TARGETS
 from reports.write.provenance import machine, versions
-from reports.write.tables import NOTHING, error_words, markdown
+from reports.write.tables import DASH, error_words, markdown
 from reports.write.templates import environment, inert_page, link, with_part
 
 
@@ -133,7 +133,7 @@ def compared_table(lines: Sequence[EngineLine]) -> str:
 
 def _compared_cell(line: EngineLine, column: Column) -> str:
     if column not in line.columns and (Column.WHOLE in line.columns or column is Column.CODE):
-        return NOTHING  # no variant of this kind
+        return DASH  # no variant of this kind
     if reason := absence_reason(line, column):
         return f"*{reason}*"
     engine, rows = line.columns[column][-1]

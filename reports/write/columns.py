@@ -25,8 +25,8 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.model.quantities import quantity
-from reports.write.page_tables import SAME_COST, TARGETS, reliable
-from reports.write.tables import NOTHING, error_words, markdown, milliseconds, number, step_words
+from reports.write.page_tables import EQUAL_COST_FACTOR, TARGETS, reliable
+from reports.write.tables import DASH, error_words, markdown, milliseconds, number, step_words
 
 
 class Column(StrEnum):
@@ -117,7 +117,7 @@ def enforcement_by_method(cells: Iterable[Cell]) -> dict[str, str]:
 # CPU seconds per simulated second within which methods are compared: a hundredth of real time.
 CPU_BUDGET = 1e-2
 # CPU times within the scatter of timings above the budget are accepted.
-ACCEPTED_CPU = SAME_COST * CPU_BUDGET
+ACCEPTED_CPU = EQUAL_COST_FACTOR * CPU_BUDGET
 
 NO_JOINT, NOT_BUILT, TOO_SLOW = "no such joint", "not built", "too slow"
 SMALLER_STEP_FAILS = "a smaller step fails"
@@ -198,7 +198,7 @@ def _format_cell(line: EngineLine, column: Column, format_rows: FormatCell) -> s
     if reason := absence_reason(line, column):
         return f"*{reason}*"
     if not any(rows for _, rows in line.columns[column]):
-        return NOTHING
+        return DASH
     return format_rows(line, column) + remarks_of(line, column)
 
 
@@ -231,7 +231,7 @@ def _table(
         first = next(iter(of_scene.values()))
         title = f"[{first.scene.name.replace('_', ' ')}]({folder}{first.page.name}.md), {quantity(first.quantity).unit}"
         cells = (
-            _format_cell(of_scene[engine], column, format_rows) if engine in of_scene else NOTHING
+            _format_cell(of_scene[engine], column, format_rows) if engine in of_scene else DASH
             for engine, column in heads
         )
         body.append([title, *cells])
@@ -295,7 +295,7 @@ def equal_error(entries: Iterable[PageRows], folder: str = "") -> dict[str, str]
             )
             for target in TARGETS
         ]
-        return ", ".join(map(milliseconds, costs)) if any(map(math.isfinite, costs)) else NOTHING
+        return ", ".join(map(milliseconds, costs)) if any(map(math.isfinite, costs)) else DASH
 
     return {engine: _table(lines, least_costs, folder) for engine, lines in _by_engine(_swept(entries))}
 

@@ -14,7 +14,7 @@ from reports.model.convergence import ROOM_SOFT, Sweep, by_method, groups, sweep
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, quantity
-from reports.write.tables import ENFORCED_BY, NOTHING, markdown, milliseconds, number, step_words, sweep_words
+from reports.write.tables import DASH, ENFORCED_BY, markdown, milliseconds, number, step_words, sweep_words
 
 # The step [s] at which methods are compared, or the nearest of the grid: a usual step, refined once.
 COMPARED_STEP = 1e-3
@@ -22,7 +22,7 @@ COMPARED_STEP = 1e-3
 TARGETS = (1e-2, 1e-4, 1e-6, 1e-9)
 # Costs within this factor count as equal: timings of short runs scatter by about a fifth. Among equal costs the first
 # method of the page is recommended, since a page lists each engine's own settings before methods with our code.
-SAME_COST = 1.25
+EQUAL_COST_FACTOR = 1.25
 
 # (method, step [s]) -> the error that its declared regularisation causes, in the unit of the page's quantity; NaN if
 # that is not known.
@@ -68,12 +68,12 @@ def scene_table(
     for key, members in groups(rows).items():
         method = members[0].method
         row = next((row for row in members if row.step == step), None)
-        errors = [number(getattr(row, q.name)) if row else NOTHING for q in columns]
+        errors = [number(getattr(row, q.name)) if row else DASH for q in columns]
         if row is not None and not Outcome(row.outcome).comparable:
             errors[0] = f"**{row.outcome}**"
         if is_soft:
             errors.insert(1, number(declared_errors[method]))
-        cost = milliseconds(row.cpu) if row and row.cpu > 0 else NOTHING
+        cost = milliseconds(row.cpu) if row and row.cpu > 0 else DASH
         finest = min(members, key=lambda row: row.step)
         behaviour = sweep_words(verdicts[key], "" if Outcome(finest.outcome).comparable else finest.outcome)
         if verdicts[key].plateau > ROOM_SOFT * declared(method, finest.step) + compared.rounding:
@@ -123,7 +123,7 @@ def _cheapest(
 ) -> Measurement | None:
     cheapest = [min(rows, key=lambda row: row.cpu) for members in methods if (rows := reliable(members, name, target))]
     least = min((row.cpu for row in cheapest), default=math.nan)
-    equal = [row for row in cheapest if row.cpu <= SAME_COST * least]
+    equal = [row for row in cheapest if row.cpu <= EQUAL_COST_FACTOR * least]
     return min(equal, key=lambda row: (rank.get(row.method, len(rank)), row.cpu), default=None)
 
 
@@ -155,8 +155,8 @@ def advice_lines(
         if row is None or sweep is None:
             body.append([setting.engine, targets, "not reached", *[""] * (5 if enforcement else 4)])
             continue
-        order = f"{sweep.order:.1f}" if sweep.points >= 2 else NOTHING
-        enforced_by = [enforcement.get(row.method, NOTHING)] if enforcement else []
+        order = f"{sweep.order:.1f}" if sweep.points >= 2 else DASH
+        enforced_by = [enforcement.get(row.method, DASH)] if enforcement else []
         numbers = [step_words(row.step), number(getattr(row, name)), milliseconds(row.cpu), order]
         body.append([setting.engine, targets, f"**{row.variant}**", *enforced_by, *numbers])
     header = ["engine", f"below [{unit}]", "method", *([ENFORCED_BY] if enforcement else [])]

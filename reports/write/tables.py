@@ -12,15 +12,15 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, quantity
 
-NOTHING = "-"
+DASH = "-"
 ENFORCED_BY = "joints enforced by"
 
 
-def number(value: float, digits: int = 2, unknown: str = NOTHING, infinite: str = "∞") -> str:
+def number(value: float, digits: int = 2, unknown: str = DASH, infinite: str = "∞") -> str:
     """A number as text with this many significant digits: 1.3e-4, 1e-3, 0.25, 12.
 
     All of `reports` formats numbers by this function. A caller passes its own texts for NaN and infinity:
-    `number(error, infinite="gave up")` for a run that diverged, `number(value, unknown=MARK)` in a sentence.
+    `number(error, infinite="gave up")` for a run that diverged, `number(value, unknown=UNKNOWN_MARK)` in a sentence.
     """
     if not math.isfinite(value):
         return unknown if math.isnan(value) else infinite
@@ -37,12 +37,12 @@ def words_of(cell: str | float) -> str:
     return cell if isinstance(cell, str) else str(cell) if isinstance(cell, int) else number(cell)
 
 
-def milliseconds(seconds: float, unknown: str = NOTHING) -> str:
+def milliseconds(seconds: float, unknown: str = DASH) -> str:
     """CPU seconds as milliseconds, without the unit."""
     return number(1e3 * seconds, unknown=unknown)
 
 
-def step_words(seconds: float, unknown: str = NOTHING) -> str:
+def step_words(seconds: float, unknown: str = DASH) -> str:
     """A step with its unit: '10 ms', '0.33 ms'."""
     return unknown if math.isnan(seconds) else f"{number(1e3 * seconds)} ms"
 
@@ -91,7 +91,7 @@ def markdown(
     """
     if enforcement:
         header, left = [header[0], ENFORCED_BY, *header[1:]], left + 1
-        rows = [[row[0], enforcement.get(row[0], NOTHING), *row[1:]] for row in rows]
+        rows = [[row[0], enforcement.get(row[0], DASH), *row[1:]] for row in rows]
     lines = [_line(header), _line(["---" if i < left else "--:" for i in range(len(header))])]
     return "\n".join(lines + [_line([cell.replace("|", "\\|").replace("\n", " ") for cell in row]) for row in rows])
 
@@ -142,13 +142,13 @@ def sweep_words(sweep: Sweep, lost: str = "") -> str:
             end = f"**{sweep.verdict}**"
         case _:
             end = "" if order or math.isnan(sweep.best) else f"{sweep.verdict}, {number(sweep.best)}"
-    return ", ".join(filter(None, (order, end))) or NOTHING
+    return ", ".join(filter(None, (order, end))) or DASH
 
 
 def error_words(row: Measurement | None, name: str) -> str:
     """The error of a run; its outcome if the run can't be compared; a dash without a run."""
     if row is None:
-        return NOTHING
+        return DASH
     return number(getattr(row, name)) if Outcome(row.outcome).comparable else str(row.outcome)
 
 
@@ -201,7 +201,7 @@ def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:
         best = min(usable, key=lambda row: row.angle, default=None)
         angle, step, cpu = (best.angle, best.step, best.cpu) if best else (NAN, NAN, NAN)
         sweep = verdicts[key]
-        order = f"{sweep.order:.1f} ({sweep.points})" if sweep.points >= 2 else NOTHING
+        order = f"{sweep.order:.1f} ({sweep.points})" if sweep.points >= 2 else DASH
         end = "rounding" if sweep.verdict is Verdict.ROUNDING else number(sweep.plateau)
         outcomes = ", ".join(dict.fromkeys(row.outcome for row in members))
         out.append([members[0].method, number(angle), step_words(step), milliseconds(cpu), order, end, outcomes])

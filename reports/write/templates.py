@@ -80,7 +80,7 @@ def inert_page(text: str) -> str:
 
 @cache
 def environment(folder: Path = TEMPLATES) -> Environment:
-    """An environment that raises an exception for an undefined name and prints MARK for an unknown number.
+    """An environment that raises an exception for an undefined name and prints UNKNOWN_MARK for an unknown number.
 
     Templates of another folder have the prefix "own/", so that none of them replaces our "base.md".
     """

@@ -1,8 +1,8 @@
 """Missing numbers in templates: a clause that lacks a number is left out, and the page is rendered all the same.
 
 A lookup without a row returns `UNMEASURED`, which replaces the row and each of its numbers: it is false, it is NaN, and
-each of its attributes is itself. Printed, it becomes MARK, as every NaN does. `{% filter if_measured %}` leaves out the
-text up to `{% endfilter %}` if it contains a mark; `without_marks` replaces the marks that remain by a text.
+each of its attributes is itself. Printed, it becomes UNKNOWN_MARK, as every NaN does. `{% filter if_measured %}` leaves
+out the text up to `{% endfilter %}` if it contains a mark; `without_marks` replaces the marks that remain by a text.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from typing import Any
 
 from reports.write import tables
 
-MARK = "\ue000"  # a private character of Unicode, which no text contains
+UNKNOWN_MARK = "\ue000"  # a private character of Unicode, which no text contains
 NOT_MEASURED = "(not measured)"
 # A line with nothing but a picture whose file is missing.
-MISSING_PICTURE = re.compile(rf"^!\[[^\n]*\]\({MARK}\)\n", re.MULTILINE)
+MISSING_PICTURE = re.compile(rf"^!\[[^\n]*\]\({UNKNOWN_MARK}\)\n", re.MULTILINE)
 
 
 class Unmeasured(float):
@@ -37,7 +37,7 @@ class Unmeasured(float):
         return self
 
     def __str__(self) -> str:
-        return MARK
+        return UNKNOWN_MARK
 
 
 UNMEASURED: Any = Unmeasured()
@@ -51,24 +51,24 @@ class MissingAsNaN(dict[Any, Any]):
 
 
 def marked(value: Any) -> Any:
-    """The value; MARK for None and NaN."""
-    return MARK if value is None or value != value else value
+    """The value; UNKNOWN_MARK for None and NaN."""
+    return UNKNOWN_MARK if value is None or value != value else value
 
 
 def if_measured(clause: str) -> str:
     """The clause; an empty text if one of its numbers is missing."""
-    return "" if MARK in clause else clause
+    return "" if UNKNOWN_MARK in clause else clause
 
 
 # Numbers in sentences, where a dash in place of an unknown number would be read as a sign.
-number = partial(tables.number, unknown=MARK)
-milliseconds = partial(tables.milliseconds, unknown=MARK)
-step = partial(tables.step_words, unknown=MARK)
+number = partial(tables.number, unknown=UNKNOWN_MARK)
+milliseconds = partial(tables.milliseconds, unknown=UNKNOWN_MARK)
+step = partial(tables.step_words, unknown=UNKNOWN_MARK)
 
 
 def formatted(pattern: str, *values: Any) -> str:
-    """The pattern of the % operator with these values; MARK if one is unknown."""
-    return MARK if any(marked(value) is MARK for value in values) else pattern % values
+    """The pattern of the % operator with these values; UNKNOWN_MARK if one is unknown."""
+    return UNKNOWN_MARK if any(marked(value) is UNKNOWN_MARK for value in values) else pattern % values
 
 
 FILTERS = {
@@ -82,4 +82,4 @@ FILTERS = {
 
 def without_marks(text: str) -> str:
     """The page without pictures whose files are missing, and with NOT_MEASURED for missing numbers."""
-    return MISSING_PICTURE.sub("", text).replace(MARK, NOT_MEASURED)
+    return MISSING_PICTURE.sub("", text).replace(UNKNOWN_MARK, NOT_MEASURED)

@@ -148,7 +148,7 @@ def test_a_motion_of_a_wrong_mechanism_is_told_apart():
     """A referee that could not fail would be none: with a bar a hundredth too long, no formula fits the bars' ends."""
     mechanism = referees.double_pendulum()
     length = next(mistake for mistake in mistakes(mechanism) if mistake.kind == "length")
-    motion = mistaken(REFEREES[-1], length, 1e-2).build(mechanism, referees.SAMPLE_SPACING)(referees.SAMPLE_COUNT, 1)
+    motion = mistaken(REFEREES[-1], length, 1e-2).build(mechanism, referees.WINDOW_SPACING)(referees.RUN_SAMPLES, 1)
     found = referees._pendulum(SampleWindow(motion.pose[-referees.POINTS :], motion.twist[-referees.POINTS :]))
     assert max(found[number].agreement for number in (23, 25)) > 1e-3
 

@@ -21,7 +21,7 @@ from reports.pages import findings as module
 from reports.pages.faults.page import OFFSETS, SCRIPTS
 from reports.pages.findings import (
     CPU_AXIS,
-    FINDINGS,
+    FINDING_PLANS,
     LINE_STYLES,
     STEP_AXIS,
     PlottedLine,
@@ -39,7 +39,7 @@ from reports.versions.table import ACCELERATION, Entry, released
 from reports.write.page_tables import COMPARED_STEP
 from reports.write.rows import Rows
 from reports.write.templates import anchor, headings, link
-from reports.write.unmeasured import MARK
+from reports.write.unmeasured import UNKNOWN_MARK
 from tests.committed_rows import RESULTS, answer_to, page_rows
 from tests.rows import falling
 
@@ -84,9 +84,9 @@ def changes(names):
             yield partial(map, partial(times, factor, step, name))
 
 
-@pytest.mark.parametrize("name", [name for name, plan in FINDINGS.items() if "rows" in plan])
+@pytest.mark.parametrize("name", [name for name, plan in FINDING_PLANS.items() if "rows" in plan])
 def test_every_claim_of_a_finding_can_be_contradicted_by_the_rows_of_one_method(name):
-    plan = FINDINGS[name]
+    plan = FINDING_PLANS[name]
     methods = {word: sources().rows.of(*which) for word, which in plan["rows"].items()}
 
     def contradicted(methods):
@@ -102,8 +102,8 @@ def test_every_claim_of_a_finding_can_be_contradicted_by_the_rows_of_one_method(
 
 def test_without_rows_findings_are_dropped_and_those_of_other_sources_stay():
     left = findings(changed(lambda row: None if row.scene == "free_four_bar" else row))
-    assert {each.name for each in left} == set(FINDINGS) - {"spring", "start", "exact"}
-    assert all(MARK not in each.title + each.text for each in left)
+    assert {each.name for each in left} == set(FINDING_PLANS) - {"spring", "start", "exact"}
+    assert all(UNKNOWN_MARK not in each.title + each.text for each in left)
     assert findings({}) == []
     assert {each.name for each in findings({VERSIONS: Material({})})} == OF_RELEASES - {"faults"}
     failed = findings(changed(lambda row: replace(row, outcome=Outcome.TORN)))

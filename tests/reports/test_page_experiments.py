@@ -28,7 +28,7 @@ from reports.model.page import Failure, Material
 from reports.model.tasks import Motion, trajectory_of
 from reports.pages import claims, common
 from reports.pages.centrodes import page as centrodes
-from reports.pages.engines.page import EXAMPLES, MATRIX, Capabilities, verdict
+from reports.pages.engines.page import ELEMENT_EXAMPLES, MATRIX, Capabilities, verdict
 from reports.pages.four_bar import page as four_bar
 from reports.pages.n_four_bar import page as n_four_bar
 from reports.pages.rolling import page as rolling
@@ -219,16 +219,18 @@ def test_an_experiment_without_its_section_of_text_is_refused(tmp_path):
 
 
 def test_the_table_of_engines_has_a_line_for_each_joint_and_force_and_the_judge_builds_all():
-    elements = {type(element) for example in EXAMPLES.values() for element in (*example.joints, *example.forces)}
+    elements = {
+        type(element) for example in ELEMENT_EXAMPLES.values() for element in (*example.joints, *example.forces)
+    }
     assert elements == {*JOINTS, *FORCES}
     lagrange = next(engine for engine in registry.VARIANTS if engine.name == "lagrange")
     answers = Capabilities(lagrange).run()
-    assert [answers[kind] for kind in EXAMPLES] == ["yes"] * len(EXAMPLES)
+    assert [answers[kind] for kind in ELEMENT_EXAMPLES] == ["yes"] * len(ELEMENT_EXAMPLES)
 
 
 def test_an_engine_lacks_an_element_only_if_its_documentation_is_named():
     built = {task.method.name: task.run() for task in MATRIX if not task.method.missing and task.method.build_time < 1}
-    for result in {str(answers[line]) for answers in built.values() for line in EXAMPLES}:
+    for result in {str(answers[line]) for answers in built.values() for line in ELEMENT_EXAMPLES}:
         refused = result not in ("yes", "by contact", "with code of ours")
         assert (verdict(result) == "**has none**") == ("https://" in result)
         assert (verdict(result) == "not built") == (refused and "https://" not in result)

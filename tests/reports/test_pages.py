@@ -33,7 +33,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_context
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task
-from reports.pages.engines.page import EXAMPLES
+from reports.pages.engines.page import ELEMENT_EXAMPLES
 from reports.pages.errata import page as referees
 from reports.pages.faults.page import Offsets
 from reports.pages.findings import findings
@@ -50,7 +50,7 @@ from reports.plots import theme
 from reports.run.store import Store
 from reports.write.experiments import observe
 from reports.write.templates import anchor, environment, headings
-from reports.write.unmeasured import FILTERS, MARK, NOT_MEASURED, UNMEASURED, MissingAsNaN, without_marks
+from reports.write.unmeasured import FILTERS, NOT_MEASURED, UNKNOWN_MARK, UNMEASURED, MissingAsNaN, without_marks
 from tests import ROOT
 from tests.committed_rows import RESULTS, answer_to, page_rows
 from tests.toys import Disc, Toy
@@ -100,7 +100,7 @@ def complaints(page: str, files: Mapping[str, str]) -> list[str]:
     """Defects of a page that a reader would notice."""
     text = prose(files[f"{page}.md"])
     sentences = re.sub(r"^\|.*$", "TABLE", text, flags=re.MULTILINE)
-    found = [f"{word} in the text" for word in ("{{", "{%", MARK, NOT_MEASURED) if word in text]
+    found = [f"{word} in the text" for word in ("{{", "{%", UNKNOWN_MARK, NOT_MEASURED) if word in text]
     found += [line for line in text.splitlines() if re.search(r"\b(nan|None(?! of)|Undefined|Unmeasured)\b", line)]
     for line in sentences.splitlines():
         if re.search(r"(^|[\s(])[,.;:)](\s|$)", line):
@@ -172,9 +172,9 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
     vanished: list[str] = []
 
     def kept(clause: str) -> str:
-        if MARK in clause and not any(words in clause for words in PLATEAU):
+        if UNKNOWN_MARK in clause and not any(words in clause for words in PLATEAU):
             vanished.append(clause)
-        return "" if MARK in clause else clause
+        return "" if UNKNOWN_MARK in clause else clause
 
     monkeypatch.setitem(FILTERS, "if_measured", kept)
     answers = {task: still(task) for task in all_tasks(page)}
@@ -267,7 +267,7 @@ def still(task: Task, lost: bool = False) -> Answer:
         case _:
             numbers = [*(quantity.name for quantity in QUANTITIES), "error", "expected", "found", "evaluations", "when"]
             values = dict.fromkeys(numbers, np.asarray(0.5)) | dict.fromkeys(("t", "with", "without"), np.ones(2))
-            values |= dict.fromkeys((*EXAMPLES, "reactions", "width", "version", "stopped"), "yes")
+            values |= dict.fromkeys((*ELEMENT_EXAMPLES, "reactions", "width", "version", "stopped"), "yes")
     if lost and isinstance(task, (Motion, referees.Refereed)):
         for name in ("pose", "twist"):
             values[name][len(values[name]) // 2 :] = np.nan

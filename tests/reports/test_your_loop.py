@@ -18,7 +18,7 @@ from pymunk.constraints import RotaryLimitJoint
 from engines.mujoco.writers import MJCF
 from engines.pymunk.written_script import SCRIPT
 from reference.scene import Scene
-from reports.pages.your_loop.experiments import STEPS_PER_SAMPLE, Fresh, draw, run_lines
+from reports.pages.your_loop.experiments import MILLISECONDS_PER_SAMPLE, Fresh, draw, run_lines
 from reports.pages.your_loop.linkages import LINKAGES
 from reports.pages.your_loop.page import (
     BUILT,
@@ -69,7 +69,7 @@ def in_mujoco(scene: Scene, text: str, pasted: str = "") -> float:
         return found
 
     assert model.opt.timestep == pytest.approx(STEP)
-    return error_of(scene, poses, lambda: mujoco.mj_step(model, data, nstep=STEPS_PER_SAMPLE))
+    return error_of(scene, poses, lambda: mujoco.mj_step(model, data, nstep=MILLISECONDS_PER_SAMPLE))
 
 
 def in_pymunk(scene: Scene, pasted: str) -> float:
@@ -81,7 +81,7 @@ def in_pymunk(scene: Scene, pasted: str) -> float:
     ordered = [by_name[body.name] for body in scene.mechanism().bodies]
 
     def advance() -> None:
-        for _ in range(STEPS_PER_SAMPLE):
+        for _ in range(MILLISECONDS_PER_SAMPLE):
             space.step(STEP)
 
     return error_of(scene, lambda: [(*body.position, body.angle) for body in ordered], advance)

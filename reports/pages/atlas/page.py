@@ -29,7 +29,7 @@ from reports.pages.atlas.subjects import MAPS, StabilityMap
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.columns import displayed_variant
-from reports.write.tables import NOTHING, markdown, number, step_words
+from reports.write.tables import DASH, markdown, number, step_words
 
 RESULTS = Path(__file__).parents[2] / "results"
 ERROR_BOUNDS = (math.inf, 1e-2, 1e-4)  # rad: the table has the largest step whose errors are below each of these
@@ -79,7 +79,7 @@ def largest_step(columns: Sequence[StoredColumn], bound: float) -> str:
 
     A cell that was not run has the error of the next larger step.
     """
-    largest = NOTHING
+    largest = DASH
     errors = [_errors_of_steps(column) for column in columns]
     for index, step in reversed(list(enumerate(columns[0].steps))):
         if not all(

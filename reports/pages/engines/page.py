@@ -60,7 +60,7 @@ _TURNS = (Term(None, "first", 1.0), Term(None, "second", 2.0))  # angle of the f
 _DOWN = (0.0, -10.0)
 # Line of the table -> a mechanism with this element, from the conformance checks or as small as possible. A test
 # demands an example of each class of joints and of force elements.
-EXAMPLES = {
+ELEMENT_EXAMPLES = {
     "hinge": WORLD["swinging bar"],
     "loop": WORLD["swinging parallelogram"],
     "drive": WORLD["driven crank"],
@@ -90,14 +90,14 @@ TOO_OLD = "this release lacks what our adapter calls"
 class Capabilities(BuildingTask):
     """The elements that an engine builds.
 
-    The values are YES, CONTACT, CODE or the reason of a refusal, by the lines of EXAMPLES; and `reactions` and `width`
-    from a run. A refusal comes from the engine's table of capabilities (`engines.capability`).
+    The values are YES, CONTACT, CODE or the reason of a refusal, by the lines of ELEMENT_EXAMPLES; and `reactions` and
+    `width` from a run. A refusal comes from the engine's table of capabilities (`engines.capability`).
     """
 
     what: ClassVar[str] = "what it builds"
 
     def run(self) -> Values:
-        values: dict[str, str] = {line: self._build(mechanism) for line, mechanism in EXAMPLES.items()}
+        values: dict[str, str] = {line: self._build(mechanism) for line, mechanism in ELEMENT_EXAMPLES.items()}
         run = self.method.build(WORLD["swinging bar"], BUILD_STEP)(4, 1)
         finite = [bool(np.isfinite(reaction).all()) for reaction in run.reaction]
         values["reactions"] = "yes" if all(finite) else "not at the start" if all(finite[1:]) else "no"
@@ -243,7 +243,7 @@ def comparable_error(row: Measurement | None, field: str = "angle") -> float:
 def matrix(answers: Mapping[Capabilities, Answer]) -> str:
     """A column for each engine with the elements that it builds; empty without answers."""
     engines = [task.method for task in answers]
-    body = [[line, *(verdict(str(answer.values[line])) for answer in answers.values())] for line in EXAMPLES]
+    body = [[line, *(verdict(str(answer.values[line])) for answer in answers.values())] for line in ELEMENT_EXAMPLES]
     body += [[line, *(str(answer.values[line]) for answer in answers.values())] for line in ("reactions", "width")]
     body.append(["version", *(engine_versions([engine]) for engine in engines)])
     return markdown(["", *(engine.name for engine in engines)], body, left=len(engines) + 1) if engines else ""
@@ -263,7 +263,7 @@ def refusals_of(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, 
     return [
         (task.method.name, line, verdict(reason), reason)
         for task, answer in answers.items()
-        for line in EXAMPLES
+        for line in ELEMENT_EXAMPLES
         if (reason := str(answer.values[line])) not in (YES, CONTACT, CODE)
     ]
 

@@ -42,8 +42,8 @@ from reports.write.tables import number
 REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 
 # s: the truncation error of the differences below (order eight) and their rounding are then far below engines' errors.
-SAMPLE_SPACING = 1e-3
-SAMPLE_COUNT = 300  # of a run; the last POINTS are used, well away from the start
+WINDOW_SPACING = 1e-3
+RUN_SAMPLES = 300  # of a run; the last POINTS are used, well away from the start
 # Weights of the first and second derivatives at the middle of nine points.
 FIRST_DERIVATIVE = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
 SECOND_DERIVATIVE = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
@@ -59,7 +59,7 @@ class SampleWindow:
 
     def change(self, values: Array) -> Array:
         """The time derivative [1/s] of values (POINTS, ...) at the middle sample."""
-        return np.tensordot(FIRST_DERIVATIVE, values, axes=1) / SAMPLE_SPACING
+        return np.tensordot(FIRST_DERIVATIVE, values, axes=1) / WINDOW_SPACING
 
 
 HILL, SLEIGH = RollingOnCircle(), ChaplyginSleigh()
@@ -87,7 +87,7 @@ def _pendulum(window: SampleWindow) -> dict[int, Values]:
     measured, turning = window.change(ends), window.change(window.twist[:, :, 2])
     angle, rate = window.pose[MIDDLE, :, 2] + math.pi / 2, window.twist[MIDDLE, :, 2]  # a bar's x axis points down it
     # The right-hand side of the note is phi1'' itself, so the second derivative of the angle decides.
-    twice = np.atleast_1d(SECOND_DERIVATIVE @ window.pose[:, 0, 2]) / SAMPLE_SPACING**2
+    twice = np.atleast_1d(SECOND_DERIVATIVE @ window.pose[:, 0, 2]) / WINDOW_SPACING**2
     values = {24: Values(rate[:1], turning[:1], twice)}
     for slip, (bar, printed) in errata.PENDULUM_SLIPS.items():
         state = errata.BarState(errata.BAR, float(angle[bar]), float(rate[bar]), float(turning[bar]))
@@ -161,7 +161,7 @@ class Refereed(OfMethod):
     seconds: ClassVar[float] = 0.2
 
     def run(self) -> Kept:
-        motion = self.method.build(QUESTIONS[self.question].mechanism(), SAMPLE_SPACING)(SAMPLE_COUNT, 1)
+        motion = self.method.build(QUESTIONS[self.question].mechanism(), WINDOW_SPACING)(RUN_SAMPLES, 1)
         return {"pose": motion.pose[-POINTS:], "twist": motion.twist[-POINTS:]}
 
 

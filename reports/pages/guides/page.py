@@ -10,24 +10,23 @@ from engines import Engine, lagrange, method_name, mujoco, pymunk
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model.cells import FULL, sweep_cells
 from reports.model.page import Material, Page
+from reports.pages.your_loop.experiments import MILLISECONDS_PER_SAMPLE
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.write.rows import lookups
 from reports.write.tables import markdown, number
 
 GUIDES = Path(__file__).parent
-LOOP = FreeFourBar()
-# Steps between samples: the scene's samples are 1e-2 s apart, so the step is a millisecond.
-STEPS_PER_SAMPLE = 10
+SETTINGS_LOOP = FreeFourBar()
 LOOP_METHODS: tuple[Engine, ...] = tuple(dict.fromkeys([*mujoco.METHODS, *pymunk.METHODS, *lagrange.VARIANTS]))
 
 
 def table(material: Material) -> str:
     """Errors, order, plateau and cost of each method that has a row at a millisecond; empty if none has."""
-    look_up = lookups(material, (LOOP,))
+    look_up = lookups(material, (SETTINGS_LOOP,))
     body = []
     for engine in LOOP_METHODS:
-        method = (LOOP.name, engine.name, engine.variant)
-        row, sweep = look_up["at"](*method, STEPS_PER_SAMPLE), look_up["sweep"](*method)
+        method = (SETTINGS_LOOP.name, engine.name, engine.variant)
+        row, sweep = look_up["at"](*method, MILLISECONDS_PER_SAMPLE), look_up["sweep"](*method)
         if row:
             numbers = (row.angle, sweep.order, sweep.plateau, row.reaction, 1e3 * row.cpu)
             body.append([method_name(engine), *map(number, numbers)])
@@ -37,7 +36,7 @@ def table(material: Material) -> str:
 
 def context(material: Material) -> Mapping[str, Any]:
     """The table, and the functions that look up single rows."""
-    return {**lookups(material, (LOOP,)), "table": table(material)}
+    return {**lookups(material, (SETTINGS_LOOP,)), "table": table(material)}
 
 
 PAGES = (
@@ -53,7 +52,7 @@ PAGES = (
         title="Settings",
         lesson="Which integrator, how stiff a loop, and how to read a reaction.",
         engines=LOOP_METHODS,
-        borrowed=sweep_cells((LOOP,), LOOP_METHODS, FULL),
+        borrowed=sweep_cells((SETTINGS_LOOP,), LOOP_METHODS, FULL),
         template=GUIDES / "settings.md",
         context=context,
     ),

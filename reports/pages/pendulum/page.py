@@ -17,7 +17,7 @@ from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, SpinningRing, TenLinks
 from reports.model.page import FEATURED, Failure, Material, Observation
 from reports.model.tasks import Task, Values
-from reports.pages.common import ALL, PUBLIC, cells, described, scene_page, sweeps
+from reports.pages.common import MAIN_METHODS, PUBLIC, cells, described, scene_page, sweeps
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.tables import markdown, number
@@ -56,7 +56,7 @@ def divergence(material: Material) -> list[Observation]:
     ]
 
 
-SPARSE_NEWTON = replace(
+PENDULUM_SPARSE_NEWTON = replace(
     mujoco.EXTENDED,
     variant="extended, free, sparse Newton",
     coordinates="free",
@@ -66,7 +66,7 @@ SPARSE_NEWTON = replace(
     jacobian="sparse",
 )
 RING_METHODS = (mujoco.DEFAULT, mujoco.TUNED, mujoco.EXTENDED, pymunk.TUNED)
-HEAVY_TIP_METHODS = (*ALL, sweeps(10), sweeps(1000), SPARSE_NEWTON)
+HEAVY_TIP_METHODS = (*MAIN_METHODS, sweeps(10), sweeps(1000), PENDULUM_SPARSE_NEWTON)
 
 
 def tip(ratio: float) -> LinkPendulum:
@@ -79,7 +79,7 @@ PHASE = cells(PointPendulum(), PUBLIC, (10, 50, 150)) + cells(
     PointPendulum(), (pymunk.EXTENDED, mujoco.EXTENDED), (10,)
 )
 
-BEYOND_HORIZON = cells(BEYOND, (*ALL, Lagrange("rk4", "projection")), (1, 10))
+BEYOND_HORIZON = cells(BEYOND, (*MAIN_METHODS, Lagrange("rk4", "projection")), (1, 10))
 HIGHER_ORDER = (mujoco.TUNED, pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 LARGE_STEPS = tuple(
     cell
@@ -110,8 +110,11 @@ PERIOD = PointPendulum().pendulum.period  # s
 
 
 # MuJoCo with bodies that are free in the plane and every joint an equality, to show the effect of coordinates alone.
-FREE_COORDINATES = (replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free"), SPARSE_NEWTON)
-FEATURED_VARIANTS = (*FEATURED, *(engine.variant for engine in FREE_COORDINATES))
+FREE_COORDINATE_METHODS = (
+    replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free"),
+    PENDULUM_SPARSE_NEWTON,
+)
+FEATURED_VARIANTS = (*FEATURED, *(engine.variant for engine in FREE_COORDINATE_METHODS))
 
 
 def figures(material: Material) -> dict[str, str]:
@@ -155,8 +158,8 @@ PAGE = scene_page(
     lesson="Open chains: in reduced coordinates the joints are exact; pymunk computes their impulses by iteration.",
     scenes=(BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks(), PointPendulum()),
     advised="pendulum_2",
-    engines=(*VARIANTS, *FREE_COORDINATES),
-    compared=lambda scene, engine: engine not in FREE_COORDINATES or scene.name != PointPendulum.name,
+    engines=(*VARIANTS, *FREE_COORDINATE_METHODS),
+    compared=lambda scene, engine: engine not in FREE_COORDINATE_METHODS or scene.name != PointPendulum.name,
     failures=described(
         __file__,
         Failure("Two thousand seconds of a point pendulum", cells=PHASE, columns=("angle", "rate", "gap", "energy")),

@@ -28,7 +28,7 @@ from reports.pages.pendulum import page as pendulum
 from reports.pages.scaling.banded import BandedChain
 from reports.plots.looks import look
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
-from reports.write.tables import NOTHING, markdown, number
+from reports.write.tables import DASH, markdown, number
 from reports.write.unmeasured import UNMEASURED
 
 
@@ -156,21 +156,21 @@ def fitted(series: MethodSeries) -> str:
     least, most = SIZES_OF_FIT.get(series.method, (0, math.inf))
     points = [point for point in series.points if least <= point.size <= most]
     slope, first, last = exponent([p.size for p in points], [p.step for p in points])
-    return f"{slope:.1f} ({first} to {last})" if last else NOTHING
+    return f"{slope:.1f} ({first} to {last})" if last else DASH
 
 
 FIXED_STEP = 5e-3  # s: about the largest at which Euler steps in reduced coordinates still follow 200 links
 SMALL_SIZES = (1, 3, 10, 20)
 LARGE_SIZES = (50, 100)
 COSTLY_SIZES = (300, 1000)  # a few steps only, for their cost
-SAMPLE_COUNT = 5
+PENDULUM_SAMPLES = 5
 FEW_STEPS = 4  # of expensive methods at costly sizes
 MORE_STEPS = 40  # of cheap methods, so that the first step, which fills caches, is a small part
 
 FREE_DEFAULT = replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free")
 # Without error estimates, whose runs would count as cost of a step.
 PLAIN = replace(mujoco.EXTENDED, coordinates="free", estimates=False)
-SPARSE_NEWTON = replace(
+SCALING_SPARSE_NEWTON = replace(
     PLAIN,
     variant="extended, free, sparse Newton, no estimate",
     solvers=("Newton",),
@@ -183,11 +183,11 @@ EULER, RUNGE_KUTTA = Lagrange("euler", "projection"), Lagrange("rk4", "projectio
 
 SCALING_METHODS: tuple[Engine, ...] = (
     *(pymunk.DEFAULT, pymunk.TUNED, pymunk.EXTENDED, mujoco.DEFAULT, mujoco.TUNED),
-    *(FREE_DEFAULT, SPARSE_NEWTON, PGS, EULER, RUNGE_KUTTA, BandedChain()),
+    *(FREE_DEFAULT, SCALING_SPARSE_NEWTON, PGS, EULER, RUNGE_KUTTA, BandedChain()),
 )
 # Methods that take seconds for a step of a longer chain.
 AT_MOST_300 = (pymunk.EXTENDED, PGS, EULER, RUNGE_KUTTA)
-CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SPARSE_NEWTON, BandedChain())
+CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SCALING_SPARSE_NEWTON, BandedChain())
 
 # With equal links an iteration leaves 1 - pi^2/(4 N^2) of the slowest mode; a step has to leave RESIDUAL of it.
 SWEEPS_OVER_SQUARE = -4 * log(RESIDUAL) / pi**2
@@ -214,8 +214,10 @@ def cells() -> tuple[Cell, ...]:
                 chosen.append(Cell(scene, engine, steps, "large", 1))
             else:
                 scene = LongPendulum(links)
-                every = round(scene.duration / FIXED_STEP) // SAMPLE_COUNT
-                chosen.append(Cell(scene, engine, every, "growth" if links in SMALL_SIZES else "large", SAMPLE_COUNT))
+                every = round(scene.duration / FIXED_STEP) // PENDULUM_SAMPLES
+                chosen.append(
+                    Cell(scene, engine, every, "growth" if links in SMALL_SIZES else "large", PENDULUM_SAMPLES)
+                )
     return tuple(chosen)
 
 
@@ -279,10 +281,10 @@ def context(material: Material) -> Mapping[str, Any]:
         "errors": error_table(found),
         "laws": {series.method: fitted(series) for series in found},
         "sweeps": {"over_square": SWEEPS_OVER_SQUARE, "capped": CAPPED, "most": MAX_ITERATIONS},
-        "crossing": crossing(by_method.get("mujoco tuned"), by_method.get(f"mujoco {SPARSE_NEWTON.variant}"))
+        "crossing": crossing(by_method.get("mujoco tuned"), by_method.get(f"mujoco {SCALING_SPARSE_NEWTON.variant}"))
         or UNMEASURED,
         "tree": {n: at(mujoco.TUNED, n) for n in (100, 1000)},
-        "sparse": {n: at(SPARSE_NEWTON, n) for n in (100, 1000)},
+        "sparse": {n: at(SCALING_SPARSE_NEWTON, n) for n in (100, 1000)},
         "swept": at(PGS, 100),
         "banded": {n: at(BandedChain(), n) for n in (100, 1000)},
         "impulses": {n: at(pymunk.DEFAULT, n) for n in (100, 1000)},

@@ -87,7 +87,7 @@ def slope() -> Figure:
 
 
 SKATE_SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinnedBody())
-SLEIGH = ChaplyginSleigh()
+SLEIGH_AHEAD = ChaplyginSleigh()
 
 BLADES = 7  # skates drawn along a path
 # Method -> (colour, dashes); only methods that are visibly off.
@@ -106,7 +106,7 @@ LISTED += ("mujoco friction blade",)
 
 def compared(scene: Scene, engine: Engine) -> bool:
     """Constructions of a skate are run on the sleigh alone; the sleigh backwards is an experiment of its own."""
-    return scene == SLEIGH or engine not in SKATE_CONSTRUCTIONS
+    return scene == SLEIGH_AHEAD or engine not in SKATE_CONSTRUCTIONS
 
 
 def skate_path(scene: ChaplyginSleigh, trajectory: Trajectory) -> np.ndarray:
@@ -119,7 +119,7 @@ def skate_path(scene: ChaplyginSleigh, trajectory: Trajectory) -> np.ndarray:
 PATHS = tuple(
     (title, scene, {name: Cell(scene, engine, 1) for name, engine in known(DRAWN_PATHS).items()})
     for title, scene in (
-        ("ahead for 3 s, steps of 10 ms", SLEIGH),
+        ("ahead for 3 s, steps of 10 ms", SLEIGH_AHEAD),
         ("backwards for 10 s: it turns round", SleighBackwards()),
     )
 )
@@ -172,7 +172,7 @@ def constructions(rows: Sequence[Measurement], enforcement: Mapping[str, str] | 
         built = Rows(row for row in members if row.outcome != Outcome.UNSUPPORTED)
         row = built.near(COMPARED_STEP)
         if not built:
-            lines.append((np.inf, [members[0].method, "can't be built", *[tables.NOTHING] * 4, ""]))
+            lines.append((np.inf, [members[0].method, "can't be built", *[tables.DASH] * 4, ""]))
         elif row:
             numbers = [tables.number(value) for value in (row.position, row.slip, row.energy, row.reaction)]
             if not Outcome(row.outcome).comparable:
@@ -219,9 +219,9 @@ def context(material: Material) -> Mapping[str, Any]:
     at: a method's row nearest to a step [s]. least: the row of an engine's variant with the least position error.
     finest: a method's row at the smallest step with a position error.
     """
-    rows = Rows(material.sweep((SLEIGH,)))
+    rows = Rows(material.sweep((SLEIGH_AHEAD,)))
     enforcement = enforcement_by_method(
-        cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep"
+        cell for cell in material.rows if cell.scene == SLEIGH_AHEAD and cell.purpose == "sweep"
     )
     return {
         "only": uniform_conditions(),
@@ -231,8 +231,8 @@ def context(material: Material) -> Mapping[str, Any]:
         "at": lambda method, step=COMPARED_STEP: rows.of(method=method).known("position").near(step),
         "least": lambda engine, variant: rows.of(method=f"{engine} {variant}").best("position"),
         "finest": lambda method: rows.of(method=method).known("position").finest(),
-        "sleigh": SLEIGH,
-        "end": SLEIGH.motion([SLEIGH.duration]).pose[0, 0],
+        "sleigh": SLEIGH_AHEAD,
+        "end": SLEIGH_AHEAD.motion([SLEIGH_AHEAD.duration]).pose[0, 0],
         "commutator": commutator_displacement(0.1, 0.1),
     }
 

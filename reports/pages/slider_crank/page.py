@@ -23,7 +23,7 @@ from reference.scenes.slider_crank import (
 )
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Task, Values
-from reports.pages.common import ALL, cells, described, read_answers, refusals, scene_page
+from reports.pages.common import MAIN_METHODS, cells, described, read_answers, refusals, scene_page
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.tables import number
@@ -114,16 +114,18 @@ PAGE = scene_page(
     engines=VARIANTS,
     failures=described(
         __file__,
-        Failure("The rod's end in a groove", cells=GROOVES + cells(RodEndInSlot(), ALL, (1, 10, 100))),
-        Failure("A groove in a moving lever", cells=LEVERS + cells(SlottedLever(), (*ALL, *SLOTS), (1, 10, 100))),
+        Failure("The rod's end in a groove", cells=GROOVES + cells(RodEndInSlot(), MAIN_METHODS, (1, 10, 100))),
+        Failure(
+            "A groove in a moving lever", cells=LEVERS + cells(SlottedLever(), (*MAIN_METHODS, *SLOTS), (1, 10, 100))
+        ),
         Failure(
             "A slider that has to start the crank, next to its dead centre",
-            cells=cells(SliderAtDeadCentre(), (*ALL, Lagrange("rk4", "projection")), (1, 10)),
+            cells=cells(SliderAtDeadCentre(), (*MAIN_METHODS, Lagrange("rk4", "projection")), (1, 10)),
             tasks=LEAVING,
             context=delay,
             observations=leaving,
         ),
-        Failure("A slider in its dead centre", cells=cells(SliderAtDeadCentre(angle=0.0), ALL, (1, 10))),
+        Failure("A slider in its dead centre", cells=cells(SliderAtDeadCentre(angle=0.0), MAIN_METHODS, (1, 10))),
         Failure("A slot out of reach", observations=out_of_reach),
     ),
     figures=figures,

@@ -23,7 +23,7 @@ from reports.pages.common import OfMethod
 from reports.pages.your_loop.linkages import LINKAGES
 
 PAGE_STEP = 1e-3  # s
-STEPS_PER_SAMPLE = 10
+MILLISECONDS_PER_SAMPLE = 10  # samples of the scenes are 1e-2 s apart
 # The seed of the draw is the hash of the last commit before its code was written: the mechanisms were not selected, and
 # each run draws the same.
 COMMIT = "007b1fa1"
@@ -137,7 +137,7 @@ class BeforeAndAfter(Task):
             for step in range(round(GAP_DURATION / LINKAGE_STEP)):
                 space.step(LINKAGE_STEP)
                 worst[index] = max(worst[index], *gaps(space))
-                if (step + 1) % STEPS_PER_SAMPLE == 0:
+                if (step + 1) % MILLISECONDS_PER_SAMPLE == 0:
                     angles[index].append([body.angle for body in space.bodies])
         compared = [nan, nan] if touched else self._angle_errors(np.array(angles))
         return {
@@ -151,7 +151,7 @@ class BeforeAndAfter(Task):
         space = LINKAGES[self.linkage]()
         try:
             reading = read(space, LINKAGE_STEP)
-            spacing = STEPS_PER_SAMPLE * LINKAGE_STEP
+            spacing = MILLISECONDS_PER_SAMPLE * LINKAGE_STEP
             ideal = judged(reading.mechanism, round(ANGLE_DURATION / spacing), spacing)
         except (InvalidMechanism, Unsupported):
             return [nan, nan]

@@ -15,11 +15,11 @@ from reference.scenes.catalogue import scene
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.pages.your_loop.experiments import COMMIT, COUNT, STEPS_PER_SAMPLE, BeforeAndAfter, Fresh
+from reports.pages.your_loop.experiments import COMMIT, COUNT, MILLISECONDS_PER_SAMPLE, BeforeAndAfter, Fresh
 from reports.pages.your_loop.linkages import LINKAGES
 from reports.versions.table import released
 from reports.write.page_tables import program
-from reports.write.tables import NOTHING, error_words, markdown, milliseconds, number
+from reports.write.tables import DASH, error_words, markdown, milliseconds, number
 from reports.write.unmeasured import UNMEASURED
 
 LINE_FILES = Path(__file__).parent / "lines"
@@ -71,7 +71,7 @@ PYMUNK_CASES = (
 def cell(case: PastedCase, engine: Engine) -> Cell:
     """The cell of a case at the page's only step; beside the grid if no other page runs the method in this scene."""
     beside = engine == pymunk.LEAPFROG and case.scene != LOOP
-    return Cell(case.scene, engine, STEPS_PER_SAMPLE, "beside" if beside else "sweep")
+    return Cell(case.scene, engine, MILLISECONDS_PER_SAMPLE, "beside" if beside else "sweep")
 
 
 PASTED_CELLS = tuple(cell(case, engine) for case in (*MUJOCO_CASES, *PYMUNK_CASES) for engine in case.engines)
@@ -90,7 +90,7 @@ def table(material: Material, cases: tuple[PastedCase, ...]) -> str:
         if case.before is None:
             spreads.insert(0, "*no such joint*")
         example = " → ".join(error_words(row, case.quantity) for row in rows)
-        costs = " → ".join(NOTHING if row is None else milliseconds(row.cpu) for row in rows)
+        costs = " → ".join(DASH if row is None else milliseconds(row.cpu) for row in rows)
         body.append([f"[{case.title}]({case.page}.md), {quantity(case.quantity).unit}", *spreads, example, costs])
     known = any(each in material.rows for each in PASTED_CELLS)
     head = ["at 1 ms", "as shipped", "with the lines", "the page's example", "CPU of the example [ms/s]"]
@@ -109,7 +109,7 @@ def spread(material: Material, task: Fresh) -> list[float]:
 def spread_words(material: Material, task: Fresh) -> str:
     """'1e-3 (1e-5 to 0.2)', or a dash if they were not run."""
     median, least, largest = (number(value, infinite="gave up") for value in spread(material, task))
-    return NOTHING if median == NOTHING else f"{median} ({least} to {largest})"
+    return DASH if median == DASH else f"{median} ({least} to {largest})"
 
 
 def before_and_after(material: Material) -> str:
@@ -120,10 +120,10 @@ def before_and_after(material: Material) -> str:
         if answer is not None:
             count = round(answer.number("iterations"))
             gap, angle = (
-                " → ".join(number(value, infinite=NOTHING) for value in answer.array(name).tolist())
+                " → ".join(number(value, infinite=DASH) for value in answer.array(name).tolist())
                 for name in ("gap", "angle")
             )
-            angle = NOTHING if angle == f"{NOTHING} → {NOTHING}" else angle
+            angle = DASH if angle == f"{DASH} → {DASH}" else angle
             body.append([task.linkage, str(count) if count else "as shipped", gap, angle])
     return markdown(["linkage", "iterations", "largest gap, px", "angle error, rad"], body, left=1) if body else ""
 
