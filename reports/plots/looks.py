@@ -8,7 +8,7 @@ from typing import Any
 
 from engines import registry
 from reports.model.outcomes import Outcome
-from reports.plots.theme import LIGHT, SERIES, Theme
+from reports.plots.theme import LIGHT, SERIES
 
 # One more mark than colours, so that the first 72 families have different pairs of colour and mark.
 MARKS = ("o", "s", "^", "D", "P", "*", "p", "h", "<")
@@ -40,12 +40,12 @@ def mark(family: str, engines: Iterable[str] = ()) -> str:
     return MARKS[_palette_index(family, engines) % len(MARKS)]
 
 
-def colour(engine: str, theme: Theme = LIGHT, engines: Iterable[str] = ()) -> str:
+def colour(engine: str, engines: Iterable[str] = ()) -> str:
     """The colour of an engine's family."""
-    return getattr(theme, role(family_of(engine), engines))
+    return getattr(LIGHT, role(family_of(engine), engines))
 
 
-def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: Theme = LIGHT) -> dict[str, Any]:
+def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]]) -> dict[str, Any]:
     """Line and mark of one method; `shown`: the variants in the same chart, by engine.
 
     The family determines colour and mark, the variant determines line and filling, so that methods differ without
@@ -60,14 +60,14 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: T
     others = [known for known in dict.fromkeys([*everywhere, *methods]) if known not in usual]
     method = (engine, variant)
     index = usual.index(method) if method in usual else first + others.index(method)
-    paint, fill = colour(engine, theme, shown), FILLS[index % len(FILLS)]
+    paint, fill = colour(engine, shown), FILLS[index % len(FILLS)]
     return {
         "color": paint,
         "linestyle": DASHES[index % len(DASHES)],
         "marker": mark(family, shown),
         "fillstyle": "full" if fill == "empty" else fill,
-        "markerfacecolor": theme.paper if fill == "empty" else paint,
-        "markerfacecoloralt": theme.paper,
+        "markerfacecolor": LIGHT.paper if fill == "empty" else paint,
+        "markerfacecoloralt": LIGHT.paper,
         "markeredgecolor": paint,
         "markersize": 5.5,
         "linewidth": 1.5,
@@ -90,6 +90,6 @@ def shade(error: float) -> str:
     return next((role for bound, role in SHADES if error < bound), "middling")
 
 
-def outcome_colour(outcome: Outcome, theme: Theme) -> str:
+def outcome_colour(outcome: Outcome) -> str:
     """The colour of a cell with this outcome, where it is not coloured by its error (`shade`)."""
-    return getattr(theme, outcome.colour)
+    return getattr(LIGHT, outcome.colour)

@@ -214,7 +214,6 @@ def remarks_of(line: EngineLine, column: Column) -> str:
 def _table(
     lines: Sequence[EngineLine],
     format_rows: FormatCell,
-    folder: str,
     remarks: Mapping[tuple[str, Column], str] = MappingProxyType({}),
 ) -> str:
     """A line a scene, a column for each engine and kind of method; `remarks` are appended to the headers."""
@@ -229,7 +228,7 @@ def _table(
     for key in dict.fromkeys((line.page.name, line.scene) for line in lines):
         of_scene = {line.engine: line for line in lines if (line.page.name, line.scene) == key}
         first = next(iter(of_scene.values()))
-        title = f"[{first.scene.name.replace('_', ' ')}]({folder}{first.page.name}.md), {quantity(first.quantity).unit}"
+        title = f"[{first.scene.name.replace('_', ' ')}]({first.page.name}.md), {quantity(first.quantity).unit}"
         cells = (
             _format_cell(of_scene[engine], column, format_rows) if engine in of_scene else DASH
             for engine, column in heads
@@ -267,10 +266,10 @@ def error_by_cost(methods: Iterable[Sequence[Measurement]], name: str) -> list[t
     return [pair for index, pair in enumerate(pairs) if index in (0, len(pairs) - 1) or pair[1] < pairs[index - 1][1]]
 
 
-def equal_cost(entries: Iterable[PageRows], folder: str = "") -> str:
+def equal_cost(entries: Iterable[PageRows]) -> str:
     """One table of all engines: the least error of each column within CPU_BUDGET; empty without rows."""
     lines = _swept(entries)
-    return _table(lines, within_budget, folder) if lines else ""
+    return _table(lines, within_budget) if lines else ""
 
 
 def within_budget(line: EngineLine, column: Column) -> str:
@@ -284,7 +283,7 @@ def within_budget(line: EngineLine, column: Column) -> str:
     return f"**{', '.join(failed)}**" if failed else SMALLER_STEP_FAILS if cheap else TOO_SLOW
 
 
-def equal_error(entries: Iterable[PageRows], folder: str = "") -> dict[str, str]:
+def equal_error(entries: Iterable[PageRows]) -> dict[str, str]:
     """Engine -> its table: the least CPU time [ms/s] for an error below each of TARGETS."""
 
     def least_costs(line: EngineLine, column: Column) -> str:
@@ -297,16 +296,14 @@ def equal_error(entries: Iterable[PageRows], folder: str = "") -> dict[str, str]
         ]
         return ", ".join(map(milliseconds, costs)) if any(map(math.isfinite, costs)) else DASH
 
-    return {engine: _table(lines, least_costs, folder) for engine, lines in _by_engine(_swept(entries))}
+    return {engine: _table(lines, least_costs) for engine, lines in _by_engine(_swept(entries))}
 
 
 def _swept(entries: Iterable[PageRows]) -> list[EngineLine]:
     return engine_lines((page, [row for row in rows if row.purpose == "sweep"]) for page, rows in entries)
 
 
-def equal_step(
-    entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_STEPS, folder: str = ""
-) -> dict[str, str]:
+def equal_step(entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_STEPS) -> dict[str, str]:
     """Engine -> its table: the errors at these steps [s], given by name. No cell has a time.
 
     The number of runs of a method is in the header where it is the same for all scenes.
@@ -324,7 +321,7 @@ def equal_step(
         return "; ".join(filter(None, (_errors_at_steps(line, engine, rows, steps), in_cell)))
 
     remarks = {key: f" ({description})" for key, description in same_runs.items() if description}
-    return {engine: _table(of_engine, errors_at_steps, folder, remarks) for engine, of_engine in _by_engine(lines)}
+    return {engine: _table(of_engine, errors_at_steps, remarks) for engine, of_engine in _by_engine(lines)}
 
 
 def _errors_at_steps(line: EngineLine, engine: Engine, rows: Sequence[Measurement], steps: Mapping[str, float]) -> str:

@@ -181,7 +181,7 @@ def test_regions_lie_where_the_cells_of_their_outcome_are():
         for row, end in enumerate(page.regions_of_steps(own)[::-1]):
             middle = math.sqrt(across[column] * across[column + 1]), math.sqrt(up[row] * up[row + 1])
             colours = [to_hex(p.get_facecolor()) for p in painted if p.get_path().contains_point(middle)]
-            assert colours[0] == (outcome_colour(end, LIGHT) if isinstance(end, Outcome) else getattr(LIGHT, end))
+            assert colours[0] == (outcome_colour(end) if isinstance(end, Outcome) else getattr(LIGHT, end))
     assert edges([1.0, 2.0, 3.0], True).tolist() == [0.5, 1.5, 2.5, 3.5]
 
 

@@ -193,7 +193,7 @@ def printed() -> Iterator[str]:
         for j, engine in enumerate(("pymunk", "mujoco"))
         for i, variant in enumerate(VARIANTS)
     ]
-    yield from equal_step([(page_of(scenes=(Disc(), OtherDisc())), rows)], {"usual": 1e-2}, "folder/").values()
+    yield from equal_step([(page_of(scenes=(Disc(), OtherDisc())), rows)], {"usual": 1e-2}).values()
     yield "## No such joint: the engine's own columns are empty where our code alone holds the joint"
     naive = (
         HeldBy("default", by="ours"),

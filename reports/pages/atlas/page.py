@@ -190,7 +190,7 @@ def _legend_entries(
         handles.append(Rectangle((0, 0), 1, 1, facecolor=getattr(LIGHT, role), edgecolor=LIGHT.quiet))
         labels.append(SHADE_NAMES[role])
     for outcome in (outcome for outcome in Outcome if outcome in regions):
-        face = Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, LIGHT), edgecolor=LIGHT.quiet)
+        face = Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome), edgecolor=LIGHT.quiet)
         # Two patches: in a single one the colour of the hatch would not follow the reader's colour scheme.
         hatch = Rectangle((0, 0), 1, 1, fill=False, edgecolor=LIGHT.quiet, hatch=outcome.hatch or None)
         handles.append((face, hatch))
@@ -236,7 +236,7 @@ def _draw_regions(panel: Axes, columns: Sequence[StoredColumn], whole: bool) -> 
         corners = [[(a, c), (b, c), (b, d), (a, d), (a, c)] for a, b, c, d in boxes]
         codes = [Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY] * len(boxes)
         path = Outline(np.array(corners).reshape(-1, 2), codes)
-        face = outcome_colour(region, LIGHT) if isinstance(region, Outcome) else getattr(LIGHT, region)
+        face = outcome_colour(region) if isinstance(region, Outcome) else getattr(LIGHT, region)
         # A thin line of the same colour closes the seams between columns.
         panel.add_patch(PathPatch(path, facecolor=face, edgecolor=face, linewidth=0.4))
         if isinstance(region, Outcome) and region.hatch:

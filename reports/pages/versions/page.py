@@ -60,7 +60,7 @@ def _look(entry: Entry) -> tuple[str, str]:
     """(colour, text) of a cell. A failure has a letter and no hatch, which would make the letter unreadable."""
     if not entry.comparable:
         outcome = Outcome(entry.outcome)
-        return outcome_colour(outcome, LIGHT), outcome.letter
+        return outcome_colour(outcome), outcome.letter
     power = math.floor(math.log10(entry.error)) if entry.error > 0 and math.isfinite(entry.error) else None
     return getattr(LIGHT, shade(entry.error)), "0" if power is None else f"{power}"
 
@@ -77,7 +77,7 @@ def _legend(figure: Figure, entries: Sequence[Entry]) -> None:
     for outcome in Outcome:
         if any(not entry.comparable and entry.outcome == outcome for entry in entries):
             label = "our adapter builds none" if outcome is Outcome.UNSUPPORTED else outcome
-            colours[f"{outcome.letter}  {label}"] = outcome_colour(outcome, LIGHT)
+            colours[f"{outcome.letter}  {label}"] = outcome_colour(outcome)
     patches = [Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor=LIGHT.quiet) for colour in colours.values()]
     figure.legend(patches, list(colours), loc="outside lower center", ncols=4)
 
