@@ -1,1 +1,1 @@
-"""Rows and poses to pictures; nothing here knows a page."""
+"""Pictures of rows and poses; these modules do not depend on pages."""

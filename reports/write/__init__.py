@@ -1,1 +1,1 @@
-"""Rows to words: tables, numbers, templates."""
+"""Rows as text: numbers, tables, CSV files, templates."""

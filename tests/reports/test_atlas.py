@@ -67,7 +67,7 @@ def test_every_map_has_scenes_steps_and_a_frequency_over_its_whole_range():
             assert 0 < subject.frequency(value) < math.inf
 
 
-def test_lines_of_the_map_are_rates_that_closed_forms_and_fine_grids_give():
+def test_frequencies_of_maps_agree_with_closed_forms_and_fine_grids():
     # The squared frequencies of two equal bars are (3 +- 6/sqrt(7)) g/l, that of one bar is 3/2 g/l.
     assert stiffest_hanging(LinkPendulum(links=1)) == pytest.approx(math.sqrt(1.5 * 9.81), rel=1e-12)
     two = LinkPendulum(links=2, length=0.7)
@@ -96,7 +96,7 @@ class Soft:
         return Regularisation(stiffness, 1.0, self.compliance, (True,) * mechanism.row_count, self.complete)
 
 
-def test_softness_gives_where_the_gap_of_the_weight_is_a_twentieth_of_the_length():
+def test_the_tearing_step_is_where_the_weight_opens_the_joint_by_the_bound():
     """The disc turns about its centre: the pin carries its weight, 10 m/s^2, and needs no other acceleration."""
     scene, mechanism = Disc(), Disc().mechanism()
     limit = 10 * 0.1 / (TORN * mechanism.length_scale)
@@ -111,7 +111,7 @@ def test_softness_gives_where_the_gap_of_the_weight_is_a_twentieth_of_the_length
     assert gives(Soft(1.0, 0.0, complete=False)) == math.inf
 
 
-def test_softness_without_the_velocity_term_gives_where_the_centripetal_acceleration_opens_the_joint():
+def test_without_the_velocity_term_the_centripetal_acceleration_determines_the_tearing_step():
     """A bar turns about its pin; without gravity its middle has rate^2 l/2, which rows without the term lack."""
     scene = BarPendulum(gravity=1e-9, angle=0.0, rate=2.0, duration=1.0)
     mechanism = scene.mechanism()
@@ -145,7 +145,7 @@ def test_borders_are_as_sharp_as_if_every_point_had_been_run():
     assert drawn_of("S", 4) == ("S", "S")
 
 
-def test_a_column_keeps_errors_of_answers_and_an_abort_costs_its_own_cells():
+def test_a_stored_column_has_errors_of_finished_runs_and_an_abort_affects_its_own_cells_only():
     steps = tuple((10, every) for every in range(1, 6))
     columns = [MapColumn(TOYS, 2.0, Disc(), engine, steps) for engine in (Toy(), FailingToy("abort"))]
     rows = run_columns(columns, lambda cells: dict(run_items(cells, workers=1)), 4)
@@ -201,7 +201,7 @@ def test_the_largest_step_is_below_its_bound_at_every_value_and_smaller_step():
     )
 
 
-def test_the_page_is_written_without_any_part_and_with_each(monkeypatch):
+def test_the_page_is_rendered_with_and_without_maps(monkeypatch):
     def text() -> str:
         files = render_page(page.PAGE, Material({}), "crosscheck report")
         assert set(files) - {"atlas.md"} == {f"atlas_{name}.svg" for name in {each.name for each in MAPS} & shown}
@@ -219,7 +219,7 @@ def test_the_page_is_written_without_any_part_and_with_each(monkeypatch):
         assert words in text()
 
 
-def test_the_command_maps_writes_and_goes_on(monkeypatch, tmp_path, capsys, at_home):
+def test_the_command_writes_its_file_and_continues_an_earlier_run(monkeypatch, tmp_path, capsys, at_home):
     monkeypatch.chdir(tmp_path)
     words = ("atlas", "--scenes", "length", "--points", "3", "--workers", "1")
     assert call(*words) == FINE

@@ -132,7 +132,7 @@ def planes() -> Figure:
     return paths([first, second], columns=2)
 
 
-def test_each_chart_draws_its_numbers_in_its_panel_by_the_look_of_its_method(golden):
+def test_each_chart_has_its_numbers_with_the_look_of_their_method(golden):
     found = {
         "Error against CPU time": charts.work_precision(rows(), featured),
         "All methods as lines": charts.work_precision(rows()),
@@ -162,7 +162,7 @@ def test_a_series_never_runs_backwards_in_cpu_time():
     assert charts.forwards(plain) == plain
 
 
-def test_any_number_of_families_are_told_apart_and_those_of_the_registry_keep_theirs():
+def test_families_have_different_looks_and_registered_ones_never_change():
     strangers = [f"engine {number:02}" for number in range(60)]
     pairs = {name: (families.role(name, strangers), families.mark(name, strangers)) for name in ("mujoco", *strangers)}
     assert len(set(pairs.values())) == len(pairs)
@@ -216,7 +216,7 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
     assert points(missed)[20][1] > 0.1
 
 
-def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slopes_they_name():
+def test_the_band_ends_at_rounding_and_guides_have_their_slopes():
     errors = falling("pymunk default", (1e-2, 1e-3, 1e-4, 1e-5), "reaction")
     [panel] = charts.error_against_step(errors, field="reaction").axes
     [band] = panel.patches

@@ -62,7 +62,7 @@ def documented(name: str) -> list[str]:
 
 
 @pytest.mark.parametrize("name", sorted(scripts()))
-def test_a_script_prints_what_its_document_says(name):
+def test_the_output_of_a_script_agrees_with_its_document(name):
     if name.startswith("mjx"):  # it compiles for seconds
         assert all(re.search(r"expected|step", output) for output in documented(name))
         return
@@ -89,7 +89,7 @@ def test_a_groove_drives_the_wrong_velocity_to_zero():
         assert measured_across(offset) == pytest.approx(predicted_across(offset), rel=1e-12)
 
 
-def test_a_fault_is_right_only_where_it_was_mended():
+def test_a_fault_is_right_only_in_releases_that_corrected_it():
     for name, task in SCRIPTS.items():
         answer = answer_to(task)
         if answer.finished:
@@ -126,7 +126,7 @@ def test_the_correction_is_the_derivative_and_the_printed_formula_is_not():
         assert values.miss > LEAST.get(number, 0.1), number
 
 
-def test_the_formulas_that_engines_rule_on_are_those_of_the_scripts():
+def test_engines_check_the_formulas_of_the_scripts():
     by_number = {erratum.number: erratum.values for erratum in ERRATA}
     for number, (bar, printed) in errata.PENDULUM_SLIPS.items():
         state = errata.BarState(errata.BAR, errata.PHI[bar], errata.PHI_RATE[bar], errata.PHI_ACCELERATION[bar])
@@ -134,7 +134,7 @@ def test_the_formulas_that_engines_rule_on_are_those_of_the_scripts():
         assert errata.right(state) == pytest.approx(by_number[number].right, abs=1e-12), number
 
 
-def test_several_engines_rule_for_each_right_formula_and_against_the_printed_one(ruled):
+def test_several_engines_confirm_each_right_formula_and_contradict_the_printed_one(ruled):
     for number in (CONFIRMED, *(slip.number for slip in ERRATA)):
         of_slip = [ruling for ruling in ruled if ruling.number == number]
         assert len({ruling.method.split()[0] for ruling in of_slip}) >= 2, number
@@ -144,7 +144,7 @@ def test_several_engines_rule_for_each_right_formula_and_against_the_printed_one
         assert number == CONFIRMED or min(ruling.values.miss for ruling in of_slip) > LEAST.get(number, 0.1), number
 
 
-def test_a_motion_of_a_wrong_mechanism_is_told_apart():
+def test_the_motion_of_a_wrong_mechanism_contradicts_the_right_formula():
     """A referee that could not fail would be none: with a bar a hundredth too long, no formula fits the bars' ends."""
     mechanism = referees.double_pendulum()
     length = next(mistake for mistake in mistakes(mechanism) if mistake.kind == "length")
@@ -153,7 +153,7 @@ def test_a_motion_of_a_wrong_mechanism_is_told_apart():
     assert max(found[number].agreement for number in (23, 25)) > 1e-3
 
 
-def test_a_referee_that_fails_is_named_and_the_others_rule():
+def test_an_engine_that_fails_is_reported_and_the_others_decide():
     first, other = TASKS[0], TASKS[-1]
     aborted = Answer(Outcome.ABORTED, "no such thing")
     ruled, lost = rulings([(first, aborted), (other, answer_to(other)), (other, Answer(Outcome.UNSUPPORTED))])
@@ -164,7 +164,7 @@ def test_a_referee_that_fails_is_named_and_the_others_rule():
     assert lost == ["pymunk extended where a disc rolls off a round hill: its motion is not finite"]
 
 
-def test_a_verdict_has_how_far_each_formula_misses_the_derivative_and_engines():
+def test_a_verdict_has_the_errors_of_both_formulas_against_derivative_and_engines():
     erratum = ERRATA[0]
     computed = Values(np.array([3.0]), np.array([1.0]), np.array([1.25]))
     measured = [Values(np.array([3.0]), np.array([1.0]), np.array([value])) for value in (1.5, 1.4)]

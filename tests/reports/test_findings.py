@@ -145,7 +145,7 @@ def test_a_findings_picture_has_its_points_and_its_lines_differ_without_colours(
     assert [x for x, _ in dear.points] == pytest.approx([1.0, 10.0])  # ms a simulated second: `falling` costs step^-1
 
 
-def test_every_symptom_leads_to_a_section_that_is_there():
+def test_every_symptom_has_a_link_to_an_existing_section():
     files = {path.name: path.read_text(encoding="utf-8") for path in RESULTS.glob("*.md")}
     files |= render_page(YOUR_LOOP, Material({}), "the command")
     assert len(symptoms()) > 10

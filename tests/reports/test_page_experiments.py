@@ -46,7 +46,7 @@ def row(scene, engine, every: int, samples: int | None = None) -> Measurement:
 # --- the truth of scenes made for failure ---
 
 
-def test_a_scene_that_can_not_be_is_refused():
+def test_an_impossible_scene_is_refused():
     two = ((0.5, 0.0), (-0.5, 0.0))
     for why, build in (
         ("links is 2", lambda: SpinningRing(links=2)),
@@ -60,7 +60,7 @@ def test_a_scene_that_can_not_be_is_refused():
             build()
 
 
-def test_a_square_stands_on_its_corner_when_energy_says_and_every_method_stops_there():
+def test_a_square_reaches_its_corner_at_the_time_of_energy_conservation_and_methods_stop_there():
     scene = SquareOnCatenaries()
     # A stage of the last step lies beyond the corner: that step is taken shorter.
     corner = scene.motion([scene.corner * (1 - 1e-9)])
@@ -76,12 +76,12 @@ def test_a_square_stands_on_its_corner_when_energy_says_and_every_method_stops_t
         assert math.isnan(found.angle) or found.angle < 1e-3
 
 
-def test_forces_that_motion_does_not_determine_are_left_out_of_the_gears_errors():
+def test_errors_of_the_gears_leave_out_undetermined_forces():
     assert row(EllipticGears(), mujoco.EXTENDED, 10).reaction < 1e-2
     assert np.isnan(EllipticGears().motion([0.0]).reaction).any()
 
 
-def test_the_centrodes_round_trip_and_rate_are_exact_and_wrong_curves_are_not():
+def test_round_trip_and_rate_of_centrodes_are_exact_for_the_right_curves_only():
     _, curves = centrodes.exact()
     # Splines of degree 7 at 400 points over 2 rad: the error of the curves is 1e-10, that of the motion below 1e-8.
     assert max(centrodes.round_trip(curves), centrodes.agreement(curves)) < 1e-8
@@ -99,7 +99,7 @@ SKATE = (Path(skate.__file__).parent / "page.md").read_text(encoding="utf-8")
 @pytest.mark.parametrize(
     ("program", "bound"), list(zip(re.findall(r"```python\n(.*?)```", SKATE, re.DOTALL), (1e-6, 1e-10), strict=True))
 )
-def test_the_skates_programs_are_as_exact_as_the_page_says(program, bound):
+def test_programs_of_the_skate_have_the_accuracy_that_the_page_states(program, bound):
     names: dict = {}
     exec(compile(program, "skate.md", "exec"), names)
     pose = names["data"].qpos + np.array([0.5, 0.0, 0.0])  # coordinates count from where the body starts
@@ -108,7 +108,7 @@ def test_the_skates_programs_are_as_exact_as_the_page_says(program, bound):
     assert error > bound / 100 or bound == 1e-10  # the exact one ends in rounding
 
 
-def test_a_comparison_stops_where_ideal_rolling_is_no_longer_possible_and_a_reset_after_that_does_not_count():
+def test_a_comparison_ends_with_ideal_rolling_and_ignores_a_later_reset():
     scene, flat = RollingOnCircle(), RollingEllipse()
     found = row(scene, mujoco.TUNED, 100)
     assert Outcome(found.outcome).comparable
@@ -122,7 +122,7 @@ def test_a_comparison_stops_where_ideal_rolling_is_no_longer_possible_and_a_rese
     assert stopped_where_it_ends(flat, other) == (other, "")
 
 
-def test_a_contact_is_absent_in_the_samples_in_which_it_carries_nothing():
+def test_a_contact_is_absent_at_samples_without_a_normal_force():
     cell = Cell(RollingOnCircle(), mujoco.EXTENDED, 10)
     truth = cell.scene.motion(np.linspace(0, cell.scene.comparable_until, 11))
     assert rolling.absent_contact(cell, truth) == 0.0
@@ -134,14 +134,14 @@ def test_a_contact_is_absent_in_the_samples_in_which_it_carries_nothing():
 
 
 @pytest.mark.parametrize("page", [four_bar, slider_crank, n_four_bar], ids=lambda page: page.PAGE.name)
-def test_a_pages_observations_are_computed_and_have_numbers(page):
+def test_observations_of_a_page_have_finite_numbers(page):
     material = Material({}, {task: answer_to(task) for failure in page.PAGE.failures for task in failure.tasks})
     lines = [seen for failure in page.PAGE.failures if failure.observations for seen in failure.observations(material)]
     assert lines
     assert all(seen.outcome and "nan" not in seen.outcome for seen in lines)
 
 
-def test_what_is_read_from_motions_of_skates_and_wheels_agrees_with_the_reference():
+def test_observations_on_skates_and_wheels_agree_with_the_reference():
     scene = SleighBackwards()
     t = np.linspace(0, scene.duration, scene.samples + 1)
     rate = scene.motion(t).twist[:, 0, 2]
@@ -183,7 +183,7 @@ FAIL = (
 )
 
 
-def test_a_claim_that_rows_contradict_or_do_not_have_is_named():
+def test_a_claim_that_rows_contradict_or_lack_is_reported():
     cells = [replace(SETS, every=every) for every in range(1, 7)]
     failure = Failure("Falls", cells=tuple(cells), claims=(*HOLD, *FAIL), context=lambda material: {"times": 4e-2})
     page = replace(four_bar.PAGE, name="toy", failures=(failure,))
@@ -199,7 +199,7 @@ def test_a_known_deviation_of_rounding_is_read_as_such():
     assert known["n_four_bar_40", "mujoco tuned", "outcome"].outcome is Outcome.RESET
 
 
-def test_every_claim_of_our_pages_can_be_read_and_none_holds_without_rows():
+def test_each_claim_of_our_pages_is_evaluated_and_fails_without_rows():
     wrong = claims.contradicted({page: Material({}) for page in PAGES})
     written = sum(len(failure.claims) for page in PAGES for failure in page.failures)
     assert len(wrong) >= written > 40
@@ -238,7 +238,7 @@ def test_an_engine_lacks_an_element_only_if_its_documentation_is_named():
     assert [built["pymunk"][line] for line in lines] == ["yes", "by contact", "with code of ours"]
 
 
-def test_a_release_without_what_the_adapter_calls_is_too_old(monkeypatch):
+def test_a_release_that_lacks_a_function_of_the_adapter_is_too_old(monkeypatch):
     engine = next(engine for engine in registry.VARIANTS if engine.name == "lagrange")
     build = type(engine).build
 

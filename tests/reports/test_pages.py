@@ -135,7 +135,7 @@ def written(page: Page, rows: Rows, answers: Mapping[Task, Answer] | None = None
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_a_page_can_be_read_whatever_rows_and_answers_it_is_written_from(page, undrawn):
+def test_a_page_is_readable_with_any_rows_and_answers(page, undrawn):
     rows, tasks, chance = page_rows(page), all_tasks(page), random.Random(page.name)
     failed = {cell: blank(cell, Outcome.FAILED, "RuntimeError: something") for cell in rows}
     for part, answers in (
@@ -157,7 +157,7 @@ def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
         assert not name.endswith(".svg") or text.startswith("<?xml")
 
 
-def test_the_overview_can_be_read_whatever_was_run():
+def test_the_index_is_readable_with_any_rows():
     for seed in range(4):
         materials = {page: Material(some(page_rows(page), random.Random(f"{page.name} {seed}"))) for page in FROM_ROWS}
         text = render_index(materials, "the command")
@@ -168,7 +168,7 @@ def test_the_overview_can_be_read_whatever_was_run():
 
 
 @pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
-def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
+def test_no_clause_is_left_out_if_all_rows_are_there(page, undrawn, monkeypatch):
     vanished: list[str] = []
 
     def kept(clause: str) -> str:
@@ -207,7 +207,7 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
         ("a\n![A chart]({{ pictures.drawn }})\nb", "a\n![A chart](drawn.svg)\nb"),
     ],
 )
-def test_a_forgotten_guard_says_so_and_a_clause_without_its_number_vanishes(template, said):
+def test_a_missing_number_is_marked_and_removes_its_clause(template, said):
     given = {
         "row": UNMEASURED,
         "rows": MissingAsNaN(),
@@ -286,7 +286,7 @@ def some_answers(tasks: Iterable[Task], chance: random.Random) -> dict[Task, Ans
     return found
 
 
-def test_a_motion_that_can_not_be_read_says_so_in_its_line():
+def test_a_motion_that_is_not_finite_is_reported_in_its_line():
     cell = Motion(turning_round.TURNING_ROUND[0]).cell
     material = Material({}, {Motion(cell): still(Motion(cell))})
     with pytest.raises(ZeroDivisionError):  # an error of our code must not become an observation
@@ -321,7 +321,7 @@ def anchors(file: str) -> frozenset[str]:
 
 
 @pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
-def test_links_of_a_page_have_headings_and_its_programs_and_commands_run_as_printed(page, undrawn):
+def test_links_of_a_page_have_targets_and_its_programs_run_as_printed(page, undrawn):
     for name, text in texts(page).items():
         for scene in re.findall(r"`crosscheck export (\w+) --to mjcf --variant tuned`", text):
             assert MJCF.write(scene_of(scene).mechanism(), 1e-3, "tuned")
@@ -340,7 +340,7 @@ def called(name: str) -> Disc:
     return type("Named", (Disc,), {"name": name})()
 
 
-def test_no_two_pages_share_a_document_and_none_has_that_of_the_index():
+def test_no_two_pages_have_the_same_file_name_and_none_has_that_of_the_index():
     names = ("a/b", "a b")
     pages = with_scenes((), [called(name) for name in names], (Toy(),))
     assert [page.scenes[0].name for page in pages] == list(names)
@@ -370,7 +370,7 @@ def test_engines_of_the_gate_are_names_or_references(tmp_path, monkeypatch):
         _engines([f"{tmp_path}/missing.py"])
 
 
-def test_pages_of_workers_are_those_of_one_process(tmp_path: Path) -> None:
+def test_pages_rendered_by_workers_equal_pages_of_one_process(tmp_path: Path) -> None:
     pages = [page for page in PAGES if page.name in ("glossary", "settings")]
     path = tmp_path / "cells.sqlite"
     with Store(path) as store:

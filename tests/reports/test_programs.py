@@ -44,7 +44,7 @@ def advised(page: Page) -> tuple[list[Program], list]:
 
 
 @named
-def test_a_program_moves_as_the_method_whose_name_it_has_and_errs_by_no_more_than_its_row(page):
+def test_a_program_has_the_motion_of_its_method_and_at_most_the_error_of_its_row(page):
     scene = page.advised_scene
     engines = {method_name(engine): engine for engine in page.engines_of(scene)}
     made, rows = advised(page)
@@ -84,13 +84,13 @@ def test_a_pages_block_gives_the_error_of_the_row_of_each_method_without_a_progr
         assert float(error) == pytest.approx(getattr(row, page.quantity), rel=0.01, abs=1e-12), method
 
 
-def test_every_program_of_an_engine_alone_is_of_a_method_of_its_scene():
+def test_each_program_belongs_to_a_method_of_its_scene():
     scenes = [(page.advised_scene, page.engines) for page in MECHANISMS if page.advised_scene is not None]
     known = {file_of(scene.name, method_name(engine)) for scene, engines in scenes for engine in engines}
     assert {f"{PROGRAM_FOLDER}/{path.name}" for path in (RESULTS / PROGRAM_FOLDER).glob("*.*")} <= known
 
 
-def test_a_program_that_is_wrong_by_a_thousandth_is_noticed():
+def test_a_wrong_mass_changes_the_result_of_a_program():
     source = program("free_four_bar", "mujoco extended")
     right, wrong = run(source)[0]["end"], run(source.replace('mass="0.4"', 'mass="0.4004"'))[0]["end"]
     assert max(abs(a - b) for a, b in zip(right, wrong, strict=True)) > 1e-6

@@ -42,7 +42,7 @@ def answers():
     return {task: answered(task) for task in tasks}
 
 
-def test_the_start_of_acrobot_is_the_one_that_loses_what_was_published():
+def test_the_start_of_acrobot_reproduces_the_first_published_drift():
     assert rk4_drift(ACROBOT_START, ACROBOT_STEPS[0]) == pytest.approx(PUBLISHED[0], rel=1e-7)
     assert rk4_drift(ACROBOT_START + 1e-3, ACROBOT_STEPS[0]) != pytest.approx(PUBLISHED[0], rel=1e-3)
 
@@ -62,7 +62,7 @@ def test_mujocos_rk4_is_gymnasiums_method(answers):
     np.testing.assert_allclose(theirs, ours, rtol=1e-2)
 
 
-def test_freudensteins_rocker_is_the_scenes():
+def test_the_rocker_by_freudensteins_equation_agrees_with_the_scene():
     t = np.linspace(0.0, NEWTON_FOUR_BAR.duration, 50)
     truth = NEWTON_FOUR_BAR.motion(t).pose[..., 2]
     off = (truth[:, 2] - freudenstein(truth[:, 0]) + np.pi) % (2 * np.pi) - np.pi
@@ -78,7 +78,7 @@ def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none()
     assert np.abs(wrong) > NEWTON_BOUNDS["angle"]
 
 
-def test_the_bounds_tell_the_default_from_the_tuned(answers):
+def test_the_bounds_distinguish_default_and_tuned(answers):
     loose, tight = answers[Newton(DEFAULT)], answers[Newton(TUNED)]
     assert largest_step(tight, "angle") == max(NEWTON_STEPS)
     assert (largest_step(loose, "angle") or 0) < max(NEWTON_STEPS)
@@ -105,7 +105,7 @@ def found(answer: Answer):
     return json.loads(str(answer.values["found"]))
 
 
-def test_the_page_tells_what_was_found(checks):
+def test_the_page_has_the_results_of_the_checks(checks):
     assert all(answer.finished for answer in checks.values())
     text = render_page(YOUR_MODEL, Material({}, checks), "the command")["your_model.md"]
     for walk, answer in checks.items():

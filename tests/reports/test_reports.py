@@ -105,7 +105,7 @@ def test_pictures_are_well_formed_and_every_colour_has_its_dark_counterpart(file
             assert not re.search("Date|/tmp", text)
 
 
-def test_a_quick_run_has_the_failures_of_the_pages_and_a_full_one_the_large_ones_too():
+def test_a_quick_run_has_the_experiments_of_pages_and_a_full_run_the_large_ones_too():
     page = replace(PAGE, name="discs")
     quick = choose_cells((Disc(),), (*ENGINES, *FAST_FAILURES), (page,), full=False)
     full = choose_cells((Disc(),), (*ENGINES, *FAST_FAILURES, Toy(factor=0.1)), (page,), full=True)
@@ -137,7 +137,7 @@ CELLS = {
 }
 
 
-def test_sentences_take_the_rows_of_the_scene_and_method_that_they_name():
+def test_lookups_return_the_rows_of_their_scene_and_method():
     words = lookups(Material(CELLS), (DISC, OTHER))
     method = ("other_disc", "mujoco", "tuned")
     assert words["best"](*method).angle == words["sweep"](*method).best == pytest.approx(1.3e-8)
@@ -149,7 +149,7 @@ def test_sentences_take_the_rows_of_the_scene_and_method_that_they_name():
     assert only["best"]("disc", "mujoco", "default") is words["at"]("disc", "mujoco", "tuned", 7) is UNMEASURED
 
 
-def test_a_page_of_two_scenes_has_in_its_tables_the_rows_of_the_advised_one_alone():
+def test_tables_of_a_page_have_only_rows_of_the_recommended_scene():
     for advised, errors in (("disc", ["1.1e-6", "1.3e-7"]), ("other_disc", ["1.1e-7", "1.3e-8"])):
         text = render_page(replace(DISCS, advised=advised), Material(CELLS), "the command")["base.md"]
         assert not {"saturated", "torn"} & set(re.findall(r"\w+", text))
@@ -157,7 +157,7 @@ def test_a_page_of_two_scenes_has_in_its_tables_the_rows_of_the_advised_one_alon
         assert [line[1] for line in lines] == errors
 
 
-def test_a_page_judges_by_the_quantity_that_it_compares():
+def test_convergence_on_a_page_is_that_of_its_quantity():
     errors = falling("mujoco default", (1e-2, 3e-5, 3e-5, 3e-5), "position")
     errors = [replace(r, angle=1e-2 * r.step**2) for r in errors]
     rows = {Cell(DISC, Toy(), 10**i): r for i, r in enumerate(errors)}
@@ -167,7 +167,7 @@ def test_a_page_judges_by_the_quantity_that_it_compares():
         assert words in next(line for line in text.splitlines() if line.startswith("| mujoco default"))
 
 
-def test_the_readme_has_medians_of_fresh_mechanisms_and_is_the_same_after_a_run_that_took_another_time():
+def test_the_readme_has_medians_of_fresh_mechanisms_and_does_not_depend_on_timings():
     def readme(median: float, cpu: float) -> list[str]:
         rows = {each: row_of("mujoco tuned", angle=3.4e-7, cpu=cpu) for each in PASTED_CELLS}
         error = {"error": np.array([1e-9, median, 0.3])}
@@ -191,7 +191,7 @@ def test_all_files_end_with_one_end_of_line_and_have_every_row_once():
         )
 
 
-def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
+def test_an_experiment_has_its_own_rows_and_observations():
     torn, sound = (Cell(DISC, Toy(name), 1, "failure") for name in ("torn", "sound"))
     rows = {
         torn: row_of("mujoco torn", outcome=Outcome.TORN, sentence="it tore", gap=1.7, step=0.1),
@@ -207,7 +207,7 @@ def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
     assert "| mujoco sound | 100 ms | 5.3e-3 |" in two
 
 
-def test_the_moving_picture_of_the_readme_is_small_and_stands_still_for_who_asks():
+def test_the_animation_of_the_readme_is_small_and_respects_reduced_motion():
     answers: dict[Task, Answer] = {task: Answer(Outcome.FINISHED, "", task.run()) for task in MOVING_TASKS}
     (text,) = moving_picture([Material({}), Material({}, answers)]).values()
     assert len(text.encode()) < 300_000

@@ -223,7 +223,7 @@ def printed() -> Iterator[str]:
     yield csv_files.descriptions_csv([row(), row(angle=1.0), row(settings="Toy(order=4.0)")])
 
 
-def test_what_is_printed_of_rows_is_as_it_was(golden):
+def test_printed_tables_equal_the_golden_file(golden):
     text = "\n\n".join(printed())
     golden("tables.md", text)
     for described in ("Disc(rate=2.0)", "Toy(order=2.0)"):
@@ -235,7 +235,7 @@ def test_the_order_of_rows_changes_no_cell():
         assert cell_of(rows[::-1]) == cell_of(rows)
 
 
-def test_two_rows_that_would_stand_in_one_place_are_refused():
+def test_two_rows_for_one_cell_are_refused():
     with pytest.raises(ValueError, match=r"two rows of 'a x' at a step of 10 ms"):
         tables.outcome_grid([row_of("a x", step=1e-2), row_of("a x", step=1e-2, angle=1.0)])
 
@@ -248,7 +248,7 @@ def other_versions(monkeypatch):
     provenance._version.cache_clear()
 
 
-def test_the_versions_are_those_of_the_packages_they_stand_beside(other_versions):
+def test_versions_are_those_of_the_named_packages(other_versions):
     numbers = {"numpy": "1.1", "scipy": "2.2", "pymunk": "3.3"}
 
     def version(name):
@@ -268,7 +268,7 @@ def test_the_versions_are_those_of_the_packages_they_stand_beside(other_versions
     assert foot("a command") == f"Made by `a command` with {versions()}; timings on {machine()}."
 
 
-def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):
+def test_the_description_of_a_machine_has_no_host_name_and_no_path(monkeypatch):
     monkeypatch.setattr(os, "cpu_count", lambda: 97)
     monkeypatch.setattr(platform, "machine", lambda: "an architecture")
     told = machine()
@@ -288,7 +288,7 @@ COLUMNS: tuple[tuple[str, Enforcement, Column], ...] = (
 )
 
 
-def test_who_holds_the_joints_decides_in_which_column_a_method_stands():
+def test_the_enforcement_of_joints_determines_the_column_of_a_method():
     for variant, by, column in COLUMNS:
         assert column_of(Disc(), HeldBy(variant, by=by)) is column
     cells = [
@@ -299,7 +299,7 @@ def test_who_holds_the_joints_decides_in_which_column_a_method_stands():
     assert enforcement_by_method(cells) == {"toy x": "our code or engine"}
 
 
-def test_a_users_trick_does_not_bear_the_usual_name_of_an_engine_on_any_page():
+def test_a_naive_method_is_never_printed_under_a_usual_name():
     assert [displayed_variant(scene, pymunk.DEFAULT) for scene in (FREE, SLEIGH)] == ["default", "naive"]
     assert displayed_variant(SLEIGH, mujoco.DEFAULT) == "default"  # a contact of its own
     tricks = [displayed_variant(SLEIGH, HeldBy(variant, by="ours")) for variant in ("default", "tuned")]
@@ -318,7 +318,7 @@ def test_a_users_trick_does_not_bear_the_usual_name_of_an_engine_on_any_page():
     assert remarks_of(line, Column.CODE) == ""
 
 
-def test_within_a_cpu_time_the_least_error_counts_that_no_smaller_step_exceeds():
+def test_an_error_within_a_cpu_time_counts_only_if_no_smaller_step_exceeds_it():
     rows = falling("mujoco tuned", (1e-2, 1e-5, 1e-3, 1e-6))  # they cost 1, 10, 100 and 1000 ms; the second is luck
     for cost, error in ((0.1, 1e-3), (0.01, 1e-3), (0.001, 1e-2), (0.0009, math.inf), (9.0, 1e-6)):
         assert error_within(rows, "angle", cost) == error
@@ -335,7 +335,7 @@ def test_a_line_of_the_picture_never_runs_backwards():
     assert min(error for _, error in points) == 1e-7
 
 
-def test_a_small_error_at_a_coarse_step_that_a_finer_one_does_not_keep_is_luck():
+def test_a_small_error_that_a_finer_step_exceeds_is_not_reliable():
     lucky = falling("a lucky", (1e-5, 1e-2, 1e-3))
     assert [row.step for row in reliable(lucky, "angle", 1e-2)] == [1e-3, 1e-2, 1e-1]
     assert [row.step for row in reliable(lucky, "angle", 5e-3)] == [1e-3]
@@ -344,7 +344,7 @@ def test_a_small_error_at_a_coarse_step_that_a_finer_one_does_not_keep_is_luck()
         assert reliable([*lucky[:2], replace(lucky[2], **change)], "angle", 1.0) == []
 
 
-def test_of_costs_that_are_equal_within_their_scatter_the_first_method_of_the_page_is_advised():
+def test_among_equal_costs_the_first_method_of_the_page_is_recommended():
     late, early = row_of("a late", angle=1e-10, cpu=1.0), row_of("a early", angle=1e-10, cpu=1.2)
     for rows, order, expected in (
         ((late, early), ("a early", "a late"), "a early"),
@@ -357,7 +357,7 @@ def test_of_costs_that_are_equal_within_their_scatter_the_first_method_of_the_pa
     assert compared_step([row_of("a x", step=step) for step in (3e-4, 2.9e-3)]) == 2.9e-3
 
 
-def test_an_experiment_in_which_nothing_was_compared_says_so():
+def test_an_experiment_without_comparable_samples_has_no_errors():
     @dataclass(frozen=True)
     class Ended(Disc):
         @property
@@ -387,7 +387,7 @@ class SoftToy(Plain):
         return Regularisation(STIFFNESS, DAMPING, self.share, (True,) * mechanism.row_count)
 
 
-def test_what_is_declared_is_in_proportion_to_the_judges_own_softness():
+def test_the_declared_error_is_proportional_to_the_compliance():
     scene, engine = FreeFourBar(duration=0.1), SoftToy()
     (task,) = soft_tasks(scene, (engine,))
     answers: dict[Task, Answer] = {task: answered(task)}

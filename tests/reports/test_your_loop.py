@@ -103,7 +103,7 @@ def test_the_lines_for_a_compiled_model_of_mujoco_give_the_error_of_the_page(sce
     assert in_mujoco(scene, shipped, lines("compiled")) == pytest.approx(row(case, case.after), rel=0.02)
 
 
-def test_the_lines_of_xml_give_the_same_on_joints_that_set_nothing_themselves():
+def test_the_xml_lines_give_the_same_error_on_joints_without_own_settings():
     case, _ = CASES[LOOP.name]
     shipped = re.sub(r' sol(ref|imp)="[^"]*"', "", MJCF.write(LOOP.mechanism(), STEP, "default"))
     assert in_mujoco(LOOP, shipped) > 0.005
@@ -155,7 +155,7 @@ def test_with_the_lines_no_linkage_opens_more_than_as_shipped(linkage, step):
         assert worst_gap(space, names["gaps"], step) < worst_gap(make(), names["gaps"], step)
 
 
-def test_eight_iterations_tear_a_walking_linkage_which_the_lines_see():
+def test_eight_iterations_tear_a_walking_linkage_and_the_lines_avoid_them():
     step, jansen = 1e-3, LINKAGES["two legs of Jansen on a crank"]
     torn = jansen()
     names = run_lines(jansen(), PYMUNK_LINES.replace("print(choose(space, 1e-3))", ""))
@@ -182,7 +182,7 @@ def test_a_linkage_that_starts_open_or_can_not_be_copied_is_left_as_it_is():
     assert (state(opened), state(pictured)) == before
 
 
-def test_bodies_off_their_centre_of_gravity_and_limits_are_kept():
+def test_limits_and_bodies_with_another_centre_of_gravity_are_not_changed():
     space = LINKAGES["ragdoll that hangs by a hand"]()
     limits = [joint.error_bias for joint in space.constraints if isinstance(joint, RotaryLimitJoint)]
     run_lines(space, PYMUNK_LINES)
