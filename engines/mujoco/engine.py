@@ -215,17 +215,6 @@ class MuJoCo(Engine, Valid):
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, unit: Positive | None = None) -> MuJoCoModel:
         """The compiled model; `unit`: that of mass [kg], `engines.mujoco.model.unit_of_mass` if not given."""
-        return self._model(mechanism, dt, unit)
-
-    @validated
-    def text(self, mechanism: Mechanism, dt: Positive) -> str:
-        """MJCF that runs without this suite, in kg, with the start as its keyframe.
-
-        Raises Unsupported where our code writes rows or changes compliances.
-        """
-        return mjcf(self._model(mechanism, dt, 1.0))
-
-    def _model(self, mechanism: Mechanism, dt: float, unit: float | None = None) -> MuJoCoModel:
         is_stepwise = self.skates in STEPWISE and _has(mechanism, Skate)
         integrator = "Euler" if is_stepwise else self.integrator
         options = {
@@ -239,6 +228,14 @@ class MuJoCo(Engine, Valid):
         if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
             return replace(model, softening=soften_until_solvable(model, start))
         return model
+
+    @validated
+    def text(self, mechanism: Mechanism, dt: Positive) -> str:
+        """MJCF that runs without this suite, in kg, with the start as its keyframe.
+
+        Raises Unsupported where our code writes rows or changes compliances.
+        """
+        return mjcf(self.model(mechanism, dt, 1.0))
 
 
 def _has(mechanism: Mechanism, kind: type[Joint]) -> bool:
