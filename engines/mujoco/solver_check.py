@@ -16,7 +16,7 @@ from engines.mujoco.releases import full_inertia
 
 # Relative residual up to which a solver has solved the start. Measured: a solver that suits a mechanism has 1e-7 or
 # less, another one 1e-2 or more.
-MAX_START_RESIDUAL = 1e-6
+SOLVED_RESIDUAL = 1e-6
 # Share of an error that may remain after an iteration of Newton's method: three of them then refine a solution to
 # rounding. In 850 scenes and random mechanisms it is at most 0.08, except for three with 0.13, 0.48 and 2.
 MAX_REMAINING_ERROR = 0.1
@@ -43,7 +43,7 @@ def solver_residual(compiled: Any, data: Any) -> float:
     law = (rows - data.efc_aref + data.efc_R * data.efc_force)[holding]
     scale = max(np.abs(data.qacc).max(), np.abs(data.qacc_smooth).max(), np.abs(data.efc_aref).max(), 1e-300)
     error = max(np.abs(newton).max(), np.abs(law).max(initial=0.0)) / scale
-    if not error < MAX_START_RESIDUAL and not mujoco.mj_isSparse(compiled):
+    if not error < SOLVED_RESIDUAL and not mujoco.mj_isSparse(compiled):
         exact = _exact_accelerations(compiled, data, holding)
         if exact is not None:
             error = np.abs(data.qacc - exact).max() / scale
@@ -93,10 +93,7 @@ def soften_until_solvable(model: MuJoCoModel, start: Any) -> float:
     where a light body carries a heavy one. Solvers other than Newton's build no such matrix, so nothing changes.
     """
     compiled, softening = model.compiled, model.softening
-    if (
-        compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON
-        or not solver_residual(compiled, start) < MAX_START_RESIDUAL
-    ):
+    if compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON or not solver_residual(compiled, start) < SOLVED_RESIDUAL:
         return softening
     can_check = not mujoco.mj_isSparse(compiled)
     while softening < 1 and can_check and _remaining_error(compiled, start) > MAX_REMAINING_ERROR:
@@ -121,7 +118,7 @@ def choose_solver(model: MuJoCoModel, solvers: Sequence[str]) -> Any:
         model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{solver.upper()}")
         start = model.start()
         residuals[solver] = solver_residual(model.compiled, start)
-        if residuals[solver] < MAX_START_RESIDUAL:
+        if residuals[solver] < SOLVED_RESIDUAL:
             return start
     if not residuals:
         raise Unsupported("rows are written in a callback, and PGS has built its matrix by then; add Newton or CG")

@@ -48,7 +48,7 @@ KIND, FIRST, SECOND, NUMBERS, JOINT = 0, 1, 2, 3, 11  # the kind of row, both bo
 # The angle since the start is TURNED; accelerations are those with zero accelerations of the coordinates; PIVOT is the
 # point about which the rotation turns the link, and ALONG the direction of its slide.
 X, Y, TURNED, VX, VY, OMEGA, AX, AY, PIVOT_X, PIVOT_Y, ALONG_X, ALONG_Y, ANGLE, MOTION = range(14)
-FREE = -1  # the parent of a link that moves freely
+NO_PARENT = -1  # of a link that moves freely
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -174,7 +174,7 @@ def _move(plan: Any, at: int, moving: int, to: int, q: Any, v: Any) -> None:
     turn, spin = (0.0, 0.0) if rotation < 0 else (q[rotation] + ahead * v[rotation], v[rotation])
     way, speed = (0.0, 0.0) if slide < 0 else (q[slide] + ahead * v[slide], v[slide])
     ax, ay, dx, dy = 0.0, 0.0, 0.0, 0.0
-    if parent == FREE:
+    if parent == NO_PARENT:
         across = int(plan[at + ACROSS])
         x, y = plan[at + START_X] + way, plan[at + START_Y] + q[across] + ahead * v[across]
         pivot_x, pivot_y, turned, vx, vy, omega = x, y, turn, speed, v[across], spin
@@ -210,10 +210,10 @@ def _write_row(plan: Any, moving: int, ends: tuple[int, int], row: Row, jacobian
         m = moving + MOTION * link
         x, y = plan[m + X], plan[m + Y]
         right -= row_x * plan[m + AX] + row_y * plan[m + AY]
-        while FREE < link < links:  # the ground comes after the last link
+        while NO_PARENT < link < links:  # the ground comes after the last link
             at, m = HEADER + LINK * link, moving + MOTION * link
             link, slide, rotation = int(plan[at + PARENT]), int(plan[at + SLIDE]), int(plan[at + ROTATION])
-            if link == FREE:
+            if link == NO_PARENT:
                 jacobian[line + slide] += row_x
                 jacobian[line + int(plan[at + ACROSS])] += row_y
             elif slide >= 0:
@@ -284,7 +284,7 @@ class RowWriter:
             columns = [float(address[column]) for column in link.columns]
             rotation = columns.pop() if link.turns else -1.0
             slide, across, *_ = *columns, -1.0, -1.0
-            parent = FREE if link.kind == "free" else index[None] if link.parent is None else link_of[link.parent]
+            parent = NO_PARENT if link.kind == "free" else index[None] if link.parent is None else link_of[link.parent]
             plan += [parent, slide, across, rotation, *bodies[link.body].pose, *link.arm, *link.anchor, *link.direction]
         angle = {None: 0.0} | {body.name: body.pose[2] for body in bodies}
         rolls = []

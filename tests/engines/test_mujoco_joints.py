@@ -37,7 +37,7 @@ from tests.mechanisms import rolling_disc
 
 ELLIPSE, DISC = RollingEllipse(), RollingDisc()
 (EULER,) = ROLLS
-SLEIGH = ChaplyginSleigh()
+CHAPLYGIN_SLEIGH = ChaplyginSleigh()
 (BLADE,) = SKATES
 
 
@@ -121,10 +121,10 @@ def test_a_blade_stands_on_one_end_however_deep_the_weight_presses_it(mass: floa
 
 
 def test_the_softness_that_is_declared_of_a_written_row_is_what_it_slips_by():
-    engine, mechanism = SOFT, SLEIGH.mechanism()
+    engine, mechanism = SOFT, CHAPLYGIN_SLEIGH.mechanism()
     soft = engine.regularisation(mechanism, 1e-3)
     assert soft is not None
-    motion = engine.build(mechanism, 1e-3)(SLEIGH.samples, 10)
+    motion = engine.build(mechanism, 1e-3)(CHAPLYGIN_SLEIGH.samples, 10)
     rows = mechanism.rows(mechanism.pose)
     inverse = float(((rows / mechanism.inertias.reshape(-1)) @ rows.T)[0, 0])
     # slip' + damping slip = compliance A F: for a force that rises and falls, the slip reaches half of its limit.

@@ -27,7 +27,7 @@ from reference.scenes.wheels.vehicles import Cart
 from tests import ROOT
 from tests.mechanisms import bar
 
-SLEIGH = ChaplyginSleigh()
+CHAPLYGIN_SLEIGH = ChaplyginSleigh()
 STIFFNESS, DAMPING = 5.0, 3.0
 
 
@@ -133,7 +133,7 @@ def moved() -> list[list[Any]]:
     return [[run.pose.tolist(), run.reaction.tolist(), run.reset_at, run.warnings] for run in motions]
 
 
-SCRIPT = """
+WITHOUT_NUMBA = """
 import json, sys
 sys.modules["numba"] = None
 from tests.engines.test_mujoco_rows import moved
@@ -142,7 +142,7 @@ print(json.dumps(moved()))
 
 
 def test_without_numba_python_writes_the_same_rows() -> None:
-    command = [sys.executable, "-c", SCRIPT]
+    command = [sys.executable, "-c", WITHOUT_NUMBA]
     plain = json.loads(subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout)
     fast = moved()
     for (pose, reaction, reset, warnings), same in zip(fast, plain, strict=True):
@@ -154,7 +154,7 @@ def test_without_numba_python_writes_the_same_rows() -> None:
 
 
 def test_the_callback_is_as_it_was_even_after_a_failure() -> None:
-    run = EXTENDED.build(SLEIGH.mechanism(), 1e-2)
+    run = EXTENDED.build(CHAPLYGIN_SLEIGH.mechanism(), 1e-2)
     with pytest.raises(RuntimeError, match="on purpose"), run.model.callback_installed():  # noqa: PT012
         assert mujoco.get_mjcb_control() is not None
         raise RuntimeError("on purpose")

@@ -12,7 +12,7 @@ import pytest
 from engines.mujoco import TUNED, Shipped
 from reference.scenes.catalogue import scene
 
-ONE_OF_EACH = """
+EQUALITY_AND_CONTACT = """
 <mujoco>
   <option timestep="1e-3" integrator="{integrator}"><flag refsafe="{refsafe}"/></option>
   <worldbody>
@@ -32,7 +32,7 @@ def one_of_each(
     integrator="Euler", refsafe="enable", constant=0.02, impedance="0.9 0.9 0.001", gap=0.0
 ) -> tuple[Any, Any]:
     """MuJoCo's rows (stiffness, damping, impedance, ...) of an equality open by a gap, and of a contact."""
-    text = ONE_OF_EACH.format(integrator=integrator, refsafe=refsafe, constant=constant, impedance=impedance)
+    text = EQUALITY_AND_CONTACT.format(integrator=integrator, refsafe=refsafe, constant=constant, impedance=impedance)
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     data.qpos[1] = gap

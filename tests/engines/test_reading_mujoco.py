@@ -18,17 +18,17 @@ from reports.check.judging import apart, refuse_disagreement, soft_motion
 
 # Engine and judge solve small systems of equations whose numbers differ by a factor of at most a thousand.
 SMALL_SYSTEM_ROUNDING = 1e-9
-PENDULUM = """
+TWO_LINKS = """
 <body name="upper"><joint name="A" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 .3 0 .1" size=".02"/>
   <body name="lower" pos=".3 0 .1"><joint name="B" axis="0 1 0"/>
     <geom type="capsule" fromto="0 0 0 .4 .1 0" size=".02"/><site name="tip" pos=".4 0 0"/></body></body>
 """
-FOUR_BAR = """
+FOUR_BAR_MJCF = """
 <body name="crank"><joint name="A"/><geom fromto="0 0 0 0 0 .3"/>
   <body name="coupler" pos="0 0 .3"><joint name="B"/><geom fromto="0 0 0 .8 0 .3"/></body></body>
 <body name="rocker" pos=".7 0 0"><joint name="D"/><geom fromto="0 0 0 .1 0 .6"/></body>
 """
-CONNECT = '<connect name="C" body1="coupler" body2="rocker" anchor=".8 0 .3"/>'
+CONNECT_EQUALITY = '<connect name="C" body1="coupler" body2="rocker" anchor=".8 0 .3"/>'
 
 
 def model_of(bodies, more="", option="", turned=""):
@@ -59,24 +59,24 @@ def changed(reading: Reading, **values) -> Reading:
     return replace(reading, mechanism=replace(reading.mechanism, **values))
 
 
-LINE = '<tendon><spatial name="t" stiffness="1"><site site="post"/>{}<site site="tip"/></spatial></tendon>'
+TENDON_MJCF = '<tendon><spatial name="t" stiffness="1"><site site="post"/>{}<site site="tip"/></spatial></tendon>'
 BOX = '<inertial pos=".1 0 .05" mass="2" diaginertia=".02 .03 .03"/>'
 SLIDE, TURNED = '<joint type="slide" axis="1 0 2"/>', '<joint pos=".2 0 0"/>'
 ALONG = '<joint type="slide" axis="1 0 0"/>'
 CROSSED = f'{ALONG}<joint type="slide" axis="0 0 1"/>'
 # Each connection of a body with its parent; a body without joints, and a slide in a moving body.
 CONNECTIONS = (SLIDE, SLIDE + TURNED, TURNED + SLIDE, CROSSED + TURNED, CROSSED, '<joint axis="0 -1 0"/>')
-TREES = PENDULUM.replace(
+TREES = TWO_LINKS.replace(
     "<site",
     f'<body pos=".4 0 .2"><geom fromto="0 0 0 .1 0 .2"/></body><body pos=".1 0 0">{ALONG}{BOX}</body><site',
 ) + "".join(f"<body>{joints}{BOX}</body>" for joints in CONNECTIONS)
-SPRUNG = f"""<body name="upper" gravcomp=".7"><joint name="A" armature=".1"/><geom fromto="0 0 0 .3 0 .1"/>
+SPRUNG_BODIES = f"""<body name="upper" gravcomp=".7"><joint name="A" armature=".1"/><geom fromto="0 0 0 .3 0 .1"/>
 <body pos=".1 0 0"><joint type="slide" axis="1 0 0" stiffness="30" damping="1"/>{BOX}</body>
 <body name="lower" pos=".3 0 .1"><joint name="B" axis="0 -1 0" ref=".3" stiffness="3" springref=".4" damping=".2"/>
 <geom fromto="0 0 0 .4 .1 0"/><site name="tip" pos=".4 0 0"/></body></body>
 <body><joint name="S" type="slide" axis="1 0 2" stiffness="30" springref=".1" damping=".3" armature=".5"/>
 {BOX}</body>"""
-PULLED = """<tendon><spatial stiffness="20" springlength=".3" damping=".5"><site site="post"/>
+TENDONS_AND_ACTUATORS = """<tendon><spatial stiffness="20" springlength=".3" damping=".5"><site site="post"/>
 <site site="tip"/></spatial>
 <fixed stiffness="2" springlength=".3" damping=".5"><joint joint="A" coef="2"/><joint joint="B" coef="-2"/></fixed>
 <fixed stiffness="1" springlength=".2" damping=".1"><joint joint="A" coef="2"/><joint joint="S" coef="3"/></fixed>
@@ -84,28 +84,32 @@ PULLED = """<tendon><spatial stiffness="20" springlength=".3" damping=".5"><site
 <actuator><motor joint="B" gear="2"/><motor joint="S" gear="2"/><position joint="B" kp="5" gear="2"/>
 <velocity joint="B" kv="3" gear="2"/><general site="tip" refsite="post" gear="1 0 2 0 .5 0"/></actuator>"""
 SITES = (
-    PENDULUM.replace('axis="0 1 0"/>\n    <geom', 'axis="0 1 0"/><site name="end" pos=".2 0 0"/>\n    <geom')
+    TWO_LINKS.replace('axis="0 1 0"/>\n    <geom', 'axis="0 1 0"/><site name="end" pos=".2 0 0"/>\n    <geom')
     + '<body pos=".5 0 .1"><joint/><geom fromto="0 0 0 .1 0 .2"/><site name="mine"/></body>'
 )
-MODELS = {"trees": (TREES, ""), "forces": (SPRUNG, PULLED)} | {
-    name: (bodies, (LINE.format("") if "tendon" in held else "") + f"<equality>{held}</equality>")
+MJCF_MODELS = {"trees": (TREES, ""), "forces": (SPRUNG_BODIES, TENDONS_AND_ACTUATORS)} | {
+    name: (bodies, (TENDON_MJCF.format("") if "tendon" in held else "") + f"<equality>{held}</equality>")
     for name, bodies, held in (
-        ("a connect", FOUR_BAR, CONNECT),
+        ("a connect", FOUR_BAR_MJCF, CONNECT_EQUALITY),
         ("a connect of sites", SITES, '<connect site1="end" site2="mine"/>'),
-        ("a weld", FOUR_BAR, '<weld body1="coupler" body2="rocker"/>'),
-        ("a weld that holds a point alone", FOUR_BAR, '<weld body1="coupler" body2="rocker" torquescale="0"/>'),
-        ("a coupling of two grounded hinges", FOUR_BAR, '<joint joint1="A" joint2="D" polycoef="0 -1.5 0 0 0"/>'),
-        ("a coupling along a chain", PENDULUM, '<joint joint1="B" joint2="A" polycoef="0 -.4 0 0 0"/>'),
-        ("a locked hinge", FOUR_BAR, '<joint joint1="D"/>'),
-        ("a rod of a tendon", PENDULUM, '<tendon tendon1="t"/>'),
+        ("a weld", FOUR_BAR_MJCF, '<weld body1="coupler" body2="rocker"/>'),
+        ("a weld that holds a point alone", FOUR_BAR_MJCF, '<weld body1="coupler" body2="rocker" torquescale="0"/>'),
+        (
+            "a coupling of two grounded hinges",
+            FOUR_BAR_MJCF,
+            '<joint joint1="A" joint2="D" polycoef="0 -1.5 0 0 0"/>',
+        ),
+        ("a coupling along a chain", TWO_LINKS, '<joint joint1="B" joint2="A" polycoef="0 -.4 0 0 0"/>'),
+        ("a locked hinge", FOUR_BAR_MJCF, '<joint joint1="D"/>'),
+        ("a rod of a tendon", TWO_LINKS, '<tendon tendon1="t"/>'),
     )
 }
 
 
 @pytest.mark.parametrize("turned", ["", 'euler=".4 .9 -.3" pos="1 2 3"'])
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", MJCF_MODELS)
 def test_an_element_gives_the_same_accelerations_in_any_plane(name, turned):
-    model = model_of(*MODELS[name], 'gravity="1 0.5 -9.81"', turned)
+    model = model_of(*MJCF_MODELS[name], 'gravity="1 0.5 -9.81"', turned)
     data = moving(model)
     data.ctrl[:] = 0.7
     reading = read(model, data)
@@ -134,7 +138,7 @@ def test_a_free_body_that_starts_in_the_plane_is_read():
 def test_the_first_keyframe_counts_and_any_can_be_named(tmp_path):
     file = tmp_path / "two_keys.xml"
     keys = '<keyframe><key name="low" qpos=".3 0"/><key name="high" qpos="2 0"/></keyframe>'
-    file.write_text(f"<mujoco><worldbody>{PENDULUM}</worldbody>{keys}</mujoco>")
+    file.write_text(f"<mujoco><worldbody>{TWO_LINKS}</worldbody>{keys}</mujoco>")
     first, high, none = (
         READER.read("two_keys.xml", tmp_path, ReadingTerms(key=key)).mechanism.bodies[0].pose[2]
         for key in ("", "high", "none")
@@ -147,7 +151,7 @@ def test_the_first_keyframe_counts_and_any_can_be_named(tmp_path):
 
 
 def test_a_wrong_reading_is_stopped_at_the_start():
-    reading = read(model_of(*MODELS["a connect"]))
+    reading = read(model_of(*MJCF_MODELS["a connect"]))
     (crank, *others), gravity = reading.mechanism.bodies, reading.mechanism.gravity
     for values in (
         {"bodies": (replace(crank, mass=1.001 * crank.mass), *others)},
@@ -159,7 +163,7 @@ def test_a_wrong_reading_is_stopped_at_the_start():
 
 
 def test_an_element_that_explains_a_disagreement_is_named():
-    model = model_of(PENDULUM.replace('name="B"', 'name="B" damping=".5"'))
+    model = model_of(TWO_LINKS.replace('name="B"', 'name="B" damping=".5"'))
     reading = read(model, moving(model))
     with pytest.raises(Unsupported, match="agree without 'damper'"):
         refuse_disagreement(changed(reading, forces=()))
@@ -177,18 +181,18 @@ def test_an_equality_of_which_mujoco_makes_no_row_is_left_out_with_a_note():
 
 
 def test_a_fluid_that_is_switched_off_moves_nothing():
-    model = model_of(PENDULUM, "", 'density="1000" viscosity="10"')
+    model = model_of(TWO_LINKS, "", 'density="1000" viscosity="10"')
     data = moving(model)
     wet = data.qacc.copy()
     switch_off(model, "fluid")
     mujoco.mj_forward(model, data)
-    dry = moving(model_of(PENDULUM)).qacc
+    dry = moving(model_of(TWO_LINKS)).qacc
     assert np.array_equal(data.qacc, dry)
     assert np.abs(wet - dry).max() > 1e-3 * np.abs(dry).max()
 
 
 def test_softness_as_declared_is_what_mujoco_does():
-    reading = read(model_of(*MODELS["a connect"], 'timestep="0.0002" integrator="RK4" tolerance="1e-15"'))
+    reading = read(model_of(*MJCF_MODELS["a connect"], 'timestep="0.0002" integrator="RK4" tolerance="1e-15"'))
     run = reading.model.run(40, 50)
     soft = soft_motion(reading.mechanism, reading.model.regularisation, run.t)
     # The error of RK4 at 0.2 ms is far smaller; the ideal motion differs by 1e-3.
@@ -201,7 +205,7 @@ def test_softness_as_declared_is_what_mujoco_does():
 def test_a_contact_is_named_with_its_time_and_at_the_start_refused():
     def with_floor(height):
         return mujoco.MjModel.from_xml_string(
-            f'<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" pos="0 0 {height}"/>{PENDULUM}'
+            f'<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" pos="0 0 {height}"/>{TWO_LINKS}'
             "</worldbody></mujoco>"
         )
 
@@ -233,14 +237,19 @@ TIP, HINGE = 'name="tip" pos=".4 0 0"', 'name="B" axis="0 1 0"'
         (HINGE, f'armature=".1" {HINGE}', "", "joint 'B': its armature"),
         ("", "", '<option density="1000"/>', "density or viscosity"),
         ("", "", BENT, "equality 'bent': a coupling that is not linear"),
-        (TIP, f'name="mid"/><site {TIP}', LINE.format('<site site="mid"/>'), "tendon 't': only a tendon straight"),
-        (TIP, 'name="tip" pos=".4 .1 0"', LINE.format(""), "tendon 't': its two sites"),
+        (
+            TIP,
+            f'name="mid"/><site {TIP}',
+            TENDON_MJCF.format('<site site="mid"/>'),
+            "tendon 't': only a tendon straight",
+        ),
+        (TIP, 'name="tip" pos=".4 .1 0"', TENDON_MJCF.format(""), "tendon 't': its two sites"),
         ("", "", MUSCLE, "actuator 'm': only a motor"),
-        (PENDULUM, '<body><geom fromto="0 0 0 1 0 0"/></body>', "", "nothing in it can move"),
+        (TWO_LINKS, '<body><geom fromto="0 0 0 1 0 0"/></body>', "", "nothing in it can move"),
     ],
 )
 def test_what_has_no_ideal_counterpart_is_named(old, new, more, sentence):
-    model = model_of(PENDULUM.replace(old, new) if old else PENDULUM, more)
+    model = model_of(TWO_LINKS.replace(old, new) if old else TWO_LINKS, more)
     data = mujoco.MjData(model)
     data.ctrl[:] = 1.0
     with pytest.raises(Unsupported) as reason:

@@ -239,17 +239,17 @@ def rounded_model(crank=QUARTER_TURN, axis=0.0, beside=0.0, rocker=QUARTER_TURN)
     return mujoco.MjModel.from_xml_string(ROUNDED_FOUR_BAR.format(crank, axis, beside, rocker))
 
 
-ROUNDED = {
+ROUNDED_FILES = {
     "six digits of quaternions": ('quat="0.707105 0.707108 0 0"', 0.0, 0.0, 'quat="0.707108 0.707105 0 0"'),
     "1.5708 in one body": ('euler="1.5708 0 0"', 0.0, -0.1, QUARTER_TURN),
 }
 
 
-@pytest.mark.parametrize("name", ROUNDED)
+@pytest.mark.parametrize("name", ROUNDED_FILES)
 def test_a_rounded_file_moves_as_the_exact_one_and_its_effect_is_told(name):
     t, exact = np.linspace(0.0, 1.0, 21), rounded_model()
     coordinates = independent.motion(exact, mujoco.MjData(exact), [independent.connected("C")], t)[0]
-    reading = read_mujoco(rounded_model(*ROUNDED[name]))
+    reading = read_mujoco(rounded_model(*ROUNDED_FILES[name]))
     motion = TRUTH.build(reading.mechanism, t[1])(len(t) - 1, 1)
     angles = motion.pose[..., 2] - motion.pose[:1, :, 2]
     ours = np.column_stack([angles[:, 0], angles[:, 1] - angles[:, 0], angles[:, 2]])
