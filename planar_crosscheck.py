@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from engines import Engine
     from reference.mechanism import Mechanism
-    from reports.check.comparing import Comparison, Drawing
+    from reports.check.comparing import Comparison, Picture
     from reports.check.request import CheckReport
     from reports.model.measure import Measurement
     from reports.search.chunk import CaseResult
@@ -79,13 +79,13 @@ def check(
     `without`, `key`, `step` [s], `quick`, `fix_to` and `apply` are the command's options; folder: where files are
     looked for, the current one unless it is given. Raises ValueError, in a sentence, for what can't be judged.
     """
-    from reports.check.request import CheckRequest, Refused, answered
+    from reports.check.request import CheckRequest, Refused, run_check
 
     word = str(model) if isinstance(model, str | Path) else type(model).__name__
     wanted = tolerance if fix_to is None else fix_to
     terms = {"quick": quick, "search": fix_to is not None, "apply": str(apply), "pictures": True}
     request = CheckRequest(word, str(folder or Path.cwd()), duration, wanted, tuple(without), key, step, **terms)
-    answer = answered(request.refuse_bad(), None if isinstance(model, str | Path) else model)
+    answer = run_check(request.refuse_bad(), None if isinstance(model, str | Path) else model)
     if isinstance(answer, Refused) or answer.trouble:
         raise ValueError(answer.sentence if isinstance(answer, Refused) else answer.trouble)
     return answer
@@ -97,9 +97,9 @@ def compare(mechanism: Mechanism, engine: Engine | str, dt: float, duration: flo
     engine: an object of `engines`, or the name of one: "mujoco tuned". Raises ValueError, also where an engine can't
     build the mechanism.
     """
-    from reports.check.comparing import compared
+    from reports.check.comparing import compare_with_ideal
 
-    return compared(mechanism, engine, dt, duration)
+    return compare_with_ideal(mechanism, engine, dt, duration)
 
 
 def run(
@@ -205,11 +205,11 @@ def linkage(
     return made(points, bars, ground, gravity, density)
 
 
-def draw(mechanism: Mechanism, pose: Any = None) -> Drawing:
+def draw(mechanism: Mechanism, pose: Any = None) -> Picture:
     """A picture of a mechanism in its start, or in a pose (bodies, 3) [m, m, rad]; `save` writes it as SVG."""
-    from reports.check.comparing import drawn
+    from reports.check.comparing import draw_mechanism
 
-    return drawn(mechanism, pose)
+    return draw_mechanism(mechanism, pose)
 
 
 def conform(engine: Engine, expected_failures: Mapping[str, str] | None = None) -> Any:

@@ -16,43 +16,53 @@ from engines.loading import Kind, registered_by_key
 from engines.reading import AS_IT_IS, Reader, Reading, ReadingTerms
 from reference.checks import InvalidMechanism
 from reference.trajectory import Trajectory
-from reports.check.facts import Facts, facts_of
+from reports.check.facts import Facts, compute_facts
 from reports.check.judging import (
-    TOLERANCE,
+    SOFT_TOLERANCE,
     Errors,
     IdealMotion,
     Opening,
-    apart,
-    errors,
-    judged,
-    opening,
+    find_opening,
+    measure_errors,
+    pose_distance,
+    reference_motion,
     refuse_disagreement,
     soft_motion,
 )
-from reports.check.settings import FALLS, SMALLER, Plan, Tried, cheapest, same_step, tried
+from reports.check.settings import (
+    HELPFUL_RATIO,
+    SMALLER_STEPS,
+    SettingRun,
+    SweepPlan,
+    cheapest,
+    run_settings_sweep,
+    runs_by_step,
+)
 from reports.run.files import is_stream
 from reports.write.tables import number
 
-PATIENCE = 5.0  # s of CPU time for all settings together
-COMPILING = "compiling the judge's machine code, once for this installation: up to two minutes"
-SEARCH = 60.0  # s of CPU time to look for settings that reach a goal
-MEMBERS = ("words", "elements", "reads", "read")  # of a reader
-MOST_NAMED = 6  # elements in a sentence
-SAMPLES = 200  # about so many instants are compared
-LOOKS = 10  # times a sample at most a motion is checked for obstacles; an engine does so once a step
-MUCH_MORE = 1.1  # times the promised error: then not all settings have reached the model
-QUICK = 1e-9  # of the declared motion, where little time is to be spent: it is compared with errors of two digits
+SWEEP_BUDGET = 5.0  # s of CPU time for all settings together
+COMPILING_NOTE = "compiling the judge's machine code, once for this installation: up to two minutes"
+SEARCH_BUDGET = 60.0  # s of CPU time to look for settings that reach a goal
+READER_MEMBERS = ("words", "elements", "reads", "read")  # of a reader
+NAMES_LISTED = 6  # elements in a sentence
+COMPARED_SAMPLES = 200  # about so many instants are compared
+OBSTACLE_CHECKS = 10  # times a sample at most a motion is checked for obstacles; an engine does so once a step
+APPLY_MARGIN = 1.1  # times the promised error: then not all settings have reached the model
+QUICK_TOLERANCE = (
+    1e-9  # of the declared motion, where little time is to be spent: it is compared with errors of two digits
+)
 Array = NDArray[np.float64]
 
 
 def readers() -> dict[str, Reader]:
     """The readers of users' models, by the keys of the entry point group `crosscheck.readers`."""
-    lacking = f"it lacks one of {', '.join(MEMBERS)}"
-    kind = Kind("reader", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
+    lacking = f"it lacks one of {', '.join(READER_MEMBERS)}"
+    kind = Kind("reader", lambda value: "" if all(hasattr(value, name) for name in READER_MEMBERS) else lacking)
     return registered_by_key("crosscheck.readers", kind)
 
 
-def read(word: str, folder: Path, terms: ReadingTerms = AS_IT_IS) -> Reading:
+def read_user_model(word: str, folder: Path, terms: ReadingTerms = AS_IT_IS) -> Reading:
     """A user's model by the first reader that knows its kind. Raises ValueError and Unsupported."""
     known = readers().values()
     for reader in known:
@@ -62,7 +72,7 @@ def read(word: str, folder: Path, terms: ReadingTerms = AS_IT_IS) -> Reading:
 
 
 @dataclass(frozen=True)
-class Parts:
+class ErrorParts:
     """Largest errors in the measure of a tolerance; NaN where a part can't be told.
 
     `softness`: by how much the motion that the engine declares is off the ideal one; `step`: by how much the user's run
@@ -78,14 +88,14 @@ class Parts:
     divided: bool = True  # False: the engine declares no law whose motion can be worked out
 
 
-def parts_of(
+def split_error(
     reading: Reading,
     truth: Trajectory,
     own: Trajectory,
-    smaller: list[Tried],
-    tolerance: float = TOLERANCE,
+    smaller: list[SettingRun],
+    tolerance: float = SOFT_TOLERANCE,
     horizon: float = np.inf,
-) -> Parts:
+) -> ErrorParts:
     """From the user's run, and those of the same settings at `smaller` steps, the largest step first.
 
     `tolerance`: of the motion that the engine declares; `horizon` [s]: from there on errors tell no causes.
@@ -95,11 +105,15 @@ def parts_of(
     early = truth.t <= horizon
     if model.declares and model.has_soft_joints:
         declared = soft_motion(mechanism, model.regularisation, truth.t, tolerance, model.start_twist)
-        softness = _largest(apart(mechanism, declared, truth.pose)[early])
-    left = [_largest(apart(mechanism, run.pose, declared)[early]) for run in (own, *(each.run for each in smaller))]
+        softness = _largest(pose_distance(mechanism, declared, truth.pose)[early])
+    left = [
+        _largest(pose_distance(mechanism, run.pose, declared)[early]) for run in (own, *(each.run for each in smaller))
+    ]
     if not smaller:
-        return Parts(softness, left[0], float("nan"), float("nan"), False, model.declares)
-    return Parts(softness, left[0], left[-1], smaller[-1].change.dt, left[-1] < FALLS * left[-2], model.declares)
+        return ErrorParts(softness, left[0], float("nan"), float("nan"), False, model.declares)
+    return ErrorParts(
+        softness, left[0], left[-1], smaller[-1].change.dt, left[-1] < HELPFUL_RATIO * left[-2], model.declares
+    )
 
 
 def _largest(values: Array) -> float:
@@ -120,7 +134,7 @@ class Applied:
 
 
 @dataclass(frozen=True, eq=False)
-class Checked:
+class CheckResult:
     """All that was found; errors in the measure of a tolerance: angles [rad] and places in lengths of the mechanism."""
 
     name: str
@@ -132,8 +146,8 @@ class Checked:
     judge: IdealMotion
     judge_errors: Errors
     opens: Opening | None
-    parts: Parts
-    table: list[Tried]  # the user's own settings first
+    parts: ErrorParts
+    table: list[SettingRun]  # the user's own settings first
     asked: bool = True  # whether somebody named the tolerance
     applied: Applied | None = None
 
@@ -170,15 +184,15 @@ class Checked:
         if not (welds := self.facts.locking_welds):
             return ""
         hinge = "connect, which holds a point and no angle," if self.reading.model.engine == "MuJoCo" else "a hinge"
-        return f" (weld {', '.join(welds[:MOST_NAMED])} holds the angle too; {hinge} was perhaps meant)"
+        return f" (weld {', '.join(welds[:NAMES_LISTED])} holds the angle too; {hinge} was perhaps meant)"
 
     @property
-    def advised(self) -> Tried | None:
+    def advised(self) -> SettingRun | None:
         """The cheapest setting within the tolerance."""
         return cheapest(self.table, self.tolerance)
 
     @property
-    def decade(self) -> Tried | None:
+    def decade(self) -> SettingRun | None:
         """The cheapest setting with a tenth of the error of the one that is advised."""
         return None if self.advised is None else cheapest(self.table, self.advised.error / 10)
 
@@ -200,7 +214,7 @@ class Checked:
         """(error, CPU time [s]) of the same model with other settings, read anew, in the same motion."""
         spacing = float(self.judge.trajectory.t[1])
         run = reading.model.run(len(self.judge.trajectory.t) - 1, max(1, round(spacing / reading.model.dt)))
-        return errors(reading.mechanism, self.judge.trajectory, run).largest, run.stepping
+        return measure_errors(reading.mechanism, self.judge.trajectory, run).largest, run.stepping
 
 
 def check(
@@ -209,32 +223,32 @@ def check(
     duration: float,
     tolerance: float,
     told: Callable[[str], None] = lambda words: None,
-    plan: Plan | None = None,
+    plan: SweepPlan | None = None,
     asked: bool = True,
-) -> Checked:
+) -> CheckResult:
     """Check a model for a motion of `duration` [s]. `told` is given a few words before each part of the work.
 
     Raises Unsupported where the motion meets what ideal joints lack, and InvalidMechanism where it can't be followed.
     """
-    mechanism, model, plan = reading.mechanism, reading.model, plan or Plan(PATIENCE)
+    mechanism, model, plan = reading.mechanism, reading.model, plan or SweepPlan(SWEEP_BUDGET)
     if not 0 < model.dt < float("inf"):
         raise InvalidMechanism(f"the model's own step is {model.dt:g} s; it must be a finite time above zero")
     told("comparing the accelerations at t = 0")
     agreement = refuse_disagreement(reading)
-    every = max(1, round(duration / SAMPLES / model.dt))
+    every = max(1, round(duration / COMPARED_SAMPLES / model.dt))
     samples = max(1, round(duration / (every * model.dt)))
     if samples * every * model.dt > 2 * duration:
         raise InvalidMechanism(
             f"--duration is {duration:g} s; the model's own step is {model.dt:g} s; give a longer one"
         )
-    told(f"{COMPILING}, before the ideal motion is followed" if is_cold() else "following the ideal motion")
-    judge = judged(mechanism, samples, every * model.dt, tolerance)
+    told(f"{COMPILING_NOTE}, before the ideal motion is followed" if is_cold() else "following the ideal motion")
+    judge = reference_motion(mechanism, samples, every * model.dt, tolerance)
     truth = judge.trajectory
     samples = len(truth.t) - 1
-    for met in model.obstacles(*often(truth, min(every, LOOKS))):
+    for met in model.obstacles(*resample(truth, min(every, OBSTACLE_CHECKS))):
         shorter = f"give --duration {_below(met.t):g}; " if met.t > every * model.dt else ""
         raise Unsupported(f"{met.words} at {met.t:.3g} s, which an ideal mechanism doesn't know; {shorter}{met.remedy}")
-    facts = facts_of(mechanism, truth)
+    facts = compute_facts(mechanism, truth)
     told("running your own settings")
     own = model.run(samples, every)
     reading = replace(reading, notes=(*model.remarks(own), *reading.notes))
@@ -242,11 +256,11 @@ def check(
     def progress(number: int, count: int) -> None:
         told(f"trying documented settings, {number + 1} of {count}")
 
-    table = tried(reading, truth, samples, every, own, progress, plan, tolerance)
+    table = run_settings_sweep(reading, truth, samples, every, own, progress, plan, tolerance)
     told("telling softness from the step")
-    smaller = same_step(table, table[0])[1 : 1 + SMALLER]
-    parts = parts_of(reading, truth, own, smaller, QUICK if plan.quick else TOLERANCE, judge.horizon)
-    return Checked(
+    smaller = runs_by_step(table, table[0])[1 : 1 + SMALLER_STEPS]
+    parts = split_error(reading, truth, own, smaller, QUICK_TOLERANCE if plan.quick else SOFT_TOLERANCE, judge.horizon)
+    return CheckResult(
         name,
         reading,
         float(truth.t[-1]),
@@ -254,8 +268,8 @@ def check(
         agreement,
         facts,
         judge,
-        errors(mechanism, truth, judge.looser),
-        opening(mechanism, own),
+        measure_errors(mechanism, truth, judge.looser),
+        find_opening(mechanism, own),
         parts,
         table,
         asked,
@@ -268,7 +282,7 @@ def _below(at: float) -> float:
     return float(np.floor(at * 0.999 / size) * size)
 
 
-def applied(result: Checked, target: Path) -> Applied:
+def apply_advised(result: CheckResult, target: Path) -> Applied:
     """Write the advised settings, or the model as it is where it is within the tolerance already.
 
     Raises Unsupported where nothing can be written; then the target is as it was.
@@ -302,14 +316,14 @@ def applied(result: Checked, target: Path) -> Applied:
         raise Unsupported(f"--apply: {target} can't be written ({reason.strerror or reason})") from None
     notes = [f"{note.element}: {note.reason}" for note in reading.notes if note not in result.reading.notes]
     promised = own.error if result.met else advised.error
-    if not error <= MUCH_MORE * promised + 1e-12:
+    if not error <= APPLY_MARGIN * promised + 1e-12:
         notes.append(
             f"{promised:.2g} was expected: some elements keep values of their own, such as those of an included file"
         )
     return Applied(str(target), words, error, cpu, tuple(notes))
 
 
-def often(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:
+def resample(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:
     """Times, poses and twists of a motion `parts` times as often as it was sampled, by cubics through both."""
     spline = CubicHermiteSpline(motion.t, motion.pose, motion.twist)
     t = np.linspace(motion.t[0], motion.t[-1], parts * (len(motion.t) - 1) + 1)

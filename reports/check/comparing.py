@@ -13,16 +13,16 @@ from engines.imported_release import other_release
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory, ground_points
 from reports.check import rendering
-from reports.check.checked import SAMPLES
-from reports.check.judging import UNITS, Errors, IdealMotion, errors, judged
-from reports.check.pictures import ideal, picture_data, pictures, plane, pose_of
+from reports.check.checked import COMPARED_SAMPLES
+from reports.check.judging import ERROR_UNITS, Errors, IdealMotion, measure_errors, reference_motion
+from reports.check.pictures import draw_ideal, draw_plane, picture_data, pose_lines, render_pictures
 from reports.check.rendering import Section
 from reports.check.telling import number
 from reports.plots.theme import LIGHT, new_figure, settings, svg
 
 
 @dataclass(frozen=True)
-class Drawing:
+class Picture:
     """A picture as SVG, which a notebook shows."""
 
     title: str
@@ -65,18 +65,18 @@ class Comparison:
 
         return pandas.DataFrame(dict(self.errors.of), index=pandas.Index(self.errors.t, name="t"))
 
-    def figures(self) -> dict[str, Drawing]:
-        """`errors`: over time; `worst`: the mechanism where the run is most wrong, beside the truth there."""
-        judge = errors(self.mechanism, self.truth, self.judge.looser)
+    def figures(self) -> dict[str, Picture]:
+        """`measure_errors`: over time; `worst`: the mechanism where the run is most wrong, beside the truth there."""
+        judge = measure_errors(self.mechanism, self.truth, self.judge.looser)
         shown = picture_data(self.mechanism, self.judge, judge, self.run, self.errors, label=self.title)
-        return {name: Drawing(*drawn) for name, drawn in pictures(shown).items()}
+        return {name: Picture(*drawn) for name, drawn in render_pictures(shown).items()}
 
     def _section(self) -> Section:
         cost = f"{number(1e3 * self.run.stepping)} ms of CPU time"
         worst = self.errors.worst
         rows = tuple(
             (f"{name}, {unit}", number(worst[name]), number(float(self.errors.of[name][-1])))
-            for name, unit in UNITS.items()
+            for name, unit in ERROR_UNITS.items()
         )
         return Section("", (cost, *self.run.warnings), header=("error", "largest", "at the end"), rows=rows)
 
@@ -88,21 +88,21 @@ class Comparison:
         return rendering.body(self.title, [self._section(), *drawn])
 
 
-def compared(mechanism: Mechanism, engine: Engine | str, dt: float, duration: float) -> Comparison:
+def compare_with_ideal(mechanism: Mechanism, engine: Engine | str, dt: float, duration: float) -> Comparison:
     """See `planar_crosscheck.compare`."""
     if not (np.isfinite(dt) and np.isfinite(duration) and 0 < dt <= duration):
         raise ValueError(f"dt is {dt!r} s and duration {duration!r} s; both must be above zero, and dt the smaller")
-    chosen = _named(engine) if isinstance(engine, str) else engine
+    chosen = _engine_named(engine) if isinstance(engine, str) else engine
     if sentence := other_release([chosen]):
         raise ValueError(sentence)
-    every = max(1, round(duration / SAMPLES / dt))
+    every = max(1, round(duration / COMPARED_SAMPLES / dt))
     samples = max(1, round(duration / (every * dt)))
-    judge = judged(mechanism, samples, every * dt)
+    judge = reference_motion(mechanism, samples, every * dt)
     run = chosen.build(mechanism, dt)(samples, every)
-    return Comparison(mechanism, chosen, dt, judge, run, errors(mechanism, judge.trajectory, run))
+    return Comparison(mechanism, chosen, dt, judge, run, measure_errors(mechanism, judge.trajectory, run))
 
 
-def _named(name: str) -> Engine:
+def _engine_named(name: str) -> Engine:
     """By "engine" or "engine variant". Raises ValueError."""
     known = {method_name(engine): engine for engine in registry.ENGINES}
     found = known.get(name) or known.get(f"{name} default")
@@ -111,16 +111,16 @@ def _named(name: str) -> Engine:
     return found
 
 
-def drawn(mechanism: Mechanism, pose: Any = None) -> Drawing:
+def draw_mechanism(mechanism: Mechanism, pose: Any = None) -> Picture:
     """See `planar_crosscheck.draw`."""
     with settings():
         figure = new_figure(3.4, LIGHT, width=4.6)
         panel = figure.subplots()
         shown = mechanism.pose if pose is None else np.asarray(pose, dtype=float)
-        plane(panel, LIGHT, ground_points(mechanism))
-        ideal(panel, LIGHT, pose_of(mechanism, shown))
+        draw_plane(panel, LIGHT, ground_points(mechanism))
+        draw_ideal(panel, LIGHT, pose_lines(mechanism, shown))
         for body, (x, y, _) in zip(mechanism.bodies, shown, strict=True):
             paper = {"facecolor": LIGHT.paper, "edgecolor": "none", "pad": 1.0}
             panel.annotate(body.name, (x, y), ha="center", va="center", color=LIGHT.ink, bbox=paper)
     title = f"A mechanism of {len(mechanism.bodies)} bodies"
-    return Drawing(title, svg(figure, title))
+    return Picture(title, svg(figure, title))

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from operator import attrgetter
 from typing import Any
 
-from reports.check.checked import Checked
+from reports.check.checked import CheckResult
 
 TYPES = {"number": "number", "integer": "integer", "text": "string", "flag": "boolean", "object": "object"}
 # A line a member: its name (and where it is found, unless under this name), its type ("?": or null, which is also any
@@ -112,7 +112,7 @@ notes: [text]: what was done to a script, and what did not take
 }
 
 
-def data(found: Checked) -> dict[str, Any]:
+def check_data(found: CheckResult) -> dict[str, Any]:
     """All numbers of a check, for other programs: `schema` says what each is."""
     return _plain("MODEL", found)
 

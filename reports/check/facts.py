@@ -15,10 +15,10 @@ from reports.check.judging import accelerations
 
 Array = NDArray[np.float64]
 # The least singular value beside the largest below which rows nearly depend on one another.
-NEAR = 1e-2
-NEVER = 1e-9
-MOST_NUMBERS = 2e7  # of rows over all samples whose singular values are asked for
-STEP = 1e-6  # of length and time: of differences
+NEARLY_SINGULAR = 1e-2
+RANK_TOLERANCE = 1e-9
+SVD_NUMBERS = 2e7  # of rows over all samples whose singular values are asked for
+DIFFERENCE_STEP = 1e-6  # of length and time: of differences
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Facts:
     locking_welds: tuple[str, ...] = ()  # of a locked mechanism: welds that as hinges would leave a freedom
 
 
-def facts_of(mechanism: Mechanism, motion: Trajectory) -> Facts:
+def compute_facts(mechanism: Mechanism, motion: Trajectory) -> Facts:
     """From the mechanism and the judge's motion of it."""
     freedoms = mechanism.degrees_of_freedom()
     independent = 3 * len(mechanism.bodies) - freedoms[1]
@@ -58,10 +58,10 @@ def facts_of(mechanism: Mechanism, motion: Trajectory) -> Facts:
         freedoms,
         mechanism.row_count - independent,
         names,
-        _singular(mechanism, motion, independent),
+        _singular_instants(mechanism, motion, independent),
         _dead_centres(mechanism, motion, freedoms[1]),
         float(np.abs(motion.twist[..., 2]).max()),
-        _stiffest(mechanism),
+        _stiffest_mode(mechanism),
         mechanism.length_scale,
         mechanism.time_scale,
         locked,
@@ -81,11 +81,11 @@ def _locking_welds(mechanism: Mechanism) -> tuple[str, ...]:
     return tuple(joint.name for joint in mechanism.joints if isinstance(joint, Weld)) if free else ()
 
 
-def _singular(mechanism: Mechanism, motion: Trajectory, independent: int) -> tuple[tuple[float, float], ...]:
+def _singular_instants(mechanism: Mechanism, motion: Trajectory, independent: int) -> tuple[tuple[float, float], ...]:
     """The instants at which the independent rows come near to depending on one another."""
     if independent < 2:
         return ()
-    stride = max(1, int(len(motion.t) * mechanism.row_count * 3 * len(mechanism.bodies) / MOST_NUMBERS))
+    stride = max(1, int(len(motion.t) * mechanism.row_count * 3 * len(mechanism.bodies) / SVD_NUMBERS))
     poses, times = motion.pose[::stride], motion.t[::stride]
     scaled = mechanism.joint_rows.dense(poses) / np.tile([1.0, 1.0, mechanism.length_scale], len(mechanism.bodies))
     norm = np.linalg.norm(scaled, axis=-1, keepdims=True)
@@ -94,7 +94,7 @@ def _singular(mechanism: Mechanism, motion: Trajectory, independent: int) -> tup
     found = []
     for index in range(len(times)):
         around = least[max(0, index - 1) : index + 2]
-        if least[index] < NEAR and least[index] == around.min():
+        if least[index] < NEARLY_SINGULAR and least[index] == around.min():
             found.append((float(times[index]), float(least[index])))
     return tuple(found)
 
@@ -123,13 +123,13 @@ def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tu
     return tuple(sorted(out))
 
 
-def _stiffest(mechanism: Mechanism) -> float:
+def _stiffest_mode(mechanism: Mechanism) -> float:
     """The largest eigenvalue of small motions about the start, at rest [1/s]; 0 where nothing can move."""
     count = mechanism.pose.size
     unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     rows = mechanism.rows(mechanism.pose) if mechanism.row_count else np.zeros((0, count))
     _, sizes, right = np.linalg.svd(rows * unit, full_matrices=True)
-    rank = int(np.sum(sizes > NEVER * sizes[0])) if len(sizes) else 0
+    rank = int(np.sum(sizes > RANK_TOLERANCE * sizes[0])) if len(sizes) else 0
     free = right[rank:].T  # directions without units that the joints allow
     if free.shape[1] == 0 or free.shape[1] > 60:
         return 0.0
@@ -137,13 +137,15 @@ def _stiffest(mechanism: Mechanism) -> float:
     def of(pose: Array, twist: Array) -> Array:
         return accelerations(mechanism, pose, twist, 0.0).reshape(-1) / unit
 
-    rest, slope = np.zeros_like(mechanism.pose), STEP / mechanism.time_scale
+    rest, slope = np.zeros_like(mechanism.pose), DIFFERENCE_STEP / mechanism.time_scale
     by_place, by_speed = np.zeros((2, count, free.shape[1]))
     for column in range(free.shape[1]):
         way = (unit * free[:, column]).reshape(-1, 3)
-        by_place[:, column] = of(mechanism.pose + STEP * way, rest) - of(mechanism.pose - STEP * way, rest)
+        by_place[:, column] = of(mechanism.pose + DIFFERENCE_STEP * way, rest) - of(
+            mechanism.pose - DIFFERENCE_STEP * way, rest
+        )
         by_speed[:, column] = of(mechanism.pose, slope * way) - of(mechanism.pose, -slope * way)
-    own = free.T @ by_place / (2 * STEP), free.T @ by_speed / (2 * slope)
+    own = free.T @ by_place / (2 * DIFFERENCE_STEP), free.T @ by_speed / (2 * slope)
     still, one = np.zeros_like(own[0]), np.eye(len(own[0]))
     values = np.linalg.eigvals(np.block([[still, one], [own[0], own[1]]]))
     return float(np.abs(values).max()) if np.isfinite(values).all() else float("nan")

@@ -10,16 +10,16 @@ from typing import Any
 
 from reports.check.request import CheckReport, CheckRequest, Refused
 
-HEADER = ("model", "off by", "why", "advice", "its error", "CPU, times yours")
-LOOKED_AT = 65536  # bytes of a file: a model says early what it is
-MODEL = re.compile(rb"<(mujoco|robot)[\s/>]")
-SPACE = re.compile(rb"^(import|from) pymunk\b", re.MULTILINE)
+FOLDER_HEADER = ("model", "off by", "why", "advice", "its error", "CPU, times yours")
+BYTES_READ = 65536  # bytes of a file: a model says early what it is
+MODEL_TAG = re.compile(rb"<(mujoco|robot)[\s/>]")
+PYMUNK_IMPORT = re.compile(rb"^(import|from) pymunk\b", re.MULTILINE)
 Answers = Sequence[tuple[CheckRequest, CheckReport | Refused]]
 
 
-def models(folder: Path) -> list[Path]:
+def find_models(folder: Path) -> list[Path]:
     """Files below a folder that are models or scripts with a space, in the order of their names."""
-    kinds = {".xml": MODEL, ".mjcf": MODEL, ".urdf": MODEL, ".py": SPACE}
+    kinds = {".xml": MODEL_TAG, ".mjcf": MODEL_TAG, ".urdf": MODEL_TAG, ".py": PYMUNK_IMPORT}
     found = []
     for path in sorted(folder.rglob("*")):
         wanted = kinds.get(path.suffix.lower())
@@ -27,13 +27,13 @@ def models(folder: Path) -> list[Path]:
         if wanted is None or hidden or not path.is_file():
             continue
         with path.open("rb") as file:
-            if wanted.search(file.read(LOOKED_AT)):
+            if wanted.search(file.read(BYTES_READ)):
                 found.append(path)
     return found
 
 
 def rows(answers: Answers) -> list[tuple[str, ...]]:
-    """Under HEADER, a model each."""
+    """Under FOLDER_HEADER, a model each."""
     return [
         (request.word, "-", f"refused: {_short(request, answer)}", "-", "-", "-")
         if isinstance(answer, Refused)

@@ -22,8 +22,8 @@ from reference.trajectory import Trajectory, energy
 from reports.check.one_freedom import has_one_freedom, motion_along_curve
 
 Array = NDArray[np.float64]
-FAR = 1e12  # m, rad, and those in a second: nothing in a motion that is worth a number
-TOLERANCE = 1e-10  # far below what an engine's own step leaves, far above rounding
+DIVERGED = 1e12  # m, rad, and those in a second: nothing in a motion that is worth a number
+SOFT_TOLERANCE = 1e-10  # far below what an engine's own step leaves, far above rounding
 
 
 def accelerations(
@@ -46,7 +46,7 @@ def soft_motion(
     mechanism: Mechanism,
     give: Callable[[Array, Array], RowRegularisation],
     t: Array,
-    tolerance: float = TOLERANCE,
+    tolerance: float = SOFT_TOLERANCE,
     twist: Array | None = None,
 ) -> Array:
     """Poses (times, bodies, 3) of soft joints; NaN from where the equations can't be integrated.
@@ -59,7 +59,7 @@ def soft_motion(
     allowed = tolerance * np.concatenate([lengths, lengths / mechanism.time_scale])
 
     def rates(at: float, state: Array) -> Array:
-        if not np.abs(state).max() < FAR:  # a step that was far too long: it is taken again, shorter
+        if not np.abs(state).max() < DIVERGED:  # a step that was far too long: it is taken again, shorter
             return np.full_like(state, np.nan)
         pose, twist = state[:count].reshape(-1, 3), state[count:].reshape(-1, 3)
         gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(at)))
@@ -73,22 +73,23 @@ def soft_motion(
     return out
 
 
-LOOSER = Lagrange(tolerance=1e-10)  # the judge at another tolerance: its own error is what that changes
-KNOWN = 0.1  # of a tolerance: the most that the judge's estimate of its own error may be where others are held to it
-ALONG, ALONG_LOOSER = 1e-12, 1e-11  # tolerances along the curve of one freedom, and of the run beside it
-NUDGE = 1e-7  # of the length, and of the speed: small enough to be a derivative, far above the judge's error
-SMALL = 1e-2  # of the length, and of the speed: a disturbance that is larger no longer grows as a small one
-DISTURBANCES = ((1, NUDGE), (2, NUDGE / 10))  # (seed, size): both have to grow exponentially where that is claimed
-HELD = 1e-3  # of a disturbance: where the joints take more of it away, they leave it no freedom
+LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # the judge at another tolerance: its own error is what that changes
+JUDGE_SHARE = 0.1  # of a user's tolerance: the largest estimated error of the reference motion
+CURVE_TOLERANCE = 1e-12  # relative error of a step along the curve of one freedom
+CURVE_LOOSER_TOLERANCE = 1e-11  # of the second run, whose difference estimates the error
+DISTURBANCE = 1e-7  # of the length, and of the speed: small enough to be a derivative, far above the judge's error
+LINEAR_LIMIT = 1e-2  # of the length, and of the speed: a disturbance that is larger no longer grows as a small one
+DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))  # (seed, size): chaos is reported if both grow exponentially
+REMAINING_SHARE = 1e-3  # of a disturbance: where the joints take more of it away, they leave it no freedom
 # A disturbance of a motion that is not chaotic grows about as the time; this many times that is taken as exponential.
-GROWN = 100.0
+EXPONENTIAL_GROWTH = 100.0
 
 
 @dataclass(frozen=True, eq=False)
 class IdealMotion:
     """The ideal motion, and the same at a `looser` tolerance: the difference tells what the judge may be wrong by.
 
-    `cut`: it goes on, but from there on the judge's own estimate is above KNOWN of the tolerance.
+    `cut`: it goes on, but from there on the judge's own estimate is above JUDGE_SHARE of the tolerance.
     """
 
     trajectory: Trajectory
@@ -105,13 +106,13 @@ class IdealMotion:
     @property
     def tenfold(self) -> float:
         """Mean time [s] in which a small disturbance of the start grows tenfold; infinite if it does not grow."""
-        small = self.growth * NUDGE < SMALL
+        small = self.growth * DISTURBANCE < LINEAR_LIMIT
         last = len(small) - 1 if small.all() else max(int(np.argmin(small)) - 1, 0)
         tens = float(np.log10(max(self.growth[last], 1.0)))
         return float(self.trajectory.t[last]) / tens if tens > 0 else float("inf")
 
 
-def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf) -> IdealMotion:
+def reference_motion(mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf) -> IdealMotion:
     """The motion of ideal joints, for as long as the judge knows it well enough for a tolerance.
 
     Raises InvalidMechanism where it can't be followed to the end, or not known for a sample.
@@ -122,14 +123,16 @@ def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float 
 
     run: Callable[[Mechanism], Trajectory] = by_multipliers
     motion, looser = run(mechanism), None
-    known = _known(mechanism, motion, tolerance)
+    known = _is_accurate(mechanism, motion, tolerance)
     if not known.all() and has_one_freedom(mechanism):
-        along, beside = (motion_along_curve(mechanism, motion.t, size) for size in (ALONG, ALONG_LOOSER))
+        along, beside = (
+            motion_along_curve(mechanism, motion.t, size) for size in (CURVE_TOLERANCE, CURVE_LOOSER_TOLERANCE)
+        )
         along = replace(along, estimate=np.abs(along.pose - beside.pose))
-        known_along = _known(mechanism, along, tolerance)
+        known_along = _is_accurate(mechanism, along, tolerance)
         if known_along.all():
             motion, looser, known = along, beside, known_along
-            run = partial(motion_along_curve, t=motion.t, tolerance=ALONG)
+            run = partial(motion_along_curve, t=motion.t, tolerance=CURVE_TOLERANCE)
     sound = np.isfinite(motion.pose).all(axis=(1, 2))
     if not sound.all():
         raise InvalidMechanism(
@@ -142,36 +145,38 @@ def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float 
                 f"the judge does not know the ideal motion to a tenth of the tolerance {tolerance:g} beyond "
                 f"{motion.t[max(last, 0)]:.4g} s: the joints are near a singular position; give a larger --tolerance"
             )
-        return replace(judged(mechanism, last, spacing), cut=True)
-    looser = looser or LOOSER.build(mechanism, spacing)(samples, 1)
+        return replace(reference_motion(mechanism, last, spacing), cut=True)
+    looser = looser or LOOSER_JUDGE.build(mechanism, spacing)(samples, 1)
     growths = [_growth(mechanism, motion, looser, run, *disturbance) for disturbance in DISTURBANCES]
-    expected = GROWN * (1 + motion.t / mechanism.time_scale)
-    begins = [_parting(growth, expected, size) for growth, (_, size) in zip(growths, DISTURBANCES, strict=True)]
+    expected = EXPONENTIAL_GROWTH * (1 + motion.t / mechanism.time_scale)
+    begins = [
+        _first_exponential(growth, expected, size) for growth, (_, size) in zip(growths, DISTURBANCES, strict=True)
+    ]
     parts = all(begin < len(motion.t) for begin in begins) and not has_one_freedom(mechanism)
     horizon = float(motion.t[min(begins) if parts else -1])
     return IdealMotion(motion, looser, np.max(growths, axis=0), horizon)
 
 
-def _known(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> NDArray[np.bool_]:
-    """Where (times,) the estimate of a motion's error, and the gaps of its joints, are below KNOWN of a tolerance."""
-    off = apart(mechanism, motion.pose + np.asarray(motion.estimate), motion.pose)
+def _is_accurate(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> NDArray[np.bool_]:
+    """Whether the estimated error and the joints' gaps are below JUDGE_SHARE of a tolerance, by sample (times,)."""
+    off = pose_distance(mechanism, motion.pose + np.asarray(motion.estimate), motion.pose)
     if mechanism.row_count:
         gap = np.abs(np.nan_to_num(mechanism.joint_rows.gap(motion.pose, motion.t)))
         off = np.maximum(off, (gap / np.where(mechanism.is_angular, 1.0, mechanism.length_scale)).max(axis=1))
-    return off < KNOWN * tolerance
+    return off < JUDGE_SHARE * tolerance
 
 
-def _parting(growth: Array, expected: Array, size: float) -> int:
+def _first_exponential(growth: Array, expected: Array, size: float) -> int:
     """The first sample from which on a disturbance of this size has grown by more than expected; their count if none.
 
-    A disturbance that is no longer SMALL counts as grown to the end.
+    A disturbance that is no longer LINEAR_LIMIT counts as grown to the end.
     """
     beyond = growth > expected
-    stays = beyond[-1] or np.any(beyond & (growth * size > SMALL))
+    stays = beyond[-1] or np.any(beyond & (growth * size > LINEAR_LIMIT))
     return int(np.argmax(beyond)) if stays else len(beyond)
 
 
-def apart(mechanism: Mechanism, pose: Array, other: Array) -> Array:
+def pose_distance(mechanism: Mechanism, pose: Array, other: Array) -> Array:
     """How far poses (times, bodies, 3) are from others (times,): the larger of angles [rad] and places in lengths."""
     difference = np.abs(pose - other)
     places = np.hypot(difference[..., 0], difference[..., 1]) / mechanism.length_scale
@@ -207,16 +212,18 @@ def _growth(
         return np.sqrt(np.sum((moved / unit) ** 2 + (faster / unit) ** 2, axis=(1, 2)))
 
     apart_by = np.nan_to_num(size(disturbed), nan=np.inf)
-    if not apart_by[0] > HELD * nudge:
+    if not apart_by[0] > REMAINING_SHARE * nudge:
         return none
     # Near a singular position the judge's own error grows as a disturbance does, and is none.
     return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
-AGREE = 1e-6  # of the largest acceleration: rounding of equations solved twice, with room for badly scaled masses
+START_TOLERANCE = (
+    1e-6  # of the largest acceleration: rounding of equations solved twice, with room for badly scaled masses
+)
 # Of the mechanism's own speed, and of the largest force: what the judge's answer is known to. Less than that is zero.
-ROUNDED = 1e-9
-UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
+ZERO_SHARE = 1e-9
+ERROR_UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,7 +231,7 @@ class Errors:
     """Of one run over its samples (times,); NaN where it gave up, or where there is nothing to compare."""
 
     t: Array
-    of: dict[str, Array]  # by UNITS
+    of: dict[str, Array]  # by ERROR_UNITS
     whole: Array  # the larger of angles [rad] and places in lengths of the mechanism: what a tolerance is for
     finished: bool
 
@@ -243,7 +250,7 @@ class Errors:
         return {"t": self.t.tolist(), **{name: values.tolist() for name, values in self.of.items()}}
 
 
-def errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jumps: bool = False) -> Errors:
+def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jumps: bool = False) -> Errors:
     """Of a run at the judge's instants.
 
     jumps: the run starts with velocities that its joints do not allow. The impulse that changes them at once in the
@@ -256,14 +263,14 @@ def errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jumps: bool
     span = float(kinetic.max())
     fast = mechanism.length_scale / mechanism.time_scale
     # At rest but for rounding, an energy that is lost is no part of any other.
-    moves = span > 0.5 * float(mechanism.inertias[:, 0].max()) * (ROUNDED * fast) ** 2
+    moves = span > 0.5 * float(mechanism.inertias[:, 0].max()) * (ZERO_SHARE * fast) ** 2
     drift = np.abs(energy(mechanism, run) - energy(mechanism, truth)) / span if moves else np.full_like(angle, np.nan)
     reaction = _reaction(mechanism, truth, run)
     if jumps:
         reaction[:2], drift[:2] = np.nan, np.nan
     of = {"angle": angle, "position": position, "reaction": reaction, "energy": drift}
     finished = bool(np.isfinite(run.pose).all())
-    return Errors(run.t, of, apart(mechanism, run.pose, truth.pose), finished)
+    return Errors(run.t, of, pose_distance(mechanism, run.pose, truth.pose), finished)
 
 
 def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array:
@@ -288,7 +295,7 @@ def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array
         if not rows:
             continue
         scale = max(float(np.linalg.norm(truth.reaction[:, row], axis=1).max()) for row in rows)
-        scale = scale if scale > ROUNDED * largest_force * arm else largest_force * arm
+        scale = scale if scale > ZERO_SHARE * largest_force * arm else largest_force * arm
         if scale > 0:
             off = [np.linalg.norm(run.reaction[:, row] - truth.reaction[:, row], axis=1) / scale for row in rows]
             # A joint whose force an engine does not know, such as that of a prescribed crank, hides no other.
@@ -306,7 +313,7 @@ class Opening:
     t: float
 
 
-def opening(mechanism: Mechanism, run: Trajectory) -> Opening | None:
+def find_opening(mechanism: Mechanism, run: Trajectory) -> Opening | None:
     """Of a run; None where no joint has a gap."""
     if not mechanism.row_count:
         return None
@@ -327,11 +334,11 @@ def refuse_disagreement(reading: Reading) -> float:
     give = model.regularisation(np.zeros(mechanism.row_count), mechanism.pose) if model.has_soft_joints else None
     expected = accelerations(mechanism, mechanism.pose, mechanism.twist, 0.0, give)
     found = model.start()
-    off = _apart(mechanism, found, expected)
-    if off <= AGREE:
+    off = _acceleration_difference(mechanism, found, expected)
+    if off <= START_TOLERANCE:
         return off
     for element in model.elements:
-        if _apart(mechanism, model.without(element), expected) <= AGREE:
+        if _acceleration_difference(mechanism, model.without(element), expected) <= START_TOLERANCE:
             raise Unsupported(
                 f"at t = 0 the accelerations differ from those of the ideal mechanism by {off:.1g} of themselves, and "
                 f"agree without '{element}': it acts at the start, and in no ideal joint; {left_out(element)}"
@@ -346,7 +353,7 @@ def refuse_disagreement(reading: Reading) -> float:
     )
 
 
-def _apart(mechanism: Mechanism, found: Array, expected: Array) -> float:
+def _acceleration_difference(mechanism: Mechanism, found: Array, expected: Array) -> float:
     unit = np.array([1.0, 1.0, mechanism.length_scale])
     size = max(float(np.abs(expected * unit).max()), mechanism.length_scale / mechanism.time_scale**2)
     return float(np.abs((found - expected) * unit).max()) / size

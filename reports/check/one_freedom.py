@@ -23,14 +23,14 @@ Array = NDArray[np.float64]
 # drift d off the curve leads to the other one unless this is well above the root of d, which is 1e-12 or less of the
 # length here; and a direction may turn by about this much on a way as short, so the square of it, 1e-8, is the error
 # there, and it dies out as the curves part. Measured on parallelograms: right to 1e-9 with 1e-5, 1e-4 and 1e-3.
-ALLOWED = 1e-4
-MOST_BODIES = 40  # a singular value decomposition of all rows in every evaluation
+NULL_SPACE_TOLERANCE = 1e-4
+CURVE_BODY_LIMIT = 40  # a singular value decomposition of all rows in every evaluation
 
 
 def has_one_freedom(mechanism: Mechanism) -> bool:
     """Whether one freedom is left and no joint prescribes a rate or holds velocities alone."""
     return (
-        0 < len(mechanism.bodies) <= MOST_BODIES
+        0 < len(mechanism.bodies) <= CURVE_BODY_LIMIT
         and mechanism.degrees_of_freedom() == (1, 1)
         and bool(mechanism.holonomic.all())
         and not mechanism.rate.any()
@@ -75,7 +75,7 @@ class _Tangent:
         rows = self.mechanism.joint_rows.dense(pose) / self.root
         sizes = np.linalg.norm(rows, axis=1, keepdims=True)
         _, values, right = np.linalg.svd(rows / np.where(sizes > 0, sizes, 1.0), full_matrices=True)
-        rank = int(np.sum(values > ALLOWED * values[0]))
+        rank = int(np.sum(values > NULL_SPACE_TOLERANCE * values[0]))
         return right[min(rank, rows.shape[1] - 1) :]
 
 
@@ -108,6 +108,6 @@ def _acceleration(mechanism: Mechanism, pose: Array, twist: Array, along: Array)
     rows = mechanism.joint_rows.dense(pose)
     bias = mechanism.bias(pose, twist)
     root = np.sqrt(mechanism.inertias.reshape(-1))
-    across = np.linalg.lstsq(rows / root, bias, rcond=ALLOWED)[0] / root
+    across = np.linalg.lstsq(rows / root, bias, rcond=NULL_SPACE_TOLERANCE)[0] / root
     force = (mechanism.inertias * mechanism.unconstrained(pose, twist)).reshape(-1)
     return (across + along * (along @ force)).reshape(-1, 3)

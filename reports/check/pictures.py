@@ -14,15 +14,15 @@ from reference.joints import Slot
 from reference.mechanism import Mechanism
 from reference.plane import rotated
 from reference.trajectory import Trajectory, body_points, ground_points
-from reports.check.checked import Checked, Tried
-from reports.check.judging import UNITS, Errors, IdealMotion
+from reports.check.checked import CheckResult, SettingRun
+from reports.check.judging import ERROR_UNITS, Errors, IdealMotion
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 
 Array = NDArray[np.float64]
 Lines = list[list[list[float]]]  # lines of points of two coordinates [m]
 Curves = dict[str, list[float]]  # errors over time by quantity, in its unit
-LEAST = 1e-16  # of an error on a logarithmic axis
-BARS: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
+SMALLEST_DRAWN = 1e-16  # of an error on a logarithmic axis
+BAR_STYLE: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
 
 
 @dataclass(frozen=True)
@@ -60,13 +60,13 @@ class PictureData:
         return json.dumps(asdict(self), sort_keys=True)
 
 
-def from_text(text: str) -> PictureData:
+def picture_data_from_text(text: str) -> PictureData:
     """Back from `PictureData.as_text`."""
     data = json.loads(text)
     return PictureData(**{**data, "ideal": Pose(**data["ideal"]), "found": Pose(**data["found"])})
 
 
-def shown_of(result: Checked, advised: Tried | None = None) -> PictureData:
+def picture_data_of(result: CheckResult, advised: SettingRun | None = None) -> PictureData:
     """The data of a check; `advised`: the settings beside the user's own, if not those that it advises."""
     advised = advised or result.advised
     other = None if advised is None or result.met else advised.errors
@@ -84,7 +84,7 @@ def picture_data(
     label: str = PictureData.label,
 ) -> PictureData:
     """Of a run with its errors, beside the ideal motion, the judge's errors, and another run's."""
-    known = [quantity for quantity in UNITS if np.isfinite(own.of[quantity]).any()]
+    known = [quantity for quantity in ERROR_UNITS if np.isfinite(own.of[quantity]).any()]
     sample = int(np.argmax(np.where(np.isfinite(own.whole), own.whole, -1.0)))
 
     def curves(errors: Errors) -> Curves:
@@ -100,13 +100,13 @@ def picture_data(
         ideal.horizon if ideal.horizon < ideal.trajectory.t[-1] else None,
         float(own.t[sample]),
         ground_points(mechanism).tolist(),
-        pose_of(mechanism, ideal.trajectory.pose[sample]),
-        pose_of(mechanism, run.pose[sample]),
+        pose_lines(mechanism, ideal.trajectory.pose[sample]),
+        pose_lines(mechanism, run.pose[sample]),
         label,
     )
 
 
-def pose_of(mechanism: Mechanism, pose: Array) -> Pose:
+def pose_lines(mechanism: Mechanism, pose: Array) -> Pose:
     """The lines of a pose (bodies, 3) [m, m, rad]: a body with a single joint reaches to its centre of mass."""
 
     def point(name: str | None, local: tuple[float, float]) -> Array:
@@ -133,7 +133,7 @@ def pose_of(mechanism: Mechanism, pose: Array) -> Pose:
     return Pose(bars, links, rails)
 
 
-def pictures(shown: PictureData) -> dict[str, tuple[str, str]]:
+def render_pictures(shown: PictureData) -> dict[str, tuple[str, str]]:
     """By 'errors' and 'worst': the title of a picture, and the SVG."""
     named = {
         "errors": (f"Errors of {shown.label} over time, beside the judge's own error", _errors(shown)),
@@ -157,11 +157,11 @@ def _errors(shown: PictureData) -> Figure:
             style_axes(panel, theme)
             panel.set_yscale("log")
             for t, errors, label, colour, dashes in lines:
-                values = np.maximum(errors[quantity], LEAST)
+                values = np.maximum(errors[quantity], SMALLEST_DRAWN)
                 panel.plot(t[1:], values[1:], color=colour, linestyle=dashes, linewidth=1.5, label=label)
             if shown.horizon is not None:
                 panel.axvline(shown.horizon, color=theme.third, linestyle="-.", label="errors grow exponentially")
-            panel.set_title(f"{quantity} error, {UNITS[quantity]}", loc="left")
+            panel.set_title(f"{quantity} error, {ERROR_UNITS[quantity]}", loc="left")
             panel.set_xlabel("time, s")
         _legend(figure, theme, 4, *panels[0].get_legend_handles_labels())
     return figure
@@ -172,12 +172,12 @@ def _worst(shown: PictureData) -> Figure:
     with settings():
         figure = new_figure(4.2, theme, width=6.2)
         panel = figure.subplots()
-        plane(panel, theme, shown.ground, "held to the ground")
-        ideal(panel, theme, shown.ideal, "ideal joints")
+        draw_plane(panel, theme, shown.ground, "held to the ground")
+        draw_ideal(panel, theme, shown.ideal, "ideal joints")
         dashed: dict[str, Any] = {"color": theme.first, "linestyle": "--"}
         _draw(panel, shown.found.rails, linewidth=0.6, color=theme.first, alpha=0.5)
         _draw(panel, shown.found.links, linewidth=0.8, **dashed)
-        _draw(panel, shown.found.bars, shown.label, linewidth=1.5, markersize=4, **dashed, **BARS)
+        _draw(panel, shown.found.bars, shown.label, linewidth=1.5, markersize=4, **dashed, **BAR_STYLE)
         _legend(figure, theme, 3)
     return figure
 
@@ -188,7 +188,7 @@ def _legend(figure: Figure, theme: Theme, columns: int, *entries: Any) -> None:
         text.set_color(theme.ink)
 
 
-def plane(panel: Any, theme: Theme, ground: Any, label: str | None = None) -> None:
+def draw_plane(panel: Any, theme: Theme, ground: Any, label: str | None = None) -> None:
     """An empty plane of motion, with the points that are held to the ground (points, 2) [m]."""
     style_axes(panel, theme)
     panel.set_aspect("equal", adjustable="datalim")
@@ -198,11 +198,11 @@ def plane(panel: Any, theme: Theme, ground: Any, label: str | None = None) -> No
         panel.plot(*np.array(ground).T, linestyle="none", marker="^", markersize=8, color=theme.quiet, label=label)
 
 
-def ideal(panel: Any, theme: Theme, pose: Pose, label: str | None = None) -> None:
+def draw_ideal(panel: Any, theme: Theme, pose: Pose, label: str | None = None) -> None:
     """The pose of ideal joints: full lines."""
     _draw(panel, pose.rails, linewidth=0.6, color=theme.ink, alpha=0.5)
     _draw(panel, pose.links, linewidth=1.0, color=theme.ink)
-    _draw(panel, pose.bars, label, color=theme.ink, linewidth=3.0, markersize=6, **BARS)
+    _draw(panel, pose.bars, label, color=theme.ink, linewidth=3.0, markersize=6, **BAR_STYLE)
 
 
 def _draw(panel: Any, lines: Lines, label: str | None = None, **look: Any) -> None:

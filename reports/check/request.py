@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
-    from reports.check.checked import Plan
+    from reports.check.checked import SweepPlan
     from reports.check.rendering import Section
 
-USUAL_TOLERANCE = 1e-4  # error of the advised settings where no tolerance was asked for
-LONGEST = 1000.0  # s of motion
+DEFAULT_TOLERANCE = 1e-4  # error of the advised settings where no tolerance was asked for
+MAX_DURATION = 1000.0  # s of motion
 
 
 @dataclass(frozen=True)
@@ -24,8 +24,8 @@ class CheckRequest:
     """The options of `crosscheck check` and of `planar_crosscheck.check`.
 
     word: the model as on the command line, relative to `folder`; tolerance: None if none was asked for; quick,
-    everything: see `Plan`; search: look for settings until one meets the tolerance; apply: the file for the advised
-    settings; notes: a file into which the progress is written.
+    everything: see `SweepPlan`; search: try settings until one meets the tolerance; apply: path of the file to write
+    with the advised settings; notes: path of a file to which the progress is written.
     """
 
     word: str
@@ -45,7 +45,7 @@ class CheckRequest:
     def refuse_bad(self) -> CheckRequest:
         """The request itself. Raises BadInput for a number out of its range."""
         tolerance = "fix-to" if self.search else "tolerance"
-        for name, value, most in (("duration", self.duration, LONGEST), (tolerance, self.tolerance, 1.0)):
+        for name, value, most in (("duration", self.duration, MAX_DURATION), (tolerance, self.tolerance, 1.0)):
             if value is not None and not 0 < value <= most:
                 raise BadInput(f"--{name} is {value:g}; it must be greater than zero and at most {most:g}")
         if self.step is not None and not 0 < self.step <= self.duration:
@@ -58,12 +58,12 @@ class CheckRequest:
         return self.word
 
     @property
-    def plan(self) -> Plan:
-        from reports.check.checked import PATIENCE, SEARCH, Plan
+    def plan(self) -> SweepPlan:
+        from reports.check.checked import SEARCH_BUDGET, SWEEP_BUDGET, SweepPlan
 
         if not self.search:
-            return Plan(PATIENCE, quick=self.quick, everything=self.everything)
-        return Plan(SEARCH, USUAL_TOLERANCE if self.tolerance is None else self.tolerance)
+            return SweepPlan(SWEEP_BUDGET, quick=self.quick, everything=self.everything)
+        return SweepPlan(SEARCH_BUDGET, DEFAULT_TOLERANCE if self.tolerance is None else self.tolerance)
 
 
 @dataclass(frozen=True, repr=False)
@@ -102,16 +102,16 @@ class Refused:
     sentence: str
 
 
-def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
+def run_check(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
     """The check, run in this process, or why there is none. `model`: an engine's own object in place of a file."""
     # Imported here: a command that only makes requests starts sooner.
     from engines import Unsupported
     from engines.importers import read_object
     from engines.reading import ReadingTerms
     from engines.registry import mislabelled
-    from reports.check.checked import applied, check, read
-    from reports.check.document import data
-    from reports.check.telling import answer, line, sections
+    from reports.check.checked import apply_advised, check, read_user_model
+    from reports.check.document import check_data
+    from reports.check.telling import answer_section, report_sections, summary_row
 
     def note(words: str) -> None:
         if request.notes:
@@ -123,12 +123,14 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
 
     if sentence := mislabelled():
         return Refused(sentence)
-    tolerance = USUAL_TOLERANCE if request.tolerance is None else request.tolerance
+    tolerance = DEFAULT_TOLERANCE if request.tolerance is None else request.tolerance
     trouble, drawn = "", {}
     try:
         note("reading")
         terms = ReadingTerms(tuple(request.without), request.key, request.step)
-        reading = read(request.word, Path(request.folder), terms) if model is None else read_object(model, terms)
+        reading = (
+            read_user_model(request.word, Path(request.folder), terms) if model is None else read_object(model, terms)
+        )
         name = reading.title or Path(request.word).name
         result = check(reading, name, request.duration, tolerance, note, request.plan, request.tolerance is not None)
     except (Unsupported, ValueError) as reason:  # InvalidMechanism is a ValueError
@@ -136,13 +138,13 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
     if request.apply:
         note("writing the advised settings and running them")
         try:
-            result = replace(result, applied=applied(result, Path(request.folder) / request.apply))
+            result = replace(result, applied=apply_advised(result, Path(request.folder) / request.apply))
         except (Unsupported, ValueError) as reason:
             trouble = refusal(reason)
     if request.pictures:
         note("drawing")
-        from reports.check.pictures import pictures, shown_of  # a second of imports
+        from reports.check.pictures import picture_data_of, render_pictures  # a second of imports
 
-        drawn = pictures(shown_of(result))
-    shown = answer(result), sections(result, drawn), line(result)
-    return CheckReport(request, result.verdict, *shown, data(result), trouble)
+        drawn = render_pictures(picture_data_of(result))
+    shown = answer_section(result), report_sections(result, drawn), summary_row(result)
+    return CheckReport(request, result.verdict, *shown, check_data(result), trouble)

@@ -11,17 +11,19 @@ import numpy as np
 
 from engines.reading import Change, Reading
 from reference.trajectory import Trajectory
-from reports.check.judging import Errors, errors
+from reports.check.judging import Errors, measure_errors
 
-LONGEST = 1.0  # s of it for one run: smaller steps than that allows are left out
-FALLS = 0.75  # of the error before: a smaller step is taken to help
-SATURATED = 1.0  # rad, or lengths of the mechanism: above, an error no longer tells its causes
-ALIKE = 0.01  # of such an error: two coarse steps are seldom so near by chance, and twice one after the other
-SMALLER = 4  # runs of the user's own settings at smaller steps that the parts are told from
+MAX_RUN_TIME = 1.0  # s of it for one run: smaller steps than that allows are left out
+HELPFUL_RATIO = 0.75  # of the error before: a smaller step is taken to help
+SATURATED_ERROR = 1.0  # rad, or lengths of the mechanism: above, an error no longer tells its causes
+SATURATED_CHANGE = (
+    0.01  # of such an error: two coarse steps are seldom so near by chance, and twice one after the other
+)
+SMALLER_STEPS = 4  # runs of the user's own settings at smaller steps that the parts are told from
 
 
 @dataclass(frozen=True)
-class Plan:
+class SweepPlan:
     """Which documented settings are tried: those that may be advised, within `patience` [s of CPU time].
 
     goal: an error; ever smaller steps are tried until a setting is within it. quick: four settings, and rougher parts.
@@ -35,7 +37,7 @@ class Plan:
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
+class SettingRun:
     """One setting: its largest error in the measure of a tolerance, and the CPU time of stepping [s]."""
 
     change: Change
@@ -57,30 +59,32 @@ class Tried:
         return self.errors.worst["reaction"]
 
 
-def tried(
+def run_settings_sweep(
     reading: Reading,
     truth: Trajectory,
     samples: int,
     every: int,
     user_run: Trajectory,
     progress: Callable[[int, int], None],
-    plan: Plan,
+    plan: SweepPlan,
     tolerance: float,
-) -> list[Tried]:
+) -> list[SettingRun]:
     """Runs at the documented settings, coarse steps first; the user's own settings come first in the result.
 
     A setting is left out where it would take too long, by the number of its steps and the CPU time of a step so far.
     """
     model = reading.model
 
-    def result(change: Change, run: Trajectory) -> Tried:
-        return Tried(change, errors(reading.mechanism, truth, run, reading.jumps), run)
+    def result(change: Change, run: Trajectory) -> SettingRun:
+        return SettingRun(change, measure_errors(reading.mechanism, truth, run, reading.jumps), run)
 
     all_wanted = plan.quick or plan.everything or plan.patience == float("inf")
     unlimited = plan.goal is not None or plan.quick or plan.patience == float("inf")
-    smallest = 0.0 if unlimited else model.dt * max(user_run.stepping, 1e-4) / LONGEST
+    smallest = 0.0 if unlimited else model.dt * max(user_run.stepping, 1e-4) / MAX_RUN_TIME
     changes = model.changes(min(smallest, model.dt), plan.goal is not None)
-    order = sorted(_few(changes) if plan.quick else range(1, len(changes)), key=lambda index: -changes[index].dt)
+    order = sorted(
+        _quick_choice(changes) if plan.quick else range(1, len(changes)), key=lambda index: -changes[index].dt
+    )
     begin, rates = time.process_time(), {changes[0].options: max(user_run.stepping, 1e-5) / (samples * every)}
     done = {0: result(changes[0], user_run)}
     for number, index in enumerate(order):
@@ -93,26 +97,26 @@ def tried(
         cost = steps * rates.get(change.options, max(rates.values()))
         if time.process_time() - begin + cost > plan.patience:
             continue
-        for_parts = plan.goal is None and alike[:1] == settings[:1] and len(alike) <= SMALLER
-        dear = plan.goal is None and cost > _enough(settings, tolerance)
-        if (dear or _stays(alike)) and not (all_wanted or for_parts):
+        for_parts = plan.goal is None and alike[:1] == settings[:1] and len(alike) <= SMALLER_STEPS
+        dear = plan.goal is None and cost > _cost_limit(settings, tolerance)
+        if (dear or _has_plateaued(alike)) and not (all_wanted or for_parts):
             continue
         run = model.run(samples, every, change)
         rates[change.options] = max(run.stepping / steps, rates.get(change.options, 0.0))
         done[index] = result(change, run)
     table = [done[index] for index in sorted(done)]
-    front = best(table)
+    front = pareto_front(table)
     return [replace(setting, front=setting in front) for setting in table]
 
 
-def _enough(table: list[Tried], tolerance: float) -> float:
+def _cost_limit(table: list[SettingRun], tolerance: float) -> float:
     """CPU time [s] of a setting with a tenth of the advised one's error: a setting that takes longer is not advised."""
     advised = cheapest(table, tolerance)
     decade = None if advised is None else cheapest(table, advised.error / 10)
     return float("inf") if decade is None else decade.cost
 
 
-def _few(changes: list[Change]) -> list[int]:
+def _quick_choice(changes: list[Change]) -> list[int]:
     """The user's own settings at a quarter of the step, and the last kind at that step, a quarter and a sixteenth."""
     user, last = changes[0], changes[-1].options
     wanted = [(user.options, 4), (last, 1), (last, 4), (last, 16)]
@@ -120,35 +124,39 @@ def _few(changes: list[Change]) -> list[int]:
     return sorted({places[key] for key in wanted if key in places} - {0})
 
 
-def _stays(table: list[Tried]) -> bool:
+def _has_plateaued(table: list[SettingRun]) -> bool:
     """Whether smaller steps have stopped to help: the last two of them took less than a quarter of the error away, or
-    hardly changed an error that is SATURATED.
+    hardly changed an error that is SATURATED_ERROR.
     """
 
     def stays(before: float, after: float) -> bool:
-        return after >= FALLS * before if before < SATURATED else abs(after - before) <= ALIKE * before
+        return (
+            after >= HELPFUL_RATIO * before
+            if before < SATURATED_ERROR
+            else abs(after - before) <= SATURATED_CHANGE * before
+        )
 
     last = [setting.error for setting in sorted(table, key=lambda setting: -setting.change.dt)][-3:]
     return len(last) == 3 and bool(np.isfinite(last).all()) and all(stays(a, b) for a, b in pairwise(last))
 
 
-def cheapest(table: list[Tried], tolerance: float) -> Tried | None:
+def cheapest(table: list[SettingRun], tolerance: float) -> SettingRun | None:
     """The setting of the least cost whose error is within a tolerance, if there is one."""
     return min(
         (setting for setting in table if setting.error <= tolerance), key=lambda setting: setting.cost, default=None
     )
 
 
-def best(table: list[Tried]) -> list[Tried]:
+def pareto_front(table: list[SettingRun]) -> list[SettingRun]:
     """The settings that no other beats in both error and cost, the cheapest first."""
-    out: list[Tried] = []
+    out: list[SettingRun] = []
     for setting in sorted(table, key=lambda setting: (setting.cost, setting.error)):
         if np.isfinite(setting.error) and (not out or setting.error < out[-1].error):
             out.append(setting)
     return out
 
 
-def same_step(table: list[Tried], user: Tried) -> list[Tried]:
+def runs_by_step(table: list[SettingRun], user: SettingRun) -> list[SettingRun]:
     """The user's own settings at ever smaller steps, the largest step first."""
     alike = [setting for setting in table if setting.change.options == user.change.options]
     return sorted(alike, key=lambda setting: -setting.change.dt)

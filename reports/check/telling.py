@@ -8,22 +8,24 @@ from functools import partial
 
 import numpy as np
 
-from reports.check.checked import MOST_NAMED, Checked, Parts
-from reports.check.judging import UNITS
+from reports.check.checked import NAMES_LISTED, CheckResult, ErrorParts
+from reports.check.judging import ERROR_UNITS
 from reports.check.rendering import Section
-from reports.check.settings import SATURATED, Tried, best
+from reports.check.settings import SATURATED_ERROR, SettingRun, pareto_front
 from reports.write import tables
 
-MOST_NOTES = 4  # of elements that are left out, on the first screen
-CHEAPER = 0.9  # of the user's CPU time: a smaller difference may be the clock's noise
-BETTER = 0.9  # of an error: a setting that takes less away is not shown on the first screen
-CUT = "; beyond {:.3g} s the judge itself does not know it to a tenth of the tolerance, so nothing is compared there"
-ROUNDING = 1e-12  # of a radian, and of the mechanism's length
-HEADER = ("setting", "largest error", "reaction error", "CPU, ms", "")
+NOTES_LISTED = 4  # of elements that are left out, on the first screen
+CHEAPER_COST = 0.9  # of the user's CPU time: a smaller difference may be the clock's noise
+BETTER_ERROR = 0.9  # of an error: a setting that takes less away is not shown on the first screen
+CUT_NOTE = (
+    "; beyond {:.3g} s the judge itself does not know it to a tenth of the tolerance, so nothing is compared there"
+)
+ROUNDING_ERROR = 1e-12  # of a radian, and of the mechanism's length
+SETTINGS_HEADER = ("setting", "largest error", "reaction error", "CPU, ms", "")
 number = partial(tables.number, infinite="gave up")  # two digits, or a word
 
 
-def answer(result: Checked) -> Section:
+def answer_section(result: CheckResult) -> Section:
     """The first screen: size of the error, cause, place, assumptions, advice and cost."""
     size = f"{result.facts.length:.3g} m, the length of the mechanism"
     cost = f"{number(1e3 * result.own.stepping)} ms of CPU time for {result.duration:g} s"
@@ -31,7 +33,7 @@ def answer(result: Checked) -> Section:
         ("measure", f"the largest error of all angles [rad] and all centres of mass [{size}], beside ideal joints"),
         ("why", _why(result)),
         ("joint", _opening(result)),
-        ("motion", _sensitivity(result) + (CUT.format(result.duration) if result.judge.cut else "")),
+        ("motion", _sensitivity(result) + (CUT_NOTE.format(result.duration) if result.judge.cut else "")),
         ("forces", _forces(result)),
         ("assumed", _assumed(result)),
         ("cost", f"{cost} in {result.reading.model.engine}"),
@@ -39,21 +41,23 @@ def answer(result: Checked) -> Section:
         ("written", _written(result)),
     )
     lines = () if result.advised is None or result.met else result.advised.change.lines
-    return Section("", (result.verdict,), tuple(pair for pair in facts if pair[1]), lines, HEADER, _front(result))
+    return Section(
+        "", (result.verdict,), tuple(pair for pair in facts if pair[1]), lines, SETTINGS_HEADER, _front(result)
+    )
 
 
-def sections(result: Checked, pictures: dict[str, tuple[str, str]] | None = None) -> tuple[Section, ...]:
+def report_sections(result: CheckResult, pictures: dict[str, tuple[str, str]] | None = None) -> tuple[Section, ...]:
     """The whole report, the answer first."""
     pictures = pictures or {}
     return (
-        replace(answer(result), title="Answer"),
+        replace(answer_section(result), title="Answer"),
         _read(result),
         _own(result, pictures.get("errors")),
         replace(_table(result), picture=pictures.get("worst")),
     )
 
 
-def line(result: Checked) -> tuple[str, ...]:
+def summary_row(result: CheckResult) -> tuple[str, ...]:
     """In a table of many models: error, cause, advice, its error, and its CPU time relative to the user's."""
     user, advised = result.table[0], result.advised
     advice = ("none that was tried", "-", "-")
@@ -63,7 +67,7 @@ def line(result: Checked) -> tuple[str, ...]:
     return f"{number(user.error)}{missed}", _cause(result.parts), *advice
 
 
-def _cause(parts: Parts) -> str:
+def _cause(parts: ErrorParts) -> str:
     """The largest part of the error."""
     if parts.step == 0 or math.isinf(parts.step):
         return "-" if parts.step == 0 else "gave up"
@@ -74,11 +78,11 @@ def _cause(parts: Parts) -> str:
     return "softness" if parts.softness > parts.step else "step"
 
 
-def _why(result: Checked) -> str:
+def _why(result: CheckResult) -> str:
     """Softness, step or neither, in a line."""
     parts, model = result.parts, result.reading.model
     at_smallest, rest = f"at {parts.smallest * 1e3:.3g} ms", number(parts.rest)
-    if parts.rest > SATURATED:
+    if parts.rest > SATURATED_ERROR:
         still = "the run still gives up" if math.isinf(parts.rest) else f"the error is still {rest}"
         return (
             f"not told: {at_smallest} {still}, and what is off by more than a radian or a length no longer tells "
@@ -105,7 +109,7 @@ def _why(result: Checked) -> str:
     return "; ".join(sentences)
 
 
-def _forces(result: Checked) -> str:
+def _forces(result: CheckResult) -> str:
     errors, sentences = result.own_errors, []
     for name, start, end in (
         ("reaction", "reactions (forces and moments of the joints) are off by", "of the largest true one"),
@@ -118,7 +122,7 @@ def _forces(result: Checked) -> str:
     return "; ".join(sentences)
 
 
-def _sensitivity(result: Checked) -> str:
+def _sensitivity(result: CheckResult) -> str:
     """How fast neighbouring starts part, and what follows for the error."""
     judge = result.judge
     if result.facts.locked:
@@ -137,15 +141,15 @@ def _sensitivity(result: Checked) -> str:
     )
 
 
-def _assumed(result: Checked) -> str:
+def _assumed(result: CheckResult) -> str:
     model = result.reading.model
     step = model.assumed or f"a step of {model.dt * 1e3:.4g} ms, as in the model"
     notes = [f"{note.element}: {note.reason}" for note in result.reading.notes]
-    more = [f"{len(notes) - MOST_NOTES} more (--all)"] if len(notes) > MOST_NOTES else []
-    return "; ".join([step, *notes[:MOST_NOTES], *more])
+    more = [f"{len(notes) - NOTES_LISTED} more (--all)"] if len(notes) > NOTES_LISTED else []
+    return "; ".join([step, *notes[:NOTES_LISTED], *more])
 
 
-def _advice(result: Checked) -> tuple[str, ...]:
+def _advice(result: CheckResult) -> tuple[str, ...]:
     advised = result.advised
     goal = "" if result.asked else f" (for an error of {number(result.tolerance)}; name yours)"
     if advised is None:
@@ -158,22 +162,22 @@ def _advice(result: Checked) -> tuple[str, ...]:
             f"the best reached {number(closest.error)} ({closest.change.words}).{until}",
         )
     tenth = ()
-    if advised.error > ROUNDING and result.decade is not None:
+    if advised.error > ROUNDING_ERROR and result.decade is not None:
         ratio = number(_cost_ratio(result.decade, advised))
         tenth = (f"A tenth of that error costs {ratio} times as much: {result.decade.change.words}.",)
-    if result.met and advised.cost >= CHEAPER * result.own.stepping:
+    if result.met and advised.cost >= CHEAPER_COST * result.own.stepping:
         return (f"no setting that was tried meets it much cheaper{goal}.", *tenth)
     errors = f"the error is {number(advised.error)} instead of {number(result.own_errors.largest)}"
     ratio = number(_cost_ratio(advised, result.table[0]))
     return (f"{advised.change.words}{goal}: {errors}, at {ratio} times your CPU time.", *tenth)
 
 
-def _cost_ratio(setting: Tried, other: Tried) -> float:
+def _cost_ratio(setting: SettingRun, other: SettingRun) -> float:
     """The CPU time of a setting relative to another's."""
     return setting.cost / other.cost if other.cost > 0 else float("nan")
 
 
-def _written(result: Checked) -> str:
+def _written(result: CheckResult) -> str:
     written = result.applied
     if written is None:
         return ""
@@ -181,22 +185,22 @@ def _written(result: Checked) -> str:
     return "; ".join((f"{written.file}: {written.words}", reached, *written.notes))
 
 
-def _front(result: Checked) -> tuple[tuple[str, ...], ...]:
+def _front(result: CheckResult) -> tuple[tuple[str, ...], ...]:
     """The user's own settings, and those that none beats in both error and cost."""
     shown = [result.table[0]]
-    for setting in best(result.table):
-        if setting is not result.table[0] and not setting.error > BETTER * shown[-1].error:
+    for setting in pareto_front(result.table):
+        if setting is not result.table[0] and not setting.error > BETTER_ERROR * shown[-1].error:
             shown.append(setting)
     return tuple(_row(result, setting, "" if index else "yours") for index, setting in enumerate(shown))
 
 
-def _row(result: Checked, setting: Tried, *marks: str) -> tuple[str, ...]:
+def _row(result: CheckResult, setting: SettingRun, *marks: str) -> tuple[str, ...]:
     words = [*marks, "meets the tolerance" if setting.error <= result.tolerance else ""]
     cells = number(setting.error), number(setting.reaction), number(1e3 * setting.cost)
     return setting.change.words, *cells, "; ".join(filter(None, words))
 
 
-def _read(result: Checked) -> Section:
+def _read(result: CheckResult) -> Section:
     facts, reading = result.facts, result.reading
     model, (configuration, velocity) = reading.model, facts.freedoms
     sentences = [
@@ -207,8 +211,8 @@ def _read(result: Checked) -> Section:
         + (", with the softness that the engine declares." if model.has_soft_joints else "."),
     ]
     if facts.redundant:
-        names = ", ".join(facts.undetermined[:MOST_NAMED])
-        others = " and others" if len(facts.undetermined) > MOST_NAMED else ""
+        names = ", ".join(facts.undetermined[:NAMES_LISTED])
+        others = " and others" if len(facts.undetermined) > NAMES_LISTED else ""
         sentences.append(
             f"{facts.redundant} rows are redundant: rigid bodies alone don't tell the reactions of {names}{others}, so "
             "these are not compared."
@@ -221,8 +225,8 @@ def _read(result: Checked) -> Section:
         else "No position on the way is near-singular."
     )
     if facts.dead_centres:
-        centres = "; ".join(f"{name} at {t:.3g} s" for t, name in facts.dead_centres[:MOST_NAMED])
-        more = len(facts.dead_centres) - MOST_NAMED
+        centres = "; ".join(f"{name} at {t:.3g} s" for t, name in facts.dead_centres[:NAMES_LISTED])
+        more = len(facts.dead_centres) - NAMES_LISTED
         sentences.append(f"Dead centres, where a body turns back: {centres}{f'; {more} more' if more > 0 else ''}.")
     fastest = max(facts.fastest_rotation, facts.stiffest_mode)
     takes = 1 / fastest if fastest > 0 else 0.0
@@ -235,7 +239,7 @@ def _read(result: Checked) -> Section:
     return Section("What was read", tuple(sentences), header=("your setting", "value"), rows=(*model.settings.items(),))
 
 
-def _own(result: Checked, picture: tuple[str, str] | None) -> Section:
+def _own(result: CheckResult, picture: tuple[str, str] | None) -> Section:
     errors, judge = result.own_errors, result.judge_errors
     quarters = [round(share * (len(errors.t) - 1)) for share in (0.25, 0.5, 0.75, 1.0)]
     rows = tuple(
@@ -245,28 +249,28 @@ def _own(result: Checked, picture: tuple[str, str] | None) -> Section:
             number(errors.worst[quantity]),
             number(judge.worst[quantity]),
         )
-        for quantity, unit in UNITS.items()
+        for quantity, unit in ERROR_UNITS.items()
     )
     header = ("error", *(f"at {errors.t[index]:.3g} s" for index in quarters), "largest", "the judge's own")
     return Section("Your own settings", result.own.warnings, header=header, rows=rows, picture=picture)
 
 
-def _opening(result: Checked) -> str:
+def _opening(result: CheckResult) -> str:
     opens = result.opens
     if opens is None:
         return ""
-    if opens.gap < ROUNDING * (result.facts.length if opens.unit == "m" else 1.0):
+    if opens.gap < ROUNDING_ERROR * (result.facts.length if opens.unit == "m" else 1.0):
         return "none opens by more than rounding"
     return f"{opens.row} opens most: {number(opens.gap)} {opens.unit} at {opens.t:.3g} s"
 
 
-def _table(result: Checked) -> Section:
+def _table(result: CheckResult) -> Section:
     """Every setting that was tried; of those with the same errors the cheapest, or the user's."""
-    alike: dict[tuple[str, str], list[Tried]] = {}
+    alike: dict[tuple[str, str], list[SettingRun]] = {}
     for setting in result.table:
         alike.setdefault((number(setting.error), number(setting.reaction)), []).append(setting)
 
-    def row(group: list[Tried]) -> tuple[str, ...]:
+    def row(group: list[SettingRun]) -> tuple[str, ...]:
         shown = group[0] if group[0] is result.table[0] else min(group, key=lambda setting: setting.cost)
         same = f"{len(group) - 1} more alike" if len(group) > 1 else ""
         return _row(result, shown, "none is both cheaper and better" if shown.front else "", same)
@@ -275,4 +279,6 @@ def _table(result: Checked) -> Section:
         "Your model with other settings that its engine documents; all else is as you have it. CPU time is of stepping "
         "alone, on this machine. Of settings with the same errors the cheapest is listed, or yours.",
     )
-    return Section("What to change", sentences, header=HEADER, rows=tuple(row(group) for group in alike.values()))
+    return Section(
+        "What to change", sentences, header=SETTINGS_HEADER, rows=tuple(row(group) for group in alike.values())
+    )

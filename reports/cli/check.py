@@ -17,7 +17,7 @@ import typer
 
 from reports.check import folder as many
 from reports.check.folder import Answers
-from reports.check.request import CheckReport, CheckRequest, Refused, answered
+from reports.check.request import CheckReport, CheckRequest, Refused, run_check
 from reports.cli.options import STDOUT, refuse_existing
 from reports.cli.streams import written
 from reports.model.ending import BadInput, Broken, visible
@@ -104,7 +104,9 @@ def check(
     elif is_folder:
         from reports.cli.terminal import Terminal, print_table
 
-        print_table(Terminal(WIDTH), f"Models of {model}", many.HEADER, many.rows(answers), len(many.HEADER))
+        print_table(
+            Terminal(WIDTH), f"Models of {model}", many.FOLDER_HEADER, many.rows(answers), len(many.FOLDER_HEADER)
+        )
     else:
         _print(answers[0][1], as_json, everything)
     _write(model, answers, files, monotonic() - begin)
@@ -153,7 +155,7 @@ def _models(model: str) -> list[str]:
     """The model, or those of a folder. Raises BadInput for a folder without any."""
     if not Path(model).is_dir():
         return [model]
-    paths = [str(path) for path in many.models(Path(model))]
+    paths = [str(path) for path in many.find_models(Path(model))]
     if not paths:
         raise BadInput(f"{model}: it holds no model; give a folder with MJCF, URDF or scripts that import pymunk")
     return paths
@@ -169,7 +171,7 @@ def _answers(requests: list[CheckRequest], limit: float) -> Answers:
         )
         terms: Any = {"watch": progress, "wall": limit + 60}
         try:
-            for item, result, _ in supervisor.supervise(answered, items, limit, worker_count(), **terms):
+            for item, result, _ in supervisor.supervise(run_check, items, limit, worker_count(), **terms):
                 if isinstance(result, Loss):
                     result = Refused(f"{item.word}: {LOSSES.get(result.outcome, LOST).format(result.sentence)}")
                 answers[item.word] = result
@@ -210,7 +212,9 @@ def _write(model: str, answers: Answers, files: Mapping[str, Path | None], secon
     texts, html, markdown, junit = dict[Path, str](), files["html"], files["markdown"], files["junit"]
     answer = answers[0][1]
     if markdown is not None and Path(model).is_dir():
-        texts[markdown] = f"# {model}\n\n{table(many.HEADER, many.rows(answers), left=len(many.HEADER))}\n"
+        texts[markdown] = (
+            f"# {model}\n\n{table(many.FOLDER_HEADER, many.rows(answers), left=len(many.FOLDER_HEADER))}\n"
+        )
     elif isinstance(answer, CheckReport):
         name = f"{answer.data['name']} in {answer.data['engine']}"
         if html is not None:

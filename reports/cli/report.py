@@ -236,9 +236,11 @@ def search_files(results: Path, publish: bool = False) -> dict[str, str]:
     """The page of the stored searches, and its picture; to be published, those of the last commit's seeds alone."""
     if not (results / SEARCH / STORE).exists():
         return {}
-    planned = sum(piece.count for piece in plan.published()) if publish else 0
+    planned = sum(piece.count for piece in plan.published_chunks()) if publish else 0
     with Store.read(results / SEARCH / STORE) as store:
-        return search_page.files(*search_page.read(store, publish), index.foot("crosscheck search"), planned)
+        return search_page.render_page(
+            *search_page.read_stored(store, publish), index.foot("crosscheck search"), planned
+        )
 
 
 def published() -> Path:

@@ -30,11 +30,11 @@ from reports.run import cluster
 from reports.run.files import write_whole
 from reports.run.installed import installed
 from reports.search import plan
-from reports.search.chunk import FOUND, HEADER, CaseResult, chunks, findings, summary
+from reports.search.chunk import FINDINGS_HEADER, SUMMARY_HEADER, CaseResult, finding_rows, make_chunks, summary_rows
 from reports.search.oracles import DEFAULT_ORACLES, ORACLES
-from reports.search.parts import SINGULAR
+from reports.search.parts import SINGULAR_KINDS
 from reports.search.release import DISTRIBUTIONS
-from reports.search.run import CASES, Search
+from reports.search.run import DEFAULT_CASES, Search
 from reports.search.shrinking import files_of, line_of
 from reports.search.subjects import Adapted, Alone, Subject
 
@@ -79,16 +79,16 @@ def search(
     _refuse(seconds, seed, fresh, published, chosen)
     subjects = chosen_subjects(engine, variant, release, everything=fresh or published)
     all_kinds = tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
-    wanted = listed("--kinds", [kinds], (*all_kinds, *SINGULAR)) if kinds is not None else all_kinds
-    subjects = [subject for subject in subjects if {*wanted} & {*subject.kinds, *SINGULAR}]
+    wanted = listed("--kinds", [kinds], (*all_kinds, *SINGULAR_KINDS)) if kinds is not None else all_kinds
+    subjects = [subject for subject in subjects if {*wanted} & {*subject.kinds, *SINGULAR_KINDS}]
     names = listed("--oracles", [oracles], tuple(ORACLES))
     if fresh:
-        batches = plan.fresh(subjects, cases or TEN)
+        batches = plan.fresh_chunks(subjects, cases or TEN)
     elif published:
-        batches = iter([plan.published()])
+        batches = iter([plan.published_chunks()])
     else:
-        first = plan.seeds()[0] if seed is None else seed
-        batches = iter([chunks(subjects, first, cases or CASES, wanted, decades, names)])
+        first = plan.published_seeds()[0] if seed is None else seed
+        batches = iter([make_chunks(subjects, first, cases or DEFAULT_CASES, wanted, decades, names)])
     folder = results / SEARCH
     with (
         telling(150, as_json, as_markdown) as terminal,
@@ -100,9 +100,9 @@ def search(
         if published:
             run.run_controls()
         title = "Errors, each relative to the largest of what it is an error of"
-        print_table(terminal, title, HEADER, summary(found), 2)
-        if faults := findings(found):
-            print_table(terminal, "Findings, by what draws them again", FOUND, faults, 2)
+        print_table(terminal, title, SUMMARY_HEADER, summary_rows(found), 2)
+        if faults := finding_rows(found):
+            print_table(terminal, "Findings, by what draws them again", FINDINGS_HEADER, faults, 2)
         terminal.tell(run.summary)
         _shrink_and_write(terminal, run, found, folder)
         terminal.say(f"{len(found)} cases are stored in {folder}. Next: {with_folder('crosscheck report', results)}")
@@ -130,7 +130,7 @@ def chosen_subjects(
         installed(DISTRIBUTIONS, release)
         return [Alone(release)]
     if everything and engine is None and variant is None:
-        return plan.everything()
+        return plan.all_subjects()
     if variant == "alone" and engine in (None, "mujoco"):
         return [Alone()]
     known = (*(VARIANTS if variant is None else ENGINES), *(INSTALLED if engine is not None else ()))

@@ -20,11 +20,11 @@ from engines import Engine
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Answer, Task, Values
 from reports.run.store import Store
-from reports.search.motions import REPORTED
-from reports.search.parts import SINGULAR
-from reports.search.subjects import Adapted, Result, Subject, is_shaped
+from reports.search.motions import NEEDLESS_REPORT
+from reports.search.parts import SINGULAR_KINDS
+from reports.search.subjects import Adapted, OracleResult, Subject, is_shaped
 
-SIZE = 10  # cases in a piece: a second or some
+CHUNK_SIZE = 10  # cases in a piece: a second or some
 
 
 @dataclass(frozen=True)
@@ -73,10 +73,10 @@ class CaseResult:
     chunk: Chunk
     number: int
     kinds: tuple[str, ...]
-    result: Result
+    result: OracleResult
 
 
-def case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
+def iter_case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
     """The cases of these pieces. One whose process ended is a fault without a number; a piece of several cases that
     did not finish has none, since it is asked again case by case."""
     for chunk, answer in answers.items():
@@ -84,37 +84,37 @@ def case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
             rows = json.loads(str(answer.values["results"]))
             for number, (kinds, pairs, skipped, words) in enumerate(rows, chunk.first):
                 errors = {check: (error, bound) for check, (error, bound) in pairs.items()}
-                yield CaseResult(chunk, number, tuple(kinds), Result(errors, tuple(skipped), words))
+                yield CaseResult(chunk, number, tuple(kinds), OracleResult(errors, tuple(skipped), words))
         elif chunk.count == 1:
             fault = answer.outcome in (Outcome.ABORTED, Outcome.TIMED_OUT, Outcome.FAILED)
             errors = {str(answer.outcome): (np.inf, 0.0)} if fault else {}
-            yield CaseResult(chunk, chunk.first, chunk.kinds, Result(errors, words=answer.sentence))
+            yield CaseResult(chunk, chunk.first, chunk.kinds, OracleResult(errors, words=answer.sentence))
 
 
-def chunks(
+def make_chunks(
     subjects: Sequence[Subject], seed: int, cases: int, kinds: Sequence[str], decades: int, oracles: tuple[str, ...]
 ) -> list[Chunk]:
     """The pieces of the first cases of a seed, those of all subjects in turn; all kinds of a subject if none."""
     out = []
-    for first in range(0, cases, SIZE):
-        count = min(SIZE, cases - first)
+    for first in range(0, cases, CHUNK_SIZE):
+        count = min(CHUNK_SIZE, cases - first)
         for subject in subjects:
-            taken = tuple(kind for kind in (*subject.kinds, *SINGULAR) if kind in kinds) or subject.kinds
+            taken = tuple(kind for kind in (*subject.kinds, *SINGULAR_KINDS) if kind in kinds) or subject.kinds
             out.append(Chunk(subject, seed, first, count, taken, decades, oracles))
     return out
 
 
-def lost(answers: Mapping[Chunk, Answer]) -> list[Chunk]:
+def unfinished_cases(answers: Mapping[Chunk, Answer]) -> list[Chunk]:
     """The cases, one by one, of pieces whose process ended or whose time was used up."""
     ended = [chunk for chunk, answer in answers.items() if not answer.finished and chunk.count > 1]
     return [replace(chunk, first=chunk.first + n, count=1) for chunk in ended for n in range(chunk.count)]
 
 
-def stored(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
+def stored_answers(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
     """The answers to these pieces, and to those of their cases that had to be asked one by one."""
     whole = store.answers(pieces)
     answers = {piece: whole[piece] for piece in pieces if piece in whole}
-    singles = lost(answers)
+    singles = unfinished_cases(answers)
     single = store.answers(singles)
     return answers | {piece: single[piece] for piece in singles if piece in single}
 
@@ -132,50 +132,52 @@ def chunk_from_json(text: str, subjects: Sequence[Subject]) -> Chunk | None:
     return Chunk(subject, seed, first, count, tuple(kinds), decades, tuple(oracles)) if subject else None
 
 
-def label(case: CaseResult) -> str:
+def case_label(case: CaseResult) -> str:
     """The subject, and the kinds that were asked for where they are not all of its own."""
     chunk = case.chunk
     kinds = "" if chunk.kinds == chunk.subject.kinds else f" ({', '.join(chunk.kinds)})"
     return f"{chunk.subject.name}{kinds}"
 
 
-HEADER = ("subject", "check", "judged", "median", "99 %", "worst", "faults")
+SUMMARY_HEADER = ("subject", "check", "judged", "median", "99 %", "worst", "faults")
 
 
-def summary(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """Rows of a table under HEADER; a last line a subject says how many cases it refused."""
+def summary_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
+    """Rows of a table under SUMMARY_HEADER; a last line a subject says how many cases it refused."""
     checks: dict[tuple[str, str], list[tuple[float, float]]] = {}
     for case in cases:
         for check, pair in case.result.errors.items():
-            checks.setdefault((label(case), check), []).append(pair)
+            checks.setdefault((case_label(case), check), []).append(pair)
     out, reported = [], []
     for (subject, check), pairs in checks.items():
         errors = np.sort([error for error, _ in pairs])
-        if check == REPORTED:
+        if check == NEEDLESS_REPORT:
             if errors.any():
                 words = f"{errors.sum():.0f} reported, though right"
                 reported.append([subject, words, str(len(pairs)), "", "", "", ""])
             continue
         quantiles = [_short(errors[math.ceil(share * (len(errors) - 1))]) for share in (0.5, 0.99, 1.0)]
         out.append([subject, check, str(len(pairs)), *quantiles, str(sum(not error <= most for error, most in pairs))])
-    refusals = [[subject, "refused", str(count), "", "", "", ""] for subject, count in refused(cases).items()]
+    refusals = [[subject, "refused", str(count), "", "", "", ""] for subject, count in count_refusals(cases).items()]
     return [*out, *reported, *refusals]
 
 
-def refused(cases: Iterable[CaseResult]) -> Mapping[str, int]:
+def count_refusals(cases: Iterable[CaseResult]) -> Mapping[str, int]:
     """How many cases a subject can't build, by its own word."""
-    return Counter(label(case) for case in cases if any(why.startswith("unsupported") for why in case.result.skipped))
+    return Counter(
+        case_label(case) for case in cases if any(why.startswith("unsupported") for why in case.result.skipped)
+    )
 
 
 def _short(value: float) -> str:
     return f"{value:.1e}" if math.isfinite(value) else "lost"
 
 
-FOUND = ("subject", "check", "error", "may be", "seed", "decades", "case", "kinds")
+FINDINGS_HEADER = ("subject", "check", "error", "may be", "seed", "decades", "case", "kinds")
 
 
-def findings(cases: Iterable[CaseResult]) -> list[list[str]]:
-    """Rows of a table under FOUND, one for each check that fails in a case."""
+def finding_rows(cases: Iterable[CaseResult]) -> list[list[str]]:
+    """Rows of a table under FINDINGS_HEADER, one for each check that fails in a case."""
     out = []
     for case in cases:
         drawn = [str(case.chunk.seed), str(case.chunk.decades), str(case.number), ",".join(case.kinds)]
@@ -184,7 +186,7 @@ def findings(cases: Iterable[CaseResult]) -> list[list[str]]:
     return out
 
 
-def skip_reasons(cases: Iterable[CaseResult]) -> list[tuple[str, str, int]]:
+def count_skip_reasons(cases: Iterable[CaseResult]) -> list[tuple[str, str, int]]:
     """(oracle, why it did not apply, cases), the most frequent first; numbers in reasons are left out."""
     found: Counter[tuple[str, str]] = Counter()
     for case in cases:

@@ -1,6 +1,6 @@
 """Differences of motions and forces, and how large rounding and a solver's tolerance make them, by one rule.
 
-A check fails where its error is more than MARGIN times the noise of its case, and more than a floor. Noise is the
+A check fails where its error is more than NOISE_MARGIN times the noise of its case, and more than a floor. Noise is the
 largest difference of the same case in descriptions that are shifted and turned a little and rounded otherwise, so that
 every number of every step is rounded anew, and of the same engine with a solver that goes much farther
 (`Engine.stricter`). So it has the condition of the case in it: nearly dependent rows, masses far apart, weights of
@@ -27,16 +27,16 @@ from reports.gate.change import Nudge
 
 Array = NDArray[np.float64]
 
-MARGIN = 10.0  # noise is the largest of a few draws
-NUDGES, NUDGED = 3, 1e-3  # of its place and of a radian: what depends on these themselves changes as little
-LAW = 1e-9  # of one instant: rounding makes a thousandth of it where rows are independent
-ROUNDINGS = 10.0  # of an engine of lower precision
-STEP, STEPS = 0.01, 5  # a step of the mechanism's own time scale, and how many are asked
+NOISE_MARGIN = 10.0  # noise is the largest of a few draws
+NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # of its place and of a radian: what depends on these themselves changes as little
+LAW_TOLERANCE = 1e-9  # of one instant: rounding makes a thousandth of it where rows are independent
+PRECISION_MARGIN = 10.0  # of an engine of lower precision
+INSTANT_STEP, INSTANT_STEPS = 0.01, 5  # a step of the mechanism's own time scale, and how many are asked
 Errors = Mapping[str, tuple[float, float]]  # by check (error, what it may be)
 
 
 @dataclass(frozen=True)
-class Skip:
+class CheckSkipped:
     """The reason why a check does not apply to a case, one sentence."""
 
     reason: str
@@ -46,15 +46,15 @@ class Fault(Exception):
     """An error without a number; the message is one sentence that says what is wrong."""
 
 
-def nudges(mechanism: Mechanism, away: float = 0.0) -> Iterator[Described]:
-    """The mechanism shifted by NUDGED of how far `away` [m] it stands, turned by as much, and with rounded numbers.
+def iter_nudged(mechanism: Mechanism, away: float = 0.0) -> Iterator[Described]:
+    """Yield the mechanism slightly shifted, turned and rounded, with the function that transforms a run back.
 
-    Beside each stands the function that describes a run of it back.
+    The shift is NUDGE_SHARE of the distance `away` [m], the rotation at most NUDGE_SHARE radians.
     """
-    random = np.random.default_rng(NUDGES)
-    far = NUDGED * max(away, mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
-    for seed, (x, y, turn) in enumerate(random.uniform(-1.0, 1.0, (NUDGES, 3)).tolist()):
-        moved, back = Isometry(turn=NUDGED * turn, shift=(far * x, far * y))(mechanism)
+    random = np.random.default_rng(NUDGE_COUNT)
+    far = NUDGE_SHARE * max(away, mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+    for seed, (x, y, turn) in enumerate(random.uniform(-1.0, 1.0, (NUDGE_COUNT, 3)).tolist()):
+        moved, back = Isometry(turn=NUDGE_SHARE * turn, shift=(far * x, far * y))(mechanism)
         with suppress(InvalidMechanism):  # numbers that fit to the last digit alone
             moved = Nudge(seed)(moved)
         yield moved, back
@@ -111,46 +111,46 @@ def driving_force(mechanism: Mechanism, twist: Array) -> float:
     return float(max(mechanism.inertias[:, 0].max() * pull, acting))
 
 
-def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | Skip:
+def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
     """Errors of what an engine computes at one instant, in its first steps, against the law that it declares there
     (`engines.Engine.instants`), relative to the largest of what enters the law."""
     here = _instants(engine, mechanism)
     if isinstance(here, NotDeclared):
-        return Skip(here.reason)
-    bound = max(LAW, ROUNDINGS * engine.precision)
+        return CheckSkipped(here.reason)
+    bound = max(LAW_TOLERANCE, PRECISION_MARGIN * engine.precision)
     missed: dict[str, float] = {}
     for instant in here:
-        missed[instant.check] = max(missed.get(instant.check, 0.0), _missed(mechanism, instant))
+        missed[instant.check] = max(missed.get(instant.check, 0.0), _instant_error(mechanism, instant))
     noise = dict.fromkeys(missed, 0.0)
     if all(error <= bound for error in missed.values()):
         return {check: (error, bound) for check, error in missed.items()}
-    for nudged, back in nudges(mechanism):
+    for nudged, back in iter_nudged(mechanism):
         others = _instants(engine, nudged)
         if not isinstance(others, NotDeclared):
             for instant, other in zip(here, others, strict=False):  # the later states of one may be left out
-                noise[instant.check] = max(noise[instant.check], _apart(mechanism, instant, other, back))
-    return {check: (error, max(bound, MARGIN * noise[check])) for check, error in missed.items()}
+                noise[instant.check] = max(noise[instant.check], _nudge_effect(mechanism, instant, other, back))
+    return {check: (error, max(bound, NOISE_MARGIN * noise[check])) for check, error in missed.items()}
 
 
 def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDeclared:
     """Instants of the first steps; only the start if something turns by a radian in a step, or rolls: rows of a roll
     are those of a closed gap, and turn by an open one over the radius of curvature.
     """
-    dt = STEP * mechanism.time_scale
+    dt = INSTANT_STEP * mechanism.time_scale
 
     def followed(instant: Instant) -> bool:
         return turned_in_a_step(mechanism, dt, *instant.state) <= 1
 
     rolls = any(isinstance(joint, Roll) for joint in mechanism.joints)
     short = turned_in_a_step(mechanism, dt, mechanism.pose, mechanism.twist) <= 1 and not rolls
-    found = engine.stepped(mechanism).instants(mechanism, dt, STEPS if short else 0)
+    found = engine.stepped(mechanism).instants(mechanism, dt, INSTANT_STEPS if short else 0)
     if isinstance(found, NotDeclared):
         return found
     first = len({instant.check for instant in found})
     return [instant for place, instant in enumerate(found) if place < first or followed(instant)]
 
 
-def _missed(mechanism: Mechanism, instant: Instant) -> float:
+def _instant_error(mechanism: Mechanism, instant: Instant) -> float:
     if instant.found.ndim == 1:
         force = np.full(mechanism.row_count, driving_force(mechanism, instant.state[1]))
         force[mechanism.is_angular] *= mechanism.length_scale
@@ -158,7 +158,7 @@ def _missed(mechanism: Mechanism, instant: Instant) -> float:
     return difference(mechanism, instant.found, instant.expected, instant.scales)
 
 
-def _apart(mechanism: Mechanism, instant: Instant, other: Instant, back: Callable[[Trajectory], Three]) -> float:
+def _nudge_effect(mechanism: Mechanism, instant: Instant, other: Instant, back: Callable[[Trajectory], Three]) -> float:
     """By how much another description changes what is computed, and what is expected."""
 
     def described_back(values: Array) -> Array:
@@ -170,6 +170,6 @@ def _apart(mechanism: Mechanism, instant: Instant, other: Instant, back: Callabl
     scales = (*instant.scales, instant.expected)
     pairs = (other.found, instant.found), (other.expected, instant.expected)
     return sum(
-        _missed(mechanism, replace(instant, found=described_back(new), expected=old, scales=scales))
+        _instant_error(mechanism, replace(instant, found=described_back(new), expected=old, scales=scales))
         for new, old in pairs
     )

@@ -4,7 +4,7 @@
     for number in range(2000):
         drawn = mechanism(seed=1, number=number)                          # all kinds of joints of the first days
         wide = mechanism(1, number, kinds=("pin", "slot", "skate"), decades=2)
-        whole = mechanism(1, number, kinds=EVERY)                         # rods, gears, welds and forces too
+        whole = mechanism(1, number, kinds=ALL_KINDS)                         # rods, gears, welds and forces too
 
 A case depends on its own seed, number, kinds and decades alone: numpy's PCG64 gives its whole numbers, which are the
 same on every machine. There are 1 to 6 bodies; most hang on an earlier body or on the ground by a joint of the kinds
@@ -27,13 +27,24 @@ from engines import Engine, Unsupported
 from reference.checks import LARGEST_COUNT, InvalidMechanism, validated
 from reference.mechanism import Mechanism
 from reference.validators import from_to
-from reports.search.parts import EVERY, FOLD, FORCES, KINDS, SINGULAR, TOGGLE, Link, Part, Recipe, Rim
+from reports.search.parts import (
+    ALL_KINDS,
+    FIRST_KINDS,
+    FOLD,
+    FORCE_KINDS,
+    SINGULAR_KINDS,
+    TOGGLE,
+    Recipe,
+    RecipeBody,
+    RecipeLink,
+    Rim,
+)
 from reports.search.recipe import Held, Standing, build
 
-MOST_BODIES, MOST_LOOPS = 6, 3
-MOST_DECADES = 6
+DRAWN_BODIES, DRAWN_LOOPS = 6, 3
+DECADES_LIMIT = 6
 # The first rim and the second of a roll: which pairs of shapes can roll whatever their sizes are.
-PAIRS = (
+RIM_PAIRS = (
     ("line", "circle"),
     ("line", "ellipse"),
     ("circle", "circle"),
@@ -44,26 +55,26 @@ PAIRS = (
 )
 
 Seed = Annotated[int, from_to(0, LARGEST_COUNT)]
-Decades = Annotated[int, from_to(0, MOST_DECADES)]
+Decades = Annotated[int, from_to(0, DECADES_LIMIT)]
 Kinds = Sequence[str]
 
 
 @validated
-def mechanism(seed: Seed, number: Seed, kinds: tuple[str, ...] = KINDS, decades: Decades = 0) -> Mechanism:
+def mechanism(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decades: Decades = 0) -> Mechanism:
     """The mechanism of `recipe` with the same arguments."""
     return build(recipe(seed, number, kinds, decades))
 
 
 @validated
-def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = KINDS, decades: Decades = 0) -> Recipe:
-    """Case `number` of a seed, of joints and forces of these `kinds` alone (of `EVERY`; in whatever order).
+def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decades: Decades = 0) -> Recipe:
+    """Case `number` of a seed, of joints and forces of these `kinds` alone (of `ALL_KINDS`; in whatever order).
 
     Masses are from 0.1 to 10 kg, lengths from 0.1 m to some metres, rates some rad/s. With `decades`, masses and sizes
     of the bodies differ by that many decades more, upwards and downwards, and so do the units of length, mass and time.
     Raises InvalidMechanism for kinds that don't exist, or none.
     """
-    if not kinds or not {*kinds} <= {*EVERY, *SINGULAR}:
-        raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(EVERY)}")
+    if not kinds or not {*kinds} <= {*ALL_KINDS, *SINGULAR_KINDS}:
+        raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(ALL_KINDS)}")
     draw = _Draw(np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, decades]))), kinds, decades)
     while True:
         drawn = draw.recipe()
@@ -76,7 +87,7 @@ class _Draw:
 
     def __init__(self, random: np.random.Generator, kinds: Kinds, decades: int) -> None:
         self._random, self._decades = random, decades
-        self._kinds = tuple(kind for kind in (*EVERY, *SINGULAR) if kind in kinds)  # their order is no choice
+        self._kinds = tuple(kind for kind in (*ALL_KINDS, *SINGULAR_KINDS) if kind in kinds)  # their order is no choice
 
     def whole(self, low: int, high: int) -> int:
         """Both included."""
@@ -90,12 +101,12 @@ class _Draw:
 
     def recipe(self) -> Recipe | None:
         """None where the joints leave nothing to move."""
-        count = self.whole(1, MOST_BODIES)
+        count = self.whole(1, DRAWN_BODIES)
         moving = not self.chance(4)
         pull = self.two(10) if not moving or self.chance(2) else (0, 0)
         wide = 3 * self._decades
         parts = tuple(
-            Part(
+            RecipeBody(
                 parent=self.whole(0, index),
                 offset=self.two(8),
                 angle=self.whole(-10, 10),
@@ -109,21 +120,23 @@ class _Draw:
         length, mass, time = (self.whole(-self._decades, self._decades) for _ in range(3))
         decades = length, mass, time
         links = [self._link(part.parent, index, parts) for index, part in enumerate(parts, start=1)]
-        for _ in range(self.whole(0, MOST_LOOPS)):
+        for _ in range(self.whole(0, DRAWN_LOOPS)):
             links.append(self._link(*self._pair(count), parts))
-        links = [each for link in links for each in _pinned(link)]
+        links = [each for link in links for each in _with_pins(link)]
         standing = Standing(Recipe(parts, (), pull, decades))
         kept, held = self._independent(standing, links)
         moved = kept and (any(pull) or standing.allowed(held).any())
         return Recipe(parts, kept, pull, decades) if moved else None
 
-    def _independent(self, standing: Standing, links: Sequence[Link]) -> tuple[tuple[Link, ...], Sequence[Held]]:
+    def _independent(
+        self, standing: Standing, links: Sequence[RecipeLink]
+    ) -> tuple[tuple[RecipeLink, ...], Sequence[Held]]:
         """The links and their joints but for those that hold what others hold already, or the last freedom."""
         held: list[Held] = []
-        kept: list[Link] = []
+        kept: list[RecipeLink] = []
         freedom = 3 * len(standing.bodies)
         for link in links:
-            if link.kind in FORCES:
+            if link.kind in FORCE_KINDS:
                 kept.append(link)
                 continue
             try:
@@ -141,7 +154,7 @@ class _Draw:
         first, second = self.whole(0, count), self.whole(1, count)
         return (first, second) if first != second else (0, second)
 
-    def _link(self, first: int, second: int, parts: Sequence[Part]) -> Link:
+    def _link(self, first: int, second: int, parts: Sequence[RecipeBody]) -> RecipeLink:
         # Pins twice as often and more: they make the trees in which the others are interesting.
         more_pins = ["pin"] * max(1, len(self._kinds) // 3)
         choice = (*self._kinds, *more_pins) if "pin" in self._kinds else self._kinds
@@ -155,85 +168,89 @@ class _Draw:
         elif kind == "slot":
             more = self.whole(-8, 8)
         elif kind == "roll":
-            pair = PAIRS[self.whole(0, len(PAIRS) - 1)]
+            pair = RIM_PAIRS[self.whole(0, len(RIM_PAIRS) - 1)]
             rims = tuple(Rim(shape, self.whole(-3, 0), self.whole(-2, 2), self.whole(-10, 10)) for shape in pair)
             if pair[0] == "ring":
                 rims = (Rim("ring", rims[1].size + self.whole(1, 3)), rims[1])
             rims = tuple(rim if rim.shape == "ellipse" else Rim(rim.shape, rim.size) for rim in rims)
-        elif kind not in KINDS:
+        elif kind not in FIRST_KINDS:
             return self._further(kind, first, second, at, turn)
-        return Link(kind, first, second, at, turn, more, rims)
+        return RecipeLink(kind, first, second, at, turn, more, rims)
 
-    def _further(self, kind: str, first: int, second: int, at: tuple[int, int], turn: int) -> Link:
+    def _further(self, kind: str, first: int, second: int, at: tuple[int, int], turn: int) -> RecipeLink:
         """A link of a kind that came later; a distance, a ratio or a force of zero would be none."""
         more = self.whole(1, 8) * (1 if self.chance(2) else -1)
         strength, rest = self.whole(-2, 4), self.whole(-10, 10)
         if kind in ("rod", "gear", "force", "torque"):
-            return Link(kind, first, second, at, turn, more)
+            return RecipeLink(kind, first, second, at, turn, more)
         if kind == "weld":
-            return Link(kind, first, second, at)
+            return RecipeLink(kind, first, second, at)
         if kind == FOLD and first:
             parallel = self.chance(2)
             strength, far = self.whole(2, 5), self.two(6)
-            return Link(kind, first, second, at, 0, more, strength=strength, rest=0 if parallel else rest, far=far)
-        if kind in SINGULAR:
-            return Link(TOGGLE, first, second, at, turn, more, strength=self.whole(3, 5))
-        return Link(kind, first, second, at, turn, more, strength=strength, rest=rest if "spring" in kind else 0)
+            return RecipeLink(
+                kind, first, second, at, 0, more, strength=strength, rest=0 if parallel else rest, far=far
+            )
+        if kind in SINGULAR_KINDS:
+            return RecipeLink(TOGGLE, first, second, at, turn, more, strength=self.whole(3, 5))
+        return RecipeLink(kind, first, second, at, turn, more, strength=strength, rest=rest if "spring" in kind else 0)
 
 
-def _pinned(link: Link) -> tuple[Link, ...]:
+def _with_pins(link: RecipeLink) -> tuple[RecipeLink, ...]:
     """A link after the pins that it needs."""
     if link.kind == FOLD:
-        return Link("pin", 0, link.first, link.far), Link("pin", 0, link.second, link.at), link
-    return (Link("pin", link.first, link.second, link.at), link) if link.kind == TOGGLE else (link,)
+        return RecipeLink("pin", 0, link.first, link.far), RecipeLink("pin", 0, link.second, link.at), link
+    return (RecipeLink("pin", link.first, link.second, link.at), link) if link.kind == TOGGLE else (link,)
 
 
-SHAPES = 6  # of a search, of each set of kinds; every second one with a loop
-RUN = 10  # cases after which the next shape comes
-MOST_TRIED = 400  # shapes that an engine may refuse
+SHAPE_COUNT = 6  # of a search, of each set of kinds; every second one with a loop
+CASES_PER_SHAPE = 10  # cases after which the next shape comes
+SHAPE_TRIALS = 400  # shapes that an engine may refuse
 
 Whole = Callable[[int, int], int]
 
 
-def of_a_shape(engine: Engine, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
-    """Case `number` of a seed: its shape is one of the first SHAPES of the seed that the engine builds, if it does."""
+def recipe_of_shape(engine: Engine, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
+    """Case `number` of a seed, with one of the first SHAPE_COUNT shapes of the seed that the engine can build."""
     shapes = _shapes(engine, seed, kinds, decades)
     if not shapes:
         return recipe(seed, number, kinds, decades)
-    random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, decades, SHAPES])))
-    return renumbered(shapes[number // RUN % len(shapes)], lambda low, high: int(random.integers(low, high + 1)))
+    random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, decades, SHAPE_COUNT])))
+    return renumber(
+        shapes[number // CASES_PER_SHAPE % len(shapes)], lambda low, high: int(random.integers(low, high + 1))
+    )
 
 
 @lru_cache(maxsize=8)
 def _shapes(engine: Engine, seed: int, kinds: tuple[str, ...], decades: int) -> tuple[Recipe, ...]:
     found: list[Recipe] = []
-    for number in range(MOST_TRIED):
+    for number in range(SHAPE_TRIALS):
         drawn = recipe(seed, number, kinds, decades)
-        joints = [link for link in drawn.links if link.kind not in FORCES]
+        joints = [link for link in drawn.links if link.kind not in FORCE_KINDS]
         if len(found) % 2 and len(joints) <= len(drawn.parts):
             continue
         mechanism = build(drawn)
         with suppress(Unsupported):
             engine.build(mechanism, mechanism.time_scale)
             found.append(drawn)
-        if len(found) == SHAPES:
+        if len(found) == SHAPE_COUNT:
             break
     return tuple(found)
 
 
-def renumbered(shape: Recipe, whole: Whole) -> Recipe:
+def renumber(shape: Recipe, whole: Whole) -> Recipe:
     """The same shape with other numbers, in the ranges of `recipe`; `whole(low, high)` draws one, both included.
 
     Zero stays zero, since a drive at rest is held otherwise than one that turns. A ratio of gears is compiled in.
     """
 
-    def part(old: Part) -> Part:
+    def part(old: RecipeBody) -> RecipeBody:
         velocity = (whole(-4, 4), whole(-4, 4), whole(-6, 6)) if moving else (0, 0, 0)
         offset, angle, gyration = (whole(-8, 8), whole(-8, 8)), whole(-10, 10), whole(-3, 0)
         size, mass = old.size + whole(-1, 1), old.mass + whole(-1, 1)
         return replace(old, offset=offset, angle=angle, size=size, mass=mass, gyration=gyration, velocity=velocity)
 
-    def link(old: Link) -> Link:
+    def link(old: RecipeLink) -> RecipeLink:
         new = {"turn": whole(-10, 10) or 1, "strength": whole(-2, 4) or 1, "rest": whole(-10, 10) or 1}
         new |= {"more": whole(1, 8) * (1 if whole(0, 1) else -1)} if old.kind != "gear" else {}
         changed = {name: value for name, value in new.items() if getattr(old, name)}

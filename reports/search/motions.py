@@ -1,9 +1,9 @@
-"""A short motion and its reactions against the judge, at two steps or more, with the order that the engine promises.
+"""Convergence check: a short motion and its reactions against the judge, at two or more steps.
 
-An order shows where steps are short against all that happens. So they are halved, up to FINEST parts, until it shows
-for poses and for reactions; an error that was small by chance does not count against the next. A step at which the
-motion is lost is too long, if it is right at shorter ones. An error that never falls is a fault, unless it is noise
-(`reports.search.law`), the error of joints that give way as declared, or a textbook method shows no order either.
+The step is halved, up to FINEST_DIVISION times finer, until poses and reactions converge with the engine's declared
+order. A step at which the motion diverges is too long if the motion is right at shorter ones. An error that does not
+converge is a fault, unless it is noise (`reports.search.law`), follows from the declared compliance, or a textbook
+method of the same order does not converge either.
 """
 
 from __future__ import annotations
@@ -25,66 +25,68 @@ from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
 from reports.gate.judge import TABLEAUS, giving_way, in_numpy
 from reports.search.law import (
-    MARGIN,
+    NOISE_MARGIN,
+    CheckSkipped,
     Errors,
     Fault,
-    Skip,
     difference,
     driving_force,
     force_difference,
-    nudges,
+    iter_nudged,
     turned_in_a_step,
 )
-from reports.search.relations import ESTIMATED
+from reports.search.relations import ESTIMATE_MARGIN
 
 Array = NDArray[np.float64]
 Floors = dict[str, float]
 
 SPAN = 0.4  # of the mechanism's own time scale: nothing has had time to become chaotic
-SAMPLES, COARSE = 4, 10  # and steps between samples
+MOTION_SAMPLES, COARSE_STEPS = 4, 10  # and steps between samples
 # Above what the promised order lets expect of the coarser step: the next power of the step, and samples (as in
 # engines.conformance.moving).
-ROOM = 2.5
+ORDER_MARGIN = 2.5
 # Relative to the motion: rounding, that of combined runs and of a drive which a large inertia holds.
-LEAST = {"motion": 1e-8, "reactions": 1e-5}
-FINEST = 64
-LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
-OFF = 0.1  # of a radian, or of the mechanism's length: forces of poses that far away are other forces
-ASKED = 16  # mechanisms of which all engines are asked before others come: see `chunk.SIZE`
-HARD = 1e-10  # of the time scale squared: joints that give way by less are ideal here
-WARNED = Skip("it says itself that something is wrong")
+ERROR_FLOORS = {"motion": 1e-8, "reactions": 1e-5}
+FINEST_DIVISION = 64
+DIVERGED_ERROR = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
+DISTANT_POSE = 0.1  # of a radian, or of the mechanism's length: forces of poses that far away are other forces
+CACHED_MECHANISMS = 16  # mechanisms of which all engines are asked before others come: see `chunk.SIZE`
+RIGID_COMPLIANCE = 1e-10  # of the time scale squared: joints that give way by less are ideal here
+ENGINE_WARNED = CheckSkipped("it says itself that something is wrong")
 
 
-@by_identity(ASKED)
-def judged(mechanism: Mechanism) -> Trajectory:
+@by_identity(CACHED_MECHANISMS)
+def judge_motion(mechanism: Mechanism) -> Trajectory:
     """The judge's motion of a mechanism, which many engines are asked about."""
-    return TRUTH.build(mechanism, SPAN * mechanism.time_scale / SAMPLES)(SAMPLES, 1)
+    return TRUTH.build(mechanism, SPAN * mechanism.time_scale / MOTION_SAMPLES)(MOTION_SAMPLES, 1)
 
 
-def errors(engine: Engine, mechanism: Mechanism) -> Errors | Skip:
+def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
     """(error at the finer step, what it may be) of "motion", "reactions" and, of an engine that gives one, "estimate".
 
     Raises Fault where a motion is lost in silence.
     """
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
-        return Skip("shapes that touch may part, and those with corners do not roll as the curves do, at any step")
-    dt = SPAN * mechanism.time_scale / SAMPLES / COARSE
+        return CheckSkipped(
+            "shapes that touch may part, and those with corners do not roll as the curves do, at any step"
+        )
+    dt = SPAN * mechanism.time_scale / MOTION_SAMPLES / COARSE_STEPS
     coarse = _run(engine, mechanism, dt, 1)
     promise = engine.order(mechanism)
     if isinstance(promise, NotDeclared):
-        return Skip(f"no order is promised: {promise.reason}")
-    if _gives_way(engine, mechanism, dt):
-        return Skip("joints give way as the engine says, by the same at every step")
-    truth = judged(mechanism)
+        return CheckSkipped(f"no order is promised: {promise.reason}")
+    if _has_lasting_compliance(engine, mechanism, dt):
+        return CheckSkipped("joints give way as the engine says, by the same at every step")
+    truth = judge_motion(mechanism)
     if not np.isfinite(truth.pose).all():
-        return Skip("the judge itself finds no motion")
+        return CheckSkipped("the judge itself finds no motion")
     if truth.unresolved_at is not None:
-        return Skip(f"the judge itself does not hold {JUDGE_CLAIM:g}, as it says")
+        return CheckSkipped(f"the judge itself does not hold {JUDGE_CLAIM:g}, as it says")
     if max(turned_in_a_step(mechanism, dt, *state) for state in zip(truth.pose, truth.twist, strict=True)) > 1:
-        return Skip("steps are too long for what turns, so that no order is seen")
+        return CheckSkipped("steps are too long for what turns, so that no order is seen")
     case = _Case(engine, mechanism, promise, truth, dt)
     halved = case.halved(coarse)
-    if isinstance(halved, Skip):
+    if isinstance(halved, CheckSkipped):
         return halved
     run, parts, out = halved
     reason = case.excuse(run, parts, out) if _fails(out) else None
@@ -96,28 +98,28 @@ def errors(engine: Engine, mechanism: Mechanism) -> Errors | Skip:
 
 
 def _run(engine: Engine, mechanism: Mechanism, dt: float, parts: int) -> Trajectory:
-    run = engine.build(mechanism, dt / parts)(SAMPLES, parts * COARSE)
+    run = engine.build(mechanism, dt / parts)(MOTION_SAMPLES, parts * COARSE_STEPS)
     if run.estimate is not None and not run.warnings and not np.isfinite(run.pose).all():
         raise Fault(f"at a step of {dt / parts:.3g} s it lost the motion, though it tells its own error")
     return run
 
 
-def _gives_way(engine: Engine, mechanism: Mechanism, dt: float) -> bool:
+def _has_lasting_compliance(engine: Engine, mechanism: Mechanism, dt: float) -> bool:
     """Whether joints give way visibly, and at half the step nearly as much."""
     coarse, fine = (engine.regularisation(mechanism, step) for step in (dt, dt / 2))
     if coarse is None or fine is None:
         return False
     ways = [soft.compliance / soft.stiffness / mechanism.time_scale**2 for soft in (coarse, fine)]
-    return ways[1] > HARD and 2 * ways[1] > ways[0]
+    return ways[1] > RIGID_COMPLIANCE and 2 * ways[1] > ways[0]
 
 
 def _fails(found: Errors) -> bool:
     return any(not error <= bound for error, bound in found.values())
 
 
-def _tolerance(promise: ConvergenceOrder, name: str, coarser: float, floor: float) -> float:
+def _tolerance_for(promise: ConvergenceOrder, name: str, coarser: float, floor: float) -> float:
     order = promise.of("angle" if name == "motion" else "reaction")
-    return min(max(ROOM * coarser * 0.5 ** min(order, 20.0), LEAST[name], floor), LOST)
+    return min(max(ORDER_MARGIN * coarser * 0.5 ** min(order, 20.0), ERROR_FLOORS[name], floor), DIVERGED_ERROR)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +134,7 @@ class _Case:
 
     @cached_property
     def size(self) -> float:
-        """How far anything moves [m], or would without joints; at least so far that rounded places are below LEAST."""
+        """Largest displacement [m], with or without joints; at least so large that rounding is below ERROR_FLOORS."""
         mechanism, arm = self.mechanism, np.array([1.0, 1.0, self.mechanism.length_scale])
         moved = float(np.abs((self.truth.pose - mechanism.pose) * arm).max())
         pulled = float(np.abs(mechanism.unconstrained(mechanism.pose, mechanism.twist) * arm).max())
@@ -140,7 +142,7 @@ class _Case:
         return max(
             moved,
             pulled * (SPAN * mechanism.time_scale) ** 2 / 2,
-            MARGIN * np.finfo(float).eps * far / LEAST["motion"],
+            NOISE_MARGIN * np.finfo(float).eps * far / ERROR_FLOORS["motion"],
         )
 
     @cached_property
@@ -159,54 +161,61 @@ class _Case:
             "reactions": force_difference(self.mechanism, run.reaction[1:], other.reaction[1:], self.forces),
         }
 
-    def halved(self, run: Trajectory) -> tuple[Trajectory, int, dict[str, tuple[float, float]]] | Skip:
+    def halved(self, run: Trajectory) -> tuple[Trajectory, int, dict[str, tuple[float, float]]] | CheckSkipped:
         """The finest run, its steps as parts of `dt`, and (error, what it may be) by the promised order."""
         out: dict[str, tuple[float, float]] = {}
         parts, warned, silent, longest, coarse = 1, False, 0, 0, run
-        while parts < FINEST and (not out or _fails(out)):
+        while parts < FINEST_DIVISION and (not out or _fails(out)):
             parts *= 2
             finer = _run(self.engine, self.mechanism, self.dt, parts)
             if not out and (coarse.warnings or finer.warnings):
-                return WARNED
+                return ENGINE_WARNED
             if finer.warnings:
                 warned, silent = True, 0
                 continue
             silent += 1
             longest = max(longest, silent)
             coarser, errors, run = self.apart(run), self.apart(finer), finer
-            far = errors["motion"] * self.size > OFF * self.mechanism.length_scale
+            far = errors["motion"] * self.size > DISTANT_POSE * self.mechanism.length_scale
             for name, error in errors.items():
-                floor = LOST if far and name == "reactions" else LEAST[name]
-                known = floor < LOST and (coarser[name] < LOST or parts == FINEST)
+                floor = DIVERGED_ERROR if far and name == "reactions" else ERROR_FLOORS[name]
+                known = floor < DIVERGED_ERROR and (coarser[name] < DIVERGED_ERROR or parts == FINEST_DIVISION)
                 if known and (name not in out or not out[name][0] <= out[name][1]):
-                    out[name] = (error, _tolerance(self.promise, name, coarser[name], floor))
+                    out[name] = (error, _tolerance_for(self.promise, name, coarser[name], floor))
         # What two steps after each other say nothing of is silent.
         if warned and longest < 2 and (_fails(out) or not np.isfinite(run.pose).all()):
-            return WARNED
+            return ENGINE_WARNED
         return run, parts, out
 
-    def excuse(self, run: Trajectory, parts: int, out: dict[str, tuple[float, float]]) -> Skip | None:
+    def excuse(self, run: Trajectory, parts: int, out: dict[str, tuple[float, float]]) -> CheckSkipped | None:
         """Raise what errors may be by noise and by declared softness; the reason why they count for nothing, if any."""
         if not np.isfinite(run.pose).all():
             stricter = self.engine.stricter(self.mechanism)
             if stricter is not None and np.isfinite(_run(stricter, self.mechanism, self.dt, parts).pose).all():
-                return Skip("its solver leaves so much at these steps that the motion is lost, and not if it goes on")
+                return CheckSkipped(
+                    "its solver leaves so much at these steps that the motion is lost, and not if it goes on"
+                )
             raise Fault(f"at a step of {self.dt / parts:.3g} s it lost the motion, and says nothing")
         noise = self.noise(run, parts)
-        out |= {name: (error, max(bound, min(MARGIN * noise[name], LOST))) for name, (error, bound) in out.items()}
+        out |= {
+            name: (error, max(bound, min(NOISE_MARGIN * noise[name], DIVERGED_ERROR)))
+            for name, (error, bound) in out.items()
+        }
         if _fails(out) and run.estimate is not None:
             out["motion"] = (out["motion"][0], max(out["motion"][1], self.estimated(run)))
         if _fails(out):
             out |= self.as_declared(run, parts)
         if _fails(out) and not self.resolved(parts):
-            return Skip("something passes within a step: a textbook method shows no order at these steps either")
+            return CheckSkipped(
+                "something passes within a step: a textbook method shows no order at these steps either"
+            )
         return None
 
     def noise(self, run: Trajectory, parts: int) -> Floors:
         """How much errors change with the roundings of the run and of the judge, and with what its solver leaves."""
         pairs: list[tuple[Trajectory, Trajectory]] = []
-        for nudged, back in nudges(self.mechanism):
-            truth = judged.__wrapped__(nudged)  # pyright: ignore[reportFunctionMemberAccess]
+        for nudged, back in iter_nudged(self.mechanism):
+            truth = judge_motion.__wrapped__(nudged)  # pyright: ignore[reportFunctionMemberAccess]
             for plain, other in ((run, _run(self.engine, nudged, self.dt, parts)), (self.truth, truth)):
                 pose, twist, reaction = back(other)
                 pairs.append((replace(other, pose=pose, twist=twist, reaction=reaction), plain))
@@ -214,7 +223,7 @@ class _Case:
         if stricter is not None:
             pairs.append((_run(stricter, self.mechanism, self.dt, parts), run))
         differences = [self.apart(*pair) for pair in pairs]
-        return {name: max(each[name] for each in differences) for name in LEAST}
+        return {name: max(each[name] for each in differences) for name in ERROR_FLOORS}
 
     def resolved(self, parts: int) -> bool:
         """Whether a textbook method of the promised order, or 4, shows it up to these parts, twice in a row.
@@ -223,29 +232,30 @@ class _Case:
         where a method's stages fall, and on no power of the step.
         """
         usual = ConvergenceOrder(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
-        spacing, parts = SPAN * self.mechanism.time_scale / SAMPLES, max(4, parts)
+        spacing, parts = SPAN * self.mechanism.time_scale / MOTION_SAMPLES, max(4, parts)
         try:
             runs = [
-                in_numpy(self.mechanism, SAMPLES, spacing, int(usual.order), n * COARSE, None, True)
+                in_numpy(self.mechanism, MOTION_SAMPLES, spacing, int(usual.order), n * COARSE_STEPS, None, True)
                 for n in (parts // 4, parts // 2, parts)
             ]
         except ValueError:  # it went where curves can't touch
             return False
         found = [self.apart(run) for run in runs]
         return not any(
-            _fails({name: (fine[name], _tolerance(usual, name, coarse[name], LEAST[name])) for name in fine})
+            _fails({name: (fine[name], _tolerance_for(usual, name, coarse[name], ERROR_FLOORS[name])) for name in fine})
             for coarse, fine in pairwise(found)
         )
 
     def as_declared(self, run: Trajectory, parts: int) -> dict[str, tuple[float, float]]:
-        """How far a run is from the judge's with joints that give way as declared at its step, and how far it may be.
+        """(error, tolerance) against the judge's run with the regularisation that the engine declares at this step.
 
-        A softness that is tied to the step falls with its power only where it is small. The judge's own run shows that,
-        at the same steps, and the engine may be ROOM times as far from it as its numbers are open: by the steps, which
-        it takes in other coordinates, as far as double steps lead; and by the compliance, a share of an inverse inertia
-        that the judge takes at each pose and MuJoCo at the start, as far as their largest ratio leads.
+        A compliance that is tied to the step converges with its order only where it is small, so the judge is run with
+        that compliance at the same steps. The tolerance is ORDER_MARGIN times the larger of two uncertainties of the
+        judge's run: its change with double steps, since the engine integrates other coordinates; and its change with
+        the compliance scaled by the largest ratio of inverse inertias along the motion, since the judge evaluates the
+        inverse inertia at each pose and MuJoCo at the start.
         """
-        mechanism, spacing = self.mechanism, SPAN * self.mechanism.time_scale / SAMPLES
+        mechanism, spacing = self.mechanism, SPAN * self.mechanism.time_scale / MOTION_SAMPLES
         softness = self.engine.regularisation(mechanism, self.dt / parts)
         if softness is None or not softness.compliance:
             return {}
@@ -253,9 +263,11 @@ class _Case:
 
         def judged_as(
             compliance: float, every: int
-        ) -> Trajectory:  # SAMPLES x COARSE samples, so that fast rows are met
+        ) -> Trajectory:  # MOTION_SAMPLES x COARSE_STEPS samples, so that fast rows are met
             soft = replace(softness, compliance=compliance * softness.compliance)
-            return in_numpy(mechanism, SAMPLES * COARSE, spacing / COARSE, order, every, soft, least=0.0)
+            return in_numpy(
+                mechanism, MOTION_SAMPLES * COARSE_STEPS, spacing / COARSE_STEPS, order, every, soft, least=0.0
+            )
 
         try:
             right = judged_as(1.0, parts)
@@ -266,49 +278,57 @@ class _Case:
         except ValueError:  # curves can't touch where it goes
             return {}
         names = ("t", "pose", "twist", "reaction")
-        right, *others = (replace(soft, **{name: getattr(soft, name)[::COARSE] for name in names}) for soft in runs)
+        right, *others = (
+            replace(soft, **{name: getattr(soft, name)[::COARSE_STEPS] for name in names}) for soft in runs
+        )
         open_by = [self.apart(other, right) for other in others]
-        bounds = {name: max(least, ROOM * max(each[name] for each in open_by)) for name, least in LEAST.items()}
+        bounds = {
+            name: max(least, ORDER_MARGIN * max(each[name] for each in open_by)) for name, least in ERROR_FLOORS.items()
+        }
         return {name: (error, bounds[name]) for name, error in self.apart(run, right).items()}
 
     def estimated(self, run: Trajectory) -> float:
-        """The error that the estimates of a run and of the judge let pass."""
+        """Tolerance from the error estimates of a run and of the judge, relative to the motion."""
         arm = np.array([1.0, 1.0, self.mechanism.length_scale])
         estimates = [np.abs(one * arm).max() for one in (run.estimate, self.truth.estimate) if one is not None]
-        return ESTIMATED * float(max(estimates)) / self.size + LEAST["motion"]
+        return ESTIMATE_MARGIN * float(max(estimates)) / self.size + ERROR_FLOORS["motion"]
 
     def of_estimate(self, run: Trajectory, parts: int) -> tuple[float, float]:
-        """(error, what it may be) of a run that estimates its own; the judge may miss as much as it says, too."""
+        """(error, tolerance) of a run with an error estimate; the judge's estimate is part of the tolerance."""
         bound, missed = self.estimated(run), self.apart(run)["motion"]
         if missed > bound:
-            bound = max(bound, MARGIN * self.noise(run, parts)["motion"])
-        return missed, min(bound, LOST)
+            bound = max(bound, NOISE_MARGIN * self.noise(run, parts)["motion"])
+        return missed, min(bound, DIVERGED_ERROR)
 
 
-LASTS = 2.0  # times the mechanism's own time scale
-CLAIM_STEPS, EVERY = (40, 100, 200), (1, 2, 5)  # in that time, and between samples: in turn, by the case's number
-CLAIMED, REACTIONS, REPORTED = "claimed", "claimed of reactions", "reported, though right"
+CLAIM_SPAN = 2.0  # times the mechanism's own time scale
+CLAIM_STEPS = (40, 100, 200)  # steps in CLAIM_SPAN; the case's number selects one
+SAMPLE_INTERVALS = (1, 2, 5)  # steps between samples; the case's number selects one
+CLAIMED_POSES, CLAIMED_REACTIONS, NEEDLESS_REPORT = "claimed", "claimed of reactions", "reported, though right"
 
 
-def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | Skip:
+def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | CheckSkipped:
     """(error, claim) of a method with an estimate of its own, over a longer motion, at steps as users take.
 
     Poses, in radians or parts of the length, are right to CLAIM until `unresolved_at`, and reactions to FORCES of the
-    largest force, unless it warns of them. A warning of another kind takes the claim back. REPORTED, which is 1 or 0,
-    counts the warnings of motions that are right from beginning to end: no fault.
+    largest force, unless it warns of them. A warning of another kind withdraws the claim. NEEDLESS_REPORT is 1 where a
+    method warns although all poses are right, else 0; it is counted and no fault.
     """
-    steps, every = CLAIM_STEPS[number % len(CLAIM_STEPS)], EVERY[number // len(CLAIM_STEPS) % len(EVERY)]
-    dt = LASTS * mechanism.time_scale / steps
+    steps, every = (
+        CLAIM_STEPS[number % len(CLAIM_STEPS)],
+        SAMPLE_INTERVALS[number // len(CLAIM_STEPS) % len(SAMPLE_INTERVALS)],
+    )
+    dt = CLAIM_SPAN * mechanism.time_scale / steps
     run = engine.build(mechanism, dt)(steps // every, every)
     if run.estimate is None:
-        return Skip("it has no estimate of its own error")
-    truth = _judged_longer(mechanism)
+        return CheckSkipped("it has no estimate of its own error")
+    truth = _long_judge_motion(mechanism)
     if truth.unresolved_at is not None or truth.warnings or not np.isfinite(truth.pose).all():
-        return Skip(f"the judge itself does not hold {JUDGE_CLAIM:g}, as it says")
-    return compared(mechanism, run, truth)
+        return CheckSkipped(f"the judge itself does not hold {JUDGE_CLAIM:g}, as it says")
+    return check_claims(mechanism, run, truth)
 
 
-def compared(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str, tuple[float, float]]:
+def check_claims(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str, tuple[float, float]]:
     """The same of a run, whose samples are among those of the judge."""
     at = np.linspace(0, len(truth.t) - 1, len(run.t)).round().astype(int)
     length, arm = mechanism.length_scale, np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
@@ -318,18 +338,18 @@ def compared(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[s
     told = run.unresolved_at is not None or len(of_reactions) < len(run.warnings)
     out = {}
     if run.unresolved_at is not None or not told:
-        out[CLAIMED] = (float(missed[until].max(initial=0.0)), CLAIM)
+        out[CLAIMED_POSES] = (float(missed[until].max(initial=0.0)), CLAIM)
     if missed.max() <= CLAIM:
-        out[REPORTED] = (float(told), 1.0)
+        out[NEEDLESS_REPORT] = (float(told), 1.0)
     if mechanism.row_count and not told and not of_reactions:
         off = np.nan_to_num(run.reaction[1:] - truth.reaction[at][1:]) / arm
         largest = largest_force(mechanism, truth.pose[at], truth.twist[at], truth.reaction[at])
-        out[REACTIONS] = (float(np.abs(off).max()) / largest, FORCES)
+        out[CLAIMED_REACTIONS] = (float(np.abs(off).max()) / largest, FORCES)
     return out
 
 
-@by_identity(ASKED)
-def _judged_longer(mechanism: Mechanism) -> Trajectory:
+@by_identity(CACHED_MECHANISMS)
+def _long_judge_motion(mechanism: Mechanism) -> Trajectory:
     """The judge's motion, at all instants at which any run is sampled."""
     samples = int(np.lcm.reduce(CLAIM_STEPS))
-    return TRUTH.build(mechanism, LASTS * mechanism.time_scale / samples)(samples, 1)
+    return TRUTH.build(mechanism, CLAIM_SPAN * mechanism.time_scale / samples)(samples, 1)

@@ -19,16 +19,16 @@ from numpy.typing import NDArray
 from engines.constrained import constrained
 from reference.checks import InvalidMechanism
 from reports.search.parts import ladder
-from reports.search.recipe import LEAST_RANK, NO_MOTION
+from reports.search.recipe import DEPENDENCE_LIMIT, MOTION_ROUNDING
 
 Array = NDArray[np.float64]
 Numbers = Any  # an array, real or complex
 
 # "gear": a joint equality that is a straight line; "joint" and "tendon" are curved.
-KINDS = ("connect", "weld", "gear", "joint", "tendon")
-HINGED = ("connect", "weld", "gear")
-MOST_BODIES, MOST_EQUALITIES = 9, 3
-STEP = 1e-30  # of a complex step
+EQUALITY_KINDS = ("connect", "weld", "gear", "joint", "tendon")
+HINGED_KINDS = ("connect", "weld", "gear")
+RAW_BODIES, RAW_EQUALITIES = 9, 3
+COMPLEX_STEP = 1e-30  # of a complex step
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Equality:
 
 
 @dataclass(frozen=True)
-class Model:
+class RawModel:
     """`gravity` in m/s^2; `sparse`: whether MuJoCo shall store a sparse Jacobian."""
 
     parts: tuple[RawBody, ...]
@@ -84,10 +84,10 @@ class Model:
     @property
     def kinds(self) -> tuple[str, ...]:
         """The kinds of its equalities, each once."""
-        return tuple(kind for kind in KINDS if any(link.kind == kind for link in self.links))
+        return tuple(kind for kind in EQUALITY_KINDS if any(link.kind == kind for link in self.links))
 
 
-def coordinates(model: Model) -> list[tuple[int, str]]:
+def coordinates(model: RawModel) -> list[tuple[int, str]]:
     """(body from 1, 'slide 0', 'slide 1' or 'hinge') of each, as MuJoCo orders them: depth first."""
 
     def below(body: int) -> list[tuple[int, str]]:
@@ -98,7 +98,7 @@ def coordinates(model: Model) -> list[tuple[int, str]]:
     return below(0)
 
 
-def wrapped(model: Model, link: Equality) -> tuple[list[int], list[int]]:
+def coupled_coordinates(model: RawModel, link: Equality) -> tuple[list[int], list[int]]:
     """The coordinates, by their numbers, whose sums an equality of coordinates couples. Raises InvalidMechanism."""
     bodies = [body for body, _ in coordinates(model)]
     if link.first == link.second or not {link.first, link.second} <= {*bodies}:
@@ -109,7 +109,7 @@ def wrapped(model: Model, link: Equality) -> tuple[list[int], list[int]]:
     return [*range(max(first - 1, 0), first + 1)], [*range(max(second - 1, 0), second + 1)]
 
 
-def xml(model: Model) -> str:
+def to_mjcf(model: RawModel) -> str:
     """The model in MuJoCo's format, version 3.6 and later."""
 
     def text(*values: float) -> str:
@@ -137,7 +137,7 @@ def xml(model: Model) -> str:
             anchor = {"anchor": text(*np.divide(link.at, 10), 0)} if link.kind == "connect" else {}
             ET.SubElement(equalities, link.kind, ends | anchor)
             continue
-        curve, pair = text(0, link.curve[0] / 2, link.curve[1] / 2, 0, 0), wrapped(model, link)
+        curve, pair = text(0, link.curve[0] / 2, link.curve[1] / 2, 0, 0), coupled_coordinates(model, link)
         if link.kind == "tendon":
             for side, summed in zip(("first", "second"), pair, strict=True):
                 tendon = ET.SubElement(tendons, "fixed", name=f"t{number} {side}")
@@ -167,7 +167,7 @@ def _across(vector: Numbers) -> Numbers:
 Frame = tuple[Numbers, Any, Numbers, Any]  # place (2,) [m], angle [rad], and their rates
 
 
-def _frames(model: Model, q: Numbers, v: Numbers) -> list[Frame]:
+def _frames(model: RawModel, q: Numbers, v: Numbers) -> list[Frame]:
     """The frames of the world and of each body at coordinates q (coordinates,) that change at rates v."""
     values = {name: (q[number], v[number]) for number, name in enumerate(coordinates(model))}
     frames: list[Frame] = [(np.zeros(2), 0.0, np.zeros(2), 0.0)]
@@ -182,7 +182,7 @@ def _frames(model: Model, q: Numbers, v: Numbers) -> list[Frame]:
     return frames
 
 
-def _velocities(model: Model, q: Numbers, v: Numbers) -> Numbers:
+def _velocities(model: RawModel, q: Numbers, v: Numbers) -> Numbers:
     """Velocities (3 bodies,) of centres of mass and angles."""
     out = []
     for part, (_, angle, speed, rate) in zip(model.parts, _frames(model, q, v)[1:], strict=True):
@@ -190,7 +190,7 @@ def _velocities(model: Model, q: Numbers, v: Numbers) -> Numbers:
     return np.array(out)
 
 
-def _slips(model: Model, q: Numbers, v: Numbers) -> list[Numbers]:
+def _slips(model: RawModel, q: Numbers, v: Numbers) -> list[Numbers]:
     """The velocities (rows,) with which each equality would open; anchors are those of the start, where q is 0."""
     still, frames = _frames(model, 0.0 * q.real, 0.0 * q.real), _frames(model, q, v)
     out: list[Numbers] = []
@@ -206,7 +206,7 @@ def _slips(model: Model, q: Numbers, v: Numbers) -> list[Numbers]:
                 speeds.append([*(speed + rate * _across(arm)), rate][: 2 if link.kind == "connect" else 3])
             out.append(np.subtract(*speeds))
         else:
-            first, second = wrapped(model, link)
+            first, second = coupled_coordinates(model, link)
             slope, bend = link.curve[0] / 2, link.curve[1]  # the second derivative is twice the coefficient
             along = slope + bend * q[second].sum()
             out.append(np.array([v[first].sum() - along * v[second].sum()]))
@@ -214,7 +214,7 @@ def _slips(model: Model, q: Numbers, v: Numbers) -> list[Numbers]:
 
 
 @dataclass(frozen=True, eq=False)
-class Law:
+class StartEquations:
     """A model's equations at the start.
 
     `root` (coordinates, coordinates): S, with S^T S the mass matrix. `free`: S times the accelerations without
@@ -241,7 +241,7 @@ class Law:
 
 
 @lru_cache(maxsize=4)  # the same model is drawn, judged, and asked of MuJoCo
-def judged(model: Model) -> Law:
+def start_equations(model: RawModel) -> StartEquations:
     """Raises InvalidMechanism where rows are nearly dependent, or something is joined with itself."""
     order = coordinates(model)
     count, still = len(order), np.zeros(len(order))
@@ -251,46 +251,47 @@ def judged(model: Model) -> Law:
     if rows:
         whole = np.vstack(rows)
         sizes = np.linalg.svd(whole, compute_uv=False)
-        if len(whole) > count or not sizes[-1] > LEAST_RANK * sizes[0]:
+        if len(whole) > count or not sizes[-1] > DEPENDENCE_LIMIT * sizes[0]:
             raise InvalidMechanism("model: an equality holds nothing, or the equalities' rows are nearly dependent")
         wanted, inverse = rates, np.linalg.pinv(whole)
         for _ in range(2):  # the second time for the rounding of the first
             rates = rates - inverse @ (whole @ rates)
-        if np.abs(rates).max(initial=0.0) <= NO_MOTION * np.abs(wanted).max(initial=0.0):
+        if np.abs(rates).max(initial=0.0) <= MOTION_ROUNDING * np.abs(wanted).max(initial=0.0):
             rates = np.zeros(count)
-    ahead = 1j * STEP * rates
-    change = _velocities(model, ahead, rates).imag / STEP
-    right = tuple(-slip.imag / STEP for slip in _slips(model, ahead, rates))
+    ahead = 1j * COMPLEX_STEP * rates
+    change = _velocities(model, ahead, rates).imag / COMPLEX_STEP
+    right = tuple(-slip.imag / COMPLEX_STEP for slip in _slips(model, ahead, rates))
     bent = tuple(
-        np.zeros_like(each) if link.kind in HINGED else each for link, each in zip(model.links, right, strict=True)
+        np.zeros_like(each) if link.kind in HINGED_KINDS else each
+        for link, each in zip(model.links, right, strict=True)
     )
     directions = np.array([_velocities(model, still, unit) for unit in np.eye(count)]).T.reshape(-1, count)
     weights = np.sqrt([w for p in model.parts for w in (*[float(ladder(p.mass))] * 2, float(ladder(p.inertia)))])
     orthogonal, root = np.linalg.qr(weights[:, None] * directions)
     free = orthogonal.T @ (weights * (np.tile([*model.gravity, 0.0], len(model.parts)) - change))
-    return Law(root, free, rows, right, bent, rates)
+    return StartEquations(root, free, rows, right, bent, rates)
 
 
-def model(seed: int, number: int, kinds: tuple[str, ...]) -> Model:
+def draw_model(seed: int, number: int, kinds: tuple[str, ...]) -> RawModel:
     """Case `number` of a seed with equalities of these kinds; the same on every machine.
 
     With connects, welds and gears alone every body is hinged, else some slide.
     """
     random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, len(kinds)])))
     while True:
-        drawn = _drawn(random, kinds)
-        if drawn.links and (any(drawn.gravity) or judged(drawn).rates.any()):
+        drawn = _draw_once(random, kinds)
+        if drawn.links and (any(drawn.gravity) or start_equations(drawn).rates.any()):
             return drawn
 
 
-def _drawn(random: np.random.Generator, kinds: tuple[str, ...]) -> Model:
+def _draw_once(random: np.random.Generator, kinds: tuple[str, ...]) -> RawModel:
     def whole(low: int, high: int) -> int:
         return int(random.integers(low, high + 1))
 
     def two(most: int) -> tuple[int, int]:
         return whole(-most, most), whole(-most, most)
 
-    count, hinged, moving = whole(2, MOST_BODIES), {*kinds} <= {*HINGED}, whole(1, 4) > 1
+    count, hinged, moving = whole(2, RAW_BODIES), {*kinds} <= {*HINGED_KINDS}, whole(1, 4) > 1
     parts = []
     for index in range(count):
         slides = 0 if hinged else (0, 0, 1, 2)[whole(0, 3)]
@@ -306,8 +307,8 @@ def _drawn(random: np.random.Generator, kinds: tuple[str, ...]) -> Model:
             velocity=(*two(4), whole(-6, 6)) if moving else (0, 0, 0),
         )
         parts.append(part)
-    out = Model(tuple(parts), (), two(10), sparse=whole(0, 1) == 1)
-    for _ in range(whole(1, MOST_EQUALITIES)):
+    out = RawModel(tuple(parts), (), two(10), sparse=whole(0, 1) == 1)
+    for _ in range(whole(1, RAW_EQUALITIES)):
         kind = kinds[whole(0, len(kinds) - 1)]
         first, second = whole(1, count), whole(0 if kind in ("connect", "weld") else 1, count)
         at, curve = two(6) if kind == "connect" else (0, 0), (0, 0)
@@ -316,7 +317,7 @@ def _drawn(random: np.random.Generator, kinds: tuple[str, ...]) -> Model:
             curve = (slope, 0 if kind == "gear" else bend)
         more = replace(out, links=(*out.links, Equality(kind, first, second, at, curve)))
         try:
-            judged(more)
+            start_equations(more)
         except InvalidMechanism:
             continue
         out = more

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from engines import Engine
 from reference.mechanism import Mechanism
 from reports.search import motions, relations
-from reports.search.law import Errors, Skip, instant_errors
+from reports.search.law import CheckSkipped, Errors, instant_errors
 from reports.search.parts import Recipe
 from reports.search.release import BESIDE, CURVED
 
-LAWS = ("acceleration", CURVED, "velocity", "without velocity terms")
+LAW_CHECKS = ("acceleration", CURVED, "velocity", "without velocity terms")
 
 
 @dataclass(frozen=True)
@@ -25,35 +25,35 @@ class Oracle:
 
     column: str
     question: str
-    errors: Callable[[Engine, Mechanism, Recipe, int], Errors | Skip]
+    errors: Callable[[Engine, Mechanism, Recipe, int], Errors | CheckSkipped]
     checks: tuple[str, ...] = ()
     is_default: bool = True
 
 
-MOTIONS = "motions"
+MOTION_ORACLE = "motions"
 ORACLES: Mapping[str, Oracle] = {
     "instant": Oracle(
         "instant",
         "does the engine solve the equations that its settings stand for?",
         lambda engine, mechanism, recipe, number: instant_errors(engine, mechanism),
-        (*LAWS, "reaction", "as its groove pushes", BESIDE),
+        (*LAW_CHECKS, "reaction", "as its groove pushes", BESIDE),
     ),
     "relations": Oracle(
         "description",
         "is the motion the same where the same mechanism is described otherwise?",
-        lambda engine, mechanism, recipe, number: relations.errors(engine, recipe, number),
-        relations.NAMES,
+        lambda engine, mechanism, recipe, number: relations.relation_errors(engine, recipe, number),
+        relations.RELATIONS,
     ),
-    MOTIONS: Oracle(
+    MOTION_ORACLE: Oracle(
         "motion",
         "is it the motion of the exact judge, but for what the engine's order and softness admit?",
-        lambda engine, mechanism, recipe, number: motions.errors(engine, mechanism),
+        lambda engine, mechanism, recipe, number: motions.motion_errors(engine, mechanism),
     ),
     "claims": Oracle(  # by its name alone: runs are as long as a user's, and cost as much
         "claim",
         "is an error that a method reports the error that it has?",
         lambda engine, mechanism, recipe, number: motions.claim_errors(engine, mechanism, number),
-        (motions.CLAIMED, motions.REACTIONS, motions.REPORTED),
+        (motions.CLAIMED_POSES, motions.CLAIMED_REACTIONS, motions.NEEDLESS_REPORT),
         is_default=False,
     ),
 }
@@ -63,4 +63,4 @@ DEFAULT_ORACLES = tuple(name for name, oracle in ORACLES.items() if oracle.is_de
 def column_of(check: str) -> str:
     """The column in which the page counts a check."""
     named = (oracle.column for oracle in ORACLES.values() if check in oracle.checks)
-    return next(named, ORACLES[MOTIONS].column)
+    return next(named, ORACLES[MOTION_ORACLE].column)

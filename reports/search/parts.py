@@ -9,21 +9,22 @@ from typing import Any, TypeVar, get_args, get_type_hints
 
 Case = TypeVar("Case")
 
-KINDS = ("pin", "slot", "skate", "roll", "drive")  # from the beginning; the same seed still gives the same of them
-LINKS = ("rod", "gear", "weld")
-FORCES = ("spring", "damper", "torsion-spring", "torsion-damper", "force", "torque")
-EVERY = (*KINDS, *LINKS, *FORCES)
+# The first kinds that were drawn. Their order stays, so that a seed gives the same mechanisms.
+FIRST_KINDS = ("pin", "slot", "skate", "roll", "drive")
+LINK_KINDS = ("rod", "gear", "weld")
+FORCE_KINDS = ("spring", "damper", "torsion-spring", "torsion-damper", "force", "torque")
+ALL_KINDS = (*FIRST_KINDS, *LINK_KINDS, *FORCE_KINDS)
 # Asked for by their names alone: their rows nearly depend on each other.
 TOGGLE, FOLD = "toggle", "fold"
-SINGULAR = (TOGGLE, FOLD)
-SHAPES = ("line", "circle", "ring", "ellipse")
+SINGULAR_KINDS = (TOGGLE, FOLD)
+RIM_SHAPES = ("line", "circle", "ring", "ellipse")
 
-ANGLE = Decimal("0.3")  # rad: no multiple of it but 0 is an angle that a formula is simple at
-RATE = Decimal("0.5")  # m/s, and rad/s
+ANGLE_UNIT = Decimal("0.3")  # rad: no multiple of it but 0 is an angle that a formula is simple at
+RATE_UNIT = Decimal("0.5")  # m/s, and rad/s
 
 
 @dataclass(frozen=True)
-class Part:
+class RecipeBody:
     """A body. `parent`: 0 is the ground, 1 the first body, and so on; it is earlier than the body itself.
 
     `offset`: from the parent's place, in tenths of the body's own `size`; `angle` in steps of 0.3 rad; `velocity` in
@@ -53,7 +54,7 @@ class Rim:
 
 
 @dataclass(frozen=True)
-class Link:
+class RecipeLink:
     """A joint, or a force, of the bodies `first` (0: the ground) and `second`, at `at`: tenths of the second
     body's size from it.
 
@@ -85,15 +86,15 @@ class Link:
 class Recipe:
     """`gravity` in m/s^2; `decades` of the units of length, mass and time in which everything is written."""
 
-    parts: tuple[Part, ...]
-    links: tuple[Link, ...]
+    parts: tuple[RecipeBody, ...]
+    links: tuple[RecipeLink, ...]
     gravity: tuple[int, int] = (0, 0)
     decades: tuple[int, int, int] = (0, 0, 0)
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of its joints and forces, each once, in the order of EVERY."""
-        return tuple(kind for kind in (*EVERY, *SINGULAR) if any(link.kind == kind for link in self.links))
+        """The kinds of its joints and forces, each once, in the order of ALL_KINDS."""
+        return tuple(kind for kind in (*ALL_KINDS, *SINGULAR_KINDS) if any(link.kind == kind for link in self.links))
 
 
 def ladder(step: int) -> Decimal:
@@ -101,7 +102,7 @@ def ladder(step: int) -> Decimal:
     return Decimal((1, 2, 5)[step % 3]).scaleb(step // 3)
 
 
-def as_text(case: Any) -> str:
+def case_to_json(case: Any) -> str:
     """A recipe, or another case of `parts` and `links`, as JSON without its default values."""
 
     def plain(value: Any) -> Any:
@@ -113,8 +114,8 @@ def as_text(case: Any) -> str:
     return json.dumps(plain(case), sort_keys=True)
 
 
-def from_text(text: str, kind: type[Case]) -> Case:
-    """The case of this kind that `as_text` wrote. Raises ValueError for other text."""
+def case_from_json(text: str, kind: type[Case]) -> Case:
+    """The case of this kind that `case_to_json` wrote. Raises ValueError for other text."""
 
     def made(values: dict[str, Any], kind: type) -> Any:
         hints = get_type_hints(kind)

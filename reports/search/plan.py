@@ -13,47 +13,47 @@ from engines import Engine, Unsupported, pymunk
 from engines.registry import INSTALLED, VARIANTS
 from reports.model.fingerprint import OURS, ROOT, SHORT, digest
 from reports.search import mechanisms
-from reports.search.chunk import Chunk, chunks
-from reports.search.mujoco_alone import HINGED
+from reports.search.chunk import Chunk, make_chunks
+from reports.search.mujoco_alone import HINGED_KINDS
 from reports.search.oracles import DEFAULT_ORACLES
-from reports.search.parts import EVERY, TOGGLE
+from reports.search.parts import ALL_KINDS, TOGGLE
 from reports.search.recipe import build
 from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 
-COMMIT, SOURCES = "the last commit's hash", "the SHA-256 of all sources, as there is no git"
-DECADES = (0, 2, 4)  # one for each of the seeds
-CASES, ALONE = 100, 1000  # of an engine for each seed; of MuJoCo alone
+COMMIT_RULE, SOURCES_RULE = "the last commit's hash", "the SHA-256 of all sources, as there is no git"
+SEED_DECADES = (0, 2, 4)  # one for each of the seeds
+PLANNED_CASES, ALONE_CASES = 100, 1000  # of an engine for each seed; of MuJoCo alone
 # Of an engine that compiles each shape anew, MJX: a case of it takes three seconds, of the others 0.005 to 0.8. So its
 # two variants share a third of all time, and 100 cases would take three quarters of an hour.
-COMPILED = 20
-NEAR = 60  # of each engine that knows pins and rods, with rows that nearly depend on each other
-TRIED = 60  # mechanisms of one kind, by which is known whether an engine takes it
+COMPILED_CASES = 20
+SINGULAR_CASES = 60  # of each engine that knows pins and rods, with rows that nearly depend on each other
+KIND_TRIALS = 60  # mechanisms of one kind, by which is known whether an engine takes it
 # A slot as users of pymunk build it, wherever its point is: see `engines.pymunk.joints.slide`.
-GROOVE = Adapted(replace(pymunk.DEFAULT, variant="slots as grooves", slot="groove"))
+GROOVE_SUBJECT = Adapted(replace(pymunk.DEFAULT, variant="slots as grooves", slot="groove"))
 
 
 @cache
-def origin() -> tuple[str, str]:
+def seed_origin() -> tuple[str, str]:
     """(rule, words that seeds are made from): the hash of the last commit, without git that of all sources."""
     if (ROOT / ".git").exists():
         asked = ["git", "-C", str(ROOT), "rev-parse", "HEAD"]
         told = subprocess.run(asked, capture_output=True, text=True, check=False)
         if told.returncode == 0:
-            return COMMIT, told.stdout.strip()
+            return COMMIT_RULE, told.stdout.strip()
     files = sorted(path for folder in OURS for path in (ROOT / folder).rglob("*.py"))
-    return SOURCES, digest(b"\0".join(path.read_bytes() for path in files), 64)
+    return SOURCES_RULE, digest(b"\0".join(path.read_bytes() for path in files), 64)
 
 
-def seeds(many: int = len(DECADES)) -> tuple[int, ...]:
+def published_seeds(many: int = len(SEED_DECADES)) -> tuple[int, ...]:
     """The first eight hexadecimal digits, halved, of the SHA-256 of the origin, a blank and a number from 1."""
-    words = (f"{origin()[1]} {number}" for number in range(1, many + 1))
+    words = (f"{seed_origin()[1]} {number}" for number in range(1, many + 1))
     return tuple(int(digest(word, SHORT), 16) // 2 for word in words)
 
 
 @cache
-def taken(engine: Engine) -> tuple[str, ...]:
+def supported_kinds(engine: Engine) -> tuple[str, ...]:
     """The kinds of joints and forces of which an engine builds some mechanism."""
-    return tuple(kind for kind in EVERY if any(_is_built(engine, kind, number) for number in range(TRIED)))
+    return tuple(kind for kind in ALL_KINDS if any(_is_built(engine, kind, number) for number in range(KIND_TRIALS)))
 
 
 def _is_built(engine: Engine, kind: str, number: int) -> bool:
@@ -68,35 +68,37 @@ def _is_built(engine: Engine, kind: str, number: int) -> bool:
     return True
 
 
-def everything() -> list[Subject]:
+def all_subjects() -> list[Subject]:
     """Every variant of every engine that is installed, and MuJoCo alone."""
     return [*(Adapted(engine) for engine in (*VARIANTS, *INSTALLED)), Alone()]
 
 
-def published() -> list[Chunk]:
+def published_chunks() -> list[Chunk]:
     """All engines in the mechanisms of the commit's seeds, each of the kinds that it takes; and two kinds of cases by
     themselves: rows that nearly depend on each other, and pymunk's grooves off the centre of mass."""
     out: list[Chunk] = []
-    for seed, decades in zip(seeds(), DECADES, strict=True):
-        for subject in everything():
+    for seed, decades in zip(published_seeds(), SEED_DECADES, strict=True):
+        for subject in all_subjects():
             kinds, alone, shaped = _kinds(subject), isinstance(subject, Alone), is_shaped(subject)
-            many = ALONE if alone else COMPILED if shaped else CASES
-            out += chunks([subject], seed, many, kinds, 0 if alone else decades, DEFAULT_ORACLES)
+            many = ALONE_CASES if alone else COMPILED_CASES if shaped else PLANNED_CASES
+            out += make_chunks([subject], seed, many, kinds, 0 if alone else decades, DEFAULT_ORACLES)
             if decades == 0 and {"pin", "rod"} <= {*kinds} and not shaped:
                 near = [kind for kind in ("pin", "spring", "force") if kind in kinds]
-                out += chunks([subject], seed, NEAR, (*near, TOGGLE), 0, DEFAULT_ORACLES)
+                out += make_chunks([subject], seed, SINGULAR_CASES, (*near, TOGGLE), 0, DEFAULT_ORACLES)
         if decades == 0:
-            out += chunks([GROOVE], seed, CASES, ("pin", "slot"), 0, ("instant",))
+            out += make_chunks([GROOVE_SUBJECT], seed, PLANNED_CASES, ("pin", "slot"), 0, ("instant",))
     return out
 
 
-def fresh(subjects: Sequence[Subject], cases: int) -> Iterator[list[Chunk]]:
+def fresh_chunks(subjects: Sequence[Subject], cases: int) -> Iterator[list[Chunk]]:
     """So many cases of each subject for one seed after the other, without end; seeds are of the system's randomness."""
     for number in count():
-        seed, decades = secrets.randbits(31), DECADES[number % len(DECADES)]
+        seed, decades = secrets.randbits(31), SEED_DECADES[number % len(SEED_DECADES)]
         mixed = secrets.SystemRandom().sample(subjects, len(subjects))  # so that all have their turn in a short run
-        yield [piece for one in mixed for piece in chunks([one], seed, cases, _kinds(one), decades, DEFAULT_ORACLES)]
+        yield [
+            piece for one in mixed for piece in make_chunks([one], seed, cases, _kinds(one), decades, DEFAULT_ORACLES)
+        ]
 
 
 def _kinds(subject: Subject) -> tuple[str, ...]:
-    return taken(subject.engine) if isinstance(subject, Adapted) else HINGED
+    return supported_kinds(subject.engine) if isinstance(subject, Adapted) else HINGED_KINDS

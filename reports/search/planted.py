@@ -25,16 +25,16 @@ from reports.gate.change import Altered
 from reports.gate.judge import dynamics_of
 from reports.model.tasks import Task, Values
 from reports.search import relations
-from reports.search.mechanisms import RUN, SHAPES
-from reports.search.parts import EVERY
-from reports.search.plan import taken
+from reports.search.mechanisms import CASES_PER_SHAPE, SHAPE_COUNT
+from reports.search.parts import ALL_KINDS
+from reports.search.plan import supported_kinds
 from reports.search.subjects import Adapted
 
 Array = NDArray[np.float64]
 
 # By fault, which begins with a kind, the number that is off: by a part of it, of a length if it is a point, or so many
 # radians.
-NUMBER = {
+FAULT_FIELDS = {
     "pin": "second_point",
     "slot": "line_angle",
     "skate": "angle",
@@ -53,7 +53,7 @@ NUMBER = {
     "torsion-spring rest_angle": "rest_angle",
     "force force": "force",
 }
-ANGLES = ("line_angle", "angle", "rest_angle")
+ANGLE_FIELDS = ("line_angle", "angle", "rest_angle")
 CLOSING_STEPS = 6  # of Newton's method, which closes the joints of a wrong model: quadratic from a miss of 1e-2
 
 
@@ -90,31 +90,31 @@ class Misbuilt(Mechanism):
 
 
 @dataclass(frozen=True)
-class Off:
-    """The change of a mechanism in which a number is off by a part: one of FAULTS."""
+class PlantedFault:
+    """The change of a mechanism in which a number is off by a part: one of PLANTED_FAULTS."""
 
     fault: str
     relative: float
 
     @property
     def kind(self) -> str:
-        return self.fault.split()[0] if self.fault in NUMBER else self.fault
+        return self.fault.split()[0] if self.fault in FAULT_FIELDS else self.fault
 
     @property
     def is_relation(self) -> bool:
         """Whether it depends on how a mechanism is described."""
-        return self.kind in relations.NAMES
+        return self.kind in relations.RELATIONS
 
     @property
     def kinds(self) -> tuple[str, ...]:
         """The kinds of mechanisms that may show it."""
-        return ("pin",) if self.kind not in EVERY else tuple(dict.fromkeys(("pin", self.kind)))
+        return ("pin",) if self.kind not in ALL_KINDS else tuple(dict.fromkeys(("pin", self.kind)))
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
         if self.kind == "turned":
             x, y = mechanism.gravity
             return replace(mechanism, gravity=((1 + self.relative) * x, y))
-        if self.fault not in NUMBER:
+        if self.fault not in FAULT_FIELDS:
             bodies = tuple(self._heavier(mechanism, body) for body in mechanism.bodies)
             return replace(mechanism, bodies=bodies)
         length = mechanism.length_scale
@@ -128,7 +128,7 @@ class Off:
     def _wrong(self, part: Any, length: float) -> Any:
         if kind_of(part) != self.kind:
             return part
-        name = NUMBER[self.fault]
+        name = FAULT_FIELDS[self.fault]
         match getattr(part, name):
             case Rolling() as rolling:
                 curve = Placed(rolling.body, shift=(self.relative * length, 0.0))
@@ -137,7 +137,7 @@ class Off:
                 off = ((1 + self.relative) * x, (1 + self.relative) * y)
                 off = off if name == "force" else (x + self.relative * length, y)
             case value:
-                off = value + self.relative if name in ANGLES else (1 + self.relative) * value
+                off = value + self.relative if name in ANGLE_FIELDS else (1 + self.relative) * value
         return replace(part, **{name: off})
 
     def _heavier(self, mechanism: Mechanism, body: Body) -> Body:
@@ -159,9 +159,9 @@ def kind_of(part: Any) -> str:
     return re.sub(r"(?<!^)(?=[A-Z])", "-", type(part).__name__).lower()
 
 
-FAULTS = ("inertia", *NUMBER, *relations.NAMES)
+PLANTED_FAULTS = ("inertia", *FAULT_FIELDS, *relations.RELATIONS)
 # By engine, the variants of which the own error hides least: one for the law of an instant, one for a motion.
-LEAST: Mapping[str, tuple[Engine, ...]] = {
+CONTROL_ENGINES: Mapping[str, tuple[Engine, ...]] = {
     "pymunk": (pymunk.LEAPFROG, pymunk.EXTENDED),
     "mujoco": (mujoco.TUNED, mujoco.EXTENDED),
     "lagrange": (lagrange.VARIANTS[-1],),
@@ -171,23 +171,23 @@ LEAST: Mapping[str, tuple[Engine, ...]] = {
     "mjx": (mjx.TUNED,),
     "bullet": (bullet.EXTENDED,),
 }
-SEED = 1
-CASES = 300
-SIZES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
+CONTROL_SEED = 1
+CONTROL_CASES = 300
+FAULT_SIZES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
 
 @dataclass(frozen=True)
-class Control(Task):
-    """How soon a search finds a fault of this kind in an engine, and of which of SIZES it has to be for that."""
+class PlantedControl(Task):
+    """How soon a search finds a fault of this kind in an engine, and of which of FAULT_SIZES it has to be for that."""
 
     name: str  # of the engine
     fault: str
-    sizes: tuple[float, ...] = SIZES
-    cases: int = CASES
+    sizes: tuple[float, ...] = FAULT_SIZES
+    cases: int = CONTROL_CASES
 
     @property
     def cost(self) -> float:
-        return 10.0 + max(engine.build_time for engine in LEAST[self.name])
+        return 10.0 + max(engine.build_time for engine in CONTROL_ENGINES[self.name])
 
     @property
     def label(self) -> str:
@@ -195,16 +195,16 @@ class Control(Task):
 
     @property
     def engine(self) -> Engine:
-        return LEAST[self.name][0]
+        return CONTROL_ENGINES[self.name][0]
 
     def run(self) -> Values:
         """The size, and the check and the number of the case that finds it, NaN where none does; whether the engine
         builds this kind, and how many times it was asked until then."""
-        engines, kind, asked = LEAST[self.name], Off(self.fault, 0.0).kind, 0
-        built = kind not in EVERY or kind in taken(engines[0])
+        engines, kind, asked = CONTROL_ENGINES[self.name], PlantedFault(self.fault, 0.0).kind, 0
+        built = kind not in ALL_KINDS or kind in supported_kinds(engines[0])
         size, case, check = np.nan, np.nan, ""
         for tried in self.sizes if built else ():
-            for number, was_asked, check in searched(engines, Off(self.fault, tried), self.cases):
+            for number, was_asked, check in search_with_fault(engines, PlantedFault(self.fault, tried), self.cases):
                 asked += was_asked
                 if check:
                     size, case = tried, number
@@ -214,16 +214,16 @@ class Control(Task):
         return {name: np.array(value) for name, value in numbers.items()} | {"check": check}
 
 
-def searched(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[tuple[int, bool, str]]:
+def search_with_fault(engines: tuple[Engine, ...], change: PlantedFault, cases: int) -> Iterator[tuple[int, bool, str]]:
     """(case, whether it was judged, the check that fails by this change and not without it), until one does."""
     of_motion = ("instant",) if any(engine.build_time for engine in engines) else ("instant", "motions")
     oracles = ("relations",) if change.is_relation else of_motion  # one is enough where each shape is compiled
     for number, engine in product(range(cases), engines):
-        if change.is_relation and relations.NAMES[number % len(relations.NAMES)] != change.kind:
+        if change.is_relation and relations.RELATIONS[number % len(relations.RELATIONS)] != change.kind:
             continue
         right, wrong = Adapted(engine), Adapted(Altered(engine, change))
-        case = right.draw(SEED, number, change.kinds, 0)
-        if change.kind in EVERY and change.kind not in case.kinds:
+        case = right.draw(CONTROL_SEED, number, change.kinds, 0)
+        if change.kind in ALL_KINDS and change.kind not in case.kinds:
             continue
         for oracle in oracles:
             try:
@@ -240,10 +240,10 @@ def searched(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[t
                 return
 
 
-def controls() -> list[Control]:
+def all_controls() -> list[PlantedControl]:
     """A control for each fault in each engine."""
     out = []
-    for (name, engines), fault in product(LEAST.items(), FAULTS):
+    for (name, engines), fault in product(CONTROL_ENGINES.items(), PLANTED_FAULTS):
         shaped = any(engine.build_time for engine in engines)  # after all shapes come the first ones again
-        out.append(Control(name, fault, cases=SHAPES * RUN if shaped else CASES))
+        out.append(PlantedControl(name, fault, cases=SHAPE_COUNT * CASES_PER_SHAPE if shaped else CONTROL_CASES))
     return out

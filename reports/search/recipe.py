@@ -27,15 +27,26 @@ from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scales import length_scale
-from reports.search.parts import ANGLE, EVERY, FORCES, RATE, SHAPES, SINGULAR, Link, Recipe, Rim, ladder
+from reports.search.parts import (
+    ALL_KINDS,
+    ANGLE_UNIT,
+    FORCE_KINDS,
+    RATE_UNIT,
+    RIM_SHAPES,
+    SINGULAR_KINDS,
+    Recipe,
+    RecipeLink,
+    Rim,
+    ladder,
+)
 
 Array = NDArray[np.float64]
 Point = tuple[Decimal, Decimal]
 # Rows of which a combination is smaller than this, beside the largest, are left out: their forces, and what becomes of
 # the motion, depend on digits that no engine keeps.
-LEAST_RANK = 1e-3
-NEAREST = 1e-6  # the same where toggles are asked for
-NO_MOTION = 1e-12  # of the velocities wanted: what rounding leaves where joints allow no motion at all
+DEPENDENCE_LIMIT = 1e-3
+SINGULAR_LIMIT = 1e-6  # the same where toggles are asked for
+MOTION_ROUNDING = 1e-12  # of the velocities wanted: what rounding leaves where joints allow no motion at all
 
 
 def build(recipe: Recipe) -> Mechanism:
@@ -46,8 +57,8 @@ def build(recipe: Recipe) -> Mechanism:
     """
     standing = Standing(recipe)
     links = list(enumerate(recipe.links, start=1))
-    held = [standing.held(link, number) for number, link in links if link.kind not in FORCES]
-    return standing.mechanism(held, [(link, number) for number, link in links if link.kind in FORCES])
+    held = [standing.held(link, number) for number, link in links if link.kind not in FORCE_KINDS]
+    return standing.mechanism(held, [(link, number) for number, link in links if link.kind in FORCE_KINDS])
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,12 +85,12 @@ class Standing:
             size, weight = ladder(part.size) * self._length, ladder(part.mass) * mass
             x, y = place = _beside(self._places[part.parent], part.offset, size)
             inertia = weight * (ladder(part.gyration) * size) ** 2
-            pose = (float(x), float(y), float(part.angle * ANGLE))
+            pose = (float(x), float(y), float(part.angle * ANGLE_UNIT))
             self.bodies.append(Body(f"body {index}", float(weight), float(inertia), pose))
             self._places.append(place)
             self._sizes.append(size)
 
-    def _check(self, link: Link, number: int) -> None:
+    def _check(self, link: RecipeLink, number: int) -> None:
         """Raise InvalidMechanism for a link of bodies that are not there, or of an unknown kind."""
         count = len(self.bodies)
         if not (0 <= link.first <= count and 0 < link.second <= count and link.first != link.second):
@@ -87,18 +98,18 @@ class Standing:
                 f"recipe: joint {number} is between bodies {link.first} and {link.second}; the first must be from 0 "
                 f"to {count}, the second from 1, and they must differ"
             )
-        if link.kind not in (*EVERY, *SINGULAR) or (link.kind == "roll" and len(link.rims) != 2):
+        if link.kind not in (*ALL_KINDS, *SINGULAR_KINDS) or (link.kind == "roll" and len(link.rims) != 2):
             raise InvalidMechanism(
                 f"recipe: joint {number} is a {link.kind!r} of {len(link.rims)} rims; it must be one of "
-                f"{', '.join(EVERY)}, a roll with two rims"
+                f"{', '.join(ALL_KINDS)}, a roll with two rims"
             )
 
-    def _joint(self, link: Link, number: int) -> Joint:
+    def _joint(self, link: RecipeLink, number: int) -> Joint:
         """The joint of a link. Raises InvalidMechanism for one that can't be."""
         self._check(link, number)
         size, name, ends = self._sizes[link.second], f"{link.kind} {number}", self._ends(link)
         (first, second), (first_angle, second_angle) = self._points(link), self._angles(link)
-        direction, along = float(link.turn * ANGLE), float(link.more * size / 10)
+        direction, along = float(link.turn * ANGLE_UNIT), float(link.more * size / 10)
         match link.kind:
             case "pin":
                 return Pin(name, *ends, first, second)
@@ -109,7 +120,7 @@ class Standing:
             case "skate":
                 return Skate(name, *ends, second, direction - second_angle)
             case "drive":
-                return Drive(name, *ends, float(link.more * RATE / self._time), second_angle - first_angle)
+                return Drive(name, *ends, float(link.more * RATE_UNIT / self._time), second_angle - first_angle)
             case "roll":
                 ground, ground_arc = _touching(link.rims[0], size, first, direction - first_angle)
                 curve, arc = _touching(link.rims[1], size, second, direction + math.pi - second_angle)
@@ -126,13 +137,13 @@ class Standing:
             case "fold":
                 return self._fold(link, number)
             case "gear":
-                ratio = float(link.more * RATE)
+                ratio = float(link.more * RATE_UNIT)
                 return Gear(name, *ends, ratio, second_angle - ratio * first_angle)
             case "weld":
                 return Weld(name, *ends, first, second, second_angle - first_angle)
         raise InvalidMechanism(f"recipe: joint {number} is a {link.kind}, which has no construction here")
 
-    def _fold(self, link: Link, number: int) -> Rod:
+    def _fold(self, link: RecipeLink, number: int) -> Rod:
         """A rod beside the line through two pins of the ground."""
         pin, other = self._at(link), _beside(self._places[link.first], link.far, self._sizes[link.first])
         across, up = float(other[0] - pin[0]), float(other[1] - pin[1])
@@ -145,7 +156,7 @@ class Standing:
         length = math.hypot(across, up) * math.hypot(1 + beyond - further, miss)
         return Rod(f"{link.kind} {number}", *self._ends(link), one, two, length)
 
-    def _force(self, link: Link, number: int) -> ForceElement:
+    def _force(self, link: RecipeLink, number: int) -> ForceElement:
         """The force of a link. Raises InvalidMechanism for one that can't be.
 
         Its strength is counted in the second body's own mass, inertia and size, and in the unit of time.
@@ -162,33 +173,36 @@ class Standing:
             case "damper":
                 return Damper(name, *ends, self._far_point(link), second, strength * body.mass * rate)
             case "torsion-spring":
-                rest = second_angle - first_angle + float(link.rest * ANGLE)
+                rest = second_angle - first_angle + float(link.rest * ANGLE_UNIT)
                 return TorsionSpring(name, *ends, strength * body.inertia * rate**2, rest)
             case "torsion-damper":
                 return TorsionDamper(name, *ends, strength * body.inertia * rate)
             case "torque":
-                return Torque(name, *ends, float(link.more * RATE) * body.inertia * rate**2)
+                return Torque(name, *ends, float(link.more * RATE_UNIT) * body.inertia * rate**2)
             case "force":
-                pull, direction = float(link.more * RATE * size) * body.mass * rate**2, float(link.turn * ANGLE)
+                pull, direction = (
+                    float(link.more * RATE_UNIT * size) * body.mass * rate**2,
+                    float(link.turn * ANGLE_UNIT),
+                )
                 return Force(name, body.name, second, (pull * math.cos(direction), pull * math.sin(direction)))
         raise InvalidMechanism(f"recipe: force {number} is a {link.kind}, which has no construction here")
 
-    def _ends(self, link: Link) -> tuple[str | None, str]:
+    def _ends(self, link: RecipeLink) -> tuple[str | None, str]:
         return self.bodies[link.first - 1].name if link.first else None, self.bodies[link.second - 1].name
 
-    def _at(self, link: Link) -> Point:
+    def _at(self, link: RecipeLink) -> Point:
         return _beside(self._places[link.second], link.at, self._sizes[link.second])
 
-    def _points(self, link: Link) -> tuple[Vector, Vector]:
+    def _points(self, link: RecipeLink) -> tuple[Vector, Vector]:
         """The link's place in the frames of both bodies [m]."""
         at = self._at(link)
         return self._local(link.first, at), self._local(link.second, at)
 
-    def _far_point(self, link: Link) -> Vector:
+    def _far_point(self, link: RecipeLink) -> Vector:
         """The point [m] of the first body that lies `more` tenths along `turn` from the link's place."""
         x, y = self._local(link.first, self._at(link))
         along = float(link.more * self._sizes[link.second] / 10)
-        line = float(link.turn * ANGLE) - self._angles(link)[0]
+        line = float(link.turn * ANGLE_UNIT) - self._angles(link)[0]
         return x + along * math.cos(line), y + along * math.sin(line)
 
     def _moved(self, body: int, place: Point, x: float, y: float) -> Vector:
@@ -197,7 +211,7 @@ class Standing:
         more_x, more_y = components(-self._angle(body), x, y)
         return local_x + more_x, local_y + more_y
 
-    def _angles(self, link: Link) -> tuple[float, float]:
+    def _angles(self, link: RecipeLink) -> tuple[float, float]:
         return self._angle(link.first), self._angle(link.second)
 
     def _angle(self, body: int) -> float:
@@ -208,7 +222,7 @@ class Standing:
         x, y = (float(point[axis] - self._places[body][axis]) for axis in (0, 1))
         return tuple(components(-self._angle(body), x, y))
 
-    def held(self, link: Link, number: int) -> Held:
+    def held(self, link: RecipeLink, number: int) -> Held:
         """The joint of a link, `number` being the joint's own. Raises InvalidMechanism for one that can't be."""
         joint = self._joint(link, number)
         poses = [np.array(self.bodies[body - 1].pose) if body else np.zeros(3) for body in (link.first, link.second)]
@@ -220,7 +234,7 @@ class Standing:
                 rows[:, 3 * body - 3 : 3 * body] += part
         return Held(joint, rows)
 
-    def mechanism(self, held: Sequence[Held], forces: Sequence[tuple[Link, int]] = ()) -> Mechanism:
+    def mechanism(self, held: Sequence[Held], forces: Sequence[tuple[RecipeLink, int]] = ()) -> Mechanism:
         """The mechanism with these joints and forces, moving as the joints allow."""
         joints = tuple(each.joint for each in held)
         twists = self.allowed(held).tolist()
@@ -236,7 +250,7 @@ class Standing:
         scaled, norm, _ = self._scaled(held)
         if not np.all(norm > 0) or len(norm) > scaled.shape[1]:
             return False
-        least = NEAREST if any(each.joint.name.startswith(SINGULAR) for each in held) else LEAST_RANK
+        least = SINGULAR_LIMIT if any(each.joint.name.startswith(SINGULAR_KINDS) for each in held) else DEPENDENCE_LIMIT
         return dependence(scaled) >= least
 
     def _scaled(self, held: Sequence[Held]) -> tuple[Array, Array, Array]:
@@ -247,7 +261,7 @@ class Standing:
 
     def allowed(self, held: Sequence[Held]) -> Array:
         """The velocities (bodies, 3) nearest to those of the recipe with which every joint holds."""
-        wanted = np.array([part.velocity for part in self._recipe.parts], dtype=float) * float(RATE / self._time)
+        wanted = np.array([part.velocity for part in self._recipe.parts], dtype=float) * float(RATE_UNIT / self._time)
         wanted[:, :2] *= float(self._length)
         if not self.independent(held):
             raise InvalidMechanism("recipe: the joints' rows are nearly dependent, or one holds nothing; leave one out")
@@ -259,7 +273,7 @@ class Standing:
         twist = wanted.reshape(-1) * turn
         for _ in range(2):  # the second time for the rounding of the first
             twist = twist - inverse @ ((scaled @ twist - rate) / norm[:, 0])
-        if np.abs(twist).max() <= NO_MOTION * np.abs(wanted.reshape(-1) * turn).max():
+        if np.abs(twist).max() <= MOTION_ROUNDING * np.abs(wanted.reshape(-1) * turn).max():
             twist = np.zeros_like(twist)
         return (twist / turn).reshape(-1, 3)
 
@@ -294,8 +308,8 @@ def _touching(rim: Rim, unit: Decimal, point: Vector, tangent: float) -> tuple[C
             return (Circle if sense > 0 else Ring)(size, centre), sense * size * polar
         case "ellipse":
             curve = Ellipse(size, float(ladder(rim.size) * ladder(rim.ratio) * unit))
-            parameter = np.asarray(float(rim.place * ANGLE))
+            parameter = np.asarray(float(rim.place * ANGLE_UNIT))
             turn = tangent - float(curve.angle_of(parameter))
             x, y = (point - rotated(np.asarray(turn), curve.point_of(parameter))).tolist()
             return Placed(curve, (x, y), turn), float(curve.arc_of(parameter))
-    raise InvalidMechanism(f"recipe: a rim is a {rim.shape!r}; it must be one of {', '.join(SHAPES)}")
+    raise InvalidMechanism(f"recipe: a rim is a {rim.shape!r}; it must be one of {', '.join(RIM_SHAPES)}")

@@ -17,7 +17,17 @@ from reference.joints import Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
-from reports.search.law import MARGIN, STEP, STEPS, Errors, Fault, Skip, difference, nudges, turned_in_a_step
+from reports.search.law import (
+    INSTANT_STEP,
+    INSTANT_STEPS,
+    NOISE_MARGIN,
+    CheckSkipped,
+    Errors,
+    Fault,
+    difference,
+    iter_nudged,
+    turned_in_a_step,
+)
 from reports.search.parts import Recipe
 from reports.search.recipe import build
 
@@ -26,12 +36,12 @@ State = tuple[Array, Array]  # pose and twist (bodies, 3) after the last step, i
 
 # Rounding alone differs. A method that combines runs carries up to a hundred times as much of it, one that hardens its
 # constraints gives away half of the digits.
-SAME = 1e-7
-ROUGHLY = 1e4  # roundings of an engine of lower precision: of what moves, places keep few
-ROUNDED = 1e-6  # of a place: beside a motion that is smaller, its rounding is seen
-USELESS = 0.1  # of the motion: a noise that is as large leaves nothing to be seen
-ESTIMATED = 10.0  # times its own estimate an error may be
-TOO_LONG = Skip("steps are too long for what turns, so that rounding grows at will")
+DESCRIPTION_TOLERANCE = 1e-7
+LOW_PRECISION_ROUNDINGS = 1e4  # roundings of an engine of lower precision: of what moves, places keep few
+POSITION_ROUNDING = 1e-6  # of a place: beside a motion that is smaller, its rounding is seen
+MAX_NOISE = 0.1  # of the motion: a noise that is as large leaves nothing to be seen
+ESTIMATE_MARGIN = 10.0  # times its own estimate an error may be
+TOO_LONG = CheckSkipped("steps are too long for what turns, so that rounding grows at will")
 
 CHANGES: dict[str, Change] = {
     "turned": Isometry(turn=0.7),
@@ -41,45 +51,47 @@ CHANGES: dict[str, Change] = {
     "swapped": joints_swapped,
 }
 # Decades of length and of mass: in another unit the same mechanism has other numbers.
-UNITS = {"in other lengths": (-3, 0), "in other masses": (0, 2)}
-NAMES = (*CHANGES, *UNITS)
+UNIT_CHANGES = {"in other lengths": (-3, 0), "in other masses": (0, 2)}
+RELATIONS = (*CHANGES, *UNIT_CHANGES)
 
 
-def errors(engine: Engine, recipe: Recipe, number: int) -> Errors | Skip:
+def relation_errors(engine: Engine, recipe: Recipe, number: int) -> Errors | CheckSkipped:
     """By what the poses and velocities of two descriptions differ, relative to the motion."""
     mechanism = build(recipe)
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
-        return Skip("whether two shapes that just touch do touch depends on rounding")
-    if _turns(mechanism, mechanism.pose, mechanism.twist):
+        return CheckSkipped("whether two shapes that just touch do touch depends on rounding")
+    if _turns_too_far(mechanism, mechanism.pose, mechanism.twist):
         return TOO_LONG
-    name = NAMES[number % len(NAMES)]
-    if name in UNITS and engine.variant == "default":  # an impedance grows over a millimetre, a slop is a decimetre
-        return Skip("settings as shipped have lengths in them")
-    described = described_otherwise(recipe, mechanism, name)
-    if isinstance(described, Skip):
+    name = RELATIONS[number % len(RELATIONS)]
+    if (
+        name in UNIT_CHANGES and engine.variant == "default"
+    ):  # an impedance grows over a millimetre, a slop is a decimetre
+        return CheckSkipped("settings as shipped have lengths in them")
+    described = describe_otherwise(recipe, mechanism, name)
+    if isinstance(described, CheckSkipped):
         return described
     changed, back = described
-    found = _compared(engine, mechanism, changed, back, engine.stricter(mechanism))
-    return found if isinstance(found, Skip) else {name: found}
+    found = _compare_runs(engine, mechanism, changed, back, engine.stricter(mechanism))
+    return found if isinstance(found, CheckSkipped) else {name: found}
 
 
-def described_otherwise(
+def describe_otherwise(
     recipe: Recipe, mechanism: Mechanism, name: str
-) -> tuple[Mechanism, Callable[[Trajectory], State]] | Skip:
+) -> tuple[Mechanism, Callable[[Trajectory], State]] | CheckSkipped:
     """The mechanism in the description of this name, and what tells its last state in the first description."""
-    if name in UNITS:
-        longer, heavier = UNITS[name]
+    if name in UNIT_CHANGES:
+        longer, heavier = UNIT_CHANGES[name]
         of_length, of_mass, of_time = recipe.decades
         other, length = build(replace(recipe, decades=(of_length + longer, of_mass + heavier, of_time))), 10.0**longer
         unit = np.array([length, length, 1.0])
         begins = difference(mechanism, other.twist / unit, mechanism.twist)
-        if max(begins, abs(other.length_scale / (length * mechanism.length_scale) - 1)) > SAME:
-            return Skip("no joint has an arm: a metre stands for the mechanism's length, whatever the unit")
+        if max(begins, abs(other.length_scale / (length * mechanism.length_scale) - 1)) > DESCRIPTION_TOLERANCE:
+            return CheckSkipped("no joint has an arm: a metre stands for the mechanism's length, whatever the unit")
         return other, lambda run: (run.pose[-1] / unit, run.twist[-1] / unit)
     try:
         changed, back = CHANGES[name](mechanism)
     except ValueError as reason:
-        return Skip(str(reason))
+        return CheckSkipped(str(reason))
 
     def last(run: Trajectory) -> State:
         pose, twist, _ = back(run)
@@ -88,31 +100,31 @@ def described_otherwise(
     return changed, last
 
 
-def _compared(
+def _compare_runs(
     engine: Engine,
     mechanism: Mechanism,
     changed: Mechanism,
     back: Callable[[Trajectory], State],
     stricter: Engine | None = None,
-) -> tuple[float, float] | Skip:
+) -> tuple[float, float] | CheckSkipped:
     """(error, what it may be): see `law` for the noise that is let pass."""
 
     def run(described: Mechanism) -> Trajectory:
-        return engine.build(described, STEP * described.time_scale)(1, STEPS)
+        return engine.build(described, INSTANT_STEP * described.time_scale)(1, INSTANT_STEPS)
 
     first, second = run(mechanism), run(changed)
     if any(each.unresolved_at is not None and np.isfinite(each.pose).all() for each in (first, second)):
-        return Skip("it says itself that it is unresolved in one of the descriptions")
-    away, duration = float(np.abs(changed.pose[:, :2]).max()), STEPS * STEP * mechanism.time_scale
-    floor = max(SAME, ROUGHLY * engine.precision)
+        return CheckSkipped("it says itself that it is unresolved in one of the descriptions")
+    away, duration = float(np.abs(changed.pose[:, :2]).max()), INSTANT_STEPS * INSTANT_STEP * mechanism.time_scale
+    floor = max(DESCRIPTION_TOLERANCE, LOW_PRECISION_ROUNDINGS * engine.precision)
 
     def apart(state: State, other: State, of: Mechanism) -> float:
         # A shift costs digits of a place, those of its distance; a velocity those of a place divided by a step.
-        least = ROUNDED * max(away, float(np.abs(of.pose[:, :2]).max()))
+        least = POSITION_ROUNDING * max(away, float(np.abs(of.pose[:, :2]).max()))
         if any(isinstance(joint, Weld) for joint in of.joints):  # whose angle is measured, and closed as a gap
-            least += MARGIN * engine.angle_error * of.length_scale / floor
+            least += NOISE_MARGIN * engine.angle_error * of.length_scale / floor
         far = np.array([[least, 0.0, 0.0]])
-        moved, speed = other[0] - of.pose, far * STEPS / duration
+        moved, speed = other[0] - of.pose, far * INSTANT_STEPS / duration
         return max(
             difference(of, state[0] - of.pose, moved, (of.twist * duration, 1e-6 * of.pose, far)),
             difference(of, state[1], other[1], (of.twist, speed)),
@@ -123,33 +135,33 @@ def _compared(
     if error <= floor:
         return error, floor
     if stricter is not None:  # its solver leaves another part in each description
-        return _compared(stricter, mechanism, changed, back)
+        return _compare_runs(stricter, mechanism, changed, back)
     if first.warnings or second.warnings:
-        return Skip("descriptions differ, and it says itself that something is wrong")
+        return CheckSkipped("descriptions differ, and it says itself that something is wrong")
     if not np.isfinite(state[0]).all():
         if engine.variant == "default":
-            return Skip("settings as shipped lose the motion in either description")
-        raise Fault(f"it was lost within {STEPS} steps, and says nothing")
-    if _turns(mechanism, *state):
+            return CheckSkipped("settings as shipped lose the motion in either description")
+        raise Fault(f"it was lost within {INSTANT_STEPS} steps, and says nothing")
+    if _turns_too_far(mechanism, *state):
         return TOO_LONG
     if first.estimate is not None:  # what rounding makes of a motion has to be in it
         size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
         claimed = float((first.estimate / size).max())
         missed = [float(np.abs((a - b) / size).max()) for a, b in zip(other, state, strict=True)]
-        if not missed[0] <= max(CLAIM, ESTIMATED * claimed):
+        if not missed[0] <= max(CLAIM, ESTIMATE_MARGIN * claimed):
             return error, floor
         if max(missed[0], missed[1] * duration) <= claimed:
-            return Skip("descriptions differ by less than what it says itself that it misses")
+            return CheckSkipped("descriptions differ by less than what it says itself that it misses")
     noise = 0.0
     for of, plain in ((mechanism, first), (changed, second)):
         here = plain.pose[-1], plain.twist[-1]
-        for nudged, undo in nudges(of, away):
+        for nudged, undo in iter_nudged(of, away):
             pose, twist, _ = undo(run(nudged))
             noise = max(noise, apart((pose[-1], twist[-1]), here, of))
-    if MARGIN * noise > USELESS:
-        return Skip("rounding, or what its solver leaves, changes the motion by more than a hundredth")
-    return error, max(floor, MARGIN * noise)
+    if NOISE_MARGIN * noise > MAX_NOISE:
+        return CheckSkipped("rounding, or what its solver leaves, changes the motion by more than a hundredth")
+    return error, max(floor, NOISE_MARGIN * noise)
 
 
-def _turns(mechanism: Mechanism, pose: Array, twist: Array) -> bool:
-    return turned_in_a_step(mechanism, STEP * mechanism.time_scale, pose, twist) > 1
+def _turns_too_far(mechanism: Mechanism, pose: Array, twist: Array) -> bool:
+    return turned_in_a_step(mechanism, INSTANT_STEP * mechanism.time_scale, pose, twist) > 1

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from reports.run.installed import environment, installed
 from reports.search.law import Fault
-from reports.search.mujoco_alone import Law, Model, judged, xml
-from reports.search.parts import as_text, from_text
+from reports.search.mujoco_alone import RawModel, StartEquations, start_equations, to_mjcf
+from reports.search.parts import case_from_json, case_to_json
 
 DISTRIBUTIONS = ("mujoco-core", "mujoco")  # the first is a part of the second from 4.0 on
 ROOT = Path(__file__).resolve().parents[2]
@@ -29,7 +29,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CURVED, BESIDE = "acceleration, a known fault", "beside the known fault"
 
 
-def answer(model: Model, version: str = "") -> dict[str, Any]:
+def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
     """Relative errors by check, accelerations that are "found" and "expected", and the "version".
 
     Where the velocity term of a curved equality makes a difference, BESIDE is the error beside the nearer of the law
@@ -37,10 +37,10 @@ def answer(model: Model, version: str = "") -> dict[str, Any]:
     raises or ends its process.
     """
     if version:
-        return _other(version, as_text(model))
+        return _check_in_other_release(version, case_to_json(model))
     import mujoco  # of this process
 
-    law = judged(model)
+    law = start_equations(model)
     give, found = _give_and_found(model, law)
 
     def error(expected: NDArray[np.float64]) -> float:
@@ -63,13 +63,13 @@ def answer(model: Model, version: str = "") -> dict[str, Any]:
     }
 
 
-def _give_and_found(model: Model, law: Law) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _give_and_found(model: RawModel, law: StartEquations) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """How the law's rows give way (rows, rows), as MuJoCo declares, and its accelerations (coordinates,)."""
     import mujoco
 
     from engines.mujoco.declared import jacobian
 
-    compiled = mujoco.MjModel.from_xml_string(xml(model))
+    compiled = mujoco.MjModel.from_xml_string(to_mjcf(model))
     data = mujoco.MjData(compiled)
     data.qvel[:] = law.rates
     mujoco.mj_forward(compiled, data)
@@ -99,7 +99,7 @@ def process_of(version: str) -> subprocess.Popen[str]:
     )
 
 
-def _other(version: str, model: str) -> dict[str, Any]:
+def _check_in_other_release(version: str, model: str) -> dict[str, Any]:
     process = process_of(version)
     assert process.stdin is not None
     assert process.stdout is not None
@@ -128,7 +128,7 @@ def main() -> None:
     """Answer each model of the standard input."""
     for line in sys.stdin:
         try:
-            told = answer(from_text(line, Model))
+            told = check_accelerations(case_from_json(line, RawModel))
         except Exception as error:
             told = {"raised": f"{type(error).__name__}: {error}"}
         print(json.dumps(told), flush=True)

@@ -15,17 +15,25 @@ from reports.run.cluster import Workforce, pool
 from reports.run.running import missing, run_into
 from reports.run.store import Store
 from reports.search import plan
-from reports.search.chunk import CaseResult, Chunk, case_results, chunk_to_json, chunks, lost, stored
+from reports.search.chunk import (
+    CaseResult,
+    Chunk,
+    chunk_to_json,
+    iter_case_results,
+    make_chunks,
+    stored_answers,
+    unfinished_cases,
+)
 from reports.search.oracles import DEFAULT_ORACLES
-from reports.search.planted import controls
-from reports.search.shrinking import Shrink, worst_of
+from reports.search.planted import all_controls
+from reports.search.shrinking import Shrink, choose_worst
 from reports.search.subjects import Subject
 
 STORE = "cells.sqlite"
-LIMIT = 120.0  # CPU seconds of one piece
-CONTROL = 1800.0  # of a planted fault: 300 cases of each size
-WAVE = 4  # pieces for each worker between two looks at the clock
-CASES = 200
+CHUNK_LIMIT = 120.0  # CPU seconds of one piece
+CONTROL_LIMIT = 1800.0  # of a planted fault: 300 cases of each size
+WAVE_CHUNKS = 4  # pieces for each worker between two looks at the clock
+DEFAULT_CASES = 200
 
 # (store, items, limit, words, size of an item) -> the items that are to be run, done(answer, count), watch
 Progress = Callable[..., AbstractContextManager[tuple[Sequence[Any], Callable[..., None], Any]]]
@@ -42,7 +50,7 @@ def quietly(
 def run_search(
     folder: Path,
     subjects: Sequence[Subject],
-    cases: int = CASES,
+    cases: int = DEFAULT_CASES,
     seed: int | None = None,
     kinds: Sequence[str] = (),
     decades: int = 0,
@@ -55,7 +63,7 @@ def run_search(
     `seed`: that of the last commit if None; `kinds`: all of a subject if empty; `seconds`: begin nothing after these.
     """
     kinds = kinds or tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
-    pieces = chunks(subjects, plan.seeds()[0] if seed is None else seed, cases, kinds, decades, oracles)
+    pieces = make_chunks(subjects, plan.published_seeds()[0] if seed is None else seed, cases, kinds, decades, oracles)
     with Store(folder / STORE) as store:
         search = Search(store, pool(workers), seconds)
         results = search.run([pieces])
@@ -93,25 +101,25 @@ class Search:
             self.store.remember(chunk_to_json(piece) for piece in batch)
             self._run_batch(batch)
             pieces += batch
-        return list(case_results(stored(self.store, pieces)))
+        return list(iter_case_results(stored_answers(self.store, pieces)))
 
     def _run_batch(self, batch: Sequence[Chunk]) -> None:
         """A case that ends its process is found and kept.
 
         All at once where there is time for all: between two waves workers wait for the last of the first.
         """
-        progress = self.progress(self.store, batch, LIMIT, "pieces", size=lambda piece: piece.count)
+        progress = self.progress(self.store, batch, CHUNK_LIMIT, "pieces", size=lambda piece: piece.count)
         with progress as (waiting, done, watch):
-            size = len(waiting) if self.seconds is None else WAVE * self.crew.threads
+            size = len(waiting) if self.seconds is None else WAVE_CHUNKS * self.crew.threads
 
             def count(answer: Answer, single: int = 0) -> None:
                 done(answer, self._count(answer, single))
 
             while waiting and not self.over:
                 wave, waiting = waiting[:size], waiting[size:]
-                self._into(wave, LIMIT, count, watch)
-                singles = missing(lost(stored(self.store, wave)), self.store, LIMIT)
-                self._into(singles, LIMIT, lambda answer: count(answer, 1), watch)
+                self._into(wave, CHUNK_LIMIT, count, watch)
+                singles = missing(unfinished_cases(stored_answers(self.store, wave)), self.store, CHUNK_LIMIT)
+                self._into(singles, CHUNK_LIMIT, lambda answer: count(answer, 1), watch)
 
     def _into(self, items: Sequence[Any], limit: float, done: Callable[..., None], watch: Any) -> None:
         run_into(self.store, items, False, limit, self.crew.threads, done, watch, supervised=self.crew.supervise)
@@ -134,19 +142,19 @@ class Search:
 
     def run_controls(self) -> None:
         """Find how soon planted faults are found; those that are stored are not run again."""
-        with self.progress(self.store, controls(), CONTROL, "planted faults") as (waiting, done, watch):
-            self._into(waiting, CONTROL, done, watch)
+        with self.progress(self.store, all_controls(), CONTROL_LIMIT, "planted faults") as (waiting, done, watch):
+            self._into(waiting, CONTROL_LIMIT, done, watch)
 
     def shrink(self, results: Iterable[CaseResult]) -> Mapping[Shrink, Answer]:
         """Make some findings of each check smaller, for as long again as was searched."""
-        tasks = [Shrink.of(check, case) for check, case in worst_of(results)]
+        tasks = [Shrink.of(check, case) for check, case in choose_worst(results)]
         if not tasks:
             return {}
         begin = monotonic()
-        with self.progress(self.store, tasks, LIMIT, "findings") as (waiting, done, watch):
+        with self.progress(self.store, tasks, CHUNK_LIMIT, "findings") as (waiting, done, watch):
             size = len(waiting) if self.seconds is None else self.crew.threads
             while waiting and (self.seconds is None or monotonic() - begin < self.seconds):
                 wave, waiting = waiting[:size], waiting[size:]
-                self._into(wave, LIMIT, done, watch)
+                self._into(wave, CHUNK_LIMIT, done, watch)
         answers = self.store.answers(tasks)
         return {task: answers[task] for task in tasks if task in answers}

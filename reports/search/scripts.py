@@ -22,32 +22,33 @@ from engines.pymunk.written_script import object_lines
 from reference.forces import Force, Torque
 from reference.mechanism import Mechanism
 from reports.search import motions, mujoco_alone, relations
-from reports.search.law import STEP, STEPS, Skip
+from reports.search.law import INSTANT_STEP, INSTANT_STEPS, CheckSkipped
 from reports.search.parts import Recipe
 from reports.search.recipe import build
-from reports.search.release import answer
+from reports.search.release import check_accelerations
 from reports.search.subjects import Alone, Subject
 
 # What a script imports, by the engine's name, with a function for the poses of bodies.
-BODIES = """
+POSES_FUNCTION = """
 
 def poses(model, data, start):
     bodies = [model.body(f"body {number}").id for number, _ in enumerate(start, 1)]
     turned = [math.atan2(data.xmat[body][3], data.xmat[body][0]) for body in bodies]
     return [(*data.xipos[body][:2], angle + turn) for body, angle, turn in zip(bodies, start, turned)]"""
-IMPORTS = {
+SCRIPT_IMPORTS = {
     "pymunk": "import pymunk",
-    "mujoco": f"import mujoco{BODIES}",
-    "mjx": f"import jax\nimport mujoco\nfrom mujoco import mjx\n\njax.config.update('jax_enable_x64', True){BODIES}",
+    "mujoco": f"import mujoco{POSES_FUNCTION}",
+    "mjx": "import jax\nimport mujoco\nfrom mujoco import mjx\n\njax.config.update('jax_enable_x64', True)"
+    + POSES_FUNCTION,
 }
-TURNING = """
+UNWRAP_LINES = """
     if apart.ndim == 2:  # an angle may be given without its whole turns
         apart[:, 2] = np.remainder(apart[:, 2] + np.pi, 2 * np.pi) - np.pi"""
-IDEAL = """what an independent calculation with exact constraints gives. A method of some order comes nearer with
+IDEAL_LAW = """what an independent calculation with exact constraints gives. A method of some order comes nearer with
 smaller steps"""
-DECLARED = """that of M a = f + J^T F and J a + R F = aref - J' v, by an independent calculation: R and aref are
+DECLARED_LAW = """that of M a = f + J^T F and J a + R F = aref - J' v, by an independent calculation: R and aref are
 MuJoCo's own (efc_R, efc_KBIP), and J' v is the term of the velocities"""
-IMPULSES = "the nearest, in the metric of the masses, that joints allow in the pose after the step's drift"
+IMPULSE_LAW = "the nearest, in the metric of the masses, that joints allow in the pose after the step's drift"
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +65,7 @@ class Block:
         return f"def run_{number}():\n    {body}\n    return {self.read}\n"
 
 
-def script(subject: Subject, case: Any, check: str, number: int) -> str:
+def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
     """The script; empty where none can be written: for other engines, and where our own code steps with the engine.
 
     `number` is the case's own, by which one of the relations was asked.
@@ -73,7 +74,7 @@ def script(subject: Subject, case: Any, check: str, number: int) -> str:
         return _of_mujoco_alone(case, subject.release)
     mechanism = build(case)
     engine: Any = subject.engine.stepped(mechanism)
-    if engine.name not in IMPORTS:
+    if engine.name not in SCRIPT_IMPORTS:
         return ""
     try:
         if check == "velocity":
@@ -83,17 +84,17 @@ def script(subject: Subject, case: Any, check: str, number: int) -> str:
         blocks = [_motion(engine, *run) for run in _runs(case, mechanism, check, number)]
     except Unsupported:
         return ""
-    return _written(engine, blocks, IDEAL, TURNING)
+    return _render_script(engine, blocks, IDEAL_LAW, UNWRAP_LINES)
 
 
 def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list[tuple[str, Mechanism, float, int]]:
     """(title, mechanism, step [s], steps): two descriptions for a relation, else two steps."""
-    name = relations.NAMES[number % len(relations.NAMES)]
-    if check in (*relations.NAMES, "relations"):
-        changed = relations.described_otherwise(recipe, mechanism, name)
-        both = [("as it is", mechanism)] + ([] if isinstance(changed, Skip) else [(name, changed[0])])
-        return [(title, each, STEP * each.time_scale, STEPS) for title, each in both]
-    steps = motions.SAMPLES * motions.COARSE
+    name = relations.RELATIONS[number % len(relations.RELATIONS)]
+    if check in (*relations.RELATIONS, "relations"):
+        changed = relations.describe_otherwise(recipe, mechanism, name)
+        both = [("as it is", mechanism)] + ([] if isinstance(changed, CheckSkipped) else [(name, changed[0])])
+        return [(title, each, INSTANT_STEP * each.time_scale, INSTANT_STEPS) for title, each in both]
+    steps = motions.MOTION_SAMPLES * motions.COARSE_STEPS
     dt = motions.SPAN * mechanism.time_scale / steps
     return [("at this step", mechanism, dt, steps), ("at half of it", mechanism, dt / 2, 2 * steps)]
 
@@ -115,14 +116,14 @@ def _motion(engine: Any, title: str, mechanism: Mechanism, dt: float, steps: int
 
 def _of_velocities(engine: Any, mechanism: Mechanism) -> str:
     """pymunk's objects before one step, the step, and the velocities that its joints ask for."""
-    dt = STEP * mechanism.time_scale
+    dt = INSTANT_STEP * mechanism.time_scale
     model = engine.model(mechanism, dt)
     for aim in model.aims:
         aim(dt / model.unit)
     expected = first_law(engine, mechanism, dt) * model.unit
     lines = [*_pymunk_lines(model, MOST_SWEEPS), f"space.step({dt / model.unit!r})"]
     read = f"[(*body.velocity, body.angular_velocity) for body in ({_bodies(model)},)]"
-    return _written(engine, [Block("velocities after a step", lines, read, expected)], IMPULSES)
+    return _render_script(engine, [Block("velocities after a step", lines, read, expected)], IMPULSE_LAW)
 
 
 def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
@@ -132,14 +133,14 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
     by_mjx = engine.name == "mjx"
     method = engine.settings if by_mjx else engine
     method = replace(method, tolerance=min(method.tolerance, ROUNDING_TOLERANCE), estimates=False)
-    dt, term = STEP * mechanism.time_scale, check != NO_VELOCITY_TERMS
+    dt, term = INSTANT_STEP * mechanism.time_scale, check != NO_VELOCITY_TERMS
     text, model = method.text(mechanism, dt), method.model(mechanism, dt, unit=1.0)
     run = method.build(mechanism, dt)
-    finite = np.isfinite(run(1, STEPS).pose).all()
+    finite = np.isfinite(run(1, INSTANT_STEPS).pose).all()
     answer = "jax.jit(mjx.forward)(mjx.put_model(model), mjx.put_data(model, data))" if by_mjx else "data"
     read = f"np.array({answer}.qacc)[{model.address!r}]"
     begin, blocks = [*_model_lines(text), "mujoco.mj_resetDataKeyframe(model, data, 0)"], []
-    states = {"at the start": model.start()} | ({f"{STEPS} steps later": run.data} if finite else {})
+    states = {"at the start": model.start()} | ({f"{INSTANT_STEPS} steps later": run.data} if finite else {})
     for title, state in states.items():
         data = model.start()
         data.time, data.qpos[:], data.qvel[:] = state.time, state.qpos, state.qvel
@@ -148,20 +149,22 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
         numbers = f"{data.time!r}, {data.qpos.tolist()!r}, {data.qvel.tolist()!r}"
         lines = [f"data.time, data.qpos[:], data.qvel[:] = {numbers}", "mujoco.mj_forward(model, data)"]
         blocks.append(Block(f"accelerations {title}", [*begin, *lines], read, expected))
-    return _written(engine, blocks, DECLARED if term else f"{DECLARED},\nhere left out for loops and rods, as MJX does")
+    return _render_script(
+        engine, blocks, DECLARED_LAW if term else f"{DECLARED_LAW},\nhere left out for loops and rods, as MJX does"
+    )
 
 
-def _of_mujoco_alone(model: mujoco_alone.Model, other: str) -> str:
+def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
     """One call of mj_forward, and the accelerations that the constraints ask for; `other`: another release."""
-    rates, told = mujoco_alone.judged(model).rates, answer(model, other)
+    rates, told = mujoco_alone.start_equations(model).rates, check_accelerations(model, other)
     names = ", ".join(f"b{body} {what}" for body, what in mujoco_alone.coordinates(model))
     lines = [f"data.qvel[:] = {rates.tolist()!r}", "mujoco.mj_forward(model, data)"]
     title = f"accelerations of {names}; expected with the R of MuJoCo {told['version']}"
-    block = Block(title, [*_model_lines(mujoco_alone.xml(model)), *lines], "data.qacc", told["expected"])
-    return _written(None, [block], DECLARED)
+    block = Block(title, [*_model_lines(mujoco_alone.to_mjcf(model)), *lines], "data.qacc", told["expected"])
+    return _render_script(None, [block], DECLARED_LAW)
 
 
-def _written(engine: Engine | None, blocks: Sequence[Block], law: str, turning: str = "") -> str:
+def _render_script(engine: Engine | None, blocks: Sequence[Block], law: str, turning: str = "") -> str:
     """The script of these blocks; no engine: MuJoCo alone. `turning`: what is done with differences of angles."""
     runs = "\n\n".join(block.function(number) for number, block in enumerate(blocks))
     rows = "\n".join(
@@ -181,7 +184,7 @@ import math
 from importlib.metadata import version
 
 import numpy as np
-{IMPORTS[name]}
+{SCRIPT_IMPORTS[name]}
 
 {runs}
 

@@ -14,12 +14,12 @@ from reference.checks import InvalidMechanism
 from reports.model.tasks import Answer, Task, Values
 from reports.search.chunk import CaseResult, Chunk
 from reports.search.oracles import ORACLES
-from reports.search.parts import Case, as_text, from_text
-from reports.search.scripts import script
-from reports.search.subjects import Result, Subject
+from reports.search.parts import Case, case_from_json, case_to_json
+from reports.search.scripts import write_script
+from reports.search.subjects import OracleResult, Subject
 
 
-def shrunk(case: Case, still: Callable[[Case], bool], seconds: float) -> Case:
+def shrink_case(case: Case, still: Callable[[Case], bool], seconds: float) -> Case:
     """The smallest case found within so many seconds of CPU time; `still` says whether a smaller one is as wrong."""
     end = time.process_time() + seconds
     tried: set[Case] = {case}
@@ -64,14 +64,14 @@ def _without_part(case: Any, removed: int) -> Any:
 
 
 # Which bodies are joined is no number that is small or large.
-NAMES = {"parent", "first", "second", "kind", "shape"}
+IDENTITY_FIELDS = {"parent", "first", "second", "kind", "shape"}
 
 
 def _with_smaller_numbers(value: Any) -> Iterator[Any]:
     """The same with one number, or all of a tuple, nearer to zero."""
     if is_dataclass(value) and not isinstance(value, type):
         for field in fields(value):
-            if field.name not in NAMES:
+            if field.name not in IDENTITY_FIELDS:
                 for smaller in _with_smaller_numbers(getattr(value, field.name)):
                     yield replace(value, **{field.name: smaller})
     elif isinstance(value, tuple):
@@ -88,10 +88,10 @@ def _with_smaller_numbers(value: Any) -> Iterator[Any]:
         yield from dict.fromkeys([0, step, int(value / 2), value - step])
 
 
-SECONDS = 20.0  # of CPU time for one finding
+SHRINK_TIME = 20.0  # of CPU time for one finding
 # Of the error that was found: what is left of it in a smaller case. Of less, it may be another fault, or a trifle.
-KEPT = 0.01
-MOST = 2  # findings of one check of a subject that are made smaller
+KEPT_SHARE = 0.01
+FINDINGS_SHRUNK = 2  # findings of one check of a subject that are made smaller
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,9 @@ class Shrink(Task):
 
     @property
     def cost(self) -> float:
-        return SECONDS + (self.engine.build_time if self.engine else 0.0)  # few shapes of a compiled engine are tried
+        return SHRINK_TIME + (
+            self.engine.build_time if self.engine else 0.0
+        )  # few shapes of a compiled engine are tried
 
     @property
     def label(self) -> str:
@@ -125,12 +127,12 @@ class Shrink(Task):
         return self.chunk.engine
 
     def run(self) -> Values:
-        """The smallest case, in a line and as JSON (`replayed` reads it), and a script of it."""
+        """The smallest case, in a line and as JSON (`replay_finding` reads it), and a script of it."""
         subject, number = self.subject, self.chunk.first
         case = self.chunk.draw(number)
         oracles = self._oracle(case)
         whole = subject.ask(case, number, oracles)
-        why, least = _kind_of(whole), KEPT * whole.errors[self.check][0]
+        why, least = _kind_of(whole), KEPT_SHARE * whole.errors[self.check][0]
 
         def still(smaller: Any) -> bool:
             try:
@@ -139,7 +141,7 @@ class Shrink(Task):
                 return False
             return self.check in result.faults and result.errors[self.check][0] >= least and _kind_of(result) == why
 
-        small = shrunk(case, still, self.cost)
+        small = shrink_case(case, still, self.cost)
         result = subject.ask(small, number, oracles)
         error, bound = result.errors[self.check]
         finite = error < float("inf")
@@ -152,13 +154,13 @@ class Shrink(Task):
             "error": error if finite else None,
             "bound": bound,
             "words": result.words,
-            "case": json.loads(as_text(small)),
+            "case": json.loads(case_to_json(small)),
         }
         line = f"{' '.join(small.kinds)}: {f'{error:.1e}' if finite else 'lost'}"
         return {
             "line": f"{line}{'; ' + result.words if result.words else ''}",
             "finding": json.dumps(finding, indent=1),
-            "script": script(subject, small, self.check, number),
+            "script": write_script(subject, small, self.check, number),
         }
 
     def _oracle(self, case: Any) -> tuple[str, ...]:
@@ -169,12 +171,12 @@ class Shrink(Task):
         return self.chunk.oracles
 
 
-def _kind_of(result: Result) -> str:
+def _kind_of(result: OracleResult) -> str:
     """What a fault without a number is, its own numbers and names left out: another one is no smaller example."""
     return re.sub(r"'[^']*'|[0-9.e+-]+", "", result.words)
 
 
-def worst_of(cases: Iterable[CaseResult], most: int = MOST) -> list[tuple[str, CaseResult]]:
+def choose_worst(cases: Iterable[CaseResult], most: int = FINDINGS_SHRUNK) -> list[tuple[str, CaseResult]]:
     """(check, case): of each check of each subject those with fewest kinds of joints, at most so many; one of a set."""
     found: dict[tuple[str, str], dict[tuple[str, ...], CaseResult]] = {}
     for case in cases:
@@ -203,7 +205,7 @@ def files_of(task: Shrink, answer: Answer) -> dict[str, str]:
     return files
 
 
-def replayed(finding: dict[str, Any], subject: Subject) -> Result:
+def replay_finding(finding: dict[str, Any], subject: Subject) -> OracleResult:
     """The present result of a finding that was written before."""
-    case: Any = from_text(json.dumps(finding["case"]), subject.case)
+    case: Any = case_from_json(json.dumps(finding["case"]), subject.case)
     return subject.ask(case, finding["number"], tuple(finding["oracles"]))

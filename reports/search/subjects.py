@@ -12,18 +12,18 @@ import numpy as np
 
 from engines import Engine, EngineWrapper, Unsupported
 from reports.search import mechanisms, motions, mujoco_alone
-from reports.search.law import LAW, Errors, Fault, Skip
-from reports.search.mechanisms import of_a_shape
+from reports.search.law import LAW_TOLERANCE, CheckSkipped, Errors, Fault
+from reports.search.mechanisms import recipe_of_shape
 from reports.search.oracles import ORACLES
-from reports.search.parts import EVERY, Recipe
+from reports.search.parts import ALL_KINDS, Recipe
 from reports.search.recipe import build
-from reports.search.release import answer
+from reports.search.release import check_accelerations
 
-OURS = "our own error"  # of an oracle that raises: no fault of the engine
+OUR_ERROR = "our own error"  # of an oracle that raises: no fault of the engine
 
 
 @dataclass(frozen=True)
-class Result:
+class OracleResult:
     """The result of one case: (error, what it may be) by check, and the reasons why oracles did not apply."""
 
     errors: dict[str, tuple[float, float]]
@@ -54,17 +54,17 @@ class Adapted:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        return EVERY
+        return ALL_KINDS
 
     def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
         if is_shaped(self):
-            return of_a_shape(self.engine, seed, number, kinds, decades)
-        return _drawn(seed, number, kinds, decades)
+            return recipe_of_shape(self.engine, seed, number, kinds, decades)
+        return _cached_recipe(seed, number, kinds, decades)
 
-    def ask(self, case: Recipe, number: int, oracles: Sequence[str]) -> Result:
+    def ask(self, case: Recipe, number: int, oracles: Sequence[str]) -> OracleResult:
         """All that these oracles ask of one case. Raises InvalidMechanism for a case that is none."""
-        asked = self.engine, _built(case), case, number
-        return _asked(
+        asked = self.engine, _cached_mechanism(case), case, number
+        return _run_oracles(
             {name: partial(oracle.errors, *asked) for name, oracle in ORACLES.items() if name in oracles}, self.engine
         )
 
@@ -77,7 +77,7 @@ class Alone:
     """
 
     release: str = ""
-    case: ClassVar[type] = mujoco_alone.Model
+    case: ClassVar[type] = mujoco_alone.RawModel
 
     @property
     def name(self) -> str:
@@ -85,22 +85,28 @@ class Alone:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        return mujoco_alone.KINDS
+        return mujoco_alone.EQUALITY_KINDS
 
-    def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> mujoco_alone.Model:
-        return mujoco_alone.model(seed, number, kinds)
+    def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> mujoco_alone.RawModel:
+        return mujoco_alone.draw_model(seed, number, kinds)
 
-    def ask(self, case: mujoco_alone.Model, number: int, oracles: Sequence[str]) -> Result:
+    def ask(self, case: mujoco_alone.RawModel, number: int, oracles: Sequence[str]) -> OracleResult:
         def instant() -> Errors:
-            return {name: (error, LAW) for name, error in answer(case, self.release)["errors"].items()}
+            return {
+                name: (error, LAW_TOLERANCE)
+                for name, error in check_accelerations(case, self.release)["errors"].items()
+            }
 
-        mujoco_alone.judged(case)  # a case that is none is no fault
-        return _asked({"instant": instant} if "instant" in oracles else {}, None)
+        mujoco_alone.start_equations(case)  # a case that is none is no fault
+        return _run_oracles({"instant": instant} if "instant" in oracles else {}, None)
 
 
 Subject = Adapted | Alone
 # One mechanism for all engines that are asked: its tables of curves that roll, and what the judge says of it, are kept.
-_drawn, _built = lru_cache(motions.ASKED)(mechanisms.recipe), lru_cache(motions.ASKED)(build)
+_cached_recipe, _cached_mechanism = (
+    lru_cache(motions.CACHED_MECHANISMS)(mechanisms.recipe),
+    lru_cache(motions.CACHED_MECHANISMS)(build),
+)
 
 
 def is_shaped(subject: Subject) -> bool:
@@ -108,7 +114,7 @@ def is_shaped(subject: Subject) -> bool:
     return isinstance(subject, Adapted) and subject.engine.build_time > 0
 
 
-def _asked(oracles: Mapping[str, Callable[[], Errors | Skip]], engine: Engine | None) -> Result:
+def _run_oracles(oracles: Mapping[str, Callable[[], Errors | CheckSkipped]], engine: Engine | None) -> OracleResult:
     """What these say of an engine, None for MuJoCo alone; an exception is a fault of whoever raised it."""
     errors: dict[str, tuple[float, float]] = {}
     skipped: list[str] = []
@@ -118,7 +124,7 @@ def _asked(oracles: Mapping[str, Callable[[], Errors | Skip]], engine: Engine | 
             try:
                 found = oracle()
             except Unsupported as reason:
-                return Result(errors, (f"unsupported: {reason}",), "; ".join(words))
+                return OracleResult(errors, (f"unsupported: {reason}",), "; ".join(words))
             except Fault as reason:
                 errors[name] = (np.inf, 0.0)
                 words.append(str(reason))
@@ -126,14 +132,14 @@ def _asked(oracles: Mapping[str, Callable[[], Errors | Skip]], engine: Engine | 
                 raise
             except Exception as error:  # whatever an adapter raises that is no refusal is a fault of its own
                 blamed = engine is not None and _passed_through(error, engine)
-                errors["raised" if blamed else OURS] = (np.inf, 0.0)
+                errors["raised" if blamed else OUR_ERROR] = (np.inf, 0.0)
                 words.append(f"{'' if blamed else 'ours: '}{type(error).__name__}: {error}"[:300])
             else:
-                if isinstance(found, Skip):
+                if isinstance(found, CheckSkipped):
                     skipped.append(f"{name}: {found.reason}")
                 else:
                     errors.update(found)
-    return Result(errors, tuple(skipped), "; ".join(words))
+    return OracleResult(errors, tuple(skipped), "; ".join(words))
 
 
 def _passed_through(error: Exception, engine: Engine) -> bool:

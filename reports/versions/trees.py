@@ -17,7 +17,7 @@ from engines.lagrange.dynamics import constrained_acceleration
 from reference.checks import Count, InvalidMechanism
 from reference.mechanism import Mechanism
 from reports.model.tasks import Task, Values
-from reports.search.parts import Link, Part, Recipe
+from reports.search.parts import Recipe, RecipeBody, RecipeLink
 from reports.search.recipe import build
 
 STEP = 1e-5  # of the mechanism's time scale: the relative error of a difference over it is about as large
@@ -83,16 +83,16 @@ def _recipe(random: np.random.Generator, bodies: int, loops: int) -> Recipe:
     def whole(most: int, count: int) -> tuple[int, ...]:
         return tuple(int(number) for number in random.integers(-most, most + 1, count))
 
-    parts: list[Part] = []
-    links: list[Link] = []
+    parts: list[RecipeBody] = []
+    links: list[RecipeLink] = []
     for index in range(1, bodies + 1):
         parent = int(random.integers(min(1, index - 1), index))
         x, y, angle, mass = (*whole(8, 2), *whole(10, 1), *whole(3, 1))
-        parts.append(Part(parent, (x, y), angle, mass=mass, gyration=-1, velocity=(*whole(4, 2), *whole(6, 1))))  # type: ignore[arg-type]
-        links.append(Link("pin", parent, index, whole(6, 2)))  # type: ignore[arg-type]
+        parts.append(RecipeBody(parent, (x, y), angle, mass=mass, gyration=-1, velocity=(*whole(4, 2), *whole(6, 1))))  # type: ignore[arg-type]
+        links.append(RecipeLink("pin", parent, index, whole(6, 2)))  # type: ignore[arg-type]
     for _ in range(loops):
         first, second = sorted(int(body) for body in random.choice(np.arange(1, bodies + 1), 2, replace=False))
-        links.append(Link("pin", first, second, whole(6, 2)))  # type: ignore[arg-type]
+        links.append(RecipeLink("pin", first, second, whole(6, 2)))  # type: ignore[arg-type]
     return Recipe(tuple(parts), tuple(links), (0, -10))
 
 

@@ -21,12 +21,12 @@ from engines.mujoco.stiffness import Hardened
 from reference.forces import Spring
 from reference.joints import Pin, Rod
 from reference.mechanism import Mechanism
-from reports.search.law import Errors, Skip
+from reports.search.law import CheckSkipped, Errors
 from reports.search.mechanisms import mechanism
-from reports.search.motions import CLAIMED, REACTIONS, REPORTED, compared
+from reports.search.motions import CLAIMED_POSES, CLAIMED_REACTIONS, NEEDLESS_REPORT, check_claims
 from reports.search.motions import claim_errors as errors
-from reports.search.parts import EVERY, LINKS
-from reports.search.parts import FORCES as ELEMENTS
+from reports.search.parts import ALL_KINDS, LINK_KINDS
+from reports.search.parts import FORCE_KINDS as ELEMENTS
 from tests.engines.test_promised import QUICKLY, installed
 from tests.mechanisms import bar, pendulum
 from tests.present import present
@@ -108,11 +108,11 @@ def test_the_search_counts_a_silent_error_as_a_fault_and_a_report_of_a_right_mot
     right = replace(truth, estimate=np.zeros_like(truth.pose))
     wrong = replace(right, pose=truth.pose + np.linspace(0, 2 * CLAIM, STEPS + 1)[:, None, None] * [0.0, 0.0, 1.0])
     for run, error in ((right, 0.0), (wrong, 2 * CLAIM), (replace(wrong, unresolved_at=DT * STEPS * 0.4), 0.8 * CLAIM)):
-        claimed, bound = compared(linkage, run, truth)[CLAIMED]
+        claimed, bound = check_claims(linkage, run, truth)[CLAIMED_POSES]
         assert claimed == pytest.approx(error, abs=2 * CLAIM / STEPS)
         assert bound == CLAIM
-    assert compared(linkage, replace(right, unresolved_at=0.0), truth)[REPORTED] == (1.0, 1.0)
-    assert REPORTED not in compared(linkage, wrong, truth)
+    assert check_claims(linkage, replace(right, unresolved_at=0.0), truth)[NEEDLESS_REPORT] == (1.0, 1.0)
+    assert NEEDLESS_REPORT not in check_claims(linkage, wrong, truth)
 
 
 def test_an_error_of_a_force_is_counted_in_the_largest_force_and_not_in_that_of_a_stiff_spring_which_does_not_pull():
@@ -144,28 +144,34 @@ def claims(engine: Engine, seed: int, kinds: tuple[str, ...], count: int) -> lis
             return results
         with suppress(Unsupported):
             answer = errors(installed(engine), mechanism(seed, number, kinds), number)
-            if not isinstance(answer, Skip):
+            if not isinstance(answer, CheckSkipped):
                 results.append(answer)
     return results
 
 
 @CLAIMING
 def test_random_mechanisms_are_within_the_claim_or_unresolved(engine):
-    answers = claims(engine, 31, tuple(kind for kind in EVERY if kind != "roll"), 9)
+    answers = claims(engine, 31, tuple(kind for kind in ALL_KINDS if kind != "roll"), 9)
     assert len(answers) > 5
     assert all(
-        answer[name][0] <= answer[name][1] for answer in answers for name in (CLAIMED, REACTIONS) if name in answer
+        answer[name][0] <= answer[name][1]
+        for answer in answers
+        for name in (CLAIMED_POSES, CLAIMED_REACTIONS)
+        if name in answer
     )
 
 
 @pytest.mark.slow
 @CLAIMING
 def test_a_thousand_mechanisms_are_so_and_at_most_two_in_a_hundred_right_ones_are_unresolved(engine):
-    answers = claims(engine, 601, EVERY, 1000)
+    answers = claims(engine, 601, ALL_KINDS, 1000)
     assert all(
-        answer[name][0] <= answer[name][1] for answer in answers for name in (CLAIMED, REACTIONS) if name in answer
+        answer[name][0] <= answer[name][1]
+        for answer in answers
+        for name in (CLAIMED_POSES, CLAIMED_REACTIONS)
+        if name in answer
     )
-    assert np.mean([answer.get(REPORTED, (0.0, 1.0))[0] for answer in answers]) <= 0.02
+    assert np.mean([answer.get(NEEDLESS_REPORT, (0.0, 1.0))[0] for answer in answers]) <= 0.02
 
 
 @dataclass(frozen=True)
@@ -185,11 +191,11 @@ class DifficultCase:
 
 KNOWN = {
     # A torsion spring with a time scale of 16 ms.
-    "a stiff spring": DifficultCase(mujoco.EXTENDED, 3, 134, EVERY, unresolved=True),
+    "a stiff spring": DifficultCase(mujoco.EXTENDED, 3, 134, ALL_KINDS, unresolved=True),
     # A damper stops a rod within three steps, so that double and half steps differ by 4 to 1, and not by 16 to 1.
-    "no order is seen": DifficultCase(mujoco.EXTENDED, 31, 49, EVERY, 1e-2, unresolved=True, factor=3),
+    "no order is seen": DifficultCase(mujoco.EXTENDED, 31, 49, ALL_KINDS, 1e-2, unresolved=True, factor=3),
     # 1.05e-7 off after the first step, where the estimate was 6.7e-8, and 2e-9 after the next.
-    "the first step alone": DifficultCase(bullet.EXTENDED, 7001, 245, EVERY, 1e-2, unresolved=True),
+    "the first step alone": DifficultCase(bullet.EXTENDED, 7001, 245, ALL_KINDS, 1e-2, unresolved=True),
     # 5 kg slide in a body of 0.1 kg, and a drive spans both: rows as hard as usual lose 4e-4 rad.
     "a light body carries a heavy one": DifficultCase(mujoco.EXTENDED, 1, 130, error=1e-9),
     # A slot on a crank runs along a rod: 3 rad/s become 20 within 0.2 s. Rates rise fivefold within 10 ms.
@@ -218,7 +224,7 @@ def test_mechanisms_that_were_difficult_are_right_or_unresolved(case: DifficultC
 
 @pytest.mark.parametrize("number", [120, 134], ids=["usual", "unresolved"])
 def test_the_sampling_changes_neither_motion_nor_estimate_nor_outcome(number: int) -> None:
-    linkage = mechanism(3, number, EVERY)
+    linkage = mechanism(3, number, ALL_KINDS)
     frequent = mujoco.EXTENDED.build(linkage, STEP)(90, 1)
     for every in (2, 3, 90):
         seldom = mujoco.EXTENDED.build(linkage, STEP)(90 // every, every)
@@ -246,7 +252,7 @@ def test_rows_that_rounding_would_spoil_are_softer_and_a_softness_that_is_asked_
 
 # Kinds of elements with which the extras build most random mechanisms.
 DRAWN = {
-    "exudyn": ("pin", "slot", "skate", "drive", *LINKS, *ELEMENTS),
+    "exudyn": ("pin", "slot", "skate", "drive", *LINK_KINDS, *ELEMENTS),
     "box2d": ("pin", "rod", "weld", *ELEMENTS),
     "pinocchio": ("pin", "drive", "weld", *ELEMENTS),
     "bullet": ("pin", "weld", *ELEMENTS),

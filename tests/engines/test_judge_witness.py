@@ -20,11 +20,11 @@ from reference.mechanism import Mechanism
 from reference.scales import time_scale
 from reports.gate.judge import in_numpy, stepped
 from reports.search.mechanisms import mechanism as random_mechanism
-from reports.search.parts import EVERY
+from reports.search.parts import ALL_KINDS
 
 H = 1e-30  # of a complex step
 MOST_EVALUATIONS = {"DOP853": 3_000, "Radau": 60_000}  # of accelerations; resolved motions take 500 and 30,000
-WITNESSED_KINDS = tuple(kind for kind in EVERY if kind != "roll")
+WITNESSED_KINDS = tuple(kind for kind in ALL_KINDS if kind != "roll")
 
 
 class BodyState(NamedTuple):

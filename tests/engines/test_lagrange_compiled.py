@@ -23,7 +23,7 @@ from reference.scenes.rolling.scenes import RollingEllipse
 from reference.trajectory import joint_gap, slip
 from reports.gate.judge import in_numpy, integrate
 from reports.search.mechanisms import mechanism as random_mechanism
-from reports.search.parts import EVERY
+from reports.search.parts import ALL_KINDS
 from tests.mechanisms import four_bar, pendulum
 from tests.present import present
 
@@ -47,13 +47,13 @@ def test_every_method_gives_the_numbers_of_numpy(method):
 
 @pytest.mark.parametrize("number", range(12))
 def test_random_mechanisms_of_all_joints_links_and_forces_move_as_in_numpy(number):
-    mechanism = random_mechanism(21, number, EVERY)
+    mechanism = random_mechanism(21, number, ALL_KINDS)
     # The largest difference of the first 150 is 1.2e-14.
     assert max(differences(mechanism, Lagrange("rk4"), 1e-3 * mechanism.time_scale)) < 1e-12
 
 
 def test_the_random_mechanisms_have_every_joint_link_and_force_of_the_compiled_code():
-    mechanisms = [random_mechanism(21, number, EVERY) for number in range(12)]
+    mechanisms = [random_mechanism(21, number, ALL_KINDS) for number in range(12)]
     kinds = {type(part) for mechanism in mechanisms for part in (*mechanism.joints, *mechanism.forces)}
     assert kinds == {*JOINT_FIELDS, *FORCE_FIELDS} - {Coupling, CoupledForce}  # see tests/engines/test_couplings.py
 

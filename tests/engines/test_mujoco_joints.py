@@ -31,7 +31,7 @@ from reference.scenes.rolling.scenes import (
 from reference.scenes.skates import ChaplyginSleigh
 from reference.trajectory import Trajectory
 from reports.search.mechanisms import mechanism as drawn
-from reports.search.parts import EVERY
+from reports.search.parts import ALL_KINDS
 from tests.engines.test_matrix import SOFT, blade_on_a_board
 from tests.mechanisms import rolling_disc
 
@@ -170,7 +170,7 @@ def test_a_drive_of_wheels_as_large_as_a_town_is_no_softer_than_that_of_small_on
 
 def test_extended_begins_with_accelerations_of_light_bodies_that_are_solved() -> None:
     """Newton's method ends where its cost no longer falls: from zero, the light body's acceleration is 1e-5 wrong."""
-    mechanism = drawn(1199539626, 2, EVERY, 4)
+    mechanism = drawn(1199539626, 2, ALL_KINDS, 4)
     dt = 0.01 * mechanism.time_scale
     run, once = EXTENDED.build(mechanism, dt), EXTENDED.model(mechanism, dt)
     first = once.start().qacc.copy()

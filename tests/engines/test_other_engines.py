@@ -35,7 +35,7 @@ from reports.model.ending import BadInput
 from reports.pages.engines.page import reactions_with, started_at
 from reports.search import motions
 from reports.search.mechanisms import mechanism
-from reports.search.parts import EVERY
+from reports.search.parts import ALL_KINDS
 from reports.search.recipe import build
 from reports.search.subjects import Adapted
 from tests.engines.test_promised import QUICKLY, installed, meshed, shipped
@@ -132,8 +132,8 @@ def test_exudyn_moves_a_light_body_as_exactly_as_a_heavy_one():
     from engines.exudyn import EXTENDED
 
     shipped("exudyn")
-    linkage = build(Adapted(EXTENDED).draw(1140375381, 29, EVERY, 2))
-    answer = motions.errors(EXTENDED, linkage)
+    linkage = build(Adapted(EXTENDED).draw(1140375381, 29, ALL_KINDS, 2))
+    answer = motions.motion_errors(EXTENDED, linkage)
     assert isinstance(answer, dict)
     error, bound = answer["estimate"]
     assert error <= bound < 1e-7

@@ -24,7 +24,7 @@ from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
 from reference.trajectory import energy, joint_gap
 from reports.search.mechanisms import mechanism
-from reports.search.parts import EVERY
+from reports.search.parts import ALL_KINDS
 from tests.engines.test_pymunk import every_method, largest
 from tests.mechanisms import four_bar
 
@@ -99,7 +99,7 @@ def test_welds_and_motors_are_stable_at_short_steps_or_no_order_is_declared(seed
     If complex modes counted as real ones, mechanism 255 would have an error of a thousand times its motion. If motors
     counted as correcting a gap, the error would be five hundred times larger at a quarter of the step.
     """
-    mixed = mechanism(seed, number, EVERY)
+    mixed = mechanism(seed, number, ALL_KINDS)
     span = 0.4 * mixed.time_scale
     truth = TRUTH.build(mixed, span)(1, 1)
 
@@ -113,7 +113,7 @@ def test_welds_and_motors_are_stable_at_short_steps_or_no_order_is_declared(seed
 
 @pytest.mark.parametrize(("seed", "number", "few"), [(*WITH_MOTOR, 30), (31, 655, 9), (31, 981, 8)])
 def test_impulses_grow_by_the_spectral_radius_of_the_step_where_motors_and_blades_correct_no_gap(seed, number, few):
-    mixed = mechanism(seed, number, EVERY)
+    mixed = mechanism(seed, number, ALL_KINDS)
     corrected = corrects_gap(mixed, rolls_are_contacts=True)
     assert 0 < corrected.mean() < 1
 

@@ -14,7 +14,7 @@ from engines.mujoco.reading import READER, read
 from engines.mujoco.reading.own_model import in_state, positions
 from engines.mujoco.reading.settings import switch_off
 from engines.reading import Reading, ReadingTerms
-from reports.check.judging import apart, refuse_disagreement, soft_motion
+from reports.check.judging import pose_distance, refuse_disagreement, soft_motion
 
 # Engine and judge solve small systems of equations whose numbers differ by a factor of at most a thousand.
 SMALL_SYSTEM_ROUNDING = 1e-9
@@ -196,10 +196,10 @@ def test_softness_as_declared_is_what_mujoco_does():
     run = reading.model.run(40, 50)
     soft = soft_motion(reading.mechanism, reading.model.regularisation, run.t)
     # The error of RK4 at 0.2 ms is far smaller; the ideal motion differs by 1e-3.
-    assert apart(reading.mechanism, soft, run.pose).max() < 1e-6
+    assert pose_distance(reading.mechanism, soft, run.pose).max() < 1e-6
     stiffer = [replace(reading.model.regularisation(np.zeros(8), reading.mechanism.pose), compliance=np.zeros((8, 8)))]
     wrong = soft_motion(reading.mechanism, lambda gap, pose: stiffer[0], run.t)
-    assert apart(reading.mechanism, wrong, run.pose).max() > 1e-5
+    assert pose_distance(reading.mechanism, wrong, run.pose).max() > 1e-5
 
 
 def test_a_contact_is_named_with_its_time_and_at_the_start_refused():

@@ -30,7 +30,7 @@ from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.pymunk.reading import READER, read
 from engines.reading import AS_IT_IS
-from reports.check.judging import errors, judged, refuse_disagreement
+from reports.check.judging import measure_errors, reference_motion, refuse_disagreement
 
 # The accelerations are extrapolated from two small steps: their error is about 1e-8, the square of the step.
 ACCELERATION_ERROR = 1e-6
@@ -316,9 +316,9 @@ def test_a_script_that_starts_half_a_step_ahead_is_read_in_the_state_before(past
     mechanism = reading.mechanism
     assert mechanism.pose[0] == pytest.approx([0, 25, 0], abs=1e-12)
     assert np.abs(mechanism.twist).max() < 1e-12
-    truth = judged(mechanism, 50, 1e-2).trajectory
+    truth = reference_motion(mechanism, 50, 1e-2).trajectory
     # With the shipped settings the error is 0.1; without the half step, 0.006.
-    assert errors(mechanism, truth, reading.model.run(50, 10)).largest < 1e-3
+    assert measure_errors(mechanism, truth, reading.model.run(50, 10)).largest < 1e-3
 
 
 def test_a_start_ahead_of_a_moving_space_is_undone_and_no_other_first_step(tmp_path):

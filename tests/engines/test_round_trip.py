@@ -29,7 +29,7 @@ from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, Torsi
 from reference.joints import Drive, Gear, Pin, Roll, Skate, Weld
 from reference.mechanism import Body, Mechanism
 from reference.scenes.catalogue import SCENES, scene
-from reports.check.checked import Plan, check
+from reports.check.checked import SweepPlan, check
 from reports.check.judging import accelerations, refuse_disagreement
 from reports.search.mechanisms import mechanism as random_mechanism
 from tests import independent
@@ -257,7 +257,7 @@ def test_a_rounded_file_moves_as_the_exact_one_and_its_effect_is_told(name):
     # The distance of neighbouring starts grows 30-fold in a second, and bodies beside the plane move by the tilt.
     assert np.abs(np.abs(ours) - np.abs(coordinates)).max() < 30 * tilt + 1e-8
     assert refuse_disagreement(reading) < 1e-9
-    judged = check(reading, name, 0.5, 1e-2, plan=Plan(0.0))
+    judged = check(reading, name, 0.5, 1e-2, plan=SweepPlan(0.0))
     (reason,) = (note.reason for note in judged.reading.notes if note.element == "the directions of joints")
     off, *moved = (float(number) for number in re.findall(r"(\d[\d.]*e-\d+|0\.\d+) (?:m|rad)", reason))
     assert off == pytest.approx(tilt, rel=0.05)

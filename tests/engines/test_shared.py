@@ -28,7 +28,7 @@ from reference.scenes.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
-from reports.search.mechanisms import EVERY
+from reports.search.mechanisms import ALL_KINDS
 from reports.search.mechanisms import mechanism as random_mechanism
 
 
@@ -116,7 +116,7 @@ def test_where_the_curves_end_there_is_no_place_and_no_contact() -> None:
 
 # Random ones with every joint, and those of the scenes, where a slot's drive of rate zero keeps its block from turning.
 MECHANISMS = (
-    *(random_mechanism(21, number, EVERY) for number in range(6)),
+    *(random_mechanism(21, number, ALL_KINDS) for number in range(6)),
     *(scene.mechanism() for scene in SCENES[::2] if len(scene.mechanism().bodies) < 20),
 )
 

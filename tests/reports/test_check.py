@@ -23,12 +23,12 @@ from reference.mechanism import Body, Mechanism
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.check import rendering
-from reports.check.checked import check, read
-from reports.check.document import data, schema
-from reports.check.facts import facts_of
-from reports.check.judging import accelerations, errors, judged
-from reports.check.pictures import from_text, pictures, shown_of
-from reports.check.telling import answer, sections
+from reports.check.checked import check, read_user_model
+from reports.check.document import check_data, schema
+from reports.check.facts import compute_facts
+from reports.check.judging import accelerations, measure_errors, reference_motion
+from reports.check.pictures import picture_data_from_text, picture_data_of, render_pictures
+from reports.check.telling import answer_section, report_sections
 from tests.present import present
 from tests.toys import Disc
 
@@ -58,7 +58,7 @@ def make():
 
 def found_in(folder, text, name="model.xml", word="model.xml", duration=0.4, tolerance=1e-4, step=None):
     (folder / name).write_text(text)
-    return check(read(word, folder, ReadingTerms(step=step)), name, duration, tolerance)
+    return check(read_user_model(word, folder, ReadingTerms(step=step)), name, duration, tolerance)
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copi
     assert found.opens.row.startswith("C ")
     assert found.advised is not None
     assert found.advised.error <= found.tolerance
-    told = answer(found)
+    told = answer_section(found)
     assert told.sentences[0].endswith("the tolerance of 1e-4 is missed.")
     option, default = told.code
     mended = re.sub(r"<option [^/]*/>", option, FOUR_BAR).replace("<worldbody>", f"{default}<worldbody>", 1)
@@ -100,7 +100,7 @@ def test_dampers_that_are_much_faster_than_the_motion_keep_their_declared_motion
 def test_lines_for_a_urdf_file_stand_in_mujocos_own_element_and_can_be_pasted(tmp_path):
     text = re.sub(r"<mujoco>.*?</mujoco>", "", urdf(PENDULUM_2.mechanism()), flags=re.DOTALL)
     found = found_in(tmp_path, text, "chain.urdf", "chain.urdf", tolerance=1e-6)
-    (line,) = answer(found).code
+    (line,) = answer_section(found).code
     assert line.startswith("<mujoco><option ")
     again = found_in(tmp_path, text.replace("</robot>", f"{line}</robot>"), "chain.urdf", "chain.urdf", tolerance=1e-6)
     assert again.met
@@ -117,7 +117,7 @@ CLASSES = '<default><default class="own"><joint damping="0"/></default></default
 def test_an_equality_that_a_default_does_not_reach_is_named_in_the_advice(tmp_path, place, words):
     """A class has copied its parent's values before the lines come, so the model would stay soft without a word."""
     own = FOUR_BAR.replace("<worldbody>", place or "<worldbody>", 1).replace("<connect", f"<connect {words}")
-    lines = answer(found_in(tmp_path, own)).code
+    lines = answer_section(found_in(tmp_path, own)).code
     assert "an equality of a class, or with its own values, needs these values there" in lines[-1]
     if place:
         assert not found_in(tmp_path, own.replace("</mujoco>", f"{''.join(lines[:2])}</mujoco>")).met
@@ -131,10 +131,11 @@ def test_a_driven_linkage_of_pymunk_is_judged_with_all_forces_but_the_cranks(tmp
     found = found_in(tmp_path, script(PYMUNK, scene.mechanism(), 1e-3), "made.py", "made.py:make", step=1e-3)
     # Of first order, so of the size of a step times a rate of 10 rad/s; the crank's own forces nobody knows.
     assert 0 < found.own_errors.worst["reaction"] < 0.1
-    assert ("motion", "all of it is prescribed, so a small error of the start has nothing to grow in") in answer(
-        found
-    ).facts
-    assert "0 freedoms by the rank" in sections(found)[1].sentences[0]
+    assert (
+        "motion",
+        "all of it is prescribed, so a small error of the start has nothing to grow in",
+    ) in answer_section(found).facts
+    assert "0 freedoms by the rank" in report_sections(found)[1].sentences[0]
 
 
 def test_a_crank_driven_by_armature_in_mujoco_is_judged_as_driven(tmp_path):
@@ -153,7 +154,7 @@ def test_a_pymunk_pendulum_as_shipped_misses_by_its_step_and_the_advice_can_be_c
     assert not found.parts.divided
     assert found.parts.falling
     assert found.advised is not None
-    lines = answer(found).code
+    lines = answer_section(found).code
     step = float(re.search(r"--step (.*)$", lines[-1])[1])  # type: ignore[index]
     body = "\n".join(f"    {line}" for line in lines)
     mended = PENDULUM.replace("    return space", f"{body}\n    return space")
@@ -163,13 +164,13 @@ def test_a_pymunk_pendulum_as_shipped_misses_by_its_step_and_the_advice_can_be_c
 
 def test_the_judge_of_a_check_is_the_truth_of_a_scene():
     scene = FreeFourBar()
-    judge = judged(scene.mechanism(), 40, 0.01)
+    judge = reference_motion(scene.mechanism(), 40, 0.01)
     truth = scene.motion(judge.trajectory.t)
-    own = errors(scene.mechanism(), truth, judge.trajectory)
+    own = measure_errors(scene.mechanism(), truth, judge.trajectory)
     assert own.largest < 1e-10
     assert own.worst["reaction"] < 1e-9
     # What the judge says of its own error is no less than a hundredth of what it is, and no more than a lot above.
-    assert errors(scene.mechanism(), judge.trajectory, judge.looser).largest < 1e-7
+    assert measure_errors(scene.mechanism(), judge.trajectory, judge.looser).largest < 1e-7
 
 
 def test_a_drive_that_gives_way_is_damped_against_its_own_rate():
@@ -186,7 +187,7 @@ def test_a_drive_that_gives_way_is_damped_against_its_own_rate():
 
 def test_freedoms_modes_and_singular_positions_are_told():
     mechanism = PENDULUM_1.mechanism()
-    facts = facts_of(mechanism, judged(mechanism, 20, 0.01).trajectory)
+    facts = compute_facts(mechanism, reference_motion(mechanism, 20, 0.01).trajectory)
     assert facts.freedoms == (1, 1)
     assert facts.redundant == 0
     assert facts.singular == ()
@@ -210,20 +211,20 @@ def test_the_stiffest_mode_is_that_of_a_spring_and_a_damper(damping, rate):
     data = mujoco.MjData(model := mujoco.MjModel.from_xml_string(text))  # type: ignore[attr-defined]
     data.qvel[0] = 0.1
     mechanism = read_model(model, data).mechanism
-    facts = facts_of(mechanism, judged(mechanism, 5, 0.01).trajectory)
+    facts = compute_facts(mechanism, reference_motion(mechanism, 5, 0.01).trajectory)
     assert facts.stiffest_mode == pytest.approx(rate, rel=1e-4)
 
 
 def test_chaos_ends_the_horizon_and_a_disturbance_that_grows_as_the_time_does_not():
-    regular = judged(PENDULUM_1.mechanism(), 200, 0.01)
+    regular = reference_motion(PENDULUM_1.mechanism(), 200, 0.01)
     assert regular.horizon == regular.trajectory.t[-1]
     # 3,000 radians: what the rate is off by at the start grows as many times, and so does what is allowed.
-    spinning = judged(Disc(rate=1000.0).mechanism(), 300, 0.01)
+    spinning = reference_motion(Disc(rate=1000.0).mechanism(), 300, 0.01)
     assert spinning.growth[-1] > 500
     assert spinning.horizon == pytest.approx(3.0, rel=1e-12)
     links = PENDULUM_2.mechanism()
     wild = replace(links, bodies=tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in links.bodies))
-    chaotic, known = judged(wild, 1000, 0.015), judged(wild, 1000, 0.015, tolerance=1e-10)
+    chaotic, known = reference_motion(wild, 1000, 0.015), reference_motion(wild, 1000, 0.015, tolerance=1e-10)
     # A few times of the mechanism, which is 0.3 s: it is no sooner wild.
     t = chaotic.trajectory.t
     assert 1.0 < chaotic.horizon < t[-1]
@@ -235,16 +236,16 @@ def test_chaos_ends_the_horizon_and_a_disturbance_that_grows_as_the_time_does_no
     assert 0 < known.trajectory.t[-1] < t[-1]
     assert np.max(present(known.trajectory.estimate)) < 1e-11 * max(1.0, wild.length_scale)
     with pytest.raises(InvalidMechanism, match="does not know the ideal motion to a tenth of the tolerance"):
-        judged(wild, 10, 0.1, tolerance=1e-20)
+        reference_motion(wild, 10, 0.1, tolerance=1e-20)
 
 
 def test_the_report_can_be_read_by_people_and_programs(shipped):
-    shown = from_text(shown_of(shipped).as_text())
-    drawn = pictures(shown)
+    shown = picture_data_from_text(picture_data_of(shipped).as_text())
+    drawn = render_pictures(shown)
     without_error = replace(shown, found=replace(shown.found, bars=shown.ideal.bars))
-    assert pictures(without_error)["worst"] != drawn["worst"]
-    told = sections(shipped, drawn)
-    screen = rendering.plain([answer(shipped)]).splitlines()
+    assert render_pictures(without_error)["worst"] != drawn["worst"]
+    told = report_sections(shipped, drawn)
+    screen = rendering.plain([answer_section(shipped)]).splitlines()
     assert len(screen) <= 30
     assert max(map(len, screen)) <= 120
     page = rendering.html("four bar", told)
@@ -256,7 +257,7 @@ def test_the_report_can_be_read_by_people_and_programs(shipped):
     foreign = rendering.Section("", ("<i>",), (("why", "<i>"),), ("<i>",), header=("<i>",), rows=(("<i>",),))
     assert "<i>" not in rendering.html("<i>", [foreign])
     assert rendering.markdown("four bar", [foreign], {}).count("<i>") == 1  # in the lines to copy
-    numbers = json.loads(json.dumps(data(shipped), allow_nan=False))
+    numbers = json.loads(json.dumps(check_data(shipped), allow_nan=False))
     assert set(numbers) == set(schema()["$defs"]["MODEL"]["required"])
     for name, setting in (("advised", shipped.advised), ("next_decade", shipped.decade)):
         assert numbers[name] == (setting and next(t for t in numbers["tried"] if t["words"] == setting.change.words))

@@ -12,7 +12,7 @@ import pytest
 from engines.mujoco.reading.settings import rewritten
 from engines.pymunk.reading.script import BEGIN, END
 from engines.reading import Change
-from reports.check.request import CheckReport, CheckRequest, answered
+from reports.check.request import CheckReport, CheckRequest, run_check
 from tests.reports.test_check import FOUR_BAR, PENDULUM
 from tests.reports.test_command_line import call, here
 
@@ -24,7 +24,7 @@ INSIDE = f"{PENDULUM}\ndef main():\n    world = make()\n    for _ in range(30):\
 
 def checked(folder, word, **terms) -> CheckReport:
     """The answer in this process, of half a second of motion."""
-    found = answered(CheckRequest(word, str(folder), 0.5, **terms))
+    found = run_check(CheckRequest(word, str(folder), 0.5, **terms))
     assert isinstance(found, CheckReport), found
     return found
 
@@ -120,7 +120,7 @@ def test_quick_tries_four_settings_and_all_are_run_if_asked_for_with_the_same_ca
 
 
 def test_settings_are_looked_for_until_an_error_is_met_or_nothing_documented_does(tmp_path, monkeypatch):
-    monkeypatch.setattr("reports.check.checked.SEARCH", 2.0)
+    monkeypatch.setattr("reports.check.checked.SEARCH_BUDGET", 2.0)
     (tmp_path / "swing.py").write_text(PENDULUM)
     for goal, found in ((1e-3, True), (1e-9, False)):  # of first order: the second takes a step of 4 ns
         answer = checked(tmp_path, "swing.py:make", tolerance=goal, search=True)

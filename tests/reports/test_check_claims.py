@@ -21,12 +21,12 @@ from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.trajectory import Trajectory
-from reports.check.checked import Checked, Plan, check, parts_of, read, tried
-from reports.check.document import data
-from reports.check.facts import facts_of
-from reports.check.judging import errors, judged, opening, refuse_disagreement
+from reports.check.checked import CheckResult, SweepPlan, check, read_user_model, run_settings_sweep, split_error
+from reports.check.document import check_data
+from reports.check.facts import compute_facts
+from reports.check.judging import find_opening, measure_errors, reference_motion, refuse_disagreement
 from reports.check.rendering import plain
-from reports.check.telling import answer, sections
+from reports.check.telling import answer_section, report_sections
 from tests.reports.test_check import FOUR_BAR, INPUTS, PENDULUM, found_in
 
 
@@ -42,7 +42,7 @@ def swing(tmp_path_factory):
     return found_in(tmp_path_factory.mktemp("swing"), PENDULUM, "swing.py", "swing.py:make", tolerance=1e-2)
 
 
-def with_settings(found: Checked, *rows: tuple[float, float], tolerance: float) -> Checked:
+def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: float) -> CheckResult:
     """The same check with settings of these errors and costs, the user's first."""
     first = found.table[0]
     table = [
@@ -82,23 +82,23 @@ def test_the_advice_is_the_cheapest_setting_that_is_enough(soft, rows, advised, 
     assert found.met == (rows[0][0] <= 1e-4)
     for setting, index in ((found.advised, advised), (found.decade, tenth)):
         assert (setting is None and index is None) or setting is found.table[index]
-    assert bool(answer(found).code) == (advised is not None and not found.met)
+    assert bool(answer_section(found).code) == (advised is not None and not found.met)
 
 
 def test_the_tolerance_is_met_by_an_error_of_its_size_and_by_no_larger_one(soft):
     for error, met in ((1e-4, True), (1.001e-4, False)):
         assert with_settings(soft, (error, 1.0), tolerance=1e-4).met == met
     diverged = replace(soft.table[0], errors=replace(soft.own_errors, finished=False))
-    assert data(replace(soft, table=[diverged]))["error"] is None  # infinity is no number of JSON
+    assert check_data(replace(soft, table=[diverged]))["error"] is None  # infinity is no number of JSON
 
 
 def test_the_users_own_settings_are_in_the_table_however_long_they_took(soft):
     """A run of more than LONGEST leaves no time for others, and is itself one of the settings."""
     reading, slow = soft.reading, replace(soft.own, stepping=50.0)
     truth = soft.judge.trajectory
-    (only,) = tried(reading, truth, 100, 1, slow, lambda number, count: None, Plan(0.0), 1e-4)
+    (only,) = run_settings_sweep(reading, truth, 100, 1, slow, lambda number, count: None, SweepPlan(0.0), 1e-4)
     assert only.run is slow
-    assert only.error == errors(reading.mechanism, truth, slow).largest
+    assert only.error == measure_errors(reading.mechanism, truth, slow).largest
 
 
 def test_the_text_of_the_report(soft, golden):
@@ -111,14 +111,14 @@ def test_the_text_of_the_report(soft, golden):
     )
     wild = replace(found, judge=replace(found.judge, horizon=0.1, growth=np.linspace(1.0, 1e4, len(found.own.t))))
     texts = {
-        "a missed tolerance": sections(found),
-        "a tolerance that is met": [answer(replace(found, tolerance=1e-2))],
-        "no tolerance": [answer(replace(found, asked=False))],
-        "no setting is enough": [answer(replace(found, tolerance=1e-9))],
-        "exponential growth": [answer(wild)],
-        "neither softness nor step": [answer(replace(found, parts=replace(parts, falling=False)))],
-        "more than a radian": [answer(replace(found, parts=replace(parts, rest=1.5)))],
-        "no declared softness": [answer(replace(found, parts=replace(parts, divided=False)))],
+        "a missed tolerance": report_sections(found),
+        "a tolerance that is met": [answer_section(replace(found, tolerance=1e-2))],
+        "no tolerance": [answer_section(replace(found, asked=False))],
+        "no setting is enough": [answer_section(replace(found, tolerance=1e-9))],
+        "exponential growth": [answer_section(wild)],
+        "neither softness nor step": [answer_section(replace(found, parts=replace(parts, falling=False)))],
+        "more than a radian": [answer_section(replace(found, parts=replace(parts, rest=1.5)))],
+        "no declared softness": [answer_section(replace(found, parts=replace(parts, divided=False)))],
     }
     golden("check.txt", "\n".join(f"==== {title}\n{plain(told)}" for title, told in texts.items()))
 
@@ -126,7 +126,7 @@ def test_the_text_of_the_report(soft, golden):
 # ----------------------------------------------------------------------------------------------------------- parts
 
 
-def off_by(found: Checked, size: float, step: float):
+def off_by(found: CheckResult, size: float, step: float):
     """The user's own settings at another step, with a run that is this far off the judge's motion [m, rad]."""
     truth = found.judge.trajectory
     run = replace(truth, pose=truth.pose + size * np.array([0.0, 0.0, 1.0]))
@@ -140,7 +140,7 @@ def off_by(found: Checked, size: float, step: float):
 )
 def test_an_error_that_still_falls_is_told_from_one_that_no_longer_does(swing, sizes, falls):
     smaller = [off_by(swing, size, 0.01 / 2**place) for place, size in enumerate(sizes)]
-    parts = parts_of(swing.reading, swing.judge.trajectory, off_by(swing, 8e-3, 0.02).run, smaller)
+    parts = split_error(swing.reading, swing.judge.trajectory, off_by(swing, 8e-3, 0.02).run, smaller)
     assert (parts.step, parts.rest, parts.falling) == (pytest.approx(8e-3), pytest.approx(sizes[-1]), falls)
 
 
@@ -162,7 +162,7 @@ def four_bar(crank: float, coupler: float, rocker: float, ground: float, start: 
 def test_dead_centres_are_where_crank_and_coupler_are_in_line(drive):
     """There the diagonal from the crank's foot to the rocker's tip is the sum, or the difference, of the two."""
     a, b, c, d, start, rate = 0.2, 0.8, 0.5, 0.9, 0.3, 2.0
-    facts = facts_of(*four_bar(a, b, c, d, start, rate, drive))
+    facts = compute_facts(*four_bar(a, b, c, d, start, rate, drive))
     wanted = []
     for reach, turn in ((b + a, 0.0), (b - a, np.pi)):
         line = np.arccos((reach**2 + d**2 - c**2) / (2 * reach * d))
@@ -177,7 +177,7 @@ def test_dead_centres_are_where_crank_and_coupler_are_in_line(drive):
 
 def test_the_moment_in_which_a_parallelogram_is_flat_is_near_singular():
     """Flat at half a turn of the crank, where its rows depend on one another, and at no other time in 3 s."""
-    facts = facts_of(*four_bar(0.3, 0.8, 0.3, 0.8, start=0.4, rate=1.0, drive=False))
+    facts = compute_facts(*four_bar(0.3, 0.8, 0.3, 0.8, start=0.4, rate=1.0, drive=False))
     ((at, size),) = facts.singular
     assert at == pytest.approx(np.pi - 0.4, abs=0.011)
     assert size < 1e-2
@@ -201,7 +201,7 @@ def test_what_opens_by_an_angle_is_told_in_radians():
     pose = np.zeros((3, 1, 3))
     pose[1, 0] = [1e-3, 0.0, 0.2]
     run = Trajectory(np.arange(3.0), pose, np.zeros((3, 1, 3)), np.zeros((3, 3)), 0.0)
-    found = opening(mechanism, run)
+    found = find_opening(mechanism, run)
     assert found is not None
     assert (found.gap, found.unit, found.t) == (pytest.approx(0.2), "rad", 1.0)
     # A kilometre long, 1 m of it is less than 0.2 rad.
@@ -209,7 +209,7 @@ def test_what_opens_by_an_angle_is_told_in_radians():
     joints = (*joints, Pin("cable", None, "cabin", (0.0, 0.0), (-1e3, 0.0)))
     pose = np.array([[[1e3, 0.0, 0.0], [0.0, 0.0, 0.0]], [[1001.0, 0.0, 0.0], [0.0, 0.0, 0.2]]])
     run = Trajectory(np.arange(2.0), pose, np.zeros_like(pose), np.zeros((2, 5)), 0.0)
-    found = opening(Mechanism(bodies, joints, (0.0, 0.0)), run)
+    found = find_opening(Mechanism(bodies, joints, (0.0, 0.0)), run)
     assert found is not None
     assert (found.gap, found.unit) == (pytest.approx(0.2), "rad")
 
@@ -232,12 +232,12 @@ def test_reactions_that_rigid_bodies_do_not_determine_are_not_compared():
     pose, twist = np.tile(mechanism.pose, (2, 1, 1)), np.zeros((2, 2, 3))
     true = np.tile([3.0, 9.81, -3.0, 9.81, 0.0, 9.81], (2, 1))
     truth = Trajectory(t, pose, twist, true, 0.0)
-    facts = facts_of(mechanism, truth)
+    facts = compute_facts(mechanism, truth)
     assert facts.undetermined == (names[0], names[2])
     assert facts.redundant == 1
 
     def worst(change):
-        return errors(mechanism, truth, replace(truth, reaction=true + change)).worst["reaction"]
+        return measure_errors(mechanism, truth, replace(truth, reaction=true + change)).worst["reaction"]
 
     assert worst([50.0, 0, 50.0, 0, 0, 0]) == 0
     assert worst([0, 0.981, 0, 0, 0, 0]) == pytest.approx(0.1)
@@ -250,12 +250,12 @@ def test_the_error_of_the_energy_is_relative_to_the_largest_kinetic_energy(soft)
     lifted = replace(truth, pose=truth.pose + np.array([0.0, 1e-3, 0.0]))
     weight = sum(body.mass for body in mechanism.bodies) * 9.81 * 1e-3
     kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1)).max()
-    assert errors(mechanism, truth, lifted).worst["energy"] == pytest.approx(weight / kinetic, rel=1e-6)
+    assert measure_errors(mechanism, truth, lifted).worst["energy"] == pytest.approx(weight / kinetic, rel=1e-6)
 
 
 def test_a_torque_that_is_zero_by_symmetry_is_no_measure_of_an_error_and_one_that_is_invented_is_wrong():
-    reading = read("b04_gripper.xml", INPUTS, ReadingTerms(("actuation", "limit")))
-    found = check(reading, "gripper", 0.3, 1e-4, plan=Plan(5.0, quick=True))
+    reading = read_user_model("b04_gripper.xml", INPUTS, ReadingTerms(("actuation", "limit")))
+    found = check(reading, "gripper", 0.3, 1e-4, plan=SweepPlan(5.0, quick=True))
     mechanism, truth = found.reading.mechanism, found.judge.trajectory
     forces, torques = (np.abs(truth.reaction[:, rows]) for rows in (~mechanism.is_angular, mechanism.is_angular))
     assert torques.max() < 1e-9 * forces.max() * found.facts.length
@@ -267,7 +267,7 @@ def test_a_torque_that_is_zero_by_symmetry_is_no_measure_of_an_error_and_one_tha
     assert off / forces.max() / 2 < found.advised.reaction < 2 * off / forces.max()
     wrong = truth.reaction + 0.1 * mechanism.is_angular * np.abs(truth.reaction).max() * found.facts.length
     run = type(truth)(truth.t, truth.pose, truth.twist, wrong, 0.0)
-    assert errors(mechanism, truth, run).worst["reaction"] > 0.05
+    assert measure_errors(mechanism, truth, run).worst["reaction"] > 0.05
 
 
 def test_the_error_of_a_force_does_not_depend_on_the_axes_in_which_it_is_counted():
@@ -275,11 +275,11 @@ def test_the_error_of_a_force_does_not_depend_on_the_axes_in_which_it_is_counted
     mechanism = scene.mechanism()
     truth = TRUTH.build(mechanism, 1e-3)(30, 10)
     run = DEFAULT.build(mechanism, 1e-3)(30, 10)
-    measured = errors(mechanism, truth, run).worst["reaction"]
+    measured = measure_errors(mechanism, truth, run).worst["reaction"]
     sine, cosine = np.sin(0.7), np.cos(0.7)
     turn = np.kron(np.eye(mechanism.row_count // 2), [[cosine, -sine], [sine, cosine]])  # all rows are those of pins
     ideal, stepped = (replace(motion, reaction=motion.reaction @ turn.T) for motion in (truth, run))
-    assert errors(mechanism, ideal, stepped).worst["reaction"] == pytest.approx(measured, rel=1e-9)
+    assert measure_errors(mechanism, ideal, stepped).worst["reaction"] == pytest.approx(measured, rel=1e-9)
 
 
 def test_the_impulse_that_starts_a_motor_is_no_error_of_forces_or_energy():
@@ -289,13 +289,13 @@ def test_the_impulse_that_starts_a_motor_is_no_error_of_forces_or_energy():
     crank.position, rod.position = (0.1, 0), (0.5, 0)
     space.add(crank, rod, PivotJoint(space.static_body, crank, (0, 0), (-0.1, 0)))
     space.add(PivotJoint(crank, rod, (0.1, 0), (-0.3, 0)), SimpleMotor(space.static_body, crank, -3.0))
-    found = check(read_space(space, step=1e-3), "motor", 0.2, 1e-4, plan=Plan(1.0, quick=True))
+    found = check(read_space(space, step=1e-3), "motor", 0.2, 1e-4, plan=SweepPlan(1.0, quick=True))
     error = found.own_errors
     assert found.reading.jumps
     assert all(
         np.isnan(error.of[name][:2]).all() and np.isfinite(error.of[name][2:]).all() for name in ("energy", "reaction")
     )
-    counted = errors(found.reading.mechanism, found.judge.trajectory, found.own)
+    counted = measure_errors(found.reading.mechanism, found.judge.trajectory, found.own)
     assert counted.worst["reaction"] > 10 * error.worst["reaction"]
 
 
@@ -308,4 +308,4 @@ def test_a_rod_that_only_the_second_order_locks_is_refused():
     rod = PinJoint(space.static_body, body, (2.5, 0), (1.0, 0))
     space.add(body, PivotJoint(space.static_body, body, (0, 0), (-0.5, 0)), rod)
     with pytest.raises(Exception, match="singular position"):
-        judged(read_space(space, 0.01).mechanism, 20, 0.01, 1e-4)
+        reference_motion(read_space(space, 0.01).mechanism, 20, 0.01, 1e-4)

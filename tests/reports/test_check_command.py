@@ -20,7 +20,7 @@ from pymunk import Space
 
 from engines.mujoco.reading.settings import switch_off as of_mujoco
 from engines.pymunk.reading.own_model import switch_off as of_pymunk
-from reports.check.request import CheckReport, CheckRequest, Refused, answered
+from reports.check.request import CheckReport, CheckRequest, Refused, run_check
 from reports.cli.check import SWITCHED_OFF
 from tests.reports.test_check import FOUR_BAR, PENDULUM
 from tests.reports.test_command_line import call, here
@@ -215,7 +215,7 @@ def test_a_bad_model_is_one_sentence(tmp_path, word):
     file = tmp_path / word.split(":")[0]
     if text is not None:
         file.write_text(text)
-    answer = answered(CheckRequest(word, str(tmp_path), 0.5, 1e-4))
+    answer = run_check(CheckRequest(word, str(tmp_path), 0.5, 1e-4))
     assert isinstance(answer, Refused)
     assert sentence in answer.sentence
     assert "\n" not in answer.sentence
@@ -236,7 +236,7 @@ def test_a_script_runs_in_its_own_folder_with_its_own_files_and_modules(tmp_path
         "space.gravity, body.position = (0, -9.81), (length, 0)\n"
         "space.add(body, pymunk.PivotJoint(space.static_body, body, (0, 0), (-length, 0)))\n"
     )
-    answer = answered(CheckRequest("swing.py", str(tmp_path), 0.1))
+    answer = run_check(CheckRequest("swing.py", str(tmp_path), 0.1))
     assert isinstance(answer, CheckReport)
     assert answer.data["facts"]["length"] == 0.5
     assert (Path.cwd(), sys.path) == (home, paths)
@@ -247,7 +247,7 @@ def test_a_script_runs_in_its_own_folder_with_its_own_files_and_modules(tmp_path
 @pytest.mark.parametrize(("element", "sentence"), [("rain", "--without is 'rain'"), ("contact", "")])
 def test_what_is_left_out_is_known_by_its_word(tmp_path, element, sentence):
     (tmp_path / "hits.xml").write_text(BAD["hits.xml"][0])
-    answer = answered(CheckRequest("hits.xml", str(tmp_path), 0.3, 1e-1, (element,)))
+    answer = run_check(CheckRequest("hits.xml", str(tmp_path), 0.3, 1e-1, (element,)))
     if sentence:
         assert isinstance(answer, Refused)
         assert sentence in answer.sentence

@@ -30,15 +30,15 @@ from engines.reading import ReadingTerms
 from reference.forces import Damper, Spring
 from reference.joints import Drive, Pin, Slot, bodies_of
 from reference.mechanism import Body, Mechanism
-from reports.check.checked import Checked, Plan, check, read
-from reports.check.judging import apart, judged, refuse_disagreement, soft_motion
-from reports.check.telling import answer
+from reports.check.checked import CheckResult, SweepPlan, check, read_user_model
+from reports.check.judging import pose_distance, reference_motion, refuse_disagreement, soft_motion
+from reports.check.telling import answer_section
 from tests import independent
 from tests.independent_spaces import Equations
 from tests.reports.test_check import FOUR_BAR, INPUTS
 
 STEP = 1e-3  # s, of pymunk
-QUICK = Plan(5.0, quick=True)
+QUICK = SweepPlan(5.0, quick=True)
 G = 9.81
 # The judge is good to 1e-10 and both integrations to 1e-11; the motions spread that up to 200 times, and the smallest
 # error here is 1e-4. Measured: 2e-7.
@@ -100,10 +100,12 @@ def of_pymunk(path: Path, t: NDArray[Any]) -> tuple[float, float]:
     return own_errors(np.array(run), truth)
 
 
-def checked(path: Path, duration: float) -> Checked:
+def checked(path: Path, duration: float) -> CheckResult:
     """Of the settings as they are; nothing else is tried."""
     step = STEP if path.suffix == ".py" else None
-    return check(read(path.name, path.parent, ReadingTerms(step=step)), path.name, duration, 1e-4, plan=Plan(0.0))
+    return check(
+        read_user_model(path.name, path.parent, ReadingTerms(step=step)), path.name, duration, 1e-4, plan=SweepPlan(0.0)
+    )
 
 
 # (name, duration [s], freedoms, length [m] of the mechanism where a far end of a spring could enter it).
@@ -177,7 +179,7 @@ def test_a_plane_and_an_order_of_bodies_change_no_error(tmp_path):
 
 
 def test_one_freedom_goes_on_through_a_dead_centre_and_is_judged_to_the_end():
-    found = check(read("b21_coupling_rod.xml", INPUTS), "rod", 1.0, 0.01, plan=QUICK)
+    found = check(read_user_model("b21_coupling_rod.xml", INPUTS), "rod", 1.0, 0.01, plan=QUICK)
     assert found.duration == 1.0
     assert not found.chaotic
     assert found.own_errors.largest == pytest.approx(0.656, rel=1e-3)
@@ -213,7 +215,7 @@ def test_a_parallelogram_passes_its_dead_centres_on_the_branch_on_which_it_arriv
     def rates(at, state):
         return [state[1], -G * scale * (crank + 2 * crank) * np.cos(state[0]) / inertia]
 
-    judge = judged(own, 200, 0.01, 1e-4)
+    judge = reference_motion(own, 200, 0.01, 1e-4)
     t = judge.trajectory.t
     turned = solve_ivp(rates, (0, t[-1]), [start, rate], "DOP853", t_eval=t, rtol=1e-11, atol=1e-12).y[0]
     assert np.count_nonzero(np.diff(np.floor(turned / np.pi))) >= 2  # dead centres
@@ -225,12 +227,12 @@ def test_a_parallelogram_passes_its_dead_centres_on_the_branch_on_which_it_arriv
 
 
 def test_a_loop_that_a_weld_locks_is_said_to_be_locked_first_and_that_a_connect_was_perhaps_meant():
-    found = check(read("b23_weld_locks.xml", INPUTS), "b23_weld_locks", 0.5, 1e-4, plan=QUICK)
+    found = check(read_user_model("b23_weld_locks.xml", INPUTS), "b23_weld_locks", 0.5, 1e-4, plan=QUICK)
     assert re.search(
         r"^b23_weld_locks in MuJoCo can't move, .* \(weld C holds .*; connect, .* was perhaps meant\)", found.verdict
     )
     assert np.isnan(found.own_errors.worst["energy"])
-    facts = dict(answer(found).facts)
+    facts = dict(answer_section(found).facts)
     assert "energy" not in facts["forces"]
     assert "nothing can move" in facts["motion"]
 
@@ -312,8 +314,8 @@ def test_a_limit_whose_ends_are_one_is_the_joint_that_holds_it(kind):
     same = read_space(limited(kind, True), 1e-3).mechanism
     own = found.reading.mechanism
     assert own.degrees_of_freedom() == same.degrees_of_freedom() == (1, 1)
-    truth = judged(same, 20, 0.025).trajectory
-    np.testing.assert_allclose(judged(own, 20, 0.025).trajectory.pose, truth.pose, rtol=0, atol=1e-10)
+    truth = reference_motion(same, 20, 0.025).trajectory
+    np.testing.assert_allclose(reference_motion(own, 20, 0.025).trajectory.pose, truth.pose, rtol=0, atol=1e-10)
     assert any("its min and max are equal" in note.reason for note in found.reading.notes)
     assert found.own_errors.largest < 0.02  # pymunk follows the joint, to the first order of its step
 
@@ -346,6 +348,8 @@ def test_the_declared_softness_of_a_loop_follows_the_diagonal_that_the_flag_sele
         assert refuse_disagreement(reading) < 1e-7
         run[flag] = reading.model.run(5, 200)
         soft[flag] = soft_motion(reading.mechanism, reading.model.regularisation, run[flag].t)
-        assert apart(reading.mechanism, soft[flag], run[flag].pose).max() < (1e-8 if "connect" in loop else 1e-7)
+        assert pose_distance(reading.mechanism, soft[flag], run[flag].pose).max() < (
+            1e-8 if "connect" in loop else 1e-7
+        )
     if "connect" in loop:
-        assert apart(reading.mechanism, soft["enable"], run["disable"].pose).max() > 1e-7  # the flag matters
+        assert pose_distance(reading.mechanism, soft["enable"], run["disable"].pose).max() > 1e-7  # the flag matters

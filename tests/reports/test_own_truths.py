@@ -20,12 +20,12 @@ from engines.mujoco.reading import read as read_mjcf
 from engines.pymunk.reading import read as read_space
 from engines.reading import left_out
 from reference.checks import InvalidMechanism
-from reports.check.checked import Plan, check
+from reports.check.checked import SweepPlan, check
 from reports.check.judging import refuse_disagreement
 
 CLOSE = 1e-8  # rad or m: the judge's tolerance is 1e-12 of a step, and these motions take a few hundred
 INERTIA = 0.5
-NOTHING = Plan(0.0)  # no settings but the user's own are run
+NOTHING = SweepPlan(0.0)  # no settings but the user's own are run
 WHEEL = (
     '<body name="w"><joint name="a" axis="0 1 0" {0}/><inertial pos="0 0 0" mass="1" diaginertia=".5 .5 .5"/></body>'
 )

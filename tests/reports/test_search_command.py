@@ -18,8 +18,8 @@ from reports.cli.options import SEARCH, STORE
 from reports.model.ending import FINE, REFUSED
 from reports.run.store import Store
 from reports.search import mujoco_alone, plan, relations
-from reports.search.scripts import script
-from reports.search.shrinking import shrunk
+from reports.search.scripts import write_script
+from reports.search.shrinking import shrink_case
 from reports.search.subjects import Adapted, Alone
 from tests.reports.test_command_line import call, here, one_line
 
@@ -111,7 +111,7 @@ def test_fresh_seeds_are_drawn_until_the_time_is_over_and_told(here: Path, capfd
     with Store.read(here / "crosscheck-results" / SEARCH / STORE) as store:
         seeds = {json.loads(words)[1] for words in store.remembered()}
     assert seeds
-    assert not seeds & {*plan.seeds()}
+    assert not seeds & {*plan.published_seeds()}
 
 
 def test_seeds_are_those_of_the_last_commit_and_without_git_of_the_sources(
@@ -122,23 +122,23 @@ def test_seeds_are_those_of_the_last_commit_and_without_git_of_the_sources(
     found = []
     for text in ("a", "b"):
         (tmp_path / "reports" / "source.py").write_text(text)
-        plan.origin.cache_clear()
-        found.append((plan.origin()[0], plan.seeds()))
+        plan.seed_origin.cache_clear()
+        found.append((plan.seed_origin()[0], plan.published_seeds()))
     (tmp_path / ".git").mkdir()
     git = subprocess.CompletedProcess([], 0, "0123abcd\n")
     monkeypatch.setattr(plan.subprocess, "run", lambda *_, **__: git)
-    plan.origin.cache_clear()
-    found.append((plan.origin()[0], plan.seeds()))
-    plan.origin.cache_clear()
-    assert [rule for rule, _ in found] == [plan.SOURCES, plan.SOURCES, plan.COMMIT]
+    plan.seed_origin.cache_clear()
+    found.append((plan.seed_origin()[0], plan.published_seeds()))
+    plan.seed_origin.cache_clear()
+    assert [rule for rule, _ in found] == [plan.SOURCES_RULE, plan.SOURCES_RULE, plan.COMMIT_RULE]
     assert len({seeds for _, seeds in found}) == 3
     assert found[2][1][0] == int(hashlib.sha256(b"0123abcd 1").hexdigest()[:8], 16) // 2
 
 
 def test_what_is_published_is_drawn_from_seeds_that_nobody_chose() -> None:
-    pieces = plan.published()
-    assert {piece.seed for piece in pieces} == {*plan.seeds()}
-    assert {piece.decades for piece in pieces} == {*plan.DECADES}
+    pieces = plan.published_chunks()
+    assert {piece.seed for piece in pieces} == {*plan.published_seeds()}
+    assert {piece.decades for piece in pieces} == {*plan.SEED_DECADES}
     names = {piece.subject.name for piece in pieces}
     assert {method_name(engine) for engine in (*VARIANTS, *INSTALLED)} < names
     assert any("toggle" in piece.kinds for piece in pieces)
@@ -172,7 +172,7 @@ def script_of(engine: Engine, kinds: tuple[str, ...], check: str, number: int) -
     subject = Adapted(engine)
     cases = (subject.draw(SEED, each, kinds, 0) for each in range(number, number + 20))
     return next(
-        text for case in cases if set(kinds) <= set(case.kinds) and (text := script(subject, case, check, number))
+        text for case in cases if set(kinds) <= set(case.kinds) and (text := write_script(subject, case, check, number))
     )
 
 
@@ -195,7 +195,7 @@ def test_a_script_shows_an_engines_error_without_the_suite(
 
 
 def test_a_script_of_two_descriptions_shows_both(tmp_path: Path) -> None:
-    text = script_of(mujoco.TUNED, ("pin", "force"), "turned", relations.NAMES.index("turned"))
+    text = script_of(mujoco.TUNED, ("pin", "force"), "turned", relations.RELATIONS.index("turned"))
     assert "as it is" in text
     assert "turned: 5 steps" in text
     first, second = differences(text, tmp_path)
@@ -221,7 +221,7 @@ def test_where_our_code_takes_part_in_every_step_there_is_no_script_nor_of_other
     for engine, kinds in ((mujoco.EXTENDED, ("pin", "skate")), (exudyn.TUNED, ("pin",))):
         subject = Adapted(engine)
         cases = (subject.draw(SEED, number, kinds, 0) for number in range(20))
-        assert script(subject, next(case for case in cases if set(kinds) <= set(case.kinds)), "motion", 0) == ""
+        assert write_script(subject, next(case for case in cases if set(kinds) <= set(case.kinds)), "motion", 0) == ""
 
 
 def test_curved_equalities_without_their_velocity_term_are_found_made_small_and_written_as_a_script(
@@ -229,17 +229,17 @@ def test_curved_equalities_without_their_velocity_term_are_found_made_small_and_
 ) -> None:
     """MuJoCo up to 4.0.1: polycoef beyond the slope. One body is left, and the script shows it without our code."""
     subject = Alone()
-    models = ((n, mujoco_alone.model(SEED, n, ("joint",))) for n in range(20))
+    models = ((n, mujoco_alone.draw_model(SEED, n, ("joint",))) for n in range(20))
     number, case = next((n, model) for n, model in models if subject.ask(model, n, ("instant",)).faults)
 
-    def still(smaller: mujoco_alone.Model) -> bool:
+    def still(smaller: mujoco_alone.RawModel) -> bool:
         try:
             return bool(subject.ask(smaller, number, ("instant",)).faults)
         except ValueError:
             return False
 
-    small = shrunk(case, still, 20.0)
+    small = shrink_case(case, still, 20.0)
     assert len(small.parts) <= 2
     assert len(small.links) == 1
     assert sum(abs(value) for part in small.parts for value in (*part.offset, *part.centre, part.mass)) <= 1
-    assert differences(script(subject, small, "acceleration", number), tmp_path)[0] > 1e-4  # of about 0.01
+    assert differences(write_script(subject, small, "acceleration", number), tmp_path)[0] > 1e-4  # of about 0.01

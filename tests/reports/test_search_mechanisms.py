@@ -10,9 +10,20 @@ import pytest
 
 from reference.checks import InvalidMechanism
 from reference.joints import Slot
-from reports.search.mechanisms import mechanism, recipe, renumbered
-from reports.search.parts import EVERY, FORCES, KINDS, SINGULAR, Link, Part, Recipe, Rim, as_text, from_text
-from reports.search.recipe import LEAST_RANK, NEAREST, build, dependence
+from reports.search.mechanisms import mechanism, recipe, renumber
+from reports.search.parts import (
+    ALL_KINDS,
+    FIRST_KINDS,
+    FORCE_KINDS,
+    SINGULAR_KINDS,
+    Recipe,
+    RecipeBody,
+    RecipeLink,
+    Rim,
+    case_from_json,
+    case_to_json,
+)
+from reports.search.recipe import DEPENDENCE_LIMIT, SINGULAR_LIMIT, build, dependence
 
 CASES = range(40)
 # Of the recipes below. It changes with any change of the drawing: seeds in documents would then name other mechanisms.
@@ -21,10 +32,10 @@ DIGEST = "a70ba875a1348f267414ef4ca0cc7f05393aa4b0745440069cc1fdfeeff82ed7"
 
 def test_a_seed_and_a_number_give_the_same_mechanism_for_ever():
     drawn = [
-        as_text(recipe(seed, number, kinds, decades))
+        case_to_json(recipe(seed, number, kinds, decades))
         for seed in (3, 1001)
         for number in range(20)
-        for kinds in (KINDS, EVERY, ("pin", *SINGULAR))
+        for kinds in (FIRST_KINDS, ALL_KINDS, ("pin", *SINGULAR_KINDS))
         for decades in (0, 2, 4)
     ]
     assert hashlib.sha256("\n".join(drawn).encode()).hexdigest() == DIGEST
@@ -33,7 +44,9 @@ def test_a_seed_and_a_number_give_the_same_mechanism_for_ever():
 
 def test_the_point_of_a_slots_line_lies_beside_the_slide():
     """Adapters meet lines whose own point is elsewhere: at `more` tenths of the size along it."""
-    slot = build(Recipe((Part(offset=(3, 4)),), (Link("slot", 0, 1, (1, 2), turn=2, more=-8),), (0, -10))).joints[0]
+    slot = build(
+        Recipe((RecipeBody(offset=(3, 4)),), (RecipeLink("slot", 0, 1, (1, 2), turn=2, more=-8),), (0, -10))
+    ).joints[0]
     assert isinstance(slot, Slot)
     along = -0.8 * np.array([np.cos(0.6), np.sin(0.6)])
     assert slot.first_point == pytest.approx(np.array([0.4, 0.6]) + along, abs=1e-15)
@@ -45,7 +58,7 @@ def test_every_start_fulfils_its_joints_and_none_hold_the_same(decades):
         drawn = mechanism(5, number, decades=decades)  # a start off its joints is refused by Mechanism itself
         rows = drawn.rows(drawn.pose) / np.tile([1, 1, drawn.length_scale], len(drawn.bodies))
         sizes = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True), compute_uv=False)
-        assert sizes[-1] >= 0.999 * LEAST_RANK * sizes[0]  # the last digits of the threshold
+        assert sizes[-1] >= 0.999 * DEPENDENCE_LIMIT * sizes[0]  # the last digits of the threshold
         assert drawn.twist.any() or np.hypot(*drawn.gravity) > 0
 
 
@@ -56,17 +69,17 @@ def test_a_toggle_holds_its_bodies_together_by_rows_that_nearly_depend_on_each_o
         drawn = recipe(5, number, ("pin", "toggle"))
         mechanism = build(drawn)
         rows = mechanism.rows(mechanism.pose) / np.tile([1, 1, mechanism.length_scale], len(mechanism.bodies))
-        assert dependence(rows) >= 0.999 * NEAREST
-        seen += "toggle" in drawn.kinds and dependence(rows) < LEAST_RANK
+        assert dependence(rows) >= 0.999 * SINGULAR_LIMIT
+        seen += "toggle" in drawn.kinds and dependence(rows) < DEPENDENCE_LIMIT
     assert seen > 10
-    assert "toggle" not in {link.kind for number in CASES for link in recipe(5, number, EVERY).links}
+    assert "toggle" not in {link.kind for number in CASES for link in recipe(5, number, ALL_KINDS).links}
 
 
-@pytest.mark.parametrize("kind", ["all", *FORCES])
+@pytest.mark.parametrize("kind", ["all", *FORCE_KINDS])
 def test_units_are_units(kind):
     """In other units of length, mass and time rows, masses, rates and accelerations scale, and nothing else changes."""
     for number in CASES if kind == "all" else range(12):
-        drawn = recipe(8, number, KINDS if kind == "all" else ("pin", kind))
+        drawn = recipe(8, number, FIRST_KINDS if kind == "all" else ("pin", kind))
         plain, scaled = build(drawn), build(replace(drawn, decades=(-3, 2, 1)))
         assert np.allclose(scaled.pose, plain.pose * [1e-3, 1e-3, 1], rtol=1e-12, atol=1e-15)
         # Velocities are solved for: rounding times the condition of the rows, of the largest.
@@ -84,30 +97,30 @@ def test_units_are_units(kind):
 def test_a_shape_keeps_its_ratios_of_gears_and_gets_other_numbers_for_all_else():
     random = np.random.default_rng(3)
     shape = next(drawn for n in CASES if "gear" in (drawn := recipe(5, n, ("pin", "gear", "drive"))).kinds)
-    others = [renumbered(shape, lambda low, high: int(random.integers(low, high + 1))) for _ in range(5)]
+    others = [renumber(shape, lambda low, high: int(random.integers(low, high + 1))) for _ in range(5)]
     for link, *changed in zip(shape.links, *(other.links for other in others), strict=True):
         assert {each.kind for each in changed} == {link.kind}
         assert ({each.more for each in changed} == {link.more}) == (link.kind == "gear" or not link.more)
-    assert len({as_text(each) for each in (shape, *others)}) == 6
+    assert len({case_to_json(each) for each in (shape, *others)}) == 6
 
 
 def test_a_recipe_survives_being_written():
     for number in CASES:
         drawn = recipe(7, number, decades=1)
-        assert from_text(as_text(drawn), Recipe) == drawn
+        assert case_from_json(case_to_json(drawn), Recipe) == drawn
 
 
 @pytest.mark.parametrize(
     ("told", "why"),
     [
-        (Recipe((Part(parent=1),), ()), "parent"),
-        (Recipe((Part(),), (Link("pin", 1, 1),)), "differ"),
-        (Recipe((Part(),), (Link("pin", 0, 2),)), "second from 1"),
-        (Recipe((Part(),), (Link("glue", 0, 1),)), "one of pin"),
-        (Recipe((Part(),), (Link("roll", 0, 1),)), "two rims"),
-        (Recipe((Part(),), (Link("roll", 0, 1, rims=(Rim("square"), Rim())),)), "one of line"),
-        (Recipe((Part(),), (Link("pin", 0, 1), Link("pin", 0, 1))), "dependent"),
-        (Recipe((Part(),), (Link("roll", 0, 1, rims=(Rim("line"), Rim("line"))),)), "curvatures"),
+        (Recipe((RecipeBody(parent=1),), ()), "parent"),
+        (Recipe((RecipeBody(),), (RecipeLink("pin", 1, 1),)), "differ"),
+        (Recipe((RecipeBody(),), (RecipeLink("pin", 0, 2),)), "second from 1"),
+        (Recipe((RecipeBody(),), (RecipeLink("glue", 0, 1),)), "one of pin"),
+        (Recipe((RecipeBody(),), (RecipeLink("roll", 0, 1),)), "two rims"),
+        (Recipe((RecipeBody(),), (RecipeLink("roll", 0, 1, rims=(Rim("square"), Rim())),)), "one of line"),
+        (Recipe((RecipeBody(),), (RecipeLink("pin", 0, 1), RecipeLink("pin", 0, 1))), "dependent"),
+        (Recipe((RecipeBody(),), (RecipeLink("roll", 0, 1, rims=(Rim("line"), Rim("line"))),)), "curvatures"),
     ],
 )
 def test_a_recipe_that_is_none_is_refused(told, why):
@@ -121,4 +134,4 @@ def test_kinds_that_are_none_are_refused():
     with pytest.raises(InvalidMechanism, match="one or some of"):
         recipe(0, 0, ())
     with pytest.raises(ValueError, match="no recipe"):
-        from_text('{"parts": [{"colour": 1}], "links": []}', Recipe)
+        case_from_json('{"parts": [{"colour": 1}], "links": []}', Recipe)

@@ -34,17 +34,17 @@ from reference.trajectory import Trajectory
 from reports.gate.change import Altered
 from reports.model.ending import BadInput
 from reports.search import law, motions, mujoco_alone, plan, release
-from reports.search.law import LAW
-from reports.search.mujoco_alone import HINGED, xml
+from reports.search.law import LAW_TOLERANCE
+from reports.search.mujoco_alone import HINGED_KINDS, to_mjcf
 from reports.search.oracles import DEFAULT_ORACLES
 from reports.search.page import known_subjects
-from reports.search.parts import EVERY, KINDS
-from reports.search.planted import FAULTS, LEAST, SIZES, Control, Off
+from reports.search.parts import ALL_KINDS, FIRST_KINDS
+from reports.search.planted import CONTROL_ENGINES, FAULT_SIZES, PLANTED_FAULTS, PlantedControl, PlantedFault
 from reports.search.recipe import build
-from reports.search.relations import NAMES
-from reports.search.release import BESIDE, CURVED, answer, process_of
-from reports.search.shrinking import replayed
-from reports.search.subjects import OURS, Adapted, Result
+from reports.search.relations import RELATIONS
+from reports.search.release import BESIDE, CURVED, check_accelerations, process_of
+from reports.search.shrinking import replay_finding
+from reports.search.subjects import OUR_ERROR, Adapted, OracleResult
 from tests.wrong.adapters import Spoiled
 
 SEED = 1
@@ -53,7 +53,7 @@ FINDINGS = sorted((HERE / "findings").glob("*.json"))
 ENGINES = {f"{engine.name} {engine.variant}": engine for engine in (*VARIANTS, *INSTALLED)}
 
 
-def results(engine: Any, kinds: tuple[str, ...], cases: int, oracle: str = "instant") -> list[Result]:
+def results(engine: Any, kinds: tuple[str, ...], cases: int, oracle: str = "instant") -> list[OracleResult]:
     subject = Adapted(engine)
     return [subject.ask(subject.draw(SEED, number, kinds, 0), number, (oracle,)) for number in range(cases)]
 
@@ -96,7 +96,7 @@ def test_cases_that_an_oracle_once_took_for_faults_are_none(part: int) -> None:
         engine, number = ENGINES.get(row["engine"]), int(row["number"])
         if engine is None or engine.missing:
             continue
-        subject, kinds = Adapted(engine), EVERY if row["kinds"] == "all" else plan.taken(engine)
+        subject, kinds = Adapted(engine), ALL_KINDS if row["kinds"] == "all" else plan.supported_kinds(engine)
         case = subject.draw(int(row["seed"]), number, kinds, int(row["decades"]))
         result = subject.ask(case, number, DEFAULT_ORACLES)
         judged += bool(result.errors)
@@ -110,13 +110,13 @@ def test_a_finding_is_as_it_was_written_down(path: Path) -> None:
     finding: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     assert finding["reason"].startswith(("upstream: ", "ours: "))
     subject = next(each for each in known_subjects(['["mujoco alone"]']) if each.name == finding["subject"])
-    result = replayed(finding, subject)
+    result = replay_finding(finding, subject)
     assert (finding["check"] in result.faults) == finding["open"], result
 
 
 def test_a_light_bodys_equations_are_solved_to_its_own_digits_beside_heavy_ones() -> None:
     """From masses of 1e-13 to 1e9 kg: what is left of M (a - free) = J^T f, beside the terms of each of its lines."""
-    mechanism = build(Adapted(TUNED).draw(1199539626, 8, EVERY, 4))
+    mechanism = build(Adapted(TUNED).draw(1199539626, 8, ALL_KINDS, 4))
     rows, inertias = mechanism.rows(mechanism.pose), mechanism.inertias.reshape(-1)
     free = mechanism.unconstrained(mechanism.pose, mechanism.twist)
     solved = constrained(rows, mechanism.bias(mechanism.pose, mechanism.twist), mechanism.inertias, free)
@@ -179,7 +179,7 @@ def _faster(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def off(*arguments: Any, **named: Any) -> Any:
         run = right(*arguments, **named)
-        return replace(run, after=run.after + 3 * LAW * np.abs(run.after).max() * np.eye(3)[0])
+        return replace(run, after=run.after + 3 * LAW_TOLERANCE * np.abs(run.after).max() * np.eye(3)[0])
 
     monkeypatch.setattr(pymunk_declared, "record", off)
 
@@ -234,7 +234,7 @@ def test_in_cases_with_much_noise_a_change_of_mujocos_model_is_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     subject, right = Adapted(engine), mujoco_engine.build_model
-    case = subject.draw(seed, number, EVERY, decades)
+    case = subject.draw(seed, number, ALL_KINDS, decades)
     assert subject.ask(case, number, (oracle,)).faults == ()
 
     def built(*arguments: Any) -> MuJoCoModel:
@@ -248,8 +248,8 @@ def test_in_cases_with_much_noise_a_change_of_mujocos_model_is_found(
 
 def test_a_groove_off_the_centre_of_mass_misses_its_velocities_and_obeys_the_law_on_the_page_of_faults() -> None:
     """The wrong one of Chipmunk's own formula: K^-1 in two directions, of which the part along the normal is kept."""
-    cases = [plan.GROOVE.draw(SEED, number, ("pin", "slot"), 0) for number in range(9)]
-    found = [plan.GROOVE.ask(case, 0, ("instant",)).errors for case in cases if "slot" in case.kinds]
+    cases = [plan.GROOVE_SUBJECT.draw(SEED, number, ("pin", "slot"), 0) for number in range(9)]
+    found = [plan.GROOVE_SUBJECT.ask(case, 0, ("instant",)).errors for case in cases if "slot" in case.kinds]
     assert sum(errors["velocity"][0] > 1e-3 for errors in found) >= 5
     assert max(errors[GROOVE_LAW][0] for errors in found) < 1e-10
 
@@ -277,7 +277,7 @@ class Beside(EngineWrapper):
 
 
 def test_what_a_solver_leaves_is_no_fault_where_the_engine_declares_it() -> None:
-    engine, number = Lagrange("rk4", "projection"), NAMES.index("turned")
+    engine, number = Lagrange("rk4", "projection"), RELATIONS.index("turned")
     for tells, expected in ((False, ("turned",)), (True, ())):
         subject = Adapted(Beside(engine, tells=tells))
         assert subject.ask(subject.draw(SEED, 3, ("pin",), 0), number, ("relations",)).faults == expected
@@ -293,7 +293,7 @@ def test_joints_that_are_tied_to_the_step_are_asked_and_those_that_give_way_for_
     assert any(soft)
     assert any(result.errors for result, loop in zip(tuned, soft, strict=True) if loop)
     assert not any("give way" in reason for result in tuned for reason in result.skipped)
-    assert faults(Altered(TUNED, Off("inertia", 1e-4)), ("pin",), 8, "motions")
+    assert faults(Altered(TUNED, PlantedFault("inertia", 1e-4)), ("pin",), 8, "motions")
 
 
 @dataclass(frozen=True)
@@ -306,7 +306,7 @@ class Boasting(Lagrange):
         return ConvergenceOrder(4)
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
-        rough = motions.SPAN * mechanism.time_scale / motions.SAMPLES / motions.COARSE
+        rough = motions.SPAN * mechanism.time_scale / motions.MOTION_SAMPLES / motions.COARSE_STEPS
         words = ("it is wrong",) if self.warns == ("fine" if dt < 0.75 * rough else "coarse") else ()
         return Spoiled(super().build(mechanism, dt), lambda run: replace(run, warnings=words))
 
@@ -322,7 +322,7 @@ def test_a_motion_that_does_not_fall_with_the_promised_order_is_found_unless_a_r
 
 def test_nobody_is_held_against_a_motion_that_the_judge_does_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(motions, "TRUTH", Judge(tolerance=1e-2))
-    monkeypatch.setattr(motions, "judged", motions.judged.__wrapped__)  # pyright: ignore[reportFunctionMemberAccess]
+    monkeypatch.setattr(motions, "judge_motion", motions.judge_motion.__wrapped__)  # pyright: ignore[reportFunctionMemberAccess]
     for result in results(Boasting("euler", "projection"), ("pin",), 3, "motions"):
         assert not result.errors
         assert "the judge itself does not hold 1e-10" in result.skipped[0]
@@ -332,22 +332,22 @@ def test_an_exception_is_a_fault_of_whoever_raised_it(monkeypatch: pytest.Monkey
     def broken(*_: Any) -> Any:
         raise KeyError("body 7")
 
-    [result] = results(Altered(Lagrange(), broken), KINDS, 1, "motions")
+    [result] = results(Altered(Lagrange(), broken), FIRST_KINDS, 1, "motions")
     assert result.faults == ("raised",)
     assert "body 7" in result.words
     for module, engine, oracle in ((motions, Lagrange("rk4"), "motions"), (law, EXTENDED, "instant")):
         monkeypatch.setattr(module, "difference", broken)
         [result] = results(engine, ("pin",), 1, oracle)
-        assert result.faults == (OURS,)
+        assert result.faults == (OUR_ERROR,)
         assert result.words.startswith("ours: KeyError")
 
 
 # ------------------------------------------------------------------------------------------------------ planted faults
 
 # Single precision hides more: 1e4 roundings of 1.2e-7 of what moves between two descriptions.
-SINGLE: dict[str, float] = dict.fromkeys(NAMES, 1e-2) | {"in other masses": 1e-1}
+SINGLE: dict[str, float] = dict.fromkeys(RELATIONS, 1e-2) | {"in other masses": 1e-1}
 PARTS = 6  # of the faults; each adapter has another part of them every day, and all of them in the slow tests
-ADAPTERS = [name for name in LEAST if name != "mjx"]
+ADAPTERS = [name for name in CONTROL_ENGINES if name != "mjx"]
 
 
 @pytest.mark.parametrize(
@@ -360,10 +360,12 @@ ADAPTERS = [name for name in LEAST if name != "mjx"]
 )
 def test_a_fault_of_a_millionth_is_found_in_every_adapter(name: str, part: int) -> None:
     """Of each kind that it builds, and of each relation; and the same cases without the fault show none."""
-    if missing := next((engine.missing for engine in LEAST[name] if engine.missing), ""):
+    if missing := next((engine.missing for engine in CONTROL_ENGINES[name] if engine.missing), ""):
         pytest.skip(missing)
-    for fault in FAULTS[part::PARTS]:
-        found = Control(name, fault, (SINGLE.get(fault, SIZES[0]) if name == "box2d" else SIZES[0],)).run()
+    for fault in PLANTED_FAULTS[part::PARTS]:
+        found = PlantedControl(
+            name, fault, (SINGLE.get(fault, FAULT_SIZES[0]) if name == "box2d" else FAULT_SIZES[0],)
+        ).run()
         if found["asked"]:
             assert found["check"], fault
         else:  # Box2D declares no law and promises no order: descriptions alone are compared
@@ -375,18 +377,20 @@ def test_a_fault_of_a_millionth_is_found_in_every_adapter(name: str, part: int) 
 
 def test_mujoco_alone_obeys_the_law_with_connects_welds_and_gears() -> None:
     for number in range(25):
-        assert answer(mujoco_alone.model(SEED, number, HINGED))["errors"]["acceleration"] < 1e-10
+        assert (
+            check_accelerations(mujoco_alone.draw_model(SEED, number, HINGED_KINDS))["errors"]["acceleration"] < 1e-10
+        )
 
 
 def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve() -> None:
     """Of first = slope second + bend second^2 with second zero: the rates of a sum are squared, not summed squares."""
     asked = 0
     for number in range(12):
-        model = mujoco_alone.model(SEED, number, ("tendon",))
-        law = mujoco_alone.judged(model)
+        model = mujoco_alone.draw_model(SEED, number, ("tendon",))
+        law = mujoco_alone.start_equations(model)
         accelerations = law.expected(np.zeros((len(model.links), 1)))
         for link in model.links:
-            first, second = mujoco_alone.wrapped(model, link)
+            first, second = mujoco_alone.coupled_coordinates(model, link)
             turning = link.curve[1] * law.rates[second].sum() ** 2
             left = accelerations[first].sum() - link.curve[0] / 2 * accelerations[second].sum() - turning
             assert abs(left) < 1e-9 * max(1.0, np.abs(accelerations).max())
@@ -396,18 +400,18 @@ def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve() -> N
 
 def test_the_known_fault_of_curved_equalities_hides_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     """A mass that is off by a millionth, in models whose curved equalities lack their velocity term."""
-    cases = [mujoco_alone.model(1, number, ("joint", "tendon")) for number in range(20)]
-    moving = [case for case in cases if CURVED in answer(case)["errors"]]
+    cases = [mujoco_alone.draw_model(1, number, ("joint", "tendon")) for number in range(20)]
+    moving = [case for case in cases if CURVED in check_accelerations(case)["errors"]]
     assert len(moving) >= 5
     for case in moving:
-        errors = answer(case)["errors"]
+        errors = check_accelerations(case)["errors"]
         assert errors[BESIDE] < 1e-10 < errors[CURVED]
 
-    def heavier(model: mujoco_alone.Model) -> str:
-        return re.sub(r'mass="([^"]+)"', lambda one: f'mass="{1.000001 * float(one[1])!r}"', xml(model), count=1)
+    def heavier(model: mujoco_alone.RawModel) -> str:
+        return re.sub(r'mass="([^"]+)"', lambda one: f'mass="{1.000001 * float(one[1])!r}"', to_mjcf(model), count=1)
 
-    monkeypatch.setattr(release, "xml", heavier)
-    assert any(answer(case)["errors"][BESIDE] > LAW for case in moving)
+    monkeypatch.setattr(release, "to_mjcf", heavier)
+    assert any(check_accelerations(case)["errors"][BESIDE] > LAW_TOLERANCE for case in moving)
 
 
 @pytest.mark.slow
@@ -419,11 +423,15 @@ def test_the_fault_of_a_past_release_is_found(version: str, most: int) -> None:
         process = process_of(version)
     except BadInput as reason:
         pytest.skip(f"MuJoCo {version} can't be installed here: {reason}")
-    models = (mujoco_alone.model(SEED, number, HINGED) for number in range(most))
+    models = (mujoco_alone.draw_model(SEED, number, HINGED_KINDS) for number in range(most))
     try:
-        wrong = next(model for model in models if not answer(model, version)["errors"]["acceleration"] <= LAW)
+        wrong = next(
+            model
+            for model in models
+            if not check_accelerations(model, version)["errors"]["acceleration"] <= LAW_TOLERANCE
+        )
     finally:
         process.kill()
         process.communicate()
-    assert answer(wrong)["errors"]["acceleration"] <= LAW  # the installed release is right there
+    assert check_accelerations(wrong)["errors"]["acceleration"] <= LAW_TOLERANCE  # the installed release is right there
     assert version != "4.0.0" or wrong.sparse

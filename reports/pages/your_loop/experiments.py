@@ -16,8 +16,8 @@ from engines.pymunk.reading import read
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.scene import Scene
-from reports.check.judging import IdealMotion, judged
-from reports.check.judging import errors as errors_of_run
+from reports.check.judging import IdealMotion, reference_motion
+from reports.check.judging import measure_errors as errors_of_run
 from reports.model.tasks import Task, Values
 from reports.pages.common import OfMethod
 from reports.pages.your_loop.linkages import LINKAGES
@@ -69,7 +69,7 @@ def draw(scene: Scene, number: int) -> Mechanism:
 
 @lru_cache(maxsize=COUNT)  # all engines are compared with the same motions
 def _ideal(mechanism: Mechanism, samples: int, duration: float) -> IdealMotion:
-    return judged(mechanism, samples, duration / samples)
+    return reference_motion(mechanism, samples, duration / samples)
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ class BeforeAndAfter(Task):
         try:
             reading = read(space, LINKAGE_STEP)
             spacing = MILLISECONDS_PER_SAMPLE * LINKAGE_STEP
-            ideal = judged(reading.mechanism, round(ANGLE_DURATION / spacing), spacing)
+            ideal = reference_motion(reading.mechanism, round(ANGLE_DURATION / spacing), spacing)
         except (InvalidMechanism, Unsupported):
             return [nan, nan]
         model: Any = reading.model

@@ -12,9 +12,9 @@ from typing import Any, ClassVar
 
 from engines.reading import ReadingTerms
 from reference.scenes.four_bar.scenes import FreeFourBar
-from reports.check.checked import Checked, Plan, Tried, check, read, readers
-from reports.check.document import data
-from reports.check.pictures import from_text, pictures, shown_of
+from reports.check.checked import CheckResult, SettingRun, SweepPlan, check, read_user_model, readers
+from reports.check.document import check_data
+from reports.check.pictures import picture_data_from_text, picture_data_of, render_pictures
 from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values
 from reports.write.tables import markdown, number
@@ -44,9 +44,9 @@ class ModelCheck(Task):
         """The output of `crosscheck check --json` without CPU times, and the data of the pictures."""
         with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
             (Path(folder) / self.file).write_text(self.text, encoding="utf-8")
-            reading = read(self.argument, Path(folder), ReadingTerms(step=self.step))
-            checked = check(reading, self.file, self.duration, self.tolerance, plan=Plan(float("inf")))
-        document = data(checked)
+            reading = read_user_model(self.argument, Path(folder), ReadingTerms(step=self.step))
+            checked = check(reading, self.file, self.duration, self.tolerance, plan=SweepPlan(float("inf")))
+        document = check_data(checked)
         for setting in (document, *document["tried"]):
             setting.pop("cpu")
             setting.pop("front", None)
@@ -59,10 +59,10 @@ class ModelCheck(Task):
             "lines": list(coarsest.change.lines),
         }
         del document["next_decade"], document["over_time"]
-        return {"found": json.dumps(document, sort_keys=True), "shown": shown_of(checked, coarsest).as_text()}
+        return {"found": json.dumps(document, sort_keys=True), "shown": picture_data_of(checked, coarsest).as_text()}
 
 
-def coarsest_enough(checked: Checked) -> Tried | None:
+def coarsest_enough(checked: CheckResult) -> SettingRun | None:
     """The first setting with the largest step within the tolerance."""
     enough = [setting for setting in checked.table if setting.error <= checked.tolerance]
     return max(enough, key=lambda setting: setting.change.dt, default=None)
@@ -139,7 +139,7 @@ def figures(material: Material) -> dict[str, str]:
         f"{task.stem}_{key}": drawing
         for task in MODEL_CHECKS
         if (answer := material.finished(task)) is not None
-        for key, (_, drawing) in pictures(from_text(str(answer.values["shown"]))).items()
+        for key, (_, drawing) in render_pictures(picture_data_from_text(str(answer.values["shown"]))).items()
     }
 
 
