@@ -107,7 +107,7 @@ def _motion(engine: Any, title: str, mechanism: Mechanism, dt: float, steps: int
         return Block(title, _mujoco_lines(engine, mechanism, dt, steps), "poses(model, data, start)", expected)
     model = engine.model(mechanism, dt)
     constant = any(isinstance(force, Force | Torque) for force in mechanism.forces)
-    if model.aims or model.repairs or engine.leapfrog or constant:
+    if model.before_step or model.after_step or engine.leapfrog or constant:
         raise Unsupported("code of ours takes part in every step")
     lines = _pymunk_lines(model, model.space.iterations)
     loop = f"for _ in range({steps}):\n    space.step({dt / model.unit!r})"
@@ -118,8 +118,8 @@ def _of_velocities(engine: Any, mechanism: Mechanism) -> str:
     """pymunk's objects before one step, the step, and the velocities that its joints ask for."""
     dt = INSTANT_STEP * mechanism.time_scale
     model = engine.model(mechanism, dt)
-    for aim in model.aims:
-        aim(dt / model.unit)
+    for update in model.before_step:
+        update(dt / model.unit)
     expected = first_law(engine, mechanism, dt) * model.unit
     lines = [*_pymunk_lines(model, MOST_SWEEPS), f"space.step({dt / model.unit!r})"]
     read = f"[(*body.velocity, body.angular_velocity) for body in ({_bodies(model)},)]"
