@@ -20,7 +20,7 @@ from engines.mujoco.reading import read as read_mujoco
 from engines.mujoco.reading.own_model import positions
 from engines.pymunk.reading import read
 from reference.checks import InvalidMechanism
-from reports.check.checked import Plan, check
+from reports.check.checked import SweepPlan, check
 from reports.check.judging import refuse_disagreement
 from tests import ROOT
 from tests.independent_spaces import Equations
@@ -125,7 +125,7 @@ def test_in_mujoco_too_and_a_stiffer_row_comes_nearer_to_the_impulse():
         assert reading.mechanism.twist[:, 2] == pytest.approx([rate, -2 * rate], rel=1e-12)
         assert "mesh torque" in reading.notes[0].reason
         assert refuse_disagreement(reading) < STEPPED
-        checked = check(reading, "meshed", 0.3, 1e-4, plan=Plan(0.0))
+        checked = check(reading, "meshed", 0.3, 1e-4, plan=SweepPlan(0.0))
         errors.append(checked.own_errors.largest)
         # The error by the compliance of the row is separated from that of the step, with the velocities of the user.
         assert checked.parts.softness == pytest.approx(checked.own_errors.largest, rel=0.05)
