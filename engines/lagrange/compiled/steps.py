@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from engines.lagrange.compiled import entry, inlined, inner, merged
 from engines.lagrange.compiled.forces import applied_accelerations
 from engines.lagrange.compiled.joints import set_bodies, set_equations
 from engines.lagrange.compiled.solve import FEW_ROWS, WELL_CONDITIONED, factorise_rows, row_times, solve
 from engines.lagrange.records import CLOSED, RowLaw, RowSelection
+
+# numba would compile `solve` anew for the literal 0.
+NO_CORRECTIONS = np.int64(0)
 
 
 @inner
@@ -31,8 +36,7 @@ def accelerate(system, pose, twist, t, out):
 
 @merged
 def set_right_side(system, twist, applied):
-    """Set what J times the reactions' accelerations has to be: the bias, less the applied accelerations; of regularised
-    rows less the acceleration of their springs and dampers, too."""
+    """Set the right side: the bias, less the applied accelerations, less those of springs and dampers in soft rows."""
     rows = len(system.rows)
     for row in range(rows):
         system.right[row] = system.equations[row].bias - row_times(system, row, applied)
@@ -47,46 +51,49 @@ def set_right_side(system, twist, applied):
 
 @inner
 def project(system, pose, twist, t, iterations, pose_unit):
-    """Move a pose and a twist to the nearest ones, by mass, that satisfy the joints, by Newton's method.
-
-    `open_from` of the status is the first time at which the iterations did not close the joints: the step ended too far
-    from any pose of the joints, or at a singular one.
-    """
-    rows = len(system.rows)
+    """Move a pose and a twist to the nearest ones, by mass, that satisfy the joints."""
+    rows, moving = len(system.rows), len(pose) - 3
     if rows == 0:
         return
-    right, change, moving = system.right, system.change, len(pose) - 3
-    last_pose = iterations if system.constants.holonomic_rows > 0 else 0
-    all_holonomic = system.constants.holonomic_rows == rows
-    keeps_factor = False
-    for iteration in range(iterations):
-        if iteration == last_pose:
-            break
-        set_bodies(system.bodies, pose, twist)
-        set_equations(system, t)
-        for row in range(rows):
-            right[row] = -system.equations[row].gap
-        system.status.selection = RowSelection.ALL if all_holonomic else RowSelection.HOLONOMIC
-        factorise_rows(system)
-        solve(system, 1 if keeps_factor else 0)
-        largest = 0.0
-        for k in range(moving):
-            pose[k] += change[k]
-            largest = max(largest, abs(change[k]) / pose_unit[k])
-        if not largest > CLOSED:
-            last_pose, keeps_factor = iteration + 1, all_holonomic
-        elif iteration + 1 == last_pose and math.isnan(system.status.open_from):
-            system.status.open_from = t
+    keeps_factor = system.constants.holonomic_rows > 0 and project_pose(system, pose, twist, t, iterations, pose_unit)
     set_bodies(system.bodies, pose, twist)
     set_equations(system, t)
     for row in range(rows):
-        right[row] = system.equations[row].rate - row_times(system, row, twist)
+        system.right[row] = system.equations[row].rate - row_times(system, row, twist)
     system.status.selection = RowSelection.ALL
     if not keeps_factor or system.status.factor_pivot < WELL_CONDITIONED:
         factorise_rows(system)
     solve(system, 1 if keeps_factor else 0)
     for k in range(moving):
-        twist[k] += change[k]
+        twist[k] += system.change[k]
+
+
+@merged
+def project_pose(system, pose, twist, t, iterations, pose_unit):
+    """Newton's method for the pose; returns whether its last factor is good enough for the twist.
+
+    `open_from` of the status is the first time at which the iterations did not close the joints: the step ended too far
+    from any pose of the joints, or at a singular one.
+    """
+    rows, moving = len(system.rows), len(pose) - 3
+    has_holonomic_rows_only = system.constants.holonomic_rows == rows
+    for _ in range(iterations):
+        set_bodies(system.bodies, pose, twist)
+        set_equations(system, t)
+        for row in range(rows):
+            system.right[row] = -system.equations[row].gap
+        system.status.selection = RowSelection.ALL if has_holonomic_rows_only else RowSelection.HOLONOMIC
+        factorise_rows(system)
+        solve(system, NO_CORRECTIONS)
+        largest = 0.0
+        for k in range(moving):
+            pose[k] += system.change[k]
+            largest = max(largest, abs(system.change[k]) / pose_unit[k])
+        if not largest > CLOSED:
+            return has_holonomic_rows_only
+    if math.isnan(system.status.open_from):
+        system.status.open_from = t
+    return False
 
 
 @inlined
