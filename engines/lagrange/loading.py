@@ -33,9 +33,10 @@ def installed() -> bool:
     return find_spec("numba") is not None
 
 
-def is_cold() -> bool:
-    """Whether the judge's first motion has to wait until its functions are compiled: up to two minutes."""
-    return installed() and not any(_cache_folder().rglob("*adaptive_steps*.nbi"))
+def is_cold(adaptive: bool) -> bool:
+    """Whether a first run with adaptive (the judge) or fixed steps has to wait for the compiler: up to two minutes."""
+    index = "*adaptive_steps*.nbi" if adaptive else "*fixed_steps*.nbi"
+    return installed() and not any(_cache_folder().rglob(index))
 
 
 class CompiledFunctions(NamedTuple):

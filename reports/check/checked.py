@@ -241,7 +241,11 @@ def check(
         raise InvalidMechanism(
             f"--duration is {duration:g} s; the model's own step is {model.dt:g} s; give a longer one"
         )
-    told(f"{COMPILING_NOTE}, before the ideal motion is followed" if is_cold() else "following the ideal motion")
+    told(
+        f"{COMPILING_NOTE}, before the ideal motion is followed"
+        if is_cold(adaptive=True)
+        else "following the ideal motion"
+    )
     judge = reference_motion(mechanism, samples, every * model.dt, tolerance)
     truth = judge.trajectory
     samples = len(truth.t) - 1

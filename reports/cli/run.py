@@ -178,7 +178,7 @@ def run_interruptible(
     Raises KeyboardInterrupt, having said what is stored.
     """
     by = crew or cluster.pool(None)
-    if is_cold():
+    if is_cold(adaptive=False):
         print("compiling the judge's machine code, once for this installation: up to two minutes", file=sys.stderr)
     with interruptible(console, store, items, limit, "cells", fresh) as (waiting, done, watch):
         return run_into(store, waiting, True, limit, by.threads, done, watch, supervised=by.supervise)
