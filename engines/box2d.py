@@ -4,34 +4,35 @@ A body is a dynamic body whose mass, centre and inertia are set directly; it may
 no contact is the subject. A Pin is a revolute joint, a Weld a weld joint, a Rod a distance joint, a Slot a wheel joint
 without its spring (a point on a line that is free to turn), or a prismatic joint where a Drive of rate zero keeps the
 angle. A Drive is the motor of the Pin or Slot between the same two bodies, with more torque than it can need. The
-stiffness of its springs is that of the mass which they feel, pose by pose; so our code works out what springs, dampers,
-forces and torques do to bodies before a step and applies forces, as users do.
+stiffness of the engine's springs depends on the effective mass, and so on the pose; so our code evaluates springs,
+dampers, forces and torques before each step and applies forces to the bodies, as users do.
 
-What one step does (its solver.c): `substeps` times with h = dt / substeps it kicks, lets every joint correct the
-velocities once with a push against its gap (soft, below), drifts by p += v h, and corrects once more without the push.
-So a state is read at its instant, and the motion is that of a semi-implicit Euler method of step h.
+One step (its solver.c) repeats `substeps` times, with h = dt / substeps: apply forces; correct the velocities once for
+every joint, with a soft term against its gap (see below); integrate the poses, p += v h; correct the velocities again
+without the soft term. The state belongs to its instant, and the motion is that of semi-implicit Euler with the step h.
 
 Joints are springs of 60 Hz, or of a quarter of the rate of sub-steps where that is less, with a damping ratio of 2,
 solved implicitly (b2MakeSoft in its solver.h; `crosscheck search` holds single joints to it): frequency w and ratio z
-give a push of a share h w (2 z + h w) / (1 + h w (2 z + h w)) of w / (2 z + h w) times the gap. Since the push is taken
-back after the drift, a gap closes at about w^2 h = 1.4e5 / s^2 times h: the shorter the sub-step, the slower, while
-what opens it falls with h too. So no order can be promised. pyb2d3 0.11.1 has no function for the frequency of joints
-(`b2World_SetJointTuning`). But a weld joint has frequencies of its own, which stay in the correction after the drift.
-With `closing`, a Pin without a drive is a weld joint that nearly nothing (SLACK) keeps from turning, whose points are
-held at the frequency closing / h; Rods and Welds are held at it too. A quarter is the engine's maximum for contacts; at
-a half a chain of ten pins blows up. So stiff a pin turns the rounding of places into forces: the shorter the step, the
-noisier are reactions. The page of engines shows the effect of frequency and of sub-steps.
+give the velocity w / (2 z + h w) times the gap, times h w (2 z + h w) / (1 + h w (2 z + h w)). Since this velocity is
+removed after the integration, a gap closes at the rate w^2 h, w^2 = 1.4e5 / s^2: the shorter the sub-step, the slower,
+while the error that opens the gap falls with h too. So no order is declared. pyb2d3 0.11.1 has no function for the
+frequency of joints (`b2World_SetJointTuning`). But a weld joint has its own frequencies, which the second correction
+includes. With `closing`, a Pin without a drive is a weld joint with almost no angular stiffness (SLACK), whose points
+have the frequency closing / h; so have Rods and Welds. The engine's maximum for contacts is closing = 1/4; at 1/2 a
+chain of ten pins diverges. So stiff a pin turns the rounding of positions into forces: the shorter the step, the larger
+is the noise of reactions. The page of engines shows the effect of frequency and of sub-steps.
 
-No body turns by more than an eighth of a turn in a step: a faster one is slowed down, with a warning.
+A body turns by at most an eighth of a turn in a step: the engine reduces a larger rate, and the run has a warning.
 
-Numbers are of single precision: an error below about 1e-6 of the motion, and an acceleration below 1e-7 of the speed
-over the step, can't be seen. The engine's functions between angles and rotations are approximations, off by 1.6e-3 and
-3e-5 rad, so both are computed here; whole turns, which a rotation does not keep, are restored.
+Numbers are in single precision: an error below about 1e-6 of the motion, and an acceleration below 1e-7 of the speed
+over the step, are rounding. The engine's functions between angles and rotations are approximations with errors of
+1.6e-3 and 3e-5 rad, so both are computed here; whole turns, which a rotation does not contain, are restored.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -48,82 +49,45 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
-STEP_COST = 3e-6  # s of a step of three bodies, without its sub-steps
-SUBSTEP_COST = 0.8e-6  # s
-SLOP = 0.005  # m: the shortest distance of a joint
-ENOUGH = 1e30  # N m, of a motor: single precision ends at 3e38
-FASTEST = 1e18  # m/s, which the engine would cut to 400; single precision holds no larger square
-TURNED = math.pi / 4  # in a step: a faster body is slowed to it, and the binding has no switch for that
-FORCES_COST = 150e-6  # s, of force elements, which are worked out by numpy
-# Of its points' frequency: a weld joint's spring that keeps it from turning in no number of steps; 0 is the stiffest.
+# CPU time of a step of three bodies without its sub-steps [s], of a sub-step, and of the force elements in numpy.
+BOX2D_STEP_COST = 3e-6
+SUBSTEP_COST = 0.8e-6
+NUMPY_FORCES_COST = 150e-6
+# The shortest distance of a joint [m].
+SLOP = 0.005
+# The torque of a motor [N m]; single precision ends at 3e38.
+MOTOR_TORQUE = 1e30
+# The engine's limit on speeds [m/s], 400 as shipped. The square must be a number of single precision.
+SPEED_LIMIT = 1e18
+# The largest turn of a body in a step [rad]: the engine reduces larger rates, and the binding can't switch this off.
+TURN_LIMIT = math.pi / 4
+# Angular frequency of a weld joint that stands for a pin, relative to that of its points: it turns the body by less
+# than rounding in any number of steps. 0 would be the stiffest value.
 SLACK = 4e-9
 RATE_CUT = RunWarning("upstream: a rate was cut to an eighth of a turn in a step", "rate limit", "upstream")
-JOINTS = "https://box2d.org/documentation/group__joint.html"  # all that there are
-
-
-@dataclass(frozen=True)
-class Box2D(ExtraEngine):
-    """An engine in the sense of `engines.Engine`.
-
-    `substeps` in a step, 4 as in the engine's manual; `closing`: the frequency of pins, welds and rods times the length
-    of a sub-step, 0 for joints as shipped.
-    """
-
-    name = "box2d"
-    packages = ("pyb2d3",)
-    modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
-    forces_by: ClassVar[Enforcement] = "ours"
-    precision: ClassVar[float] = 2.0**-23  # of its numbers
-    angle_error: ClassVar[float] = 2.8e-5  # b2Atan2 of its math_functions.h is a polynomial, by which it reads a weld
-    capability: ClassVar[Capability] = Capability(
-        "box2d",
-        frozenset({Pin, Slot, Drive, Rod, Weld}),
-        lacks={
-            Gear: f"box2d has no gears since version 3 ({JOINTS})",
-            Skate: "box2d has no joint for a velocity across a blade alone: those for lines hold a place on them "
-            f"({JOINTS})",
-            Roll: "in box2d a disc rolls by contact and friction, and our adapter builds no contact",
-        },
-    )
-
-    variant: Name
-    substeps: Count = 4
-    closing: NonNegative = 0.0
-
-    @validated
-    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """None: see the module."""
-        return NotDeclared("a joint of box2d closes its gap the more slowly the shorter the sub-step is")
-
-    @validated
-    def step_cost(self, mechanism: Mechanism) -> float:
-        """About what a step takes [s]."""
-        forces = FORCES_COST if mechanism.forces else 0.0
-        return (STEP_COST + SUBSTEP_COST * self.substeps) * over_three(mechanism) + forces
-
-    def model(self, mechanism: Mechanism, dt: float) -> Box2DWorld:
-        return Box2DWorld(mechanism, dt, self.substeps, self.closing * self.substeps / dt)
+JOINT_LIST = "https://box2d.org/documentation/group__joint.html"
 
 
 class Box2DWorld:
-    """The engine's objects for one mechanism; `hertz`: the frequency of stiffened joints, 0 for those as shipped."""
+    """The engine's objects for one mechanism; `hertz`: the frequency of stiffened joints, 0 for joints as shipped."""
 
     def __init__(self, mechanism: Mechanism, dt: float, substeps: int, hertz: float) -> None:
         import pyb2d3
 
         self.mechanism, self.box2d, self.dt, self.substeps, self.hertz = mechanism, pyb2d3, dt, substeps, hertz
-        self.drives = self._motors()
-        self.world = pyb2d3.World(gravity=mechanism.gravity, maximum_linear_speed=FASTEST)
+        self.motors = self._motors()
+        self.world = pyb2d3.World(gravity=mechanism.gravity, maximum_linear_speed=SPEED_LIMIT)
         self.world.continuous_enabled = False
         self.ground = self.world.create_static_body(position=(0.0, 0.0))
         self.bodies = [self._body(body) for body in mechanism.bodies]
-        self.joints = [self._join(joint) for joint in mechanism.joints if not isinstance(joint, Drive)]
+        joints = [joint for joint in mechanism.joints if not isinstance(joint, Drive)]
+        self.joints = [BOX2D_JOINTS[type(joint)](self, joint) for joint in joints]
         self.angles = mechanism.pose[:, 2].copy()  # of the last step, not wrapped
         count, rows = len(self.bodies), mechanism.row_count
         self.size = Size(count, 3 * count, rows, rows)
 
     def _motors(self) -> dict[frozenset[str | None], Drive]:
-        """The drive of each pair of bodies; raises Unsupported for what the engine has no joint for."""
+        """The drive of each pair of bodies; raises Unsupported for a drive that can be no motor."""
         joints = self.mechanism.joints
         held = {frozenset((joint.first, joint.second)) for joint in joints if isinstance(joint, Pin | Slot)}
         drives = [joint for joint in joints if isinstance(joint, Drive)]
@@ -143,46 +107,63 @@ class Box2DWorld:
         rotation, masses = self.box2d.Rot(), self.box2d.MassData()
         rotation.c, rotation.s = math.cos(angle), math.sin(angle)
         start = {"position": (x, y), "rotation": rotation, "linear_velocity": (vx, vy), "angular_velocity": rate}
-        made = self.world.create_dynamic_body(**start, enable_sleep=False)
+        dynamic = self.world.create_dynamic_body(**start, enable_sleep=False)
         masses.mass, masses.center, masses.rotational_inertia = body.mass, (0.0, 0.0), body.inertia
-        made.mass_data = masses
-        return made
+        dynamic.mass_data = masses
+        return dynamic
 
     def _named(self, name: str | None) -> Any:
         return self.ground if name is None else self.bodies[self.mechanism.body_index(name)]
 
-    def _join(self, joint: Any) -> Any:
+    def _ends(self, joint: Pin | Slot | Rod | Weld) -> dict[str, Any]:
         bodies = {"body_a": self._named(joint.first), "body_b": self._named(joint.second)}
-        ends = {**bodies, "local_anchor_a": joint.first_point, "local_anchor_b": joint.second_point}
-        if isinstance(joint, Rod):
-            if joint.length < SLOP:
-                raise Unsupported(
-                    f"joint {joint.name!r}: box2d takes a rod of {joint.length:g} m for one of {SLOP:g} m, its slop"
-                )
-            spring = {"enable_spring": True, "hertz": self.hertz, "damping_ratio": 1.0} if self.hertz else {}
-            return self.world.create_distance_joint(**ends, length=joint.length, **spring)
-        if isinstance(joint, Weld):
-            return self._weld(ends, self.hertz, reference_angle=math.remainder(joint.angle, 2 * math.pi))
-        # Of two joints between two bodies the first has the motor.
-        drive = self.drives.pop(frozenset((joint.first, joint.second)), None)
-        sign = 1.0 if drive is None or drive.second == joint.second else -1.0
-        motor: dict[str, Any] = {}
-        if drive is not None:
-            motor = {"enable_motor": True, "motor_speed": sign * drive.turning_rate, "max_motor_torque": ENOUGH}
-        if isinstance(joint, Pin):
-            if drive is None and self.hertz:
-                return self._weld(ends, SLACK * self.hertz, angular_damping_ratio=0.0)
-            return self.world.create_revolute_joint(**ends, **motor)
+        return {**bodies, "local_anchor_a": joint.first_point, "local_anchor_b": joint.second_point}
+
+    def add_rod(self, joint: Rod) -> Any:
+        if joint.length < SLOP:
+            raise Unsupported(
+                f"joint {joint.name!r}: box2d takes a rod of {joint.length:g} m for one of {SLOP:g} m, its slop"
+            )
+        spring = {"enable_spring": True, "hertz": self.hertz, "damping_ratio": 1.0} if self.hertz else {}
+        return self.world.create_distance_joint(**self._ends(joint), length=joint.length, **spring)
+
+    def add_weld(self, joint: Weld) -> Any:
+        angle = math.remainder(joint.angle, 2 * math.pi)
+        return self._weld(self._ends(joint), self.hertz, reference_angle=angle)
+
+    def add_pin(self, joint: Pin) -> Any:
+        drive, _, motor = self._take_motor(joint)
+        if drive is None and self.hertz:
+            return self._weld(self._ends(joint), SLACK * self.hertz, angular_damping_ratio=0.0)
+        return self.world.create_revolute_joint(**self._ends(joint), **motor)
+
+    def add_slot(self, joint: Slot) -> Any:
+        drive, sign, motor = self._take_motor(joint)
         line = (math.cos(joint.line_angle), math.sin(joint.line_angle))
         if drive is not None and drive.turning_rate == 0:
             angle = math.remainder(sign * drive.offset, 2 * math.pi)
-            return self.world.create_prismatic_joint(**ends, local_axis_a=line, reference_angle=angle)
-        return self.world.create_wheel_joint(**ends, **motor, local_axis_a=line, enable_spring=False)
+            return self.world.create_prismatic_joint(**self._ends(joint), local_axis_a=line, reference_angle=angle)
+        return self.world.create_wheel_joint(**self._ends(joint), **motor, local_axis_a=line, enable_spring=False)
+
+    def _take_motor(self, joint: Pin | Slot) -> tuple[Drive | None, float, dict[str, Any]]:
+        """The drive between the joint's bodies, its sign, and the settings of a motor.
+
+        Of two joints between the same bodies the first has the motor.
+        """
+        drive = self.motors.pop(frozenset((joint.first, joint.second)), None)
+        if drive is None:
+            return None, 1.0, {}
+        sign = 1.0 if drive.second == joint.second else -1.0
+        speed = sign * drive.turning_rate
+        return drive, sign, {"enable_motor": True, "motor_speed": speed, "max_motor_torque": MOTOR_TORQUE}
 
     def _weld(self, ends: dict[str, Any], turning: float, **further: float) -> Any:
-        """A weld joint whose points are held at our frequency, and whose angle at this one [Hz]; 0 is the stiffest."""
-        held = {"linear_hertz": self.hertz, "linear_damping_ratio": 1.0, "angular_hertz": turning}
-        return self.world.create_weld_joint(**ends, **{**held, "angular_damping_ratio": 1.0, **further})
+        """Create a weld joint with the frequencies `hertz` of its points and `turning` of its angle [Hz].
+
+        0 is the stiffest value.
+        """
+        frequencies = {"linear_hertz": self.hertz, "linear_damping_ratio": 1.0, "angular_hertz": turning}
+        return self.world.create_weld_joint(**ends, **{**frequencies, "angular_damping_ratio": 1.0, **further})
 
     def _poses(self) -> list[tuple[float, float, float]]:
         """x, y and the angle within a turn."""
@@ -194,7 +175,7 @@ class Box2DWorld:
         return [(velocity.x, velocity.y, rate) for velocity, rate in velocities]
 
     def _push(self) -> None:
-        """Give bodies what force elements do now: the engine forgets it after a step."""
+        """Apply the force elements to the bodies, for one step."""
         pose, twist = np.array(self._poses()), np.array(self._twists())
         for index, angle in enumerate(pose[:, 2].tolist()):
             self.angles[index] += math.remainder(angle - self.angles[index], 2 * math.pi)
@@ -215,13 +196,66 @@ class Box2DWorld:
         )
         pose[..., 2] = unwrapped(pose[..., 2], twist[..., 2], self.mechanism.pose[:, 2], self.dt * every)
         masses = [body.mass_data for body in self.bodies]
-        inertias = np.array([(each.mass, each.mass, each.rotational_inertia) for each in masses])
+        inertias = np.array([(mass.mass, mass.mass, mass.rotational_inertia) for mass in masses])
         gravity = np.array([self.world.gravity.x, self.world.gravity.y])
         with np.errstate(all="ignore"):
-            before = twist[..., 2] - acceleration[..., 2] * self.dt
-            turned = np.fmax.reduce(np.abs([twist[..., 2], before]), axis=None) * self.dt
-        warnings = (RATE_CUT,) if turned > 0.999 * TURNED else ()
+            previous = twist[..., 2] - acceleration[..., 2] * self.dt
+            turn = np.fmax.reduce(np.abs([twist[..., 2], previous]), axis=None) * self.dt
+        warnings = (RATE_CUT,) if turn > 0.999 * TURN_LIMIT else ()
         return Recorded(pose, twist, acceleration, stepping, inertias, gravity, warnings)
+
+
+# The construction of each kind of joint.
+BOX2D_JOINTS: Mapping[type, Callable[[Box2DWorld, Any], Any]] = {
+    Pin: Box2DWorld.add_pin,
+    Slot: Box2DWorld.add_slot,
+    Rod: Box2DWorld.add_rod,
+    Weld: Box2DWorld.add_weld,
+}
+
+
+@dataclass(frozen=True)
+class Box2D(ExtraEngine):
+    """An engine in the sense of `engines.Engine`.
+
+    substeps: in a step, 4 as in the engine's manual
+    closing: the frequency of pins, welds and rods times the length of a sub-step; 0 for joints as shipped
+    """
+
+    name = "box2d"
+    packages = ("pyb2d3",)
+    modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
+    forces_by: ClassVar[Enforcement] = "ours"
+    precision: ClassVar[float] = 2.0**-23
+    angle_error: ClassVar[float] = 2.8e-5  # of the polynomial b2Atan2 (math_functions.h), for the angle of a weld
+    capability: ClassVar[Capability] = Capability(
+        "box2d",
+        (*BOX2D_JOINTS, Drive),  # a drive is the motor of a pin or slot
+        lacks={
+            Gear: f"box2d has no gears since version 3 ({JOINT_LIST})",
+            Skate: "box2d has no joint for a velocity across a blade alone: those for lines hold a place on them "
+            f"({JOINT_LIST})",
+            Roll: "in box2d a disc rolls by contact and friction, and our adapter builds no contact",
+        },
+    )
+
+    variant: Name
+    substeps: Count = 4
+    closing: NonNegative = 0.0
+
+    @validated
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
+        """Not declared; the module says why."""
+        return NotDeclared("a joint of box2d closes its gap the more slowly the shorter the sub-step is")
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """Approximate CPU time of a step [s]."""
+        forces = NUMPY_FORCES_COST if mechanism.forces else 0.0
+        return (BOX2D_STEP_COST + SUBSTEP_COST * self.substeps) * over_three(mechanism) + forces
+
+    def model(self, mechanism: Mechanism, dt: float) -> Box2DWorld:
+        return Box2DWorld(mechanism, dt, self.substeps, self.closing * self.substeps / dt)
 
 
 DEFAULT = Box2D("default")

@@ -1,28 +1,27 @@
 """MJX under test: MuJoCo's model, stepped by JAX instead of C, here on the processor and in double precision.
 
-The model is the MjModel that our MuJoCo adapter compiles with the same settings, put on the device as it is, so that
-only the implementation differs from `mujoco`. Callbacks of MuJoCo's adapter in C have no place in a compiled program
-and are refused. So are skates and rolling, for which this adapter builds no contact, though MJX has contacts; and what
-MJX itself does not run, in its words.
+The model is the MjModel that our MuJoCo adapter compiles with the same settings, so that only the implementation
+differs from `mujoco`. MJX cannot call the callbacks of that adapter, so models with callbacks are refused. Skates and
+rolling are refused too: this adapter builds no contact, though MJX has contacts. So is every model that MJX itself
+refuses, with its message.
 
-MJX leaves out the velocity term of loops, which C MuJoCo has since 3.7. MJX's own tests say "Jdotv effect (not in
-MJX)". A loop is then pulled off its path by J-dot v at any step, by J-dot v over the row's stiffness, the inverse
-square of its time constant; runs with loops say so in a warning, and `reports/pages/engines` shows it by force. Where
-the time constant is tied to the step, the error falls with its square, though none is MuJoCo's own: the free four-bar
-with RK4 at 1e-3 s is 7.40e-4 rad off with two steps, as MuJoCo before 3.7 is, and 4.58e-3 rad with the five of our
-tuned variant.
+MJX leaves out the velocity term J-dot v of loops, which C MuJoCo has since 3.7. MJX's own tests say "Jdotv effect (not
+in MJX)". At any step this opens a loop by J-dot v over the row's stiffness, the inverse square of its time constant.
+Runs with loops have a warning, and `reports/pages/engines` compares the forces. If the time constant is proportional to
+the step, the error falls with its square: for the free four-bar with RK4 at 1e-3 s it is 7.40e-4 rad with a time
+constant of two steps, as in MuJoCo before 3.7, and 4.58e-3 rad with the five of our tuned variant.
 
-Its solver ends where no residual of the forces is above 1e-8, whatever the tolerance: `mjx.math.norm` takes such a
-vector for zero. That number has a unit, so the model is in the smallest one of mass that its rows admit
-(`_smallest_unit`): in that of `mujoco`, about the whole mechanism's, light bodies beside heavy ones would never feel a
-gear, and from step to step keep the acceleration that they had.
+Its solver ends when no residual of the forces is above 1e-8, whatever the tolerance: `mjx.math.norm` takes such a
+vector for zero. This number has a unit, so the model is in the smallest unit of mass that its rows admit
+(`_smallest_unit`). In the unit of `mujoco`, about the mass of the mechanism, a gear would have no effect on light
+bodies next to heavy ones: they would have the same acceleration in every step.
 
-A program is compiled for each model, 5 s to half a minute: that is building and not stepping. JAX keeps it for models
-of the same structure, numbers apart; and for other processes in the user's cache folder, or in that of the
-environment's JAX_COMPILATION_CACHE_DIR. It uses the processor alone, one thread, and doubles.
+A program is compiled for each model, in 5 to 30 s, which counts as building. JAX caches it for models of the same
+structure with other numbers, and for other processes in the user's cache folder, or in the folder of the environment
+variable JAX_COMPILATION_CACHE_DIR. It runs on the processor, with one thread and in double precision.
 
-The package mujoco-mjx requires the package mujoco, whose files overwrite those of mujoco-core by an older release. So
-it has to be installed by itself: pip install --no-deps mujoco-mjx.
+The package mujoco-mjx requires the package mujoco, which overwrites the files of mujoco-core with an older release. So
+install it without dependencies: pip install --no-deps mujoco-mjx.
 """
 
 from __future__ import annotations
@@ -54,7 +53,7 @@ from engines.mujoco import declared
 from engines.mujoco.engine import MuJoCo
 from engines.mujoco.methods import DEFAULT as C_DEFAULT
 from engines.mujoco.methods import TUNED as C_TUNED
-from engines.mujoco.model import MuJoCoModel
+from engines.mujoco.model import MUJOCO_CAPABILITY, MuJoCoModel
 from engines.mujoco.releases import full_inertia
 from engines.mujoco.running import MAX_RESIDUAL, residual_warning
 from engines.sampling import sampled
@@ -63,16 +62,16 @@ from engines.tree import Tree, spanning_tree
 from engines.units import power_of_two
 from engines.user_cache import cache_folder
 from reference.checks import Name, validated
-from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
+from reference.joints import Joint, Rod, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
-EVALUATION_COST = 50e-6  # s, with three bodies, once compiled
-# Times mjMINVAL, below which MuJoCo and MJX take no row's compliance (R): that of the hardest row at the start. As
-# shipped R is halved where a gap opens by a millimetre; a power of two is a quarter of a binary digit off at most.
+# CPU time of an evaluation with three bodies, once compiled [s].
+MJX_EVALUATION_COST = 50e-6
+# The compliance R of the hardest row at the start, relative to mjMINVAL, the smallest R in MuJoCo and MJX. As shipped R
+# is halved at a gap of a millimetre, and a unit that is a power of two changes R by at most a factor of sqrt(2).
 LEAST_COMPLIANCE = 4.0
 NO_VELOCITY_TERM = RunWarning(
     "upstream: loops lack the velocity term J-dot v in MJX, so that they are wrong at any step",
@@ -92,8 +91,8 @@ class Mjx(ExtraEngine):
     build_time: ClassVar[float] = 20.0
     capability: ClassVar[Capability] = Capability(
         "mjx",
-        frozenset({Pin, Weld, Gear, Rod, Slot, Drive}),
-        frozenset({Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}),
+        tuple(kind for kind in MUJOCO_CAPABILITY.joints if kind not in (Skate, Roll)),
+        MUJOCO_CAPABILITY.forces,
         lacks={
             kind: f"a {kind.__name__.lower()} needs a contact, and our adapter of MJX builds none"
             for kind in (Skate, Roll)
@@ -117,8 +116,8 @@ class Mjx(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """About what a step takes [s], once compiled."""
-        return EVALUATION_COST * (4 if self.settings.integrator == "RK4" else 1) * over_three(mechanism)
+        """Approximate CPU time of a step [s], once compiled."""
+        return MJX_EVALUATION_COST * (4 if self.settings.integrator == "RK4" else 1) * over_three(mechanism)
 
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
@@ -126,7 +125,7 @@ class Mjx(ExtraEngine):
         return self.settings.enforcement(joint, mechanism)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """As the settings declare it in MuJoCo; that the velocity term is missing is declared nowhere."""
+        """That of MuJoCo with these settings; it does not declare that the velocity term is missing."""
         return self.settings.regularisation(mechanism, dt)
 
     def instants(

@@ -1,26 +1,27 @@
 """Pinocchio under test: a tree in reduced coordinates whose loops are closed by exact contact constraints.
 
-Pinocchio (the package is called `pin`) computes accelerations and steps no time (its `integrate` adds a displacement
-to a configuration): the integrators here are ours, semi-implicit Euler and the classical Runge-Kutta method of fourth
-order, as its own examples are written.
+Pinocchio (the package is called `pin`) computes accelerations and has no time stepping (its `integrate` adds a
+displacement to a configuration). The integrators here are our own, semi-implicit Euler and the classical Runge-Kutta
+method of fourth order, as in its examples.
 
-The tree is that of `engines.tree`: revolute joints about z, prismatic ones along a slot, for a body that hangs on
-nothing two prismatic ones and a revolute one, and for a welded one none: its inertia is added to the other's. A Pin
-that closes a loop is a RigidConstraintModel of the type CONTACT_3D, a Weld one of CONTACT_6D: `constraintDynamics`
-holds their accelerations exactly, and gaps are the integrator's error. Their rows out of the plane are empty; the
-proximal solver takes care of that. A Drive has no counterpart: our code works out the torque that keeps its rate in
-every evaluation from the engine's answer to a unit torque at rest, without weight. Neither have springs, dampers and
-the like: our code works out what they do to bodies, as users do, and passes it as external forces. Accelerations are
-the engine's at the sampled instant, so reactions are too. A gear would be the engine's JointModelMimic, which `crba`
-takes and `constraintDynamics` refuses.
+The tree is that of `engines.tree`: revolute joints about z, prismatic ones along a slot, and for a free body two
+prismatic ones and a revolute one. A welded body has no joint: its inertia is added to the other body's. A Pin that
+closes a loop is a RigidConstraintModel of the type CONTACT_3D, a Weld one of CONTACT_6D. `constraintDynamics` satisfies
+their accelerations exactly, and gaps are the integrator's error. Their rows out of the plane are empty, which the
+proximal solver permits. There is no counterpart of a Drive: in every evaluation our code computes the torque that keeps
+its rate, from the accelerations due to a unit torque at rest without gravity. There are no force elements either: our
+code evaluates them, as users do, and passes them as external forces. Accelerations, and so reactions, are those at the
+sampled instant. A gear would be the engine's JointModelMimic, which `crba` accepts and `constraintDynamics` refuses.
 
-`constraintDynamics` adds up forces, and torques about the world's origin, along the tree: a light body that a heavy one
-moves against, or a mechanism far from the origin, loses digits. A body of 2e-7 kg in which 200 kg slide, 144 m away, is
-off by 2e-6 of its motion at any step, and turns by 4e-11 rad instead of 2e-7 too far once it stands at the origin.
+`constraintDynamics` sums forces, and torques about the world's origin, along the tree: a light body with a heavy one
+that moves against it, or a mechanism far from the origin, loses digits. A body of 2e-7 kg in which 200 kg slide has an
+error of 2e-6 of its motion at 144 m from the origin, at any step. Its angle has an error of 2e-7 rad there, and of
+4e-11 rad at the origin.
 
-As shipped nothing pulls an open loop back. With a `correction` c [1/s] the engine's corrector gains are c^2 and 2 c.
-They change the errors of both integrators by a factor, up or down with the motion and the step, so no variant sets
-them; the page of engines shows them for the free four-bar. Which pin is taken as the loop changes nothing.
+As shipped nothing reduces the gap of a loop. With a `correction` c [1/s] the engine's Baumgarte gains are c^2 and 2 c.
+They multiply the errors of both integrators by a factor above or below 1, depending on the motion and the step, so no
+variant sets them; the page of engines shows them for the free four-bar. The choice of the pin that closes the loop has
+no effect.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from engines.contract import EXACT, ConvergenceOrder, Enforcement, NotDeclared, 
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled
 from engines.single_run import ExtraEngine, Recorded
-from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
+from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.checks import Name, NonNegative, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -45,18 +46,23 @@ from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4"]
-# Of the proximal solver: its regularisation, when it may stop, and after how many iterations it has to. A loop of four
-# bars takes two; the regularisation has to be far above rounding, since the row out of the plane is empty.
-REGULARISATION, ACCURACY, ITERATIONS = 1e-10, 1e-14, 20
-EVALUATION_COST = 6e-6  # s, with three bodies
-FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
+# Regularisation of the proximal solver: far above rounding, since the rows out of the plane are empty.
+PROXIMAL_REGULARISATION = 1e-10
+# Residual at which the proximal solver ends, and its largest number of iterations: a loop of four bars takes two.
+PROXIMAL_TOLERANCE = 1e-14
+PROXIMAL_ITERATIONS = 20
+# CPU time [s] of an evaluation with three bodies.
+PINOCCHIO_EVALUATION_COST = 6e-6
+# The engine's constraint for each kind of joint that closes a loop.
+PINOCCHIO_LOOPS = {Pin: "CONTACT_3D", Weld: "CONTACT_6D"}
 
 
 @dataclass(frozen=True)
 class Pinocchio(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    `integrator`: "euler" (semi-implicit, order 1) or "rk4" (order 4); `correction` of loops [1/s], see above.
+    integrator: "euler" (semi-implicit, order 1) or "rk4" (order 4)
+    correction: of loops [1/s]; the module describes it
     """
 
     name = "pinocchio"
@@ -65,7 +71,7 @@ class Pinocchio(ExtraEngine):
     forces_by: ClassVar[Enforcement] = "ours"
     capability: ClassVar[Capability] = Capability(
         "pinocchio",
-        frozenset({Pin, Slot, Drive, Weld}),
+        (*PINOCCHIO_LOOPS, Slot, Drive),
         lacks={
             Rod: "our adapter of pinocchio holds points and frames together, and no distance between points",
             Gear: "our adapter calls constraintDynamics, which refuses pinocchio's JointModelMimic",
@@ -80,7 +86,7 @@ class Pinocchio(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The integrator's; what the tree holds is exact."""
+        """The integrator's; joints of the tree are exact."""
         tree = spanning_tree(mechanism)
         order = 4 if self.integrator == "rk4" else 1
         if tree.loops:
@@ -91,15 +97,15 @@ class Pinocchio(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """About what a step takes [s]: its evaluations, and one more for each drive."""
+        """Approximate CPU time of a step [s]: its evaluations, and one more for each drive."""
         drives = sum(isinstance(joint, Drive) for joint in mechanism.joints)
         stages = 4 if self.integrator == "rk4" else 1
-        evaluation = EVALUATION_COST * (1 + drives) * over_three(mechanism)
-        return stages * (evaluation + (FORCES_COST if mechanism.forces else 0.0))
+        evaluation = PINOCCHIO_EVALUATION_COST * (1 + drives) * over_three(mechanism)
+        return stages * (evaluation + (TREE_FORCES_COST if mechanism.forces else 0.0))
 
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
-        """Joints are the engine's; the torque of a drive is worked out by our code."""
+        """Our code for drives; the engine for all other joints."""
         return "ours" if isinstance(joint, Drive) and joint not in spanning_tree(mechanism).kept else "engine"
 
     def model(self, mechanism: Mechanism, dt: float) -> PinocchioModel:
@@ -121,7 +127,7 @@ class PinocchioModel:
         self.model.gravity.linear = np.array([*mechanism.gravity, 0.0])
         self.joints: dict[int | None, int] = {None: 0}  # the last joint of each body; the ground is the universe
         self.anchors: dict[int | None, Array] = {None: np.zeros(2)}  # of that joint, from the centre of mass
-        self.address: list[int] = [0] * tree.coordinates  # where each tree coordinate stands in the engine's vectors
+        self.address: list[int] = [0] * tree.coordinates  # index of each tree coordinate in the engine's vectors
         self._add_children(None)
         self.data = self.model.createData()
         self.loops = pinocchio.StdVec_RigidConstraintModel()
@@ -130,13 +136,13 @@ class PinocchioModel:
             self.loops.append(self._loop(joint))
             self.loop_data.append(self.loops[-1].createData())
         pinocchio.initConstraintDynamics(self.model, self.data, self.loops, self.loop_data)
-        self.proximal = pinocchio.ProximalSettings(ACCURACY, REGULARISATION, ITERATIONS)
+        self.proximal = pinocchio.ProximalSettings(PROXIMAL_TOLERANCE, PROXIMAL_REGULARISATION, PROXIMAL_ITERATIONS)
         drives = [joint for joint in mechanism.joints if isinstance(joint, Drive) and joint not in tree.kept]
         self.driven = np.zeros((len(drives), tree.coordinates))
         for row, drive in zip(self.driven, drives, strict=True):
             for column, sign in tree.turning(drive.first, drive.second).items():
                 row[self.address[column]] = sign
-        self._own = [self.joints[body] for body in range(len(mechanism.bodies))]
+        self.joint_of = [self.joints[body] for body in range(len(mechanism.bodies))]
         rows = sum(joint.size for joint in tree.loops) + len(drives)
         spatial = sum(6 if isinstance(joint, Weld) else 3 for joint in tree.loops)
         self.size = Size(len(mechanism.bodies), tree.coordinates, rows, spatial)
@@ -145,7 +151,7 @@ class PinocchioModel:
         return self.pin.SE3(np.eye(3), np.array([offset[0], offset[1], 0.0]))
 
     def _add_children(self, parent: int | None) -> None:
-        """Depth first: the engine's sparse factorisation of loops takes for granted that subtrees are numbered so."""
+        """Depth first: the engine's sparse factorisation of loops requires this order of the joints."""
         for link in self.tree.links:
             if link.parent == parent:
                 self._add(link)
@@ -161,71 +167,70 @@ class PinocchioModel:
             kinds = [pin.JointModelPrismaticUnaligned(np.array([*link.direction, 0.0]))]
         kinds += [pin.JointModelRZ()] if link.turns else []
         joint, anchor = self.joints[link.parent], np.array(link.anchor)
-        if not kinds:  # welded: it belongs to its parent's joint, which stands where it stood
+        if not kinds:  # welded: it belongs to the joint of its parent
             anchor, at = anchor - at, (0.0, 0.0)
         for number, (kind, column) in enumerate(zip(kinds, link.columns, strict=True)):
             self.address[column] = self.model.nv
             joint = self.model.addJoint(joint, kind, self._placed(at), f"body {link.body} joint {number}")
             at = (0.0, 0.0)
-        # Out of the plane nothing turns, but an inertia has to be positive there too.
+        # Inertias about axes in the plane have no effect, but must be positive.
         inertia = pin.Inertia(body.mass, -np.array([*anchor, 0.0]), body.inertia * np.eye(3))
         self.model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
         self.joints[link.body], self.anchors[link.body] = joint, anchor
 
-    def _loop(self, joint: Pin | Slot | Weld) -> Any:
+    def _loop(self, joint: Any) -> Any:
         ends: list[Any] = []
         for name, point in ((joint.first, joint.first_point), (joint.second, joint.second_point)):
             body = None if name is None else self.mechanism.body_index(name)
             offset = np.array(world_offset(self.mechanism, name, point)) - self.anchors[body]
             ends += [self.joints[body], self._placed(offset)]
-        kinds = self.pin.ContactType
-        kind = kinds.CONTACT_6D if isinstance(joint, Weld) else kinds.CONTACT_3D
-        made = self.pin.RigidConstraintModel(kind, self.model, *ends, self.pin.ReferenceFrame.LOCAL)
+        kind = getattr(self.pin.ContactType, PINOCCHIO_LOOPS[type(joint)])
+        loop = self.pin.RigidConstraintModel(kind, self.model, *ends, self.pin.ReferenceFrame.LOCAL)
         if self.correction:
             gains = self.pin.BaumgarteCorrectorParameters(self.correction**2, 2 * self.correction)
-            made.setBaumgarteCorrectorParameters(gains)
-        return made
+            loop.setBaumgarteCorrectorParameters(gains)
+        return loop
 
-    def _answer(self, position: Array, velocity: Array, torque: Array) -> Array:
-        found = self.pin.constraintDynamics(
+    def _constrained(self, position: Array, velocity: Array, torque: Array) -> Array:
+        acceleration = self.pin.constraintDynamics(
             self.model, self.data, position, velocity, torque, self.loops, self.loop_data, self.proximal
         )
-        return np.array(found)
+        return np.array(acceleration)
 
     def acceleration(self, position: Array, velocity: Array) -> Array:
-        """Of the tree coordinates, drives kept at their rates."""
+        """The accelerations of the tree coordinates (coordinates,), with drives at their rates."""
         applied = self._torques(position, velocity)
-        free = self._answer(position, velocity, applied)
+        free = self._constrained(position, velocity, applied)
         if not len(self.driven):
             return free
-        answers = self._answers(position)
-        if not np.isfinite(answers).all():
+        responses = self._responses(position)
+        if not np.isfinite(responses).all():
             return np.full_like(free, np.nan)
-        torques, *_ = np.linalg.lstsq(self.driven @ answers.T, -self.driven @ free, rcond=None)
-        return free + torques @ answers
+        torques, *_ = np.linalg.lstsq(self.driven @ responses.T, -self.driven @ free, rcond=None)
+        return free + torques @ responses
 
-    def _answers(self, position: Array) -> Array:
-        """(drives, coordinates) what unit torques of the drives accelerate, at rest and without weight.
+    def _responses(self, position: Array) -> Array:
+        """Accelerations (drives, coordinates) due to a unit torque of each drive, at rest and without gravity.
 
-        Beside what large forces do their small differences would be rounded away.
+        With the other forces they would be small differences of large numbers.
         """
         rest, weight = np.zeros(self.tree.coordinates), self.model.gravity.linear.copy()
         self.model.gravity.linear = np.zeros(3)
-        pulled = self._answer(position, rest, rest) if self.correction else 0.0
-        answers = np.array([self._answer(position, rest, row) - pulled for row in self.driven])
+        correction = self._constrained(position, rest, rest) if self.correction else 0.0
+        responses = np.array([self._constrained(position, rest, row) - correction for row in self.driven])
         self.model.gravity.linear = weight
-        return answers
+        return responses
 
     def _torques(self, position: Array, velocity: Array) -> Array:
-        """Generalised forces of the force elements: what weight and they need to be held, less what weight needs."""
+        """Generalised forces of the force elements: static torques of gravity minus those of gravity and elements."""
         if not self.mechanism.forces:
             return np.zeros(self.tree.coordinates)
         pin = self.pin
-        pose, pushed = pushes(self.tree, position[self.address], velocity[self.address])
+        pose, forces = pushes(self.tree, position[self.address], velocity[self.address])
         pin.forwardKinematics(self.model, self.data, position)
         external = pin.StdVec_Force()
         external.extend([pin.Force.Zero() for _ in range(self.model.njoints)])
-        for joint, (arm_x, arm_y, _), (x, y, torque) in zip(self._own, pose.tolist(), pushed.tolist(), strict=True):
+        for joint, (arm_x, arm_y, _), (x, y, torque) in zip(self.joint_of, pose.tolist(), forces.tolist(), strict=True):
             about_origin = pin.Force(np.array([x, y, 0.0]), np.array([0.0, 0.0, torque + arm_x * y - arm_y * x]))
             external[joint] = external[joint] + self.data.oMi[joint].actInv(about_origin)
         loaded = pin.computeStaticTorque(self.model, self.data, position, external)
@@ -256,10 +261,10 @@ class PinocchioModel:
         return Recorded(*states, stepping, self._inertias(), np.array(self.model.gravity.linear[:2]))
 
     def _inertias(self) -> Array:
-        """The inertias of the model, in the order of bodies; NaN of welded ones, of which it holds only the sum."""
-        inertias = [self.model.inertias[joint] for joint in self._own]
+        """The inertias of the model, in the order of bodies; NaN for welded ones, whose sum alone it has."""
+        inertias = [self.model.inertias[joint] for joint in self.joint_of]
         by_body = np.array([(inertia.mass, inertia.mass, inertia.inertia[2, 2]) for inertia in inertias])
-        by_body[[self._own.count(joint) > 1 or joint == 0 for joint in self._own]] = np.nan
+        by_body[[self.joint_of.count(joint) > 1 or joint == 0 for joint in self.joint_of]] = np.nan
         return by_body
 
 
@@ -267,7 +272,7 @@ Acceleration = Callable[[Array, Array], Array]
 
 
 def euler_step(acceleration: Acceleration, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
-    """Semi-implicit: the new velocity drifts."""
+    """Semi-implicit Euler: positions are integrated with the new velocities."""
     v = v + dt * acceleration(q, v)
     return q + dt * v, v
 

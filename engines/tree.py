@@ -26,6 +26,9 @@ from reference.rolling.roll import Roll
 Array = NDArray[np.float64]
 Holding = Pin | Slot | Weld  # the joints that may hold a link
 
+# CPU time [s] of the force elements at one state, see `pushes`.
+TREE_FORCES_COST = 250e-6
+
 
 @dataclass(frozen=True)
 class Link:

@@ -216,7 +216,7 @@ def test_samples_after_exudyn_has_stopped_are_nan():
 
 def test_pinocchio_returns_no_inertia_of_welded_bodies():
     inertia = SimpleNamespace(mass=2.0, inertia=np.diag([0.0, 0.0, 0.3]))
-    model = SimpleNamespace(_own=[1, 2, 2, 0], model=SimpleNamespace(inertias=[inertia] * 3))
+    model = SimpleNamespace(joint_of=[1, 2, 2, 0], model=SimpleNamespace(inertias=[inertia] * 3))
     inertias = PinocchioModel._inertias(model)  # type: ignore[arg-type]
     assert inertias[0] == pytest.approx([2.0, 2.0, 0.3])
     assert np.isnan(inertias[1:]).all()

@@ -15,10 +15,13 @@ import pytest
 
 from engines import EXACT, ConvergenceOrder, Engine, Unsupported, method_name, mujoco, pymunk, registry
 from engines.lagrange import TRUTH, Lagrange
+from engines.mujoco.model import MUJOCO_CAPABILITY
 from engines.mujoco.writers import MJCF, URDF
+from engines.pymunk.model import PYMUNK_CAPABILITY
 from engines.pymunk.written_script import SCRIPT
-from reference.forces import Force, Torque, TorsionSpring
-from reference.joints import Drive, Gear, Pin, Slot
+from engines.single_run import ExtraEngine
+from reference.forces import FORCES, Force, Torque, TorsionSpring
+from reference.joints import JOINTS, Drive, Gear, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.scenes.catalogue import SCENES, scene
 from reports.model.cells import SLOW_TO_BUILD
@@ -248,6 +251,20 @@ def test_an_adapter_refuses_an_element_that_it_does_not_know_by_name(engine, mec
         pytest.skip(engine.missing)
     with pytest.raises(Unsupported, match=named):
         engine.build(mechanism, 0.01)
+
+
+CAPABILITIES = [
+    MUJOCO_CAPABILITY,
+    PYMUNK_CAPABILITY,
+    *(engine.capability for engine in DEFAULTS if isinstance(engine, ExtraEngine)),
+]
+
+
+@pytest.mark.parametrize("capability", CAPABILITIES, ids=lambda capability: capability.engine)
+def test_a_table_of_constructions_has_classes_of_the_vocabulary_and_no_reason_against_them(capability):
+    assert {*capability.joints} <= {*JOINTS}
+    assert {*(capability.forces or ())} <= {*FORCES}
+    assert {*capability.lacks} <= {*JOINTS, *FORCES} - {*capability.joints} - {*(capability.forces or ())}
 
 
 @pytest.mark.parametrize("writer", [MJCF, URDF, SCRIPT], ids=lambda writer: type(writer).__name__)
