@@ -1,10 +1,9 @@
-"""The gate of change: a row against the same cell of a baseline, an errors.csv of an earlier run with its versions.
+"""The regression gate: each row is compared with the same cell of a baseline, the errors.csv of an earlier run.
 
-What rounding may do to a run is measured: the same engine of a mechanism whose numbers are rounded otherwise. A start
-alone does not tell it: where a motion is prescribed, or a projection puts the start back, no bit of a result depends on
-the start's last one. So masses, gravity and the points where joints and forces act are rounded otherwise too: all that
-enters a step. No order of summation is tried: another order of bodies is another tree of joints in MuJoCo, and another
-order of sweeps in pymunk, which are other methods with other errors.
+The effect of rounding is measured by runs of a mechanism whose numbers differ by one rounding: masses, inertias,
+gravity, and the points where joints and forces act. Changing the start alone is not enough: in a prescribed motion, or
+after a projection, no result depends on its last bit. The order of the bodies is not changed, since this makes another
+tree of joints in MuJoCo and another order of solver iterations in pymunk, with other errors.
 """
 
 from __future__ import annotations
@@ -26,26 +25,25 @@ from reports.model.cells import Cell
 from reports.model.checks import CHANGE, Check
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
-from reports.model.quantities import QUANTITIES, room
+from reports.model.quantities import QUANTITIES, rounding_tolerance
 from reports.write.csv_files import DIGESTS, not_as_written, read_lines
 from reports.write.provenance import still_installed
 
-# scene, method, samples, steps a sample: the same cell in every run, whatever its settings are by now.
+# (scene, method, samples, steps per sample): identifies a cell in all runs, even if its settings have changed.
 Identity = tuple[str, str, int, int]
-IDENTITY = ("scene", "engine", "variant", "samples", "every")  # the columns that give it
-# The file beside errors.csv whose comments have the versions, as `reports.write.provenance.versions` writes them.
-BESIDE = "timings.csv"
-MOST = 5  # files that a sentence names
+IDENTITY = ("scene", "engine", "variant", "samples", "every")  # its columns
+TIMINGS = "timings.csv"  # beside errors.csv; its comments hold the versions (`reports.write.provenance.versions`)
+MOST_FILES_NAMED = 5  # in a sentence
 
 
 class BadBaseline(ValueError):
-    """A file that is no errors.csv; the message is one line that says what is wrong with it."""
+    """A file that is not a valid errors.csv; the message is one line with the reason."""
 
 
 @dataclass(frozen=True)
 class Old:
-    """What a baseline knows of a cell: its outcome, errors by quantity, how many rows' reactions the engine told, and
-    `cpu`, seconds a simulated second (NaN where nobody has timed it)."""
+    """A cell of a baseline. reaction_rows: constraint rows with a reported reaction. cpu: CPU seconds per simulated
+    second, NaN if not timed."""
 
     outcome: Outcome
     errors: Mapping[str, float]
@@ -55,8 +53,8 @@ class Old:
 
 @dataclass(frozen=True)
 class Baseline:
-    """The cells of an earlier run, the versions it was made with ("" if unknown), the folder of the file, and the
-    quantities for which the file has no column, since the suite measured fewer quantities then."""
+    """The cells of an earlier run, its versions ("" if unknown), the folder of its file, and the quantities for which
+    the file has no column (`unmeasured`)."""
 
     cells: Mapping[Identity, Old]
     versions: str = ""
@@ -65,43 +63,46 @@ class Baseline:
 
     @property
     def same_versions(self) -> bool:
-        """Whether `change` checks the rows; `drift` does where the version of a package differs.
+        """Whether all packages have the versions of the baseline, or these are unknown.
 
-        A file without versions is compared as one with the same versions.
+        Then rows are checked by `change`, otherwise by `drift`.
         """
         return self.versions == "" or still_installed(self.versions)
 
 
 def mixed(baseline: Baseline) -> str:
-    """One sentence if the baseline's file and the pages beside it were not written together; empty if they were, and
-    where there are none, as in an installed copy."""
+    """One sentence if the baseline and the pages in its folder are not of one report; else, or without pages, empty."""
     if baseline.folder is None or not (baseline.folder / "index.md").exists():
         return ""
     others = not_as_written(baseline.folder)
     if others is None:
-        return f"{baseline.folder} has no {DIGESTS}, so it may be of several reports; write the report anew."
-    more = f" and {len(others) - MOST} more" if len(others) > MOST else ""
-    names = ", ".join(others[:MOST]) + more
-    return f"Not as the report in {baseline.folder} wrote them: {names}; write it anew." if others else ""
+        return f"{baseline.folder} has no {DIGESTS}, so its files may be of several reports; write the report again."
+    more = f" and {len(others) - MOST_FILES_NAMED} more" if len(others) > MOST_FILES_NAMED else ""
+    names = ", ".join(others[:MOST_FILES_NAMED]) + more
+    return (
+        f"Changed since the report in {baseline.folder} was written: {names}; write the report again." if others else ""
+    )
 
 
 def identity(row: Measurement) -> Identity:
-    """Which cell a row is of."""
+    """The identity of a row's cell."""
     return row.scene, row.method, row.samples, row.every
 
 
 def _identity(row: Mapping[str, str]) -> Identity:
-    """Of a row of a file. Raises ValueError or TypeError for a damaged one."""
+    """The identity of a row of a file. Raises ValueError or TypeError for a damaged row."""
     return row["scene"], f"{row['engine']} {row['variant']}", int(row["samples"]), int(row["every"])
 
 
 def _read_timings(path: Path) -> tuple[str, dict[Identity, float]]:
-    """From the timings.csv beside an errors.csv, as far as it can be read: the versions that both were made with, ""
-    without them, and CPU seconds a simulated second."""
+    """(versions, CPU seconds per simulated second by cell) from the timings.csv beside an errors.csv.
+
+    The versions are empty and cells are missing if the file cannot be read.
+    """
     seconds: dict[Identity, float] = {}
     remarks: list[str] = []
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
-        remarks, rows = read_lines(path.with_name(BESIDE).read_text(encoding="utf-8"))
+        remarks, rows = read_lines(path.with_name(TIMINGS).read_text(encoding="utf-8"))
         for row in rows:
             if row["purpose"] == "sweep":
                 seconds[_identity(row)] = float(row["cpu"])
@@ -109,10 +110,7 @@ def _read_timings(path: Path) -> tuple[str, dict[Identity, float]]:
 
 
 def read_baseline(path: Path) -> Baseline:
-    """Read an errors.csv. Raises BadBaseline, in one line, for a missing file or one of another kind.
-
-    A quantity without a column is not compared; `Baseline.unmeasured` names it.
-    """
+    """Read an errors.csv. Raises BadBaseline for a missing file or one of another kind."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -138,8 +136,7 @@ def read_baseline(path: Path) -> Baseline:
     return Baseline(cells, versions, path.parent, tuple(name for name in names if name not in columns))
 
 
-# Roundings that are tried.
-SEEDS = (1, 2, 3)
+SEEDS = (1, 2, 3)  # of the changes by one rounding
 EPSILON = float(np.finfo(float).eps)
 
 Part = TypeVar("Part")
@@ -147,10 +144,10 @@ Part = TypeVar("Part")
 
 @dataclass(frozen=True)
 class Altered(EngineWrapper):
-    """An engine in the sense of `engines.Engine`: another one, which builds `change(mechanism)`.
+    """An engine that builds `change(mechanism)` with another engine.
 
-    It goes by the name of the engine inside and is held to what that one promises of the mechanism as it is. `change`
-    is itself a frozen dataclass that can be called, so that it is data: compared, printed, and sent to other processes.
+    It has the name of that engine, and its declarations for the unchanged mechanism. `change` is a callable frozen
+    dataclass, so that it can be compared, printed and sent to other processes.
     """
 
     engine: Engine
@@ -161,48 +158,48 @@ class Altered(EngineWrapper):
         return self.engine.variant
 
     def stepped(self, mechanism: Mechanism) -> Engine:
-        """Itself: what is inside is not stepped as it is."""
+        """This engine, since the one inside builds a changed mechanism."""
         return self
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
     ) -> tuple[Instant, ...] | NotDeclared:
-        """What the engine that is stepped computes with a model of the changed mechanism, beside the right law."""
+        """The instants of the inner engine with a model of the changed mechanism, beside the unchanged law."""
         return self.engine.stepped(mechanism).instants(mechanism, dt, steps, self.change(mechanism))
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:
-        """Raises whatever the change and the engine raise."""
+        """Build the changed mechanism. Raises what the change and the engine raise."""
         return self.engine.build(self.change(mechanism), dt)
 
 
 @dataclass(frozen=True)
 class Nudge:
-    """Masses, inertias and all vectors of a mechanism moved by one rounding up or down, or left; the same for a seed.
+    """Changes masses, inertias and all vectors of a mechanism by -1, 0 or 1 rounding, drawn from the seed.
 
-    Lone numbers of joints and forces (a gear's ratio, an angle) stay: engines treat some of them, such as 1, in a way
-    of their own. So do zeros.
+    Scalars of joints and forces (a gear's ratio, an angle) are not changed, since engines treat values such as 1
+    specially. Zeros stay zero.
     """
 
     seed: int
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
-        """The mechanism in other roundings."""
+        """The changed mechanism."""
         random = np.random.default_rng([self.seed, zlib.crc32(repr(mechanism.row_names).encode())])
         return replace(
             mechanism,
-            bodies=tuple(_moved(body, random, ("mass", "inertia")) for body in mechanism.bodies),
-            joints=tuple(_moved(joint, random) for joint in mechanism.joints),
+            bodies=tuple(_nudge_part(body, random, ("mass", "inertia")) for body in mechanism.bodies),
+            joints=tuple(_nudge_part(joint, random) for joint in mechanism.joints),
             gravity=_rounded(mechanism.gravity, random),
-            forces=tuple(_moved(force, random) for force in mechanism.forces),
+            forces=tuple(_nudge_part(force, random) for force in mechanism.forces),
         )
 
 
-def _moved(part: Part, random: np.random.Generator, lone: tuple[str, ...] = ()) -> Part:
-    """A body, joint or force with its vectors, and these lone numbers, rounded otherwise."""
+def _nudge_part(part: Part, random: np.random.Generator, scalars: tuple[str, ...] = ()) -> Part:
+    """A body, joint or force with its vectors, and these scalars, changed by up to one rounding."""
     changed: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
         value = getattr(part, field.name)
-        if field.name in lone:
+        if field.name in scalars:
             (changed[field.name],) = _rounded((value,), random)
         elif isinstance(value, tuple) and value and all(isinstance(number, float) for number in value):
             changed[field.name] = _rounded(value, random)
@@ -215,26 +212,25 @@ def _rounded(values: tuple[Any, ...], random: np.random.Generator) -> Any:
 
 
 def nudged_cells(cell: Cell) -> tuple[Cell, ...]:
-    """The same cell in other roundings of all that enters it."""
+    """The cell with its mechanism changed by one rounding, once per seed."""
     return tuple(replace(cell, engine=Altered(cell.engine, Nudge(seed))) for seed in SEEDS)
 
 
-# With other versions an error may become this many times as large: by luck, as where two errors no longer cancel.
+# With other versions an error may become this many times as large, for example where two errors no longer cancel.
 WORSE = 3.0
-# The median of n draws scatters 1.25 / sqrt(n) times as much as one draw does (of a normal distribution).
+# Standard deviation of the median of n normal draws, over that of one draw, times sqrt(n).
 SCATTER = 1.2533
-# What a few other roundings do is this much short of the most that rounding may do.
-ROOM = 10.0
-# A method is dear where it takes this many times the CPU time of the baseline: told always, since no other machine and
-# no load of this one makes as much.
+# Factor on the differences of the few nudged runs: the largest effect of rounding is larger than theirs.
+NUDGE_ROOM = 10.0
+# Factor of the CPU time above which a remark is made: neither another machine nor the load explains as much.
 DEAR = 10.0
 
 
 def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), amplified: float = 1.0) -> tuple[Check, ...]:
-    """The checks of a row that was made with the baseline's versions: the same numbers, to rounding.
+    """The checks of a row with the baseline's versions: its numbers must be equal within rounding.
 
-    The bound is the `room` of the quantity (`reports.model.quantities`), which is never zero, and what `nudged`, the
-    same cell in other roundings, differ by: where the motion amplifies rounding. `amplified`: see `ConvergenceOrder`.
+    The bound is the `rounding_tolerance` of the quantity and the largest difference to `nudged`, rows of the cell
+    changed by one rounding. amplified: see `ConvergenceOrder`.
     """
     if not _has_numbers(row.outcome, old.outcome):
         same = row.outcome == old.outcome or any(other.outcome == old.outcome for other in nudged)
@@ -244,28 +240,30 @@ def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), ampli
     for name, before in old.errors.items():
         now = getattr(row, name)
         if not (math.isnan(now) and math.isnan(before)):
-            known = [value for other in others if math.isfinite(value := getattr(other, name))]
-            spread = max((abs(value - now) for value in known), default=0.0)
-            digits, rounding = room(name, before, amplified)
-            terms = (("printed digits", digits), ("rounding", rounding), ("as other roundings", ROOM * spread))
+            finite = [value for other in others if math.isfinite(value := getattr(other, name))]
+            spread = max((abs(value - now) for value in finite), default=0.0)
+            digits, rounding = rounding_tolerance(name, before, amplified)
+            terms = (("printed digits", digits), ("rounding", rounding), ("nudged runs", NUDGE_ROOM * spread))
             bound = sum(value for _, value in terms)
             out.append(Check(CHANGE, name, abs(now - before), bound, terms, f", {now:.4g}; it was {before:.4g}"))
     return (*out, *_reactions(row, old))
 
 
 def _has_numbers(now: str, before: str) -> bool:
-    """Whether the numbers of two runs that ended so have to be the same: both can be compared, or both say of
-    themselves that they are not resolved. Those of a run that is torn or lost are as large as chance has it."""
+    """Whether runs with these outcomes must have the same numbers: both are comparable, or both unresolved.
+
+    The numbers of torn or lost runs are arbitrary.
+    """
     if now == before == Outcome.UNRESOLVED:
         return True
     return Outcome(now).comparable and Outcome(before).comparable
 
 
 def drift(row: Measurement, old: Old) -> tuple[Check, ...]:
-    """The checks of a row that was made with other versions.
+    """The checks of a row with other versions than the baseline's.
 
-    No error is more than WORSE times as large, no number has become NaN, and the outcome is the same one, unless the
-    run can be compared now and could not before: that is an improvement, which `known_by_now` reports.
+    No error may be more than WORSE times as large or become NaN. The outcome must be the same, or comparable: this
+    improvement is reported by `describe_improvements`.
     """
     if not (Outcome(row.outcome).comparable and old.outcome.comparable):
         return (_outcome(row, old, row.outcome == old.outcome or Outcome(row.outcome).comparable),)
@@ -273,65 +271,64 @@ def drift(row: Measurement, old: Old) -> tuple[Check, ...]:
     for name, before in old.errors.items():
         now = getattr(row, name)
         if not math.isnan(before):
-            rounding = room(name, before)[1]
-            told = f", {now:.4g}; it was {before:.4g}"
+            rounding = rounding_tolerance(name, before)[1]
             terms = (("baseline", before), ("rounding", rounding))
-            out.append(Check(CHANGE, name, now, WORSE * (before + rounding), terms, told))
+            sentence = f", {now:.4g}; it was {before:.4g}"
+            out.append(Check(CHANGE, name, now, WORSE * (before + rounding), terms, sentence))
     return (*out, *_reactions(row, old))
 
 
 def _outcome(row: Measurement, old: Old, same: bool) -> Check:
-    told = f", {row.outcome}; it was {old.outcome}"
-    return Check(CHANGE, "outcome", 0.0 if same else math.inf, 1.0, sentence=told)
+    return Check(CHANGE, "outcome", 0.0 if same else math.inf, 1.0, sentence=f", {row.outcome}; it was {old.outcome}")
 
 
 def _reactions(row: Measurement, old: Old) -> tuple[Check, ...]:
-    """A reaction's error is of the rows that an engine tells: none of them may fall silent."""
-    silent = old.reaction_rows - row.reaction_rows
-    told = f", rows without a reaction; it told {old.reaction_rows} of them"
-    return (Check(CHANGE, "reaction_rows", float(silent), 0.0, sentence=told),) if silent > 0 else ()
+    """A check that fails if the engine reports the reactions of fewer constraint rows than before."""
+    missing = old.reaction_rows - row.reaction_rows
+    sentence = f" constraint rows without a reaction; {old.reaction_rows} had one"
+    return (Check(CHANGE, "reaction_rows", float(missing), 0.0, sentence=sentence),) if missing > 0 else ()
 
 
-def known_by_now(row: Measurement, old: Old) -> tuple[str, ...]:
-    """Sentences on what a baseline of other versions has no number for, and the row has."""
+def describe_improvements(row: Measurement, old: Old) -> tuple[str, ...]:
+    """Sentences about numbers that the row has and the baseline lacks."""
     if not Outcome(row.outcome).comparable:
         return ()
     if not old.outcome.comparable:
         return (f"outcome: {row.outcome}; it was {old.outcome}",)
-    found = ((name, getattr(row, name)) for name, before in old.errors.items() if math.isnan(before))
-    return tuple(f"{name}: {now:.4g}; it was not known" for name, now in found if not math.isnan(now))
+    errors = ((name, getattr(row, name)) for name, before in old.errors.items() if math.isnan(before))
+    return tuple(f"{name}: {now:.4g}; it was not known" for name, now in errors if not math.isnan(now))
 
 
 def growth(pairs: Iterable[tuple[Measurement, Old]]) -> tuple[Check, ...]:
-    """Whether a method's errors grew with other versions over all its scenes: one check a method and quantity.
+    """One check for each method and quantity: whether errors grew with other versions over all scenes.
 
-    In one scene luck may make an error WORSE times as large or small. Luck of n scenes has no common sign: the median
-    of the logarithms of their factors scatters SCATTER / sqrt(n) times as much as one of them, so the median factor is
-    held below WORSE to that power. The cells of a scene share its luck, so they count as one, by the median of their
-    own factors. Errors below rounding have the factor 1.
+    In one scene an error may become WORSE times as large or small by chance. For n scenes the median of the logarithms
+    of these factors scatters SCATTER / sqrt(n) times as much, so the bound of the median factor is WORSE to this power.
+    The cells of a scene are not independent, so each scene counts once, with the median of its factors. Errors below
+    rounding have the factor 1.
     """
     factors: dict[tuple[str, str], dict[str, list[float]]] = {}
     for row, old in pairs:
         if not (Outcome(row.outcome).comparable and old.outcome.comparable):
             continue
         for name, before in old.errors.items():
-            now, rounding = getattr(row, name), room(name, before)[1]
+            now, rounding = getattr(row, name), rounding_tolerance(name, before)[1]
             if math.isfinite(now) and math.isfinite(before):
                 of_scenes = factors.setdefault((row.method, name), {})
                 of_scenes.setdefault(row.scene, []).append((now + rounding) / (before + rounding))
     out = []
     for (method, name), of_scenes in factors.items():
-        measured = median(median(own) for own in of_scenes.values())
+        measured = median(median(cells) for cells in of_scenes.values())
         bound = WORSE ** min(1.0, SCATTER / math.sqrt(len(of_scenes)))
-        told = f", {method}: the median factor of its error over {len(of_scenes)} scenes"
-        out.append(Check(CHANGE, name, measured, bound, sentence=told))
+        sentence = f", {method}: the median factor of its error over {len(of_scenes)} scenes"
+        out.append(Check(CHANGE, name, measured, bound, sentence=sentence))
     return tuple(out)
 
 
 def cost(pairs: Iterable[tuple[Measurement, Old]]) -> float:
-    """How many times the baseline's CPU time a method takes, over the cells that both have timed; NaN without one.
+    """The CPU time over the baseline's, summed over the cells that both have timed; NaN without such a cell.
 
-    The sum counts, which is that of the longest runs: a run of a millisecond is timed badly.
+    The sum is that of the longest runs, since a run of a millisecond cannot be timed well.
     """
     timed = [
         (row.cpu, old.cpu)
@@ -342,5 +339,5 @@ def cost(pairs: Iterable[tuple[Measurement, Old]]) -> float:
 
 
 def moved(row: Measurement, old: Old, amplified: float = 1.0) -> bool:
-    """Whether a row differs from its baseline by more than printing and rounding may change."""
+    """Whether a row differs from its baseline by more than printed digits and rounding."""
     return any(not check.passed for check in change(row, old, amplified=amplified))

@@ -1,9 +1,8 @@
-"""What order and softness cost in a scene: predicted by the judge, from the scene's mechanism and its truth alone.
+"""Predicted discretisation and regularisation errors of a scene, computed by the reference solver of the gate.
 
-An error A (h / tau)^p has two unknowns, an amplitude A and a time scale tau. Ideal methods of order 2 and of order 4
-give both, and with them what any order costs at any step in this scene: the motion's own rates, however fast, and how
-it carries an early error on are in them. The same for joints that give way: their errors are proportional to how soft
-they are, so one softness tells of all.
+A discretisation error A (h / tau)^p has two unknowns, the amplitude A and the time scale tau. Runs of order 2 and of
+order 4 determine both, and so the error of any order at any step in this scene. The error of regularised joints is
+proportional to their compliance, so one run predicts all compliances.
 """
 
 from __future__ import annotations
@@ -22,40 +21,33 @@ from reference.trajectory import Trajectory
 from reports.gate.judge import QUANTITY_NAMES, errors
 from reports.model.cells import mechanism_of
 from reports.model.errors import constraint_errors, largest, motion_errors
-from reports.model.outcomes import SATURATED, TORN
+from reports.model.outcomes import SATURATED
 from reports.model.page import Page
+from reports.model.quantities import QUANTITY
 from reports.model.tasks import Answer, Task, Values
 
-# Which rows are soft, and whether they have the term of velocities: what the judge has to run once.
+# (which rows are regularised, whether the velocity term of their acceleration is complete): one run of the judge each.
 SoftKind = tuple[tuple[bool, ...], bool]
 
-# Joints are compared at these, MuJoCo's as shipped but for a smaller compliance, and results scaled: what gives way is
-# proportional to the compliance and to the inverse stiffness, or to the time 1 / damping by which slip lags.
+# Regularisation of the judge's runs: MuJoCo's default with a smaller compliance. Errors are proportional to the
+# compliance and to 1 / stiffness [s^2], or to 1 / damping [s] for rows without a gap.
 STIFFNESS, DAMPING, COMPLIANCE = 1 / 0.02**2, 2 / 0.02, 0.01
 
-# The judge's own steps a sample: the coarsest at which its second-order run is within REACH [rad] of the truth.
-REFINEMENTS = (1, 3)
-REACH = 0.1
-# The judge's own runs end here: a scene of thousands of periods is judged by the methods' own coarser steps alone.
-MOST_STEPS = 20_000
-# Samples of the truth between which its derivatives are taken.
-DIFFERENCES = 1000
-
-
-# What the judge's fourth order leaves of these is not of the motion alone: of a position it is how far rows that are
-# left alone drift, and energy it keeps an order better than the motion. Below both orders the angle's own time scale
-# counts.
-OTHERWISE = ("position", "energy")
+REFINEMENTS = (1, 3)  # steps per sample of the judge; the first at which its order 2 is within REACH is used
+REACH = 0.1  # rad
+MOST_STEPS = 20_000  # of a run of the judge; longer scenes are bounded by the coarser steps of each method alone
+DIFFERENCES = 1000  # intervals of the true motion for its finite differences
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """What order and softness cost in a scene: errors by quantity of ideal methods of order 2 and 4 at `step` [s], and
-    the mechanism's `length` [m]; of the truth the largest `speed` [m/s] and `acceleration` [m/s^2], and by how much of
-    themselves reactions are `changing`: their first two derivatives [1/s, 1/s^2] over the largest. `soft`: errors by
-    kind of softness, at STIFFNESS, DAMPING and COMPLIANCE. `gapped`: which rows of the mechanism have a gap to close.
-    `prescribed`: whether nothing is free to move, so that drives alone say how it moves; then `earlier` are errors by
-    quantity of velocities and reactions that are those of an earlier instant, over the time between [s].
+    """Errors by quantity from which those of any convergence order and regularisation in a scene are scaled.
+
+    second, fourth: errors of the methods of order 2 and 4 at `step` [s]. length: of the mechanism [m]. speed,
+    acceleration: largest of the true motion [m/s, m/s^2]. changing: first and second derivative of the reactions over
+    their largest value [1/s, 1/s^2]. soft: errors with STIFFNESS, DAMPING and COMPLIANCE. holonomic: rows that limit
+    positions. prescribed: whether the drives determine the whole motion. lag: then the errors of velocities and
+    reactions of an earlier instant, per second of delay.
     """
 
     step: float
@@ -66,30 +58,26 @@ class Prediction:
     acceleration: float
     changing: tuple[float, float]
     soft: Mapping[SoftKind, Mapping[str, float]]
-    gapped: tuple[bool, ...]
+    holonomic: tuple[bool, ...]
     prescribed: bool = False
-    earlier: Mapping[str, float] = field(default_factory=dict)
+    lag: Mapping[str, float] = field(default_factory=dict)
 
-    def has(self, quantity: str) -> bool:
-        """Whether the scene has such a number: without a joint that limits a position there is no gap."""
-        return not math.isnan(self.second[quantity]) and (quantity != "gap" or any(self.gapped))
+    def is_defined(self, quantity: str) -> bool:
+        """Whether the scene has this quantity: there is no gap without a joint that limits a position."""
+        return not math.isnan(self.second[quantity]) and (quantity != "gap" or any(self.holonomic))
 
     def error(self, quantity: str, order: float, step: float) -> float:
-        """A (step / tau)^order, A and tau from the two ideal methods; infinite where those failed, NaN if unknown.
+        """A (step / tau)^order; infinite where the runs of order 2 and 4 failed, NaN if the quantity is not defined.
 
-        A pose that is wrong by this much is wrong in its velocities too, by as much as the motion takes it on; and what
-        is wrong in its velocities may show as a slip.
+        An error of the pose causes an error of the velocity, at the rate speed / length of the motion; an error of the
+        velocity may be a slip (`Quantity.follows`).
         """
-        own = self._power(quantity, order, step)
-        pace = self.speed / self.length
-        match quantity:
-            case "rate":
-                return max(own, pace * self._power("angle", order, step))
-            case "velocity":
-                return max(own, pace * self._power("position", order, step))
-            case "slip":
-                return max(own, self._power("velocity", order, step))
-        return own
+        error = self._power(quantity, order, step)
+        cause = QUANTITY[quantity].follows
+        if not cause:
+            return error
+        rate = 1.0 if QUANTITY[cause].unit == QUANTITY[quantity].unit else self.speed / self.length
+        return max(error, rate * self._power(cause, order, step))
 
     def _power(self, quantity: str, order: float, step: float) -> float:
         second, fourth = self.second[quantity], self.fourth[quantity]
@@ -99,116 +87,114 @@ class Prediction:
             return math.nan if math.isnan(second) else math.inf
         if second == 0 or fourth == 0:
             return 0.0
-        # At the judge's step the error falls by (step / tau)^2 from order 2 to order 4: by its root for each order.
-        fall = fourth / second
-        if order < 2 and quantity in OTHERWISE and 0 < self.fourth["angle"] < math.inf:
-            fall = min(fall, self.fourth["angle"] / self.second["angle"])
-        return second * fall ** ((order - 2) / 2) * (step / self.step) ** order
+        ratio = fourth / second  # (step / tau)^2
+        if order < 2 and QUANTITY[quantity].scales_with_angle and 0 < self.fourth["angle"] < math.inf:
+            ratio = min(ratio, self.fourth["angle"] / self.second["angle"])
+        return second * ratio ** ((order - 2) / 2) * (step / self.step) ** order
 
-    def give(self, quantity: str, softness: Regularisation | None) -> float:
-        """What this softness costs, in proportion to what the judge's own does."""
-        return given(self.soft, quantity, softness, self.gapped)
+    def softness_error(self, quantity: str, softness: Regularisation | None) -> float:
+        """The error that this regularisation causes."""
+        return scaled_softness_error(self.soft, quantity, softness, self.holonomic)
 
-    def closing(self, quantity: str, gap: float, softness: Regularisation | None) -> float:
-        """What a spring costs that closes a gap [m] of the step's: it moves at gap times damping, which is a slip."""
+    def gap_closing_error(self, quantity: str, gap: float, softness: Regularisation | None) -> float:
+        """The error while a spring closes a gap [m] of the discretisation, with the velocity gap * damping."""
         if softness is None or not softness.complete or math.isnan(gap):
             return 0.0
         if quantity == "reaction":
             return gap * softness.stiffness / self.acceleration
-        return self._slipping(quantity, gap * softness.damping)
+        return self._error_of_slip(quantity, gap * softness.damping)
 
-    def settling(self, quantity: str, softness: Regularisation | None) -> float:
-        """What springs cost that are tied to the step while they take up their load: a critically damped one opens to
-        its gap [m] at 1 / e of the gap times the root of its stiffness, at most."""
+    def spring_transient_error(self, quantity: str, softness: Regularisation | None) -> float:
+        """The error while the springs of a method take up their load.
+
+        A critically damped spring with the final gap g [m] and stiffness k [1/s^2] opens with at most g sqrt(k) / e.
+        """
         if softness is None or softness.compliance == 0:
             return 0.0
-        return self._slipping(quantity, self.give("gap", softness) * math.sqrt(softness.stiffness) / math.e)
+        return self._error_of_slip(
+            quantity, self.softness_error("gap", softness) * math.sqrt(softness.stiffness) / math.e
+        )
 
-    def _slipping(self, quantity: str, speed: float) -> float:
-        """What a slip of this speed [m/s] is in other quantities than poses."""
-        costs = {
-            "slip": speed,
-            "velocity": speed,
-            "rate": speed / self.length,
-            "energy": 2 * speed / self.speed,
-        }
-        return costs.get(quantity, 0.0)
+    def _error_of_slip(self, quantity: str, speed: float) -> float:
+        """The error of a velocity or energy that a slip of this speed [m/s] causes; 0 for other quantities."""
+        if quantity == "energy":
+            return 2 * speed / self.speed
+        return {"m/s": speed, "rad/s": speed / self.length}.get(QUANTITY[quantity].unit, 0.0)
 
-    def differenced(self, order: float, step: float) -> float:
-        """The relative error of a reaction that is read as a change of velocity over a step: what it changes in it."""
+    def differencing_error(self, order: float, step: float) -> float:
+        """The relative error of a reaction that is the change of velocity over a step [s], at most of order 2."""
         return self.changing[order > 1] * step ** min(order, 2)
 
-    def refused(self, quantity: str) -> float:
-        """The error above which a run is no longer comparable, whatever the order promises: of velocities, energy and
-        reactions one that is as large as the largest there is."""
-        scales = {
-            "angle": SATURATED,
-            "gap": TORN * self.length,
-            "position": SATURATED * self.length,
-            "rate": self.speed / self.length,
-            "velocity": self.speed,
-            "slip": self.speed,
-        }
-        return scales.get(quantity, 1.0)
+    def largest_comparable(self, quantity: str) -> float:
+        """The error above which a run is not comparable: for velocities, energy and reactions their largest value."""
+        scales = {"rad": 1.0, "m": self.length, "rad/s": self.speed / self.length, "m/s": self.speed}
+        facts = QUANTITY[quantity]
+        return facts.largest * scales.get(facts.unit, 1.0)
 
 
-def given(
-    soft: Mapping[SoftKind, Mapping[str, float]], quantity: str, softness: Regularisation | None, gapped: Sequence[bool]
+def scaled_softness_error(
+    soft: Mapping[SoftKind, Mapping[str, float]],
+    quantity: str,
+    softness: Regularisation | None,
+    holonomic: Sequence[bool],
 ) -> float:
-    """What a softness costs, in proportion to the judge's own errors by kind (`Prediction.soft`).
+    """The error that a regularisation causes, scaled from the judge's errors by kind (`Prediction.soft`).
 
-    A row that has a gap (`gapped`, (rows,)) gives way by its spring, one that has none by its damper.
+    A holonomic row (`holonomic`, (rows,)) yields by its spring, another one by its damper.
     """
     if softness is None:
         return 0.0
     stiff, damped = STIFFNESS / softness.stiffness, DAMPING / softness.damping
-    found = 0.0
+    error = 0.0
     if softness.compliance > 0:
-        yielding = {stiff if gap else damped for gives, gap in zip(softness.rows, gapped, strict=True) if gives}
-        found += soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * max(yielding, default=0.0)
-        # However stiff the spring, this share of a force is not felt by what gives it.
-        found += softness.compliance if quantity == "reaction" else 0.0
+        yielding = {
+            stiff if spring else damped for soft_row, spring in zip(softness.rows, holonomic, strict=True) if soft_row
+        }
+        error += soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * max(yielding, default=0.0)
+        # A regularised row transmits the share 1 - compliance of a force, whatever its stiffness.
+        error += softness.compliance if quantity == "reaction" else 0.0
     if not softness.complete:
         lag = stiff if quantity == "gap" else max(damped, stiff)
-        found += soft[softness.rows, False][quantity] * lag
-    return found
+        error += soft[softness.rows, False][quantity] * lag
+    return error
 
 
-def _worse(one: Mapping[str, float], other: Mapping[str, float]) -> Mapping[str, float]:
-    """By quantity the larger of two errors that are finite, infinite without any; NaN where neither is known."""
+def _larger_finite(first: Mapping[str, float], second: Mapping[str, float]) -> Mapping[str, float]:
+    """By quantity the larger finite error of two; infinite if neither is finite, NaN if both are NaN."""
     out = {}
     for name in QUANTITY_NAMES:
-        known = [value for value in (one[name], other[name]) if not math.isnan(value)]
+        known = [value for value in (first[name], second[name]) if not math.isnan(value)]
         out[name] = max((v for v in known if math.isfinite(v)), default=math.inf) if known else math.nan
     return out
 
 
 def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[SoftKind]:
-    """What the judge has to know of softness to judge these engines in a scene."""
-    mechanism, found = scene.mechanism(), set()
+    """The kinds of regularisation that these engines declare for a scene."""
+    mechanism = scene.mechanism()
+    out: set[SoftKind] = set()
     for engine in engines:
         softness = engine.regularisation(mechanism, scene.spacing)
         if softness is not None:
-            found |= {(softness.rows, True)} if softness.compliance > 0 else set()
-            found |= set() if softness.complete else {(softness.rows, False)}
-    return frozenset(found)
+            out |= {(softness.rows, True)} if softness.compliance > 0 else set()
+            out |= set() if softness.complete else {(softness.rows, False)}
+    return frozenset(out)
 
 
 @cache
 def prediction(scene: Scene, soft: frozenset[SoftKind] = frozenset()) -> Prediction:
-    """The scene's prediction, worked out once a process: a second or two, more for a hundred bodies.
+    """The scene's prediction, cached in this process: about two seconds, more for a hundred bodies.
 
-    Joints are left alone and projected: where the motion is prescribed a projection leaves nothing of the error, and at
-    singular positions rows left alone drift off. The worse of the two is taken.
+    The judge runs with and without projection, and the larger error counts: in a prescribed motion a projection removes
+    the whole error, and without one the constraints drift at singular positions.
     """
     second = fourth = dict.fromkeys(QUANTITY_NAMES, math.inf)
     every = REFINEMENTS[0]
     for every in REFINEMENTS:
-        second, fourth = (_judged(scene, order, every) for order in (2, 4))
+        second, fourth = (_order_errors(scene, order, every) for order in (2, 4))
         if second["angle"] <= REACH:
             break
     if not max(second["angle"], fourth["angle"]) <= SATURATED:
-        # Of a motion that is lost nothing follows for another order.
+        # The judge has lost the motion: no other order can be predicted.
         second = fourth = dict.fromkeys(QUANTITY_NAMES, math.inf)
     mechanism = scene.mechanism()
     prescribed = is_prescribed(mechanism)
@@ -217,33 +203,33 @@ def prediction(scene: Scene, soft: frozenset[SoftKind] = frozenset()) -> Predict
         second,
         fourth,
         mechanism.length_scale,
-        *_motion(scene),
-        {kind: softened(scene, *kind) for kind in soft},
+        *_motion_scales(scene),
+        {kind: unit_softness_errors(scene, *kind) for kind in soft},
         tuple(mechanism.holonomic.tolist()),
         prescribed,
-        _earlier(scene) if prescribed else {},
+        _lag_errors(scene) if prescribed else {},
     )
 
 
 def _sampled(scene: Scene) -> Trajectory:
-    """The truth at DIFFERENCES + 1 instants within what is compared."""
+    """The true motion at DIFFERENCES + 1 instants of the time that is compared."""
     return scene.motion(np.linspace(0.0, min(scene.horizon, scene.comparable_until), DIFFERENCES + 1))
 
 
-def _earlier(scene: Scene) -> Mapping[str, float]:
-    """Errors of the truth's own velocities and reactions, a difference late, over that difference [s]."""
+def _lag_errors(scene: Scene) -> Mapping[str, float]:
+    """By quantity the error of true velocities and reactions that are one interval late, per second of delay."""
     mechanism, truth = scene.mechanism(), _sampled(scene)
     names = ("t", "pose", "twist", "reaction")
     now, before = (
         Trajectory(*(getattr(truth, name)[part] for name in names)) for part in (slice(1, None), slice(None, -1))
     )
     late = replace(now, twist=before.twist, reaction=before.reaction)
-    told = constraint_errors(mechanism, late) | motion_errors(scene, mechanism, now, late)
-    return {name: told[name] / (truth.t[1] - truth.t[0]) for name in QUANTITY_NAMES}
+    late_errors = constraint_errors(mechanism, late) | motion_errors(scene, mechanism, now, late)
+    return {name: late_errors[name] / (truth.t[1] - truth.t[0]) for name in QUANTITY_NAMES}
 
 
-def _motion(scene: Scene) -> tuple[float, float, tuple[float, float]]:
-    """Speed, acceleration and the change of reactions of the truth; see Prediction."""
+def _motion_scales(scene: Scene) -> tuple[float, float, tuple[float, float]]:
+    """`speed`, `acceleration` and `changing` of a Prediction."""
     mechanism = scene.mechanism()
     truth, length = _sampled(scene), mechanism.length_scale
     dt = truth.t[1]
@@ -257,37 +243,35 @@ def _motion(scene: Scene) -> tuple[float, float, tuple[float, float]]:
     return speed, acceleration, changing
 
 
-def softened(scene: Scene, rows: tuple[bool, ...], complete: bool) -> Mapping[str, float]:
-    """Errors by quantity of joints that give way as the judge's own do: by compliance, or, incomplete, by their lag."""
+def unit_softness_errors(scene: Scene, rows: tuple[bool, ...], complete: bool) -> Mapping[str, float]:
+    """Errors by quantity with the regularisation STIFFNESS, DAMPING, COMPLIANCE of these rows (rows,)."""
     every = max(1, math.ceil(scene.spacing * DAMPING / 2))
-    found: Mapping[str, float] = dict.fromkeys(QUANTITY_NAMES, math.inf)
+    scaled: Mapping[str, float] = dict.fromkeys(QUANTITY_NAMES, math.inf)
     if scene.samples * every > MOST_STEPS:
-        return found
-    # Where this much softness loses the motion, a thousandth of it is tried, and a thousandth of that.
-    for less in (1.0, 1e3, 1e6):
-        soft = Regularisation(STIFFNESS, DAMPING, COMPLIANCE / less, rows, complete)
-        found = {name: value * less for name, value in errors(scene, 4, every, soft).items()}
-        if not complete or found["angle"] / less <= SATURATED:
+        return scaled
+    for divisor in (1.0, 1e3, 1e6):  # the next one where the motion is lost
+        soft = Regularisation(STIFFNESS, DAMPING, COMPLIANCE / divisor, rows, complete)
+        scaled = {name: value * divisor for name, value in errors(scene, 4, every, soft).items()}
+        if not complete or scaled["angle"] / divisor <= SATURATED:
             break
-    return found
+    return scaled
 
 
-def _judged(scene: Scene, order: int, every: int) -> Mapping[str, float]:
-    """The worse of both treatments of the joints, without one that lost the motion (an error above half a radian)."""
-    found = [errors(scene, order, every, project=project) for project in (False, True)]
-    kept = [told for told in found if told["angle"] <= SATURATED] or found
-    return _worse(kept[0], kept[-1])
+def _order_errors(scene: Scene, order: int, every: int) -> Mapping[str, float]:
+    """The larger errors of the runs with and without projection; a run with an angle error above SATURATED is left out
+    if the other one is below."""
+    runs = [errors(scene, order, every, project=project) for project in (False, True)]
+    followed = [run for run in runs if run["angle"] <= SATURATED] or runs
+    return _larger_finite(followed[0], followed[-1])
 
 
-# The judge's own steps take minutes for more bodies than this: of those only the gate asks it.
-MOST_BODIES = 20
-# One stage of the judge [s] for a few bodies, about; a step has four.
-STAGE = 1e-3
+MOST_BODIES = 20  # of a scene whose pages need the judge: for more bodies it takes minutes, and the gate alone runs it
+STAGE = 1e-3  # s, about: one Runge-Kutta stage of the judge for a few bodies; a step has four
 
 
 @dataclass(frozen=True)
 class Softened(Task):
-    """Largest errors, by quantity, of joints that give way as the judge's own do; see `reports.gate.prediction`."""
+    """Largest errors by quantity with the regularisation of the judge; see `unit_softness_errors`."""
 
     scene: Scene
     rows: tuple[bool, ...]
@@ -304,18 +288,20 @@ class Softened(Task):
         return f"{self.scene.name}: {soft}, by the judge"
 
     def run(self) -> Values:
-        return {name: np.array(value) for name, value in softened(self.scene, self.rows, self.complete).items()}
+        return {
+            name: np.array(value) for name, value in unit_softness_errors(self.scene, self.rows, self.complete).items()
+        }
 
 
 def soft_tasks(scene: Scene, engines: tuple[Engine, ...]) -> tuple[Softened, ...]:
-    """What the judge has to run once to tell what these engines declare in a scene; none where it has many bodies."""
+    """The judge's runs for the regularisations that these engines declare; none for more than MOST_BODIES bodies."""
     if len(mechanism_of(scene).bodies) > MOST_BODIES:
         return ()
     return tuple(Softened(scene, *kind) for kind in sorted(kinds(scene, engines)))
 
 
 def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine, quantity: str, step: float) -> float:
-    """What the engine's declared softness alone costs at this step [s]; 0 where it declares none, NaN if not known."""
+    """The error that the engine's declared regularisation causes at this step [s]; 0 without one, NaN if not known."""
     mechanism = mechanism_of(scene)
     softness = engine.regularisation(mechanism, step)
     soft: dict[SoftKind, dict[str, float]] = {}
@@ -325,13 +311,13 @@ def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine,
         if answer is not None and answer.finished:
             soft[rows, complete] = {name: answer.number(name) for name in QUANTITY_NAMES}
     try:
-        return given(soft, quantity, softness, mechanism.holonomic.tolist())
-    except KeyError:  # the judge was not asked, or failed
+        return scaled_softness_error(soft, quantity, softness, mechanism.holonomic.tolist())
+    except KeyError:  # the task was not run, or failed
         return math.nan
 
 
 def all_tasks(page: Page) -> tuple[Task, ...]:
-    """The tasks of a page, of its experiments, and of what its engines declare, each once."""
+    """The tasks of a page: its own, those of its experiments, and the judge's runs for its engines; each once."""
     experiments = [task for failure in page.failures for task in failure.tasks]
     declared = [task for scene in page.scenes for task in soft_tasks(scene, page.engines_of(scene))]
     return tuple(dict.fromkeys([*page.tasks, *experiments, *declared]))

@@ -16,8 +16,8 @@ import pytest
 from engines import Engine, method_name, registry
 from engines.loading import is_reference
 from reports.gate.change import WORSE, BadBaseline, Baseline, mixed, read_baseline
-from reports.gate.theory import Case, idle
-from reports.gate.walk import CaseVerdict, grown, remarks, walk
+from reports.gate.theory import Case, count_vacuous
+from reports.gate.walk import CaseVerdict, grown, remarks, run_and_check
 from reports.model.ending import FileTrouble
 from reports.run.files import write_whole
 from reports.write.provenance import versions
@@ -70,12 +70,12 @@ def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
     return out
 
 
-def unable(verdicts: Iterable[CaseVerdict]) -> list[str]:
-    """Sentences on the checks of theory that can't fail: how many of how many, and for which reasons."""
+def vacuous_checks(verdicts: Iterable[CaseVerdict]) -> list[str]:
+    """Sentences about the checks of theory that cannot fail: their number, and the number for each reason."""
     checks = [check for verdict in verdicts for check in verdict.theory]
-    found = idle(checks)
-    out = [f"{len(checks)} checks of theory; {found.total()} of them can't fail."]
-    return out + [f"{count} can't fail: {reason}." for reason, count in found.most_common()]
+    vacuous = count_vacuous(checks)
+    out = [f"{len(checks)} checks of theory; {vacuous.total()} of them can't fail."]
+    return out + [f"{count} can't fail: {reason}." for reason, count in vacuous.most_common()]
 
 
 def report(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> str:
@@ -95,7 +95,7 @@ def report(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> str:
         parts.append("## Known deviations")
         body = [[v.case.scene.name, v.case.method, name, d.told, d.reason] for v in known for name, d in v.case.known]
         parts.append(markdown(["scene", "method", "check", "times its bound", "why"], body, left=5))
-    parts += ["## Checks that can't fail", "\n".join(f"* {told}" for told in unable(verdicts))]
+    parts += ["## Checks that can't fail", "\n".join(f"* {told}" for told in vacuous_checks(verdicts))]
     changed = changes(verdicts, baseline)
     if changed:
         parts += ["## Baseline", "\n".join(f"* {told}" for told in changed)]
@@ -211,7 +211,7 @@ def verdicts(request: pytest.FixtureRequest) -> dict[Case, CaseVerdict]:
     if hasattr(request.config, "workerinput"):
         pytest.skip("the grid has workers of its own: pytest -m crosscheck, without -n")
     chosen = dict.fromkeys(case for case in map(case_of, request.session.items) if case is not None)
-    found = walk(chosen, request.config.stash[KNOWN], dearest=request.config.getoption("--cost"))
+    found = run_and_check(chosen, request.config.stash[KNOWN], dearest=request.config.getoption("--cost"))
     request.config.stash[VERDICTS] = found
     return found
 
@@ -222,7 +222,7 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
         return
     baseline, verdicts = config.stash[KNOWN], found.values()
     terminalreporter.section("crosscheck")
-    for line in (*text_table(HEADER, lines(verdicts)), *unable(verdicts), *changes(verdicts, baseline)):
+    for line in (*text_table(HEADER, lines(verdicts)), *vacuous_checks(verdicts), *changes(verdicts, baseline)):
         terminalreporter.line(line)
     target = config.getoption("--crosscheck-report")
     if target is not None:

@@ -1,4 +1,4 @@
-"""Run the grid for a gate: the judge and the cells of the selected cases in worker processes, then all checks."""
+"""Run the judge and the cells of the selected cases in worker processes, and check their rows."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from reports.gate.change import (
     Old,
     change,
     cost,
+    describe_improvements,
     drift,
     growth,
     identity,
-    known_by_now,
     moved,
     nudged_cells,
 )
@@ -33,16 +33,12 @@ from reports.model.outcomes import Loss
 from reports.run.running import run_cells, worker_count
 from reports.run.supervisor import supervise
 
-# The judge's largest scenes take this long [s] on a busy machine.
-JUDGE_LIMIT = 600.0
+JUDGE_LIMIT = 600.0  # CPU seconds of one run of the judge; the largest scenes need several minutes
 
 
 @dataclass(frozen=True)
 class CaseVerdict:
-    """What a case's rows were checked against: theory and order, the baseline's numbers, and cells it has not.
-
-    `before`: what the baseline knows of each row, None where it lacks it.
-    """
+    """The rows of a case, their checks of theory and of change, and for each row that of the baseline or None."""
 
     case: Case
     rows: tuple[Measurement, ...]
@@ -52,22 +48,22 @@ class CaseVerdict:
 
     @property
     def pairs(self) -> tuple[tuple[Measurement, Old], ...]:
-        """The rows that the baseline knows, and what it knows of them."""
+        """The rows that the baseline has, each with that of the baseline."""
         return tuple((row, old) for row, old in zip(self.rows, self.before, strict=False) if old is not None)
 
     @property
     def new(self) -> int:
-        """Rows that the baseline lacks."""
+        """The number of rows that the baseline lacks."""
         return sum(old is None for old in self.before)
 
     @property
     def cost(self) -> float:
-        """How many times the baseline's CPU time it took; NaN if that is not known."""
+        """The CPU time over that of the baseline; NaN if not known."""
         return cost(self.pairs)
 
     @property
     def theory_complaints(self) -> tuple[str, ...]:
-        """Sentences, none if all is as promised or known."""
+        """Sentences about failed checks and known deviations that changed."""
         return complaints(self.theory, dict(self.case.known), self.rows[-1].outcome)
 
     @property
@@ -76,13 +72,13 @@ class CaseVerdict:
 
     @property
     def worst(self) -> Check | None:
-        """The check of theory nearest to its bound; None where the engine can't build the scene."""
+        """The check of theory nearest to its bound; None if the engine cannot build the scene."""
         return nearest(self.theory) if self.theory else None
 
 
 @dataclass(frozen=True)
 class JudgeRun:
-    """A run of the judge: the prediction for a scene and kinds of softness, or its errors with a method's softness."""
+    """A run of the judge: the prediction for kinds of regularisation, or the errors with a method's regularisation."""
 
     scene: Scene
     soft: frozenset[SoftKind] | Regularisation
@@ -94,12 +90,12 @@ class JudgeRun:
 
 
 def call(job: JudgeRun) -> Any:
-    """The function that a worker applies."""
+    """Run a job; a function of the module, so that workers can import it."""
     return job()
 
 
 def run_judge(jobs: Iterable[JudgeRun], workers: int) -> dict[JudgeRun, Any]:
-    """The result of every job, in worker processes, many bodies first. Raises RuntimeError where the judge fails."""
+    """Run the jobs in worker processes, most bodies first. Raises RuntimeError if one fails."""
     ordered = sorted(set(jobs), key=lambda job: -len(mechanism_of(job.scene).bodies))
     results: dict[JudgeRun, Any] = {}
     for job, result, _ in supervise(call, ordered, JUDGE_LIMIT, workers):
@@ -109,13 +105,13 @@ def run_judge(jobs: Iterable[JudgeRun], workers: int) -> dict[JudgeRun, Any]:
     return results
 
 
-def walk(
+def run_and_check(
     chosen: Iterable[Case], baseline: Baseline, workers: int | None = None, dearest: float | None = None
 ) -> dict[Case, CaseVerdict]:
-    """Run what these cases need, in as many processes as there are processors, and check it.
+    """Run the judge and the cells of these cases in worker processes (one per processor if None), and check the rows.
 
-    `dearest`: how many times the baseline's CPU time a case may take; then runs are timed as those of a report are.
-    Raises RuntimeError when the judge itself fails.
+    dearest: the largest allowed CPU time over the baseline's; if given, runs are timed as in a report. Raises
+    RuntimeError if the judge fails.
     """
     chosen, workers = tuple(chosen), workers or worker_count()
     jobs = {scene: JudgeRun(scene, soft) for scene, soft in predictions(chosen).items()}
@@ -146,8 +142,8 @@ def walk(
                 changed += drift(row, old)
         changed += vanished(case, before[case])
         as_soft = results[soft_jobs[case]] if case in soft_jobs else None
-        found = checks(case, measured[case], judge[case], as_soft)
-        verdict = CaseVerdict(case, measured[case], found, tuple(changed), before[case])
+        theory = checks(case, measured[case], judge[case], as_soft)
+        verdict = CaseVerdict(case, measured[case], theory, tuple(changed), before[case])
         if dearest is not None and not math.isnan(verdict.cost):
             costly = Check(CHANGE, "CPU time", verdict.cost, dearest, sentence=" times the baseline's")
             verdict = replace(verdict, change=(*verdict.change, costly))
@@ -156,39 +152,39 @@ def walk(
 
 
 def vanished(case: Case, before: Sequence[Old | None]) -> tuple[Check, ...]:
-    """A check that fails where the baseline lacks what it must have had of a case, coarse steps first.
+    """A check that fails if the baseline lacks rows of a case (`before`: coarse steps first).
 
-    A baseline that was made with another grid may end at a coarser step, and it knows nothing of somebody else's scene
-    or engine. It has no hole below its finest step, and of ours it has each scene in each method.
+    A baseline of a coarser grid may end at a coarser step, and a third party's scene or engine may be missing. Steps
+    between others may not be missing, nor a scene and method of this suite.
     """
-    first = next((index for index, old in enumerate(reversed(before)) if old is not None), None)
-    if first is None:
+    finer = next((index for index, old in enumerate(reversed(before)) if old is not None), None)
+    if finer is None:
         lacking = len(before) if case.ours else 0
-        told = ", as the baseline has no row of it: select what it has, or write it anew"
+        reason = ", as the baseline has no row of it: select other cases, or write the baseline again"
     else:
-        lacking = sum(old is None for old in before) - first
-        told = ", as steps are missing in the baseline between those that it has: write it anew"
-    return (Check(CHANGE, "rows", float(lacking), 0.0, sentence=told),) if lacking else ()
+        lacking = sum(old is None for old in before) - finer
+        reason = ", as the baseline lacks steps between others: write the baseline again"
+    return (Check(CHANGE, "rows", float(lacking), 0.0, sentence=reason),) if lacking else ()
 
 
 def lost(baseline: Baseline, grid: Iterable[Case]) -> tuple[tuple[str, str], ...]:
-    """(scene, method) of what a baseline has and a grid lacks."""
-    there = {(case.scene.name, case.method) for case in grid}
+    """(scene, method) of the baseline's cases that the grid lacks."""
+    in_grid = {(case.scene.name, case.method) for case in grid}
     return tuple(
-        pair for pair in dict.fromkeys((scene, method) for scene, method, *_ in baseline.cells) if pair not in there
+        pair for pair in dict.fromkeys((scene, method) for scene, method, *_ in baseline.cells) if pair not in in_grid
     )
 
 
 def grown(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> tuple[Check, ...]:
-    """With other versions: whether a method's errors grew over all its scenes; see `reports.gate.change.growth`."""
+    """The checks of `reports.gate.change.growth`; none if the versions are those of the baseline."""
     if baseline.same_versions:
         return ()
     return growth(pair for verdict in verdicts for pair in verdict.pairs)
 
 
 def remarks(verdict: CaseVerdict) -> tuple[str, ...]:
-    """Sentences that change no verdict: what is known by now, and a cost that no machine or load explains."""
-    known = (told for row, old in verdict.pairs for told in known_by_now(row, old))
+    """Sentences that change no verdict: improvements, and a CPU time of more than DEAR times the baseline's."""
+    known = (sentence for row, old in verdict.pairs for sentence in describe_improvements(row, old))
     dear = (f"{verdict.cost:.3g} times the CPU time of the baseline",) if verdict.cost > DEAR else ()
     return tuple(dict.fromkeys([*known, *dear]))
 

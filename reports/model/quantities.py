@@ -1,5 +1,4 @@
-"""What is compared with the truth: each quantity's unit, below which error there is only rounding, and which two values
-of one tell the same."""
+"""The quantities that are compared with the true motion: unit, rounding, and the facts that the gate needs."""
 
 from __future__ import annotations
 
@@ -7,24 +6,34 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from reports.model.outcomes import SATURATED, TORN
+
 DIGITS = 4  # of the numbers in a report's CSV files
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A kind of error, with all facts that checks and tables need to know of it.
+    """A kind of error, with all its facts for checks and tables.
 
-    rounding: errors below it carry no information on a model. Positions and angles lose about 1e-16 a step over 1e5
-    steps, so 1e-11 has room for some ill-conditioning; velocities are differences of those over a step, and reactions
-    of those again.
+    rounding: smaller errors carry no information on a model. Positions and angles lose about 1e-16 a step over 1e5
+    steps, so 1e-11 allows some ill-conditioning; velocities are differences of positions over a step, and reactions are
+    differences of velocities.
     """
 
     name: str  # the field of a Measurement
     unit: str
     rounding: float
-    check: str  # the check of the gate of theory that holds it
+    check: str  # the name of its check in the gate of theory
     needs_truth: bool = True  # False for constraint violations, which follow from the joints and the run alone
     is_of_joints: bool = False  # tables of scenes have it beside the quantity of the page
+    follows: str = ""  # the quantity whose error causes one of this
+    lag: float = 0.0  # steps by which a first-order value is late in a prescribed motion; 0 for poses, which are not
+    # The largest comparable error: in multiples of the mechanism's length, of the largest speed or rate of the motion,
+    # or, for relative quantities and angles [rad], itself.
+    largest: float = 1.0
+    # Whether the time scale of an order below 2 is the angle's if that is shorter: the fourth-order run of the judge
+    # tells little here, as its positions hold the drift of the constraints, and its energy is an order better.
+    scales_with_angle: bool = False
 
     @property
     def label(self) -> str:
@@ -38,18 +47,19 @@ class Quantity:
 
 # Tables and checks keep this order.
 QUANTITIES = (
-    Quantity("position", "m", 1e-11, "error"),
-    Quantity("angle", "rad", 1e-11, "error"),
-    Quantity("velocity", "m/s", 1e-10, "rate"),
-    Quantity("rate", "rad/s", 1e-10, "rate"),
-    Quantity("gap", "m", 1e-12, "gap", needs_truth=False, is_of_joints=True),
-    Quantity("slip", "m/s", 1e-11, "gap", needs_truth=False, is_of_joints=True),
-    Quantity("energy", "relative", 1e-11, "energy"),
-    Quantity("reaction", "relative", 1e-9, "reaction", is_of_joints=True),
+    Quantity("position", "m", 1e-11, "error", largest=SATURATED, scales_with_angle=True),
+    Quantity("angle", "rad", 1e-11, "error", largest=SATURATED),
+    Quantity("velocity", "m/s", 1e-10, "rate", follows="position", lag=0.5),
+    Quantity("rate", "rad/s", 1e-10, "rate", follows="angle", lag=0.5),
+    Quantity("gap", "m", 1e-12, "gap", needs_truth=False, is_of_joints=True, largest=TORN),
+    Quantity("slip", "m/s", 1e-11, "gap", needs_truth=False, is_of_joints=True, follows="velocity", lag=1.0),
+    Quantity("energy", "relative", 1e-11, "energy", lag=0.5, scales_with_angle=True),
+    Quantity("reaction", "relative", 1e-9, "reaction", is_of_joints=True, lag=1.0),
 )
+QUANTITY: Mapping[str, Quantity] = {each.name: each for each in QUANTITIES}
 
 
-# Fields of a Measurement that are another measure of a quantity's error.
+# Field of a Measurement -> the quantity of which it is another measure.
 OF: Mapping[str, str] = {
     "position_rms": "position",
     **dict.fromkeys(("angle_rms", "angle_duration", "drive_gap", "estimate"), "angle"),
@@ -58,38 +68,34 @@ OF: Mapping[str, str] = {
 
 def quantity(name: str) -> Quantity:
     """Raises KeyError for a name that is not in QUANTITIES."""
-    return {q.name: q for q in QUANTITIES}[name]
+    return QUANTITY[name]
 
 
 def printed(value: float) -> float:
-    """One unit of the last of the DIGITS with which a value is printed; 0 for zero and for what is no number.
-
-    A number and its text differ by half of it at most, and two numbers whose texts are neighbours by no more than one.
-    """
+    """One unit of the last printed digit (of DIGITS) of a value; 0 for zero, infinity and NaN."""
     if value == 0 or not math.isfinite(value):
         return 0.0
     return 10.0 ** (math.floor(math.log10(abs(value))) + 1 - DIGITS)
 
 
-def room(name: str, before: float, amplified: float = 1.0) -> tuple[float, float]:
-    """What printing and rounding may change in a value: one unit of its last printed digit, and the quantity's floor.
+def rounding_tolerance(name: str, before: float, amplified: float = 1.0) -> tuple[float, float]:
+    """How much a value may differ between processors: (one unit of its last printed digit, rounding).
 
-    name: a field of a Measurement that is an error, a root mean square or an estimate of one; KeyError for another.
-    Where another processor rounds each step otherwise, the motion moves by no more than `Quantity.rounding`, and by the
-    triangle inequality its error too, however small it is. amplified: how many times the usual rounding the method
-    carries (`engines.ConvergenceOrder`). The amplification by the motion itself is measured (`reports.gate.change`).
+    name: a field of a Measurement that is an error, its root mean square or its estimate; KeyError for another. Other
+    rounding moves the motion by at most `Quantity.rounding`, and so changes its error by no more. amplified: the factor
+    by which the method amplifies rounding (`engines.ConvergenceOrder`). The amplification by the motion is measured in
+    `reports.gate.change`.
     """
     return printed(before), quantity(OF.get(name, name)).rounding * amplified
 
 
 def agrees(name: str, now: float, before: float, amplified: float = 1.0) -> bool:
-    """Whether two values of one quantity differ by no more than its `room`; two values that are no numbers agree.
+    """Whether two values of one quantity differ by no more than its `rounding_tolerance`; NaN agrees with NaN.
 
-    `now` may have all its digits, `before` the DIGITS of a file. Of 4,280 rows of two processors eight numbers go
-    beyond this room, of pivots that are placed where curves touch, which feed rounding back; all others stay within two
-    thirds of it.
+    `before` may be rounded to DIGITS. In 4,280 rows of two processors eight numbers differ by more: those of pivots at
+    the contact of two curves, where rounding feeds back. All others differ by less than two thirds of the tolerance.
     """
-    allowed = sum(room(name, before, amplified))
+    allowed = sum(rounding_tolerance(name, before, amplified))
     if not (math.isfinite(now) and math.isfinite(before)):
         return now == before or (math.isnan(now) and math.isnan(before))
     return abs(now - before) <= allowed

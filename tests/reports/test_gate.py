@@ -13,7 +13,7 @@ from engines import EXACT, ConvergenceOrder, NotDeclared, Regularisation
 from reports.gate.change import Baseline
 from reports.gate.prediction import Prediction
 from reports.gate.pytest_plugin import lines, report
-from reports.gate.theory import ROOM, ROOM_OWN, TOO_FEW, Case, cases, checks, idle, order, theory
+from reports.gate.theory import ROOM, ROOM_OWN, TOO_FEW, Case, cases, checks, count_vacuous, order, theory
 from reports.gate.walk import CaseVerdict
 from reports.model.cells import Cell
 from reports.model.checks import Check, Deviation, complaints, nearest
@@ -41,7 +41,7 @@ JUDGE = Prediction(
     acceleration=10.0,
     changing=(1.0, 1.0),
     soft={((True, True), True): dict.fromkeys(NAMES, 1e-3)},
-    gapped=(True, True),
+    holonomic=(True, True),
 )
 FINE = 1e-3
 
@@ -81,7 +81,7 @@ def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
 
 
 @pytest.mark.parametrize(
-    ("gapped", "change", "give"),
+    ("holonomic", "change", "give"),
     [
         (True, {}, 1e-3),
         (True, {"compliance": 0.005}, 5e-4),
@@ -90,10 +90,10 @@ def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
         (False, {"stiffness": 25000.0, "damping": 50.0}, 2e-3),  # without a gap a row gives way by its damper
     ],
 )
-def test_softness_costs_in_proportion_to_compliance_over_stiffness(gapped, change, give):
-    judge = replace(JUDGE, gapped=(gapped, gapped))
-    assert judge.give("angle", replace(SOFT, **change)) == pytest.approx(give, rel=1e-12)
-    assert judge.give("angle", None) == 0
+def test_softness_costs_in_proportion_to_compliance_over_stiffness(holonomic, change, give):
+    judge = replace(JUDGE, holonomic=(holonomic, holonomic))
+    assert judge.softness_error("angle", replace(SOFT, **change)) == pytest.approx(give, rel=1e-12)
+    assert judge.softness_error("angle", None) == 0
 
 
 def coarser(quantity: str = "angle", **errors: Any) -> list[Measurement]:
@@ -106,7 +106,7 @@ UNKNOWN = NotDeclared("nobody knows")
 WITHOUT_SOFT = replace(JUDGE, soft={((True, True), True): dict.fromkeys(NAMES, math.inf)})
 LOST = replace(JUDGE, second=dict.fromkeys(NAMES, math.inf), fourth=dict.fromkeys(NAMES, math.inf))
 WILD = replace(JUDGE, second=dict.fromkeys(NAMES, 1e3), fourth=dict.fromkeys(NAMES, 1e3))
-PRESCRIBED = replace(JUDGE, prescribed=True, earlier=dict.fromkeys(NAMES, 2.0))
+PRESCRIBED = replace(JUDGE, prescribed=True, lag=dict.fromkeys(NAMES, 2.0))
 Given = tuple[Prediction, ConvergenceOrder | NotDeclared, Regularisation | None, list[Measurement]]
 BOUNDS: dict[str, tuple[Given, str, float]] = {  # what is known of a row, a quantity, and its bound
     "two coarser steps bound by the promised order": (
@@ -173,18 +173,20 @@ def test_a_page_knows_better_what_its_motion_asks_for_than_the_engine_and_of_no_
 def test_a_run_that_can_not_be_compared_fails_by_its_outcome_and_an_unsupported_one_has_no_check():
     found = theory(JUDGE, ConvergenceOrder(1), None, row(outcome=Outcome.TORN))
     assert [check.name for check in found if not check.passed] == ["outcome"]
-    assert idle(found) == {"the run can't be compared, so its outcome alone is held": len(NAMES)}
+    assert count_vacuous(found) == {"the run is not comparable, so its outcome alone is checked": len(NAMES)}
     assert theory(JUDGE, ConvergenceOrder(1), None, row(outcome=Outcome.UNSUPPORTED)) == ()
 
 
 def test_a_number_that_is_none_fails_unless_there_is_none_to_tell_and_that_is_counted():
     found = theory(JUDGE, ConvergenceOrder(1), None, row(reaction=math.nan, angle=math.inf))
     assert [check.quantity for check in found if not check.passed] == ["angle", "reaction"]
-    assert not idle(found)
+    assert not count_vacuous(found)
     untold = theory(JUDGE, ConvergenceOrder(1, reaction=math.nan), None, row(reaction=math.nan))
-    assert idle(untold) == {"the engine says that it can't tell it": 1}
-    for none in (replace(JUDGE, gapped=(False, False)), replace(JUDGE, second={**JUDGE.second, "gap": math.nan})):
-        assert idle(theory(none, ConvergenceOrder(1), None, row(gap=math.nan))) == {"the scene has no such number": 1}
+    assert count_vacuous(untold) == {"the engine declares that it does not report it": 1}
+    for none in (replace(JUDGE, holonomic=(False, False)), replace(JUDGE, second={**JUDGE.second, "gap": math.nan})):
+        assert count_vacuous(theory(none, ConvergenceOrder(1), None, row(gap=math.nan))) == {
+            "the scene does not have this quantity": 1
+        }
     for coarse in permutations(coarser(at1=math.nan, at2=1e-7, at3=1e-8)):  # a step without a number bounds nothing
         bound = of(theory(JUDGE, ConvergenceOrder(2), None, row(), coarse), "angle").bound
         assert bound == pytest.approx(ROOM_OWN * 1e-7 * (2 / 10) ** 2 + 1e-11)
@@ -217,7 +219,7 @@ def test_the_promised_order_passes_and_another_a_plateau_and_growth_do_not(promi
 
 def test_no_order_is_asked_of_two_points_or_of_rounding():
     for few in (rows(*falling_errors(2, points=2)), rows(1e-12, 1e-13, 1e-13, 1e-12)):
-        assert idle(order(ConvergenceOrder(2), few)) == {TOO_FEW: 1}
+        assert count_vacuous(order(ConvergenceOrder(2), few)) == {TOO_FEW: 1}
 
 
 def toy_checks(engine: Toy) -> tuple[Check, ...]:

@@ -21,17 +21,17 @@ from reports.gate.change import (
     Old,
     change,
     cost,
+    describe_improvements,
     drift,
     growth,
     identity,
-    known_by_now,
     mixed,
     nudged_cells,
     read_baseline,
 )
 from reports.gate.pytest_plugin import changes
 from reports.gate.theory import Case
-from reports.gate.walk import lost, remarks, vanished, walk
+from reports.gate.walk import lost, remarks, run_and_check, vanished
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome
@@ -87,10 +87,10 @@ def test_reactions_of_fewer_rows_than_before_fail(gate):
 
 def test_a_number_where_none_was_known_is_told_and_with_the_same_versions_it_is_a_change():
     before = old(reaction=math.nan)
-    assert known_by_now(row(reaction=3e-9), before) == ("reaction: 3e-09; it was not known",)
+    assert describe_improvements(row(reaction=3e-9), before) == ("reaction: 3e-09; it was not known",)
     assert all(check.passed for check in drift(row(reaction=3e-9), before))
     assert not of(change(row(reaction=3e-9), before), "reaction").passed
-    assert known_by_now(row(), old()) == ()
+    assert describe_improvements(row(), old()) == ()
 
 
 def test_an_outcome_that_changed_is_noticed_unless_rounding_changes_it():
@@ -123,7 +123,7 @@ def test_another_outcome_fails_with_the_same_versions_and_an_improvement_is_a_re
     assert not all(check.passed for check in change(now, before))
     assert all(check.passed for check in drift(now, before)) is passes
     remark = (f"outcome: {now.outcome}; it was {before.outcome}",) if passes else ()
-    assert known_by_now(now, before) == remark
+    assert describe_improvements(now, before) == remark
 
 
 def of_scenes(*factors: float) -> list[tuple[Measurement, Old]]:
@@ -164,7 +164,7 @@ def test_a_scene_of_ours_that_a_baseline_has_no_row_of_fails_and_somebody_elses_
     ours = Case(DrivenFourBar(), Lagrange(), ConvergenceOrder(1))
     (check,) = vanished(ours, (None, None))
     assert not check.passed
-    assert "write it anew" in str(check)
+    assert "write the baseline again" in str(check)
     assert vanished(ours, (old(), old())) == ()
 
 
@@ -181,7 +181,7 @@ def test_a_cost_is_that_of_the_cells_that_both_have_timed():
     assert math.isnan(cost([pair(math.nan, 1.0)]))
 
 
-def test_a_walk_holds_each_row_and_its_cost_against_the_baselines_row_of_the_same_cell(at_home):
+def test_run_and_check_compares_each_row_and_its_cost_with_the_baselines_row_of_the_same_cell(at_home):
     case = Case(SCENE, Toy("one", factor=1e-4), ConvergenceOrder(2))
     measured = [measure(cell, repeat=False) for cell in case.cells()]
     same = {identity(each): known_of(each) for each in measured}
@@ -195,16 +195,16 @@ def test_a_walk_holds_each_row_and_its_cost_against_the_baselines_row_of_the_sam
     for cells, versions, new, told in (
         (same, "", 0, []),
         (angle(1e-12), "", 0, ["it was 1e-12"]),
-        (lacking, "", 1, ["steps are missing"]),
+        (lacking, "", 1, ["lacks steps between others"]),
         (angle(0.9e-8), "", 0, ["it was 9e-09"]),
         (angle(0.9e-8), "Python 2.7", 0, []),
     ):
-        found = walk([case], Baseline(cells, versions), workers=1)[case]
+        found = run_and_check([case], Baseline(cells, versions), workers=1)[case]
         assert found.new == new
         assert len(found.change_complaints) == len(told)
         assert all(words in line for words, line in zip(told, found.change_complaints, strict=True))
     cheap = Baseline({key: replace(value, cpu=value.cpu / 1e3) for key, value in same.items()})
-    dear = walk([case], cheap, workers=1, dearest=1.5)[case]
+    dear = run_and_check([case], cheap, workers=1, dearest=1.5)[case]
     assert ["CPU time" in line for line in dear.change_complaints] == [True]
     assert any("times the CPU time of the baseline" in line for line in changes([dear], cheap))
     assert remarks(replace(dear, before=tuple(replace(known_of(each), cpu=math.nan) for each in measured))) == ()

@@ -36,10 +36,10 @@ class Absent(Toy):
 SUITE = """
 import pytest
 from reports.gate.theory import Case
-from engines import Promise
+from engines import ConvergenceOrder
 from tests.toys import Disc, Toy
 
-CASES = [Case(Disc(), Toy(variant, factor=1e-4), Promise(2)) for variant in ("one", "two", "three")]
+CASES = [Case(Disc(), Toy(variant, factor=1e-4), ConvergenceOrder(2)) for variant in ("one", "two", "three")]
 
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.label) for case in CASES])
 def test_case(verdicts, case):
