@@ -12,7 +12,7 @@ from engines.lagrange.compiled.joints import set_bodies, set_equations
 from engines.lagrange.compiled.solve import FEW_ROWS, WELL_CONDITIONED, factorise_rows, row_times, solve
 from engines.lagrange.records import CLOSED, RowLaw, RowSelection
 
-# numba would compile `solve` anew for the literal 0.
+# numba would compile `solve` a second time for the literal 0.
 NO_CORRECTIONS = np.int64(0)
 
 
