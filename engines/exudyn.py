@@ -113,5 +113,7 @@ DEFAULT = Exudyn("default")
 TUNED = Exudyn(
     "tuned", "TrapezoidalIndex2", relative=1e-10, absolute=1e-13, consistent=True, sparse=True, own_units=True
 )
-EXTENDED = Extrapolated(replace(TUNED, relative=1e-12), "extended", levels=(1, 2, 3, 4), powers=(2, 4, 6))
+# Reactions have an error h^2 (-1)^n after n steps, which the powers remove if it has the same sign in all runs: all
+# levels are odd. With the levels (1, 2, 3, 4) the estimate of reactions was 6.8 times too small.
+EXTENDED = Extrapolated(replace(TUNED, relative=1e-12), "extended", levels=(1, 3, 5, 7), powers=(2, 4, 6))
 VARIANTS = (DEFAULT, TUNED, EXTENDED)
