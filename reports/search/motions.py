@@ -23,7 +23,7 @@ from engines.remembered import by_identity
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
-from reports.gate.judge import TABLEAUS, giving_way, in_numpy
+from reports.gate.judge import TABLEAUS, giving_way, in_numpy, stepped
 from reports.search.law import (
     NOISE_MARGIN,
     CheckSkipped,
@@ -233,9 +233,10 @@ class _Case:
         """
         usual = ConvergenceOrder(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
         spacing, parts = SPAN * self.mechanism.time_scale / MOTION_SAMPLES, max(4, parts)
+        textbook = in_numpy if usual.order == 1 else stepped  # compiled code has no method of order 1
         try:
             runs = [
-                in_numpy(self.mechanism, MOTION_SAMPLES, spacing, int(usual.order), n * COARSE_STEPS, None, True)
+                textbook(self.mechanism, MOTION_SAMPLES, spacing, int(usual.order), n * COARSE_STEPS, None, True)
                 for n in (parts // 4, parts // 2, parts)
             ]
         except ValueError:  # it went where curves can't touch
