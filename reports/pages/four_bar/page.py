@@ -67,7 +67,7 @@ def rates_drift(material: Material) -> list[Observation]:
 
     def read(answer: Answer) -> str:
         error, count, stopped = number(answer.number("error")), answer.number("evaluations"), answer.values["stopped"]
-        return rf"$\beta$ off by {error} rad after {count:.0f} evaluations{f', {stopped}' if stopped else ''}"
+        return rf"$\beta$ has an error of {error} rad after {count:.0f} evaluations{f', {stopped}' if stopped else ''}"
 
     turns = {1: "one revolution", 100: "100 revolutions"}
     settings = [(task, f"{turns[task.revolutions]}, rtol {number(task.tolerance, 1)}") for task in DRIFTS]

@@ -65,7 +65,7 @@ def beyond_friction(material: Material) -> list[Observation]:
     def describe(cell: Cell, run: Trajectory) -> str:
         earlier, last = position_errors(cell, run)
         until = cell.scene.comparable_until
-        return f"off by {number(earlier)} m up to {until:.3f} s, by {number(last)} m at {cell.scene.duration:g} s"
+        return f"error {number(earlier)} m up to {until:.3f} s, {number(last)} m at {cell.scene.duration:g} s"
 
     return observe_each(material, BEYOND_FRICTION, describe)
 

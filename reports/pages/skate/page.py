@@ -244,7 +244,7 @@ DECLARED_ORDERS = {("sleigh_backwards", "pymunk default"): ConvergenceOrder(1, d
 PAGE = scene_page(
     "skate",
     title="The skate",
-    lesson="A skate forbids velocities but no position. Engines have no such joint; here is what can stand for it.",
+    lesson="A skate constrains velocities but no position. Engines have no such joint; the page compares replacements.",
     scenes=SKATE_SCENES,
     engines=(*VARIANTS, *SKATE_CONSTRUCTIONS),
     failures=SKATE_EXPERIMENTS,

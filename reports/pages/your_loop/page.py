@@ -162,7 +162,7 @@ def context(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name="your_loop",
     title="Your loop in MuJoCo, your loop in pymunk",
-    lesson="The lines to paste, the error and the cost before and after, the release, and what they do not cure.",
+    lesson="Lines to paste, errors and costs before and after, the release that they need, and their limits.",
     companions=(LOOP,),
     borrowed=tuple(each for each in PASTED_CELLS if each not in CELLS_BESIDE_GRID),
     cells=CELLS_BESIDE_GRID,
