@@ -22,11 +22,11 @@ from reports.write.unmeasured import UNMEASURED
 
 def _names(failure: Failure, material: Material) -> dict[str, Any]:
     """The functions that an experiment's claims use; rows of a method are sorted by step, the largest first."""
-    whole = Rows(sorted(material.of(failure.cells), key=lambda row: -row.step))
+    experiment = Rows(sorted(material.of(failure.cells), key=lambda row: -row.step))
 
     def rows(method: str) -> Rows:
-        if found := whole.of(method=method, purpose=""):
-            return found
+        if of_method := experiment.of(method=method, purpose=""):
+            return of_method
         raise LookupError(f"there are no rows of {method!r}")
 
     def errors(methods: tuple[str, ...], name: str) -> list[float]:
@@ -49,7 +49,7 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
 
     def share(*outcomes: str, without: str = "") -> float:
         """The share of runs with these outcomes among all methods but `without`."""
-        counted = Rows(row for row in whole if row.method != without)
+        counted = Rows(row for row in experiment if row.method != without)
         return counted.count(*outcomes) / counted.count()
 
     def same_as_in(scene: str, name: str, *methods: str) -> bool:
@@ -66,7 +66,7 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         "comparable": lambda method: [Outcome(row.outcome).comparable for row in rows(method)],
         "unresolved": lambda method: all("unresolved" in f"{row.outcome} {row.sentence}" for row in rows(method)),
         "estimated": lambda method: all(row.estimate > row.angle for row in rows(method)),
-        "silent": lambda: all("without a warning" in row.sentence for row in whole),
+        "silent": lambda: all("without a warning" in row.sentence for row in experiment),
         "smallest": lambda name, *methods: min(errors(methods, name)),
         "largest": lambda name, *methods: max(errors(methods, name)),
         "falls": falls,

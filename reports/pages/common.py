@@ -117,15 +117,15 @@ def scene_page(
 
 @dataclass(frozen=True)
 class OfMethod(Task):
-    """A task of one method; `what`: a short description of the result, a format of the task."""
+    """A task of one method; `description`: of the result, short, a format of the task."""
 
-    what: ClassVar[str]
+    description: ClassVar[str]
 
     method: Engine
 
     @property
     def label(self) -> str:
-        return f"{method_name(self.method)}: {self.what.format(self)}"
+        return f"{method_name(self.method)}: {self.description.format(self)}"
 
     @property
     def engine(self) -> Engine:
@@ -172,15 +172,15 @@ def _written_deviations() -> dict[str, list[dict[str, Any]]]:
 
 def deviations(page: str) -> dict[tuple[str, str, str], Deviation]:
     """The known deviations of a page, from `deviations.toml`."""
-    known: dict[tuple[str, str, str], Deviation] = {}
+    by_check: dict[tuple[str, str, str], Deviation] = {}
     for entry in _written_deviations()[page]:
         scenes = dict(entry)
         reason, rounding = scenes.pop("reason"), scenes.pop("rounding", False)
         for scene, methods in scenes.items():
             for method, factors in methods.items():
                 if isinstance(factors, str):
-                    known[scene, method, "outcome"] = Deviation(reason, outcome=Outcome(factors))
+                    by_check[scene, method, "outcome"] = Deviation(reason, outcome=Outcome(factors))
                     continue
                 for check, factor in factors.items():
-                    known[scene, method, check] = Deviation(reason, factor, rounding=rounding)
-    return known
+                    by_check[scene, method, check] = Deviation(reason, factor, rounding=rounding)
+    return by_check

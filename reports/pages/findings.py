@@ -231,16 +231,16 @@ def faults(sources: Sources) -> dict[str, Any]:
     """Faults of the installed releases, from the answers of their scripts."""
     wrong, missing = [], 0
     for title in ("pymunk", "MuJoCo"):
-        shown, release = [], UNKNOWN_MARK
+        sentences, release = [], UNKNOWN_MARK
         for name, sentence in FAULTS_OF_SCRIPTS.items():
             if name.startswith(title.lower()):
                 answer = sources.answers.get(SCRIPTS[name])
                 if answer is None or not answer.finished or is_right(answer.number("expected"), answer.number("found")):
                     missing += 1
                 else:
-                    shown.append(sentence)
+                    sentences.append(sentence)
                     release = str(answer.values["version"])
-        wrong.append(f"{title} {release}: {'; '.join(shown)}.")
+        wrong.append(f"{title} {release}: {'; '.join(sentences)}.")
     answer = sources.answers.get(OFFSETS)
     across = answer.array("across") if answer is not None and answer.finished else np.array([])
     groove = PlottedLine("", "pymunk", tuple(zip(OFFSETS.offsets, -across, strict=False)))
@@ -305,4 +305,4 @@ def findings(pages: Mapping[Page, Material]) -> list[Finding]:
 
 def pictures(sound: Iterable[Finding]) -> dict[str, str]:
     """The SVG text of each finding's picture, by file name."""
-    return {found.picture: svg(found.figure(), found.title) for found in sound}
+    return {finding.picture: svg(finding.figure(), finding.title) for finding in sound}

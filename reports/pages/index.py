@@ -87,8 +87,8 @@ def compared_lines(pages: Mapping[Page, Material]) -> list[EngineLine]:
                 for cell, row in material.rows.items()
                 if cell.scene == scene and cell.samples is None and cell.purpose in ("sweep", "beside")
             }
-            whole = replace(page, scenes=(scene,), engines=(*page.engines, *registry.OTHERS))
-            lines += engine_lines([(whole, list(rows.values()))])
+            with_extras = replace(page, scenes=(scene,), engines=(*page.engines, *registry.OTHERS))
+            lines += engine_lines([(with_extras, list(rows.values()))])
     return lines
 
 
@@ -104,12 +104,12 @@ def compared_picture(lines: Sequence[EngineLine]) -> str:
         for column in COMPARED_COLUMNS:
             pairs = [(line, Column.WHOLE if Column.WHOLE in line.columns else column) for line in of_scene]
             errors[column] = {
-                line.engine: error_by_cost([rows for _, rows in line.columns.get(shown, ())], line.quantity)
-                for line, shown in pairs
+                line.engine: error_by_cost([rows for _, rows in line.columns.get(filled, ())], line.quantity)
+                for line, filled in pairs
             }
             if column is not Column.CODE:  # not every engine has a variant with our code
                 absent[column] = {
-                    reason: [line.engine for line, shown in pairs if absence_reason(line, shown) == reason]
+                    reason: [line.engine for line, filled in pairs if absence_reason(line, filled) == reason]
                     for reason in (NO_JOINT, NOT_BUILT)
                 }
         rows.append(ComparedRow(title, f"largest {quantity(of_scene[0].quantity).heading}", errors, absent))
@@ -122,9 +122,9 @@ def compared_table(lines: Sequence[EngineLine]) -> str:
     """A line for each engine and scene: the error within CPU_BUDGET and, in brackets, at COMPARED_STEP."""
     body = []
     for line in lines:
-        whole = Column.WHOLE in line.columns
+        has_one_column = Column.WHOLE in line.columns
         cells = [
-            _compared_cell(line, Column.WHOLE if whole and column is COMPARED_COLUMNS[-1] else column)
+            _compared_cell(line, Column.WHOLE if has_one_column and column is COMPARED_COLUMNS[-1] else column)
             for column in COMPARED_COLUMNS
         ]
         body.append([COMPARED_SCENES[line.scene.name], line.engine, *cells])

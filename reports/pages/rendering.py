@@ -62,15 +62,15 @@ def scene_context(scene: Scene, rows: list[Measurement], page: Page, material: M
 
 def _charts(page: Page, rows: list[Measurement], material: Material) -> dict[str, str]:
     """The page's SVG pictures by their short names."""
-    found: dict[str, str] = {}
+    pictures_by_name: dict[str, str] = {}
     drawable = charts.drawable(rows, page.quantity)
     if any(row.cpu > 0 for row in drawable):
         figure = charts.work_precision(rows, page.featured, page.quantity)
-        found["work"] = svg(figure, f"{page.title}: error against CPU time")
+        pictures_by_name["work"] = svg(figure, f"{page.title}: error against CPU time")
     if any(page.featured(row) for row in drawable):
         figure = charts.error_against_step(rows, page.featured, page.quantity)
-        found["steps"] = svg(figure, f"{page.title}: error against step")
-    return {**found, **page.figures(material)}
+        pictures_by_name["steps"] = svg(figure, f"{page.title}: error against step")
+    return {**pictures_by_name, **page.figures(material)}
 
 
 def render_page(page: Page, material: Material, command: str) -> dict[str, str]:

@@ -20,7 +20,7 @@ USUAL_VARIANTS = ("default", "tuned", "extended")
 
 def family_of(engine: str) -> str:
     """The family of an engine by its name; the name itself if it is not registered."""
-    return next((known.family for known in (*registry.ENGINES, *registry.OTHERS) if known.name == engine), engine)
+    return next((entry.family for entry in (*registry.ENGINES, *registry.OTHERS) if entry.name == engine), engine)
 
 
 def _palette_index(family: str, engines: Iterable[str]) -> int:
@@ -52,12 +52,12 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]]) -> dict[
     colours too.
     """
     family = family_of(engine)
-    methods = [(name, known) for name, variants in shown.items() if family_of(name) == family for known in variants]
-    usual = [(methods[0][0], known) for known in USUAL_VARIANTS]
+    methods = [(name, of_name) for name, variants in shown.items() if family_of(name) == family for of_name in variants]
+    usual = [(methods[0][0], usual_variant) for usual_variant in USUAL_VARIANTS]
     first = len(USUAL_VARIANTS) if any(method in usual for method in methods) else 0
     # In a family without usual variants the registered methods come first, so that their looks never change.
-    everywhere = [] if first else [(known.name, known.variant) for known in registry.VARIANTS if known.family == family]
-    others = [known for known in dict.fromkeys([*everywhere, *methods]) if known not in usual]
+    everywhere = [] if first else [(entry.name, entry.variant) for entry in registry.VARIANTS if entry.family == family]
+    others = [other for other in dict.fromkeys([*everywhere, *methods]) if other not in usual]
     method = (engine, variant)
     index = usual.index(method) if method in usual else first + others.index(method)
     paint, fill = colour(engine, shown), FILLS[index % len(FILLS)]

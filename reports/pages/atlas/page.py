@@ -251,12 +251,12 @@ def _draw_predictions(panel: Axes, columns: Sequence[StoredColumn], stability_ma
     """The names of the predictions that lie within the panel, and are drawn."""
     values = np.array([column.value for column in columns])
     low, high = panel.get_ylim()
-    drawn = set()
+    names = set()
 
     def line(name: str, x: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> None:
         _, role, dashes = PREDICTIONS[name]
         panel.plot(x, y, color=getattr(LIGHT, role), linestyle=dashes, linewidth=1.8, clip_on=True)
-        drawn.add(name)
+        names.add(name)
 
     fastest = np.array([2 / stability_map.frequency(value) for value in values])
     if np.any((fastest > low) & (fastest < high)):
@@ -271,7 +271,7 @@ def _draw_predictions(panel: Axes, columns: Sequence[StoredColumn], stability_ma
         if (min(residuals) < CRITICAL_RESIDUAL <= max(residuals)) and not math.isnan(sum(residuals)):
             between = (first.value + second.value) / 2 if stability_map.whole else math.sqrt(first.value * second.value)
             line("left", [between, between], [low, high])
-    return drawn
+    return names
 
 
 PAGE = Page(

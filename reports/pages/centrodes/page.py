@@ -140,9 +140,9 @@ def figures(material: Material) -> dict[str, str]:
     mechanism = DrivenFourBar().mechanism()
     # The curves are sorted by rotation; the poses must have the same order.
     poses = truth.pose if truth.pose[-1, COUPLER_INDEX, 2] > truth.pose[0, COUPLER_INDEX, 2] else truth.pose[::-1]
-    drawn = draw_centrodes(mechanism, poses, curves, (ARC_SAMPLES // 4, 3 * ARC_SAMPLES // 4), COUPLER_INDEX)
+    picture = draw_centrodes(mechanism, poses, curves, (ARC_SAMPLES // 4, 3 * ARC_SAMPLES // 4), COUPLER_INDEX)
     return {
-        "mechanism": svg(drawn, "The four-bar with the centrodes of its coupler"),
+        "mechanism": svg(picture, "The four-bar with the centrodes of its coupler"),
         "rate": svg(draw_rate(curves), "How far the instant centre moves in a radian"),
     }
 
@@ -204,10 +204,10 @@ def context(material: Material) -> Mapping[str, Any]:
 
 def _lesson(rows: list[tuple[Cell, float, float, float]]) -> str:
     """A sentence on the method with the largest ratio of centre error to angle error."""
-    known = [(centre / angle, row) for row in rows if (angle := row[2]) > 0 and math.isfinite(centre := row[1])]
-    if not known:
+    ratios = [(centre / angle, row) for row in rows if (angle := row[2]) > 0 and math.isfinite(centre := row[1])]
+    if not ratios:
         return ""
-    _, (cell, centre, angle, _) = max(known, key=lambda pair: pair[0])
+    _, (cell, centre, angle, _) = max(ratios, key=lambda pair: pair[0])
     return (
         f"An angle can be right while the velocities are not. {method_name(cell.engine)} at a step of "
         f"{number(cell.step)} s has an angle error of {number(angle)} rad and a centre error of {number(centre)} m."

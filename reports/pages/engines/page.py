@@ -94,7 +94,7 @@ class Capabilities(BuildingTask):
     `width` from a run. A refusal comes from the engine's table of capabilities (`engines.capability`).
     """
 
-    what: ClassVar[str] = "what it builds"
+    description: ClassVar[str] = "what it builds"
 
     def run(self) -> Values:
         values: dict[str, str] = {line: self._build(mechanism) for line, mechanism in ELEMENT_EXAMPLES.items()}
@@ -163,7 +163,7 @@ def reactions_with(
 class VelocityTerm(BuildingTask):
     """Differences of an engine's reactions (instants,) to those with and without the velocity term, relative."""
 
-    what: ClassVar[str] = "the velocity term of a loop"
+    description: ClassVar[str] = "the velocity term of a loop"
 
     def run(self) -> Values:
         scene = FreeFourBar()

@@ -157,7 +157,7 @@ class Refereed(OfMethod):
     """The last POINTS samples of an engine's motion of the mechanism of one question."""
 
     question: str
-    what: ClassVar[str] = "{0.question}"
+    description: ClassVar[str] = "{0.question}"
     seconds: ClassVar[float] = 0.2
 
     def run(self) -> Kept:

@@ -144,14 +144,16 @@ def assemblies() -> str:
 def context(material: Material) -> Mapping[str, Any]:
     """Numbers of the sentences: how far MuJoCo's regularisation yields, and the share of a gap that pymunk closes."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
-    before = [
+    earlier_errors = [
         e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", "free_four_bar", "tuned")
     ]
     return {
         "assemblies": assemblies(),
         "soft_share": [1 / d - 1 for d in soft[:2]],  # with a closed gap, and with one of a millimetre or more
         "stiff_share": 1 / hard[0] - 1,
-        "before_term": before[0] if before else UNMEASURED,  # rad, of the last release without the loops' velocity term
+        "before_term": earlier_errors[0]
+        if earlier_errors
+        else UNMEASURED,  # rad, of the last release without the loops' velocity term
         "closed_in_a_millisecond": 1 - float(pymunk.DEFAULT.error_bias) ** 1e-3,
     }
 

@@ -119,10 +119,10 @@ FEATURED_VARIANTS = (*FEATURED, *(engine.variant for engine in FREE_COORDINATE_M
 
 def figures(material: Material) -> dict[str, str]:
     """Stroboscopic pictures of the reference motions."""
-    one, two, ten, hundred = BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks()
-    end = ((one.length / 2, 0.0),)
+    single, two, ten, hundred = BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks()
+    end = ((single.length / 2, 0.0),)
     strips = (
-        Strip(one, "One link", 12, end=1.1, ends={"link 1": end}),
+        Strip(single, "One link", 12, end=1.1, ends={"link 1": end}),
         Strip(two, "Two links, and the path of the tip", 21, end=2.0, ends={"link 2": end}, trace=("link 2", end[0])),
         Strip(ten, "Ten links", 11, end=2.0, ends={"link 10": end}),
         Strip(hundred, "A hundred links", 9, ends={"link 100": end}),

@@ -51,11 +51,11 @@ def ends(person: OneFoot) -> dict[str, Points]:
 
 def figures(material: Material) -> dict[str, str]:
     """The reference motions, pose beside pose, with the floor."""
-    sway, one, two = SwayingOnOneFoot(duration=0.5), OneFoot(), TwoFeet()
+    sway, one_foot, two_feet = SwayingOnOneFoot(duration=0.5), OneFoot(), TwoFeet()
     strips = (
         Strip(sway, "Swaying on one foot until the knee buckles", 6, ends=ends(sway), spread=0.7, floor=True),
-        Strip(one, "Falling from one foot", 6, ends=ends(one), spread=0.8, floor=True),
-        Strip(two, "Falling from two feet", 6, ends=ends(two), spread=1.0, floor=True),
+        Strip(one_foot, "Falling from one foot", 6, ends=ends(one_foot), spread=0.8, floor=True),
+        Strip(two_feet, "Falling from two feet", 6, ends=ends(two_feet), spread=1.0, floor=True),
     )
     return {"stroboscope": svg(stroboscope(strips, columns=1), "A person swaying and falling, as a film")}
 

@@ -116,7 +116,7 @@ class DirectRK4(Task):
 class Acrobot(OfMethod):
     """The drift of Acrobot's energy by one method."""
 
-    what: ClassVar[str] = "Acrobot's energy"
+    description: ClassVar[str] = "Acrobot's energy"
 
     @property
     def cost(self) -> float:
@@ -164,7 +164,7 @@ def freudenstein(crank: Array) -> Array:
 class Newton(OfMethod):
     """One method in the three problems at NEWTON_STEPS."""
 
-    what: ClassVar[str] = "Newton's bounds"
+    description: ClassVar[str] = "Newton's bounds"
 
     @property
     def cost(self) -> float:

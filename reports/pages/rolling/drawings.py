@@ -126,12 +126,12 @@ def draw_contact() -> Figure:
                 panel.annotate(name, point + 0.53 * vector + above, color=colour, ha="center", va="center", fontsize=11)
             panel.plot(*point, "o", color=LIGHT.ink, markersize=4, zorder=6)
             middle = rolling.pose(theta)[:2] + 0.08 * tangent
-            for letter, place, colour in (
+            for letter, point_of_letter, colour in (
                 ("C", point - 0.09 * normal, LIGHT.ink),
                 ("A", point - 0.3 * normal, LIGHT.ink),
                 ("B", middle, LIGHT.quiet),
             ):
-                panel.annotate(letter, place, color=colour, ha="center", va="center")
+                panel.annotate(letter, point_of_letter, color=colour, ha="center", va="center")
             panel.set_xlim(point[0] - 0.85, point[0] + 0.85)
             panel.set_ylim(point[1] + 0.3 - 0.62, point[1] + 0.3 + 0.72)
     return figure
@@ -196,9 +196,9 @@ def draw_acceleration() -> Figure:
         right.axhline(1.0, color=LIGHT.second, linewidth=2)
         note(right, "as if pinned at C", (1.3e-2, 1.0), (0, -12), LIGHT.second)
         note(right, "what rolling adds", (2e-3, 500), (12, 2), LIGHT.first)
-        for place, word, height in ((1.0, "flat", 0.025), (10.0, "sharp", 4.0), (0.01, "hole 1 %\nlarger", 0.025)):
-            right.axvline(place, color=LIGHT.quiet, linewidth=0.8, linestyle=":")
-            note(right, word, (place, height), (3, 0), LIGHT.quiet, va="bottom")
+        for ratio, label, height in ((1.0, "flat", 0.025), (10.0, "sharp", 4.0), (0.01, "hole 1 %\nlarger", 0.025)):
+            right.axvline(ratio, color=LIGHT.quiet, linewidth=0.8, linestyle=":")
+            note(right, label, (ratio, height), (3, 0), LIGHT.quiet, va="bottom")
         right.set_xscale("log")
         right.set_yscale("log")
         right.set_ylim(0.02, 2e3)
@@ -225,8 +225,8 @@ def draw_friction(scenes: Sequence[RollingScene]) -> Figure:
                     note(panel, f"slips {slip:.3f} s", (slip, friction), offset, LIGHT.first, fontsize=8, ha=side)
             if scene.hop is not None:
                 panel.axvline(scene.hop, color=LIGHT.first, linewidth=1.4)
-                words = f"hops {scene.hop:.3f} s"
-                note(panel, words, (scene.hop, 1.45), (-14, 0), LIGHT.first, fontsize=8, ha="right")
+                label = f"hops {scene.hop:.3f} s"
+                note(panel, label, (scene.hop, 1.45), (-14, 0), LIGHT.first, fontsize=8, ha="right")
             panel.set_ylim(0, 1.6)
             panel.set_xlim(0, scene.duration)
             up = "friction demanded, |T| / N" if index == 0 else ""

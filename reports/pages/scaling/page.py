@@ -80,9 +80,9 @@ def series_of(rows: Mapping[Cell, Measurement], timed: float) -> tuple[MethodSer
     """The rows of pendulums by method; cells that last less than `timed` seconds give costs and no errors."""
     points_by_method: dict[tuple[str, str], list[SizePoint]] = {}
     for cell, row in rows.items():
-        comparable, whole = Outcome(row.outcome).comparable, cell.scene.duration >= timed * (1 - 1e-9)
-        cost = row.cpu * cell.step if comparable or not whole else math.nan
-        error = row.angle if whole and comparable else math.nan
+        comparable, is_full = Outcome(row.outcome).comparable, cell.scene.duration >= timed * (1 - 1e-9)
+        cost = row.cpu * cell.step if comparable or not is_full else math.nan
+        error = row.angle if is_full and comparable else math.nan
         point = SizePoint(int(getattr(cell.scene, "links", 0)), cost, error, str(row.outcome))
         points_by_method.setdefault((row.engine, row.variant), []).append(point)
     return tuple(
@@ -107,15 +107,15 @@ TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 FURTHER_MARKS = ("X", "v")
 
 
-def scaling_chart(found: Sequence[MethodSeries]) -> Figure:
+def scaling_chart(all_series: Sequence[MethodSeries]) -> Figure:
     """Two panels side by side: CPU time of a step [µs], and the largest angle error after the whole run [rad]."""
     variants: dict[str, list[str]] = {}
-    for series in found:
+    for series in all_series:
         variants.setdefault(series.engine, []).append(series.variant)
-    looks = {s.method: _look(s, variants) for s in found}
+    looks = {s.method: _look(s, variants) for s in all_series}
     with drawing(5.6) as figure:
         cost, error = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.25, 1]})
-        for panel, title, what in (
+        for panel, title, label in (
             (cost, "Cost of a step", "CPU time of a step [µs]"),
             (error, "Error at a fixed step", "largest angle error [rad]"),
         ):
@@ -124,14 +124,14 @@ def scaling_chart(found: Sequence[MethodSeries]) -> Figure:
             panel.set_yscale("log")
             style_axes(panel)
             panel.set_xlabel("links")
-            panel.set_ylabel(what)
-        for series in found:
+            panel.set_ylabel(label)
+        for series in all_series:
             for panel, points in (
                 (cost, [(p.size, 1e6 * p.step) for p in series.points]),
                 (error, [(p.size, p.error) for p in series.points]),
             ):
-                if known := [(n, value) for n, value in points if math.isfinite(value) and value > 0]:
-                    panel.plot(*zip(*known, strict=True), zorder=3, **looks[series.method])
+                if pairs := [(n, value) for n, value in points if math.isfinite(value) and value > 0]:
+                    panel.plot(*zip(*pairs, strict=True), zorder=3, **looks[series.method])
         for panel in (cost, error):
             panel.xaxis.set_major_locator(LogLocator(base=10, subs=(1, 2, 5), numticks=30))
             panel.xaxis.set_major_formatter(FuncFormatter(lambda n, _: f"{n:g}" if round(n) in TICKS else ""))
@@ -139,16 +139,16 @@ def scaling_chart(found: Sequence[MethodSeries]) -> Figure:
             panel.yaxis.set_major_locator(LogLocator(base=10, numticks=16))
             panel.yaxis.set_minor_formatter(NullFormatter())
             panel.minorticks_off()
-        handles = [Line2D([], [], label=series.method, **looks[series.method]) for series in found]
+        handles = [Line2D([], [], label=series.method, **looks[series.method]) for series in all_series]
         figure.legend(handles=handles, loc="outside lower center", ncols=3, handlelength=3.2)
     return figure
 
 
 def _look(series: MethodSeries, variants: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-    """The look of all charts, with other marks for a fourth and fifth method of an engine, to tell them apart."""
+    """The look of all charts, with other marks for a fourth and fifth method of an engine, so that they differ."""
     index = variants[series.engine].index(series.variant)
-    further = {"marker": FURTHER_MARKS[index - 3], "fillstyle": "full"} if index in (3, 4) else {}
-    return look(series.engine, series.variant, variants) | further
+    other_mark = {"marker": FURTHER_MARKS[index - 3], "fillstyle": "full"} if index in (3, 4) else {}
+    return look(series.engine, series.variant, variants) | other_mark
 
 
 def fitted(series: MethodSeries) -> str:
@@ -232,18 +232,18 @@ def found_series(material: Material) -> tuple[MethodSeries, ...]:
 
 def figures(material: Material) -> dict[str, str]:
     """The chart, if anything was run."""
-    found = found_series(material)
+    all_series = found_series(material)
     title = "Cost of a step and error against the number of links"
-    return {"cost": svg(scaling_chart(found), title)} if found else {}
+    return {"cost": svg(scaling_chart(all_series), title)} if all_series else {}
 
 
-def cost_table(found: tuple[MethodSeries, ...]) -> str:
+def cost_table(all_series: tuple[MethodSeries, ...]) -> str:
     """CPU time of a step [µs] by method and links."""
-    sizes = sorted({point.size for series in found for point in series.points})
-    return _table(found, sizes, lambda point: 1e6 * point.step)
+    sizes = sorted({point.size for series in all_series for point in series.points})
+    return _table(all_series, sizes, lambda point: 1e6 * point.step)
 
 
-def error_table(found: tuple[MethodSeries, ...]) -> str:
+def error_table(all_series: tuple[MethodSeries, ...]) -> str:
     """The largest angle error [rad] by method and links, of the runs that are compared."""
     run = {
         (method_name(c.engine), getattr(c.scene, "links", 0))
@@ -252,14 +252,14 @@ def error_table(found: tuple[MethodSeries, ...]) -> str:
     }
     compared = [
         replace(series, points=tuple(point for point in series.points if (series.method, point.size) in run))
-        for series in found
+        for series in all_series
     ]
     return _table(compared, sorted({size for _, size in run}), lambda point: point.error)
 
 
-def _table(found: Iterable[MethodSeries], sizes: Sequence[int], value: Callable[[SizePoint], float]) -> str:
+def _table(all_series: Iterable[MethodSeries], sizes: Sequence[int], value: Callable[[SizePoint], float]) -> str:
     """A number in each cell, the outcome of a failed run, nothing without a run."""
-    body = [[series.method, *(_words(series.at(size), value) for size in sizes)] for series in found]
+    body = [[series.method, *(_words(series.at(size), value) for size in sizes)] for series in all_series]
     return markdown(["method", *map(str, sizes)], body)
 
 
@@ -269,17 +269,17 @@ def _words(point: Any, value: Callable[[SizePoint], float]) -> str:
 
 def context(material: Material) -> Mapping[str, Any]:
     """The tables, the exponents, and single points for sentences (UNMEASURED without a run)."""
-    found = found_series(material)
-    by_method = {series.method: series for series in found}
+    all_series = found_series(material)
+    by_method = {series.method: series for series in all_series}
 
     def at(engine: Engine, links: int) -> Any:
         return by_method[name].at(links) if (name := method_name(engine)) in by_method else UNMEASURED
 
     return {
-        "missing": not found,
-        "costs": cost_table(found),
-        "errors": error_table(found),
-        "laws": {series.method: fitted(series) for series in found},
+        "missing": not all_series,
+        "costs": cost_table(all_series),
+        "errors": error_table(all_series),
+        "laws": {series.method: fitted(series) for series in all_series},
         "sweeps": {"over_square": SWEEPS_OVER_SQUARE, "capped": CAPPED, "most": MAX_ITERATIONS},
         "crossing": crossing(by_method.get("mujoco tuned"), by_method.get(f"mujoco {SCALING_SPARSE_NEWTON.variant}"))
         or UNMEASURED,

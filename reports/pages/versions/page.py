@@ -40,11 +40,11 @@ def heat_map(entries: Sequence[Entry], versions: Sequence[str]) -> Figure:
         for panel, method in zip(panels, methods, strict=True):
             style_axes(panel, grid=False)
             panel.set_title(method, loc="left", fontweight="bold", color=LIGHT.ink)
-            known = {(e.scene, e.version): e for e in entries if e.variant == method}
+            by_cell = {(e.scene, e.version): e for e in entries if e.variant == method}
             for row, scene in enumerate(scenes[method]):
                 for column, version in enumerate(versions):
-                    if (scene, version) in known:
-                        _draw_cell(panel, column, row, known[scene, version])
+                    if (scene, version) in by_cell:
+                        _draw_cell(panel, column, row, by_cell[scene, version])
             panel.set_xlim(0, len(versions))
             panel.set_ylim(len(scenes[method]), 0)
             names = [scene.replace("_", " ") for scene in scenes[method]]
@@ -91,8 +91,8 @@ def version_table(table: ReleaseTable, engine: str) -> str:
     body = []
     for previous, version in pairwise(("", *versions)):
         verdicts = [verdict for _, after, verdict in changed if after.version == version]
-        known = changes_between(engine, previous, version) if previous else ()
-        change = "; ".join(f"{release.changed} ([source]({release.source}))" for release in known)
+        known_changes = changes_between(engine, previous, version) if previous else ()
+        change = "; ".join(f"{release.changed} ([source]({release.source}))" for release in known_changes)
         counts = (
             f"{verdicts.count('better') or '-'}",
             f"**{verdicts.count('WORSE')}**" if "WORSE" in verdicts else "-",

@@ -243,9 +243,9 @@ def figures(material: Material) -> dict[str, str]:
 
 def context(material: Material) -> Mapping[str, Any]:
     """`counted`: the table of degrees of freedom."""
-    shown = (*VEHICLES, CAR, CART)
+    scenes = (*VEHICLES, CAR, CART)
     doubled = ("car_and_trailer, both wheels of each axle", "cart, both wheels of the fixed axle")
-    return {"counted": counted(shown, (*(scene.name for scene in VEHICLES), *doubled))}
+    return {"counted": counted(scenes, (*(scene.name for scene in VEHICLES), *doubled))}
 
 
 PAGE = scene_page(

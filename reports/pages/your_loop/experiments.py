@@ -79,7 +79,7 @@ class Fresh(OfMethod):
     scene: Scene
     quantity: str = "angle"
     commit: str = COMMIT
-    what: ClassVar[str] = f"{COUNT} fresh mechanisms as {{0.scene.name}}"
+    description: ClassVar[str] = f"{COUNT} fresh mechanisms as {{0.scene.name}}"
     seconds: ClassVar[float] = 20.0
 
     def run(self) -> Values:

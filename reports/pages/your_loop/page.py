@@ -92,9 +92,9 @@ def table(material: Material, cases: tuple[PastedCase, ...]) -> str:
         example = " → ".join(error_words(row, case.quantity) for row in rows)
         costs = " → ".join(DASH if row is None else milliseconds(row.cpu) for row in rows)
         body.append([f"[{case.title}]({case.page}.md), {quantity(case.quantity).unit}", *spreads, example, costs])
-    known = any(each in material.rows for each in PASTED_CELLS)
+    has_rows = any(pasted in material.rows for pasted in PASTED_CELLS)
     head = ["at 1 ms", "as shipped", "with the lines", "the page's example", "CPU of the example [ms/s]"]
-    return markdown(head, body, left=1) if known else ""
+    return markdown(head, body, left=1) if has_rows else ""
 
 
 def spread(material: Material, task: Fresh) -> list[float]:
