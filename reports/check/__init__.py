@@ -1,1 +1,1 @@
-"""A user's own model, checked: what it is, how wrong its own settings are, and which settings meet a tolerance."""
+"""The check of a user's model: facts, errors of its own settings, and settings that meet a tolerance."""

@@ -1,4 +1,4 @@
-"""The whole check of a user's model, from its reading to its verdict: numbers alone; `telling` renders them."""
+"""The check of a user's model from reading to verdict, as numbers; `reports.check.telling` makes sentences of them."""
 
 from __future__ import annotations
 
@@ -64,20 +64,20 @@ def readers() -> dict[str, Reader]:
 
 def read_user_model(word: str, folder: Path, terms: ReadingTerms = AS_IT_IS) -> Reading:
     """A user's model by the first reader that knows its kind. Raises ValueError and Unsupported."""
-    known = readers().values()
-    for reader in known:
+    all_readers = readers().values()
+    for reader in all_readers:
         if reader.reads(word):
             return reader.read(word, folder, terms)
-    raise ValueError(f"{word or repr(word)} is no model; give {' or '.join(reader.words for reader in known)}")
+    raise ValueError(f"{word or repr(word)} is no model; give {' or '.join(reader.words for reader in all_readers)}")
 
 
 @dataclass(frozen=True)
 class ErrorParts:
-    """Largest errors in the measure of a tolerance; NaN where a part can't be told.
+    """Causes of the error: largest pose distances (`judging.pose_distance`); NaN where a cause is unknown.
 
-    `softness`: by how much the motion that the engine declares is off the ideal one; `step`: by how much the user's run
-    is off the declared motion; `rest`: what of that stays at the smallest step that was tried, `smallest` [s], and
-    whether it was still falling there: then it is a bound, and no sign of a third part.
+    `softness`: between the motion that the engine declares and the ideal one; `step`: between the user's run and the
+    declared motion; `rest`: the residual of `step` at the smallest step of the sweep, `smallest` [s]. If it is still
+    `falling` there, it is an upper bound and no sign of a third cause.
     """
 
     softness: float
@@ -96,9 +96,9 @@ def split_error(
     tolerance: float = SOFT_TOLERANCE,
     horizon: float = np.inf,
 ) -> ErrorParts:
-    """From the user's run, and those of the same settings at `smaller` steps, the largest step first.
+    """Split the error of the user's run by the runs of the same settings at `smaller` steps, the largest step first.
 
-    `tolerance`: of the motion that the engine declares; `horizon` [s]: from there on errors tell no causes.
+    `tolerance`: of the integration of the declared motion; `horizon` [s]: end of the compared time.
     """
     mechanism, model = reading.mechanism, reading.model
     declared, softness = truth.pose, 0.0 if model.declares else float("nan")
@@ -106,13 +106,19 @@ def split_error(
     if model.declares and model.has_soft_joints:
         declared = soft_motion(mechanism, model.regularisation, truth.t, tolerance, model.start_twist)
         softness = _largest(pose_distance(mechanism, declared, truth.pose)[early])
-    left = [
-        _largest(pose_distance(mechanism, run.pose, declared)[early]) for run in (own, *(each.run for each in smaller))
+    distances = [
+        _largest(pose_distance(mechanism, run.pose, declared)[early])
+        for run in (own, *(setting.run for setting in smaller))
     ]
     if not smaller:
-        return ErrorParts(softness, left[0], float("nan"), float("nan"), False, model.declares)
+        return ErrorParts(softness, distances[0], float("nan"), float("nan"), False, model.declares)
     return ErrorParts(
-        softness, left[0], left[-1], smaller[-1].change.dt, left[-1] < HELPFUL_RATIO * left[-2], model.declares
+        softness,
+        distances[0],
+        distances[-1],
+        smaller[-1].change.dt,
+        distances[-1] < HELPFUL_RATIO * distances[-2],
+        model.declares,
     )
 
 
@@ -122,9 +128,7 @@ def _largest(values: Array) -> float:
 
 @dataclass(frozen=True)
 class Applied:
-    """The file that --apply has written: its largest error, and the CPU time of stepping [s]; `notes`: what stands in
-    it.
-    """
+    """The file that --apply has written, its largest error, the CPU time of stepping [s], and notes on the file."""
 
     file: str
     words: str
@@ -135,7 +139,7 @@ class Applied:
 
 @dataclass(frozen=True, eq=False)
 class CheckResult:
-    """All that was found; errors in the measure of a tolerance: angles [rad] and places in lengths of the mechanism."""
+    """The result of a check; errors are angles [rad] and positions in lengths of the mechanism."""
 
     name: str
     reading: Reading
@@ -147,8 +151,8 @@ class CheckResult:
     judge_errors: Errors
     opens: Opening | None
     parts: ErrorParts
-    table: list[SettingRun]  # the user's own settings first
-    asked: bool = True  # whether somebody named the tolerance
+    table: list[SettingRun]  # the user's own settings are the first
+    has_tolerance: bool = True  # whether the user gave the tolerance
     applied: Applied | None = None
 
     @property
@@ -170,7 +174,9 @@ class CheckResult:
         assumed, engine = self.reading.model.assumed, self.reading.model.engine
         start = f"With {assumed}, {self.name} in {engine}" if assumed else f"{self.name} in {engine}"
         end = (
-            f"; the tolerance of {number(self.tolerance)} is {'met' if self.met else 'missed'}." if self.asked else "."
+            f"; the tolerance of {number(self.tolerance)} is {'met' if self.met else 'missed'}."
+            if self.has_tolerance
+            else "."
         )
         if self.facts.locked:
             start = f"{start} can't move, since its joints leave no freedom{self._hinges_instead}; it"
@@ -211,7 +217,7 @@ class CheckResult:
         return self.until_horizon(self.own_errors)
 
     def rerun(self, reading: Reading) -> tuple[float, float]:
-        """(error, CPU time [s]) of the same model with other settings, read anew, in the same motion."""
+        """(error, CPU time [s]) of the same motion with the model of another reading."""
         spacing = float(self.judge.trajectory.t[1])
         run = reading.model.run(len(self.judge.trajectory.t) - 1, max(1, round(spacing / reading.model.dt)))
         return measure_errors(reading.mechanism, self.judge.trajectory, run).largest, run.stepping
@@ -222,18 +228,19 @@ def check(
     name: str,
     duration: float,
     tolerance: float,
-    told: Callable[[str], None] = lambda words: None,
+    on_progress: Callable[[str], None] = lambda stage: None,
     plan: SweepPlan | None = None,
-    asked: bool = True,
+    has_tolerance: bool = True,
 ) -> CheckResult:
-    """Check a model for a motion of `duration` [s]. `told` is given a few words before each part of the work.
+    """Check a model for a motion of `duration` [s]; `on_progress` is called with a few words before each stage.
 
-    Raises Unsupported where the motion meets what ideal joints lack, and InvalidMechanism where it can't be followed.
+    Raises Unsupported where the motion meets an obstacle that no ideal joint has, and InvalidMechanism where the ideal
+    motion can't be computed.
     """
     mechanism, model, plan = reading.mechanism, reading.model, plan or SweepPlan(SWEEP_BUDGET)
     if not 0 < model.dt < float("inf"):
         raise InvalidMechanism(f"the model's own step is {model.dt:g} s; it must be a finite time above zero")
-    told("comparing the accelerations at t = 0")
+    on_progress("comparing the accelerations at t = 0")
     agreement = refuse_disagreement(reading)
     every = max(1, round(duration / COMPARED_SAMPLES / model.dt))
     samples = max(1, round(duration / (every * model.dt)))
@@ -241,11 +248,8 @@ def check(
         raise InvalidMechanism(
             f"--duration is {duration:g} s; the model's own step is {model.dt:g} s; give a longer one"
         )
-    told(
-        f"{COMPILING_NOTE}, before the ideal motion is followed"
-        if is_cold(adaptive=True)
-        else "following the ideal motion"
-    )
+    compiling = f"{COMPILING_NOTE}, before the ideal motion is followed" if is_cold(adaptive=True) else ""
+    on_progress(compiling or "following the ideal motion")
     judge = reference_motion(mechanism, samples, every * model.dt, tolerance)
     truth = judge.trajectory
     samples = len(truth.t) - 1
@@ -253,15 +257,15 @@ def check(
         shorter = f"give --duration {_below(met.t):g}; " if met.t > every * model.dt else ""
         raise Unsupported(f"{met.words} at {met.t:.3g} s, which an ideal mechanism doesn't know; {shorter}{met.remedy}")
     facts = compute_facts(mechanism, truth)
-    told("running your own settings")
+    on_progress("running your own settings")
     own = model.run(samples, every)
     reading = replace(reading, notes=(*model.remarks(own), *reading.notes))
 
     def progress(number: int, count: int) -> None:
-        told(f"trying documented settings, {number + 1} of {count}")
+        on_progress(f"trying documented settings, {number + 1} of {count}")
 
     table = run_settings_sweep(reading, truth, samples, every, own, progress, plan, tolerance)
-    told("telling softness from the step")
+    on_progress("telling softness from the step")
     smaller = runs_by_step(table, table[0])[1 : 1 + SMALLER_STEPS]
     parts = split_error(reading, truth, own, smaller, QUICK_TOLERANCE if plan.quick else SOFT_TOLERANCE, judge.horizon)
     return CheckResult(
@@ -276,20 +280,20 @@ def check(
         find_opening(mechanism, own),
         parts,
         table,
-        asked,
+        has_tolerance,
     )
 
 
 def _below(at: float) -> float:
-    """A round time below this one [s]."""
+    """The next smaller time with two digits [s]."""
     size = 10.0 ** np.floor(np.log10(at) - 1)
     return float(np.floor(at * 0.999 / size) * size)
 
 
 def apply_advised(result: CheckResult, target: Path) -> Applied:
-    """Write the advised settings, or the model as it is where it is within the tolerance already.
+    """Write the model with the advised settings, or unchanged if it meets the tolerance; then run the file.
 
-    Raises Unsupported where nothing can be written; then the target is as it was.
+    Raises Unsupported if nothing can be written; the target is then unchanged.
     """
     source, advised = result.reading.source, result.advised
     if source is None:
@@ -328,7 +332,7 @@ def apply_advised(result: CheckResult, target: Path) -> Applied:
 
 
 def resample(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:
-    """Times, poses and twists of a motion `parts` times as often as it was sampled, by cubics through both."""
+    """Times, poses and twists of a motion at `parts` times as many instants, by cubic Hermite interpolation."""
     spline = CubicHermiteSpline(motion.t, motion.pose, motion.twist)
     t = np.linspace(motion.t[0], motion.t[-1], parts * (len(motion.t) - 1) + 1)
     return t, spline(t), spline(t, 1)

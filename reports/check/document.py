@@ -19,7 +19,7 @@ engine = reading.model.engine: text: what runs it
 verdict: text: the answer in a sentence
 duration: number: s that are judged
 tolerance: number: largest error that is allowed: angles in rad, places in lengths of the mechanism
-asked: flag: somebody named the tolerance
+asked = has_tolerance: flag: the user gave the tolerance
 met: flag: the user's settings are within it
 assumed = reading.model.assumed: text: what the model does not say and was taken instead; empty if nothing
 step = reading.model.dt: number: s, the user's
@@ -113,7 +113,7 @@ notes: [text]: what was done to a script, and what did not take
 
 
 def check_data(found: CheckResult) -> dict[str, Any]:
-    """All numbers of a check, for other programs: `schema` says what each is."""
+    """All numbers of a check, for other programs: `schema` describes each."""
     return _plain("MODEL", found)
 
 

@@ -1,4 +1,4 @@
-"""What a mechanism is, before any engine is blamed: freedoms, redundant rows, singular positions, time scales."""
+"""Facts of a mechanism that no engine changes: freedoms, redundant rows, singular positions, time scales."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 # The least singular value beside the largest below which rows nearly depend on one another.
 NEARLY_SINGULAR = 1e-2
 RANK_TOLERANCE = 1e-9
-SVD_NUMBERS = 2e7  # of rows over all samples whose singular values are asked for
-DIFFERENCE_STEP = 1e-6  # of length and time: of differences
+SVD_NUMBERS = 2e7  # numbers in the rows of all samples whose singular values are computed
+DIFFERENCE_STEP = 1e-6  # step of finite differences, in units of length and time
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Facts:
     rows: int
     freedoms: tuple[int, int]  # of configuration, of velocity
     redundant: int
-    undetermined: tuple[str, ...]  # rows whose reactions rigid bodies alone don't tell
+    undetermined: tuple[str, ...]  # rows whose reactions are not unique
     singular: tuple[tuple[float, float], ...]  # (time, least singular value beside the largest)
     dead_centres: tuple[tuple[float, str], ...]
     fastest_rotation: float
@@ -91,20 +91,20 @@ def _singular_instants(mechanism: Mechanism, motion: Trajectory, independent: in
     norm = np.linalg.norm(scaled, axis=-1, keepdims=True)
     sizes = np.linalg.svd(scaled / np.where(norm > 0, norm, 1.0), compute_uv=False)
     least = sizes[:, independent - 1] / sizes[:, 0]
-    found = []
+    instants = []
     for index in range(len(times)):
         around = least[max(0, index - 1) : index + 2]
         if least[index] < NEARLY_SINGULAR and least[index] == around.min():
-            found.append((float(times[index]), float(least[index])))
-    return tuple(found)
+            instants.append((float(times[index]), float(least[index])))
+    return tuple(instants)
 
 
 def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tuple[tuple[float, str], ...]:
-    """When a body that is held to the ground stops and turns back while the mechanism goes on: of one freedom alone."""
+    """Instants at which a body on the ground reverses while the mechanism moves on; for one freedom only."""
     loops = mechanism.row_count > 2 * len(mechanism.bodies)
     if freedoms > 1 or not loops:
         return ()
-    held = {
+    grounded = {
         name
         for joint in mechanism.joints
         if isinstance(joint, Pin | Slot | Drive) and None in (joint.first, joint.second)
@@ -114,11 +114,11 @@ def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tu
     rates = motion.twist[..., 2]
     busy = np.abs(rates).max(axis=1)
     out = []
-    for name in sorted(held):
-        own = rates[:, mechanism.body_index(name)]
-        turned = np.flatnonzero((own[:-1] * own[1:] < 0) & (busy[:-1] > 0.1 * busy.max()))
+    for name in sorted(grounded):
+        rate = rates[:, mechanism.body_index(name)]
+        turned = np.flatnonzero((rate[:-1] * rate[1:] < 0) & (busy[:-1] > 0.1 * busy.max()))
         for index in turned:
-            share = own[index] / (own[index] - own[index + 1])
+            share = rate[index] / (rate[index] - rate[index + 1])
             out.append((float(motion.t[index] + share * (motion.t[index + 1] - motion.t[index])), name))
     return tuple(sorted(out))
 
@@ -145,7 +145,6 @@ def _stiffest_mode(mechanism: Mechanism) -> float:
             mechanism.pose - DIFFERENCE_STEP * way, rest
         )
         by_speed[:, column] = of(mechanism.pose, slope * way) - of(mechanism.pose, -slope * way)
-    own = free.T @ by_place / (2 * DIFFERENCE_STEP), free.T @ by_speed / (2 * slope)
-    still, one = np.zeros_like(own[0]), np.eye(len(own[0]))
-    values = np.linalg.eigvals(np.block([[still, one], [own[0], own[1]]]))
+    stiffness, damping = free.T @ by_place / (2 * DIFFERENCE_STEP), free.T @ by_speed / (2 * slope)
+    values = np.linalg.eigvals(np.block([[np.zeros_like(stiffness), np.eye(len(stiffness))], [stiffness, damping]]))
     return float(np.abs(values).max()) if np.isfinite(values).all() else float("nan")

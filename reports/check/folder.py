@@ -11,7 +11,7 @@ from typing import Any
 from reports.check.request import CheckReport, CheckRequest, Refused
 
 FOLDER_HEADER = ("model", "off by", "why", "advice", "its error", "CPU, times yours")
-BYTES_READ = 65536  # bytes of a file: a model says early what it is
+BYTES_READ = 65536  # bytes of a file that are searched for a tag or an import
 MODEL_TAG = re.compile(rb"<(mujoco|robot)[\s/>]")
 PYMUNK_IMPORT = re.compile(rb"^(import|from) pymunk\b", re.MULTILINE)
 Answers = Sequence[tuple[CheckRequest, CheckReport | Refused]]
@@ -20,7 +20,7 @@ Answers = Sequence[tuple[CheckRequest, CheckReport | Refused]]
 def find_models(folder: Path) -> list[Path]:
     """Files below a folder that are models or scripts with a space, in the order of their names."""
     kinds = {".xml": MODEL_TAG, ".mjcf": MODEL_TAG, ".urdf": MODEL_TAG, ".py": PYMUNK_IMPORT}
-    found = []
+    paths = []
     for path in sorted(folder.rglob("*")):
         wanted = kinds.get(path.suffix.lower())
         hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
@@ -28,8 +28,8 @@ def find_models(folder: Path) -> list[Path]:
             continue
         with path.open("rb") as file:
             if wanted.search(file.read(BYTES_READ)):
-                found.append(path)
-    return found
+                paths.append(path)
+    return paths
 
 
 def rows(answers: Answers) -> list[tuple[str, ...]]:
@@ -57,9 +57,7 @@ def _short(request: CheckRequest, answer: Refused) -> str:
 
 
 def junit_xml(answers: Answers, seconds: float) -> str:
-    """As JUnit XML: a test a model, which fails where a tolerance that was asked for is missed, and is skipped where
-    the model can't be judged.
-    """
+    """JUnit XML with a test for each model: failed if the tolerance is missed, skipped if the model is refused."""
     missed = sum(isinstance(answer, CheckReport) and not answer.fine for _, answer in answers)
     refused = sum(isinstance(answer, Refused) for _, answer in answers)
     counts = {"tests": str(len(answers)), "failures": str(missed), "errors": "0", "skipped": str(refused)}
@@ -71,7 +69,7 @@ def junit_xml(answers: Answers, seconds: float) -> str:
             xml.SubElement(case, "skipped", {"message": _short(request, answer)})
         elif not answer.fine:
             failure = xml.SubElement(case, "failure", {"message": answer.verdict})
-            told = (f"{label}: {sentence}" for label, sentence in answer.answer.facts)
-            failure.text = "\n".join([*told, *answer.answer.code])
+            facts = (f"{label}: {sentence}" for label, sentence in answer.answer.facts)
+            failure.text = "\n".join([*facts, *answer.answer.code])
     xml.indent(root)
     return xml.tostring(root, encoding="unicode", xml_declaration=True) + "\n"

@@ -1,4 +1,4 @@
-"""The ideal motion of a model, how long it is known well enough for a tolerance, and errors of runs beside it."""
+"""The ideal motion of a model, its accuracy, and errors of runs relative to it."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from reference.trajectory import Trajectory, energy
 from reports.check.one_freedom import has_one_freedom, motion_along_curve
 
 Array = NDArray[np.float64]
-DIVERGED = 1e12  # m, rad, and those in a second: nothing in a motion that is worth a number
-SOFT_TOLERANCE = 1e-10  # far below what an engine's own step leaves, far above rounding
+DIVERGED = 1e12  # m, rad, m/s or rad/s: a state with a larger component has diverged
+SOFT_TOLERANCE = 1e-10  # relative: far below the truncation error of an engine, far above rounding
 
 
 def accelerations(
@@ -73,23 +73,23 @@ def soft_motion(
     return out
 
 
-LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # the judge at another tolerance: its own error is what that changes
+LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # the difference to the judge estimates the judge's error
 JUDGE_SHARE = 0.1  # of a user's tolerance: the largest estimated error of the reference motion
 CURVE_TOLERANCE = 1e-12  # relative error of a step along the curve of one freedom
 CURVE_LOOSER_TOLERANCE = 1e-11  # of the second run, whose difference estimates the error
-DISTURBANCE = 1e-7  # of the length, and of the speed: small enough to be a derivative, far above the judge's error
-LINEAR_LIMIT = 1e-2  # of the length, and of the speed: a disturbance that is larger no longer grows as a small one
+DISTURBANCE = 1e-7  # relative to length and speed: small enough to be linear, far above the judge's error
+LINEAR_LIMIT = 1e-2  # relative to length and speed: a larger disturbance does not grow linearly
 DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))  # (seed, size): chaos is reported if both grow exponentially
-REMAINING_SHARE = 1e-3  # of a disturbance: where the joints take more of it away, they leave it no freedom
-# A disturbance of a motion that is not chaotic grows about as the time; this many times that is taken as exponential.
+REMAINING_SHARE = 1e-3  # of a disturbance: if the projection onto the joints leaves less, they allow no such motion
+# A disturbance of a regular motion grows about linearly in time; this many times that counts as exponential.
 EXPONENTIAL_GROWTH = 100.0
 
 
 @dataclass(frozen=True, eq=False)
 class IdealMotion:
-    """The ideal motion, and the same at a `looser` tolerance: the difference tells what the judge may be wrong by.
+    """The ideal motion, and the same motion at a `looser` tolerance; their difference estimates the error.
 
-    `cut`: it goes on, but from there on the judge's own estimate is above JUDGE_SHARE of the tolerance.
+    `cut`: the motion ends early, since the estimated error exceeds JUDGE_SHARE of the tolerance after its last sample.
     """
 
     trajectory: Trajectory
@@ -113,9 +113,9 @@ class IdealMotion:
 
 
 def reference_motion(mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf) -> IdealMotion:
-    """The motion of ideal joints, for as long as the judge knows it well enough for a tolerance.
+    """The motion of ideal joints, truncated where its estimated error exceeds JUDGE_SHARE of the tolerance.
 
-    Raises InvalidMechanism where it can't be followed to the end, or not known for a sample.
+    Raises InvalidMechanism if it can't be integrated to the end, or is inaccurate from the first sample on.
     """
 
     def by_multipliers(other: Mechanism) -> Trajectory:
@@ -169,7 +169,7 @@ def _is_accurate(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> 
 def _first_exponential(growth: Array, expected: Array, size: float) -> int:
     """The first sample from which on a disturbance of this size has grown by more than expected; their count if none.
 
-    A disturbance that is no longer LINEAR_LIMIT counts as grown to the end.
+    A disturbance above LINEAR_LIMIT counts as grown to the end.
     """
     beyond = growth > expected
     stays = beyond[-1] or np.any(beyond & (growth * size > LINEAR_LIMIT))
@@ -177,7 +177,7 @@ def _first_exponential(growth: Array, expected: Array, size: float) -> int:
 
 
 def pose_distance(mechanism: Mechanism, pose: Array, other: Array) -> Array:
-    """How far poses (times, bodies, 3) are from others (times,): the larger of angles [rad] and places in lengths."""
+    """Distance (times,) of poses (times, bodies, 3): the largest of angles [rad] and positions in lengths."""
     difference = np.abs(pose - other)
     places = np.hypot(difference[..., 0], difference[..., 1]) / mechanism.length_scale
     return np.maximum(places, difference[..., 2]).max(axis=1)
@@ -191,7 +191,7 @@ def _growth(
     seed: int,
     nudge: float,
 ) -> Array:
-    """How many times (times,) a disturbance of the start has grown, beyond what the judge's own error explains."""
+    """Growth factor (times,) of a disturbance of the start; 1 where the error of the reference motion explains it."""
     dynamics, random = Dynamics(mechanism), np.random.default_rng(seed)
     unit = mechanism.pose_unit
     none = np.ones(len(motion.t))
@@ -214,25 +214,25 @@ def _growth(
     apart_by = np.nan_to_num(size(disturbed), nan=np.inf)
     if not apart_by[0] > REMAINING_SHARE * nudge:
         return none
-    # Near a singular position the judge's own error grows as a disturbance does, and is none.
+    # Near a singular position the error of the reference motion grows too; it does not count as a disturbance.
     return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
 START_TOLERANCE = (
     1e-6  # of the largest acceleration: rounding of equations solved twice, with room for badly scaled masses
 )
-# Of the mechanism's own speed, and of the largest force: what the judge's answer is known to. Less than that is zero.
+# Accuracy of the reference motion, relative to the mechanism's speed and its largest force. Less counts as zero.
 ZERO_SHARE = 1e-9
 ERROR_UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
 
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """Of one run over its samples (times,); NaN where it gave up, or where there is nothing to compare."""
+    """Errors of a run at its samples (times,); NaN after the run has diverged, or where nothing can be compared."""
 
     t: Array
     of: dict[str, Array]  # by ERROR_UNITS
-    whole: Array  # the larger of angles [rad] and places in lengths of the mechanism: what a tolerance is for
+    whole: Array  # the larger of angles [rad] and positions in lengths; compared with the tolerance
     finished: bool
 
     @property
@@ -251,10 +251,10 @@ class Errors:
 
 
 def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jumps: bool = False) -> Errors:
-    """Of a run at the judge's instants.
+    """Errors of a run at the samples of the reference motion.
 
-    jumps: the run starts with velocities that its joints do not allow. The impulse that changes them at once in the
-    ideal motion takes the run a step or more, so that forces and energy at the first two samples are not compared.
+    jumps: the run starts with velocities that its joints do not allow. The ideal motion changes them at once by an
+    impulse, a run in one or more steps; so forces and energy at the first two samples are not compared.
     """
     difference = run.pose - truth.pose
     angle = np.abs(difference[..., 2]).max(axis=1)
@@ -305,7 +305,7 @@ def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array
 
 @dataclass(frozen=True)
 class Opening:
-    """The joint that opens most, by how much [m or rad], and when [s]."""
+    """The largest constraint violation: row, gap [m or rad] and time [s]."""
 
     row: str
     gap: float
@@ -314,7 +314,7 @@ class Opening:
 
 
 def find_opening(mechanism: Mechanism, run: Trajectory) -> Opening | None:
-    """Of a run; None where no joint has a gap."""
+    """The largest constraint violation of a run; None without constraints."""
     if not mechanism.row_count:
         return None
     gap = np.abs(mechanism.gap(run.pose, run.t))

@@ -55,7 +55,7 @@ def motion_along_curve(mechanism: Mechanism, t: Array, tolerance: float) -> Traj
 
 
 class _Tangent:
-    """tau (3 bodies,) at a pose (3 bodies,), in the direction of the last one that was asked for."""
+    """tau (3 bodies,) at a pose (3 bodies,), with the direction of the previous evaluation."""
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism, self.root = mechanism, np.sqrt(mechanism.inertias.reshape(-1))

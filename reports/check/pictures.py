@@ -56,7 +56,7 @@ class PictureData:
     label: str = "your settings"
 
     def as_text(self) -> str:
-        """JSON, in which NaN may stand."""
+        """The data as JSON with NaN."""
         return json.dumps(asdict(self), sort_keys=True)
 
 
@@ -83,12 +83,12 @@ def picture_data(
     other: Errors | None = None,
     label: str = PictureData.label,
 ) -> PictureData:
-    """Of a run with its errors, beside the ideal motion, the judge's errors, and another run's."""
-    known = [quantity for quantity in ERROR_UNITS if np.isfinite(own.of[quantity]).any()]
+    """Picture data of a run: its errors, the ideal motion, the judge's errors, and errors of another run."""
+    quantities = [quantity for quantity in ERROR_UNITS if np.isfinite(own.of[quantity]).any()]
     sample = int(np.argmax(np.where(np.isfinite(own.whole), own.whole, -1.0)))
 
     def curves(errors: Errors) -> Curves:
-        return {quantity: errors.of[quantity].tolist() for quantity in known}
+        return {quantity: errors.of[quantity].tolist() for quantity in quantities}
 
     return PictureData(
         own.t.tolist(),
@@ -125,7 +125,7 @@ def pose_lines(mechanism: Mechanism, pose: Array) -> Pose:
     for link in (*mechanism.joints, *mechanism.forces):
         if link.acts_along_line:
             first, second = (point(*place) for place in link.points)
-            if np.linalg.norm(second - first) < 3 * reach:  # not one that stands for a spring along a slide
+            if np.linalg.norm(second - first) < 3 * reach:  # a longer one represents a spring along a slide
                 links.append([first.tolist(), second.tolist()])
     for name, points in body_points(mechanism, pose).items():
         centre = pose[mechanism.body_index(name)][:2]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from reports.check.checked import SweepPlan
     from reports.check.rendering import Section
 
-DEFAULT_TOLERANCE = 1e-4  # error of the advised settings where no tolerance was asked for
+DEFAULT_TOLERANCE = 1e-4  # error of the advised settings if the user gave no tolerance
 MAX_DURATION = 1000.0  # s of motion
 
 
@@ -23,7 +23,7 @@ MAX_DURATION = 1000.0  # s of motion
 class CheckRequest:
     """The options of `crosscheck check` and of `planar_crosscheck.check`.
 
-    word: the model as on the command line, relative to `folder`; tolerance: None if none was asked for; quick,
+    word: the model as on the command line, relative to `folder`; tolerance: None if not given; quick,
     everything: see `SweepPlan`; search: try settings until one meets the tolerance; apply: path of the file to write
     with the advised settings; notes: path of a file to which the progress is written.
     """
@@ -80,7 +80,7 @@ class CheckReport:
 
     @property
     def fine(self) -> bool:
-        """Whether the tolerance that was asked for is met, by the user's settings, or those of --fix-to or --apply."""
+        """Whether the user's tolerance, if given, is met by the user's settings or by those of --fix-to or --apply."""
         mended = (self.request.search or self.data["applied"] is not None) and self.data["advised"] is not None
         return self.request.tolerance is None or self.data["met"] or mended
 
@@ -103,7 +103,7 @@ class Refused:
 
 
 def run_check(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
-    """The check, run in this process, or why there is none. `model`: an engine's own object in place of a file."""
+    """Run the check in this process; `model`: an engine's object in place of a file."""
     # Imported here: a command that only makes requests starts sooner.
     from engines import Unsupported
     from engines.importers import read_object

@@ -13,13 +13,13 @@ from engines.reading import Change, Reading
 from reference.trajectory import Trajectory
 from reports.check.judging import Errors, measure_errors
 
-MAX_RUN_TIME = 1.0  # s of it for one run: smaller steps than that allows are left out
-HELPFUL_RATIO = 0.75  # of the error before: a smaller step is taken to help
-SATURATED_ERROR = 1.0  # rad, or lengths of the mechanism: above, an error no longer tells its causes
+MAX_RUN_TIME = 1.0  # s of CPU time for one run: smaller steps are left out
+HELPFUL_RATIO = 0.75  # of the error at the larger step: below it a smaller step counts as helpful
+SATURATED_ERROR = 1.0  # rad, or lengths of the mechanism: a larger error does not reveal its causes
 SATURATED_CHANGE = (
     0.01  # of such an error: two coarse steps are seldom so near by chance, and twice one after the other
 )
-SMALLER_STEPS = 4  # runs of the user's own settings at smaller steps that the parts are told from
+SMALLER_STEPS = 4  # runs of the user's settings at smaller steps, from which the causes of the error are separated
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class SweepPlan:
     """Which documented settings are tried: those that may be advised, within `patience` [s of CPU time].
 
     goal: an error; ever smaller steps are tried until a setting is within it. quick: four settings, and rougher parts.
-    everything: also settings that cost more than one with a tenth of the error that is asked for.
+    everything: also settings that cost more than one with a tenth of the tolerance.
     """
 
     patience: float
@@ -55,7 +55,7 @@ class SettingRun:
 
     @property
     def reaction(self) -> float:
-        """Of the largest true one of its kind."""
+        """Largest error of the reactions, relative to the largest true one of its kind."""
         return self.errors.worst["reaction"]
 
 
@@ -65,7 +65,7 @@ def run_settings_sweep(
     samples: int,
     every: int,
     user_run: Trajectory,
-    progress: Callable[[int, int], None],
+    on_progress: Callable[[int, int], None],
     plan: SweepPlan,
     tolerance: float,
 ) -> list[SettingRun]:
@@ -92,7 +92,7 @@ def run_settings_sweep(
         alike = [setting for setting in settings if setting.change.options == change.options]
         if plan.goal is not None and settings[-1].error <= plan.goal:
             break
-        progress(number, len(order))
+        on_progress(number, len(order))
         steps = samples * every * model.dt / change.dt
         cost = steps * rates.get(change.options, max(rates.values()))
         if time.process_time() - begin + cost > plan.patience:
@@ -125,8 +125,9 @@ def _quick_choice(changes: list[Change]) -> list[int]:
 
 
 def _has_plateaued(table: list[SettingRun]) -> bool:
-    """Whether smaller steps have stopped to help: the last two of them took less than a quarter of the error away, or
-    hardly changed an error that is SATURATED_ERROR.
+    """Whether the last two reductions of the step each reduced the error by less than a quarter.
+
+    Of an error above SATURATED_ERROR: whether they hardly changed it.
     """
 
     def stays(before: float, after: float) -> bool:
@@ -157,6 +158,6 @@ def pareto_front(table: list[SettingRun]) -> list[SettingRun]:
 
 
 def runs_by_step(table: list[SettingRun], user: SettingRun) -> list[SettingRun]:
-    """The user's own settings at ever smaller steps, the largest step first."""
-    alike = [setting for setting in table if setting.change.options == user.change.options]
-    return sorted(alike, key=lambda setting: -setting.change.dt)
+    """Runs of the user's own settings, the largest step first."""
+    same_options = [setting for setting in table if setting.change.options == user.change.options]
+    return sorted(same_options, key=lambda setting: -setting.change.dt)

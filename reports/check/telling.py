@@ -14,7 +14,7 @@ from reports.check.rendering import Section
 from reports.check.settings import SATURATED_ERROR, SettingRun, pareto_front
 from reports.write import tables
 
-NOTES_LISTED = 4  # of elements that are left out, on the first screen
+NOTES_LISTED = 4  # notes on elements in the short report
 CHEAPER_COST = 0.9  # of the user's CPU time: a smaller difference may be the clock's noise
 BETTER_ERROR = 0.9  # of an error: a setting that takes less away is not shown on the first screen
 CUT_NOTE = (
@@ -63,7 +63,7 @@ def summary_row(result: CheckResult) -> tuple[str, ...]:
     advice = ("none that was tried", "-", "-")
     if advised is not None:
         advice = (advised.change.words, number(advised.error), number(_cost_ratio(advised, user)))
-    missed = " (missed)" if result.asked and not result.met else ""
+    missed = " (missed)" if result.has_tolerance and not result.met else ""
     return f"{number(user.error)}{missed}", _cause(result.parts), *advice
 
 
@@ -151,7 +151,7 @@ def _assumed(result: CheckResult) -> str:
 
 def _advice(result: CheckResult) -> tuple[str, ...]:
     advised = result.advised
-    goal = "" if result.asked else f" (for an error of {number(result.tolerance)}; name yours)"
+    goal = "" if result.has_tolerance else f" (for an error of {number(result.tolerance)}; name yours)"
     if advised is None:
         closest = min(result.table, key=lambda setting: setting.error)
         early = [setting for setting in result.table if result.until_horizon(setting.errors) <= result.tolerance]

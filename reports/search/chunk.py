@@ -1,7 +1,6 @@
-"""A search in pieces: some cases of one subject each, run in a supervised process and kept like any other answer.
+"""A search is divided into chunks of cases of one subject; each is a task of a worker, and its results are stored.
 
-A piece whose process ends, or whose time is used up, is asked again case by case, so that the case which does it is
-known and the others are not lost.
+A chunk that crashes or times out is run again case by case, so that the failing case is known and no other is lost.
 """
 
 from __future__ import annotations
@@ -77,8 +76,11 @@ class CaseResult:
 
 
 def iter_case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
-    """The cases of these pieces. One whose process ended is a fault without a number; a piece of several cases that
-    did not finish has none, since it is asked again case by case."""
+    """Yield the results of these chunks' cases.
+
+    A chunk of one case that crashed is a fault with an infinite error. An unfinished chunk of several cases yields
+    nothing, since its cases are run again one by one.
+    """
     for chunk, answer in answers.items():
         if answer.finished:
             rows = json.loads(str(answer.values["results"]))
@@ -94,7 +96,7 @@ def iter_case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
 def make_chunks(
     subjects: Sequence[Subject], seed: int, cases: int, kinds: Sequence[str], decades: int, oracles: tuple[str, ...]
 ) -> list[Chunk]:
-    """The pieces of the first cases of a seed, those of all subjects in turn; all kinds of a subject if none."""
+    """Chunks of the first cases of a seed, the subjects alternating; `kinds`: all of a subject if none of its own."""
     out = []
     for first in range(0, cases, CHUNK_SIZE):
         count = min(CHUNK_SIZE, cases - first)
@@ -105,35 +107,35 @@ def make_chunks(
 
 
 def unfinished_cases(answers: Mapping[Chunk, Answer]) -> list[Chunk]:
-    """The cases, one by one, of pieces whose process ended or whose time was used up."""
+    """Chunks of one case each for the cases of chunks that crashed or timed out."""
     ended = [chunk for chunk, answer in answers.items() if not answer.finished and chunk.count > 1]
     return [replace(chunk, first=chunk.first + n, count=1) for chunk in ended for n in range(chunk.count)]
 
 
 def stored_answers(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
-    """The answers to these pieces, and to those of their cases that had to be asked one by one."""
-    whole = store.answers(pieces)
-    answers = {piece: whole[piece] for piece in pieces if piece in whole}
+    """Stored answers of these chunks, and of their cases that were run one by one."""
+    stored = store.answers(pieces)
+    answers = {piece: stored[piece] for piece in pieces if piece in stored}
     singles = unfinished_cases(answers)
     single = store.answers(singles)
     return answers | {piece: single[piece] for piece in singles if piece in single}
 
 
 def chunk_to_json(chunk: Chunk) -> str:
-    """What finds a piece again: its numbers, and the subject's name."""
+    """A chunk as JSON: its numbers, and the subject's name."""
     numbers = [chunk.seed, chunk.first, chunk.count, list(chunk.kinds), chunk.decades, list(chunk.oracles)]
     return json.dumps([chunk.subject.name, *numbers])
 
 
 def chunk_from_json(text: str, subjects: Sequence[Subject]) -> Chunk | None:
-    """The piece that `chunk_to_json` wrote; None where its subject is not among these."""
+    """The chunk that `chunk_to_json` wrote; None if its subject is not among these."""
     name, seed, first, count, kinds, decades, oracles = json.loads(text)
-    subject = next((one for one in subjects if one.name == name), None)
+    subject = next((subject for subject in subjects if subject.name == name), None)
     return Chunk(subject, seed, first, count, tuple(kinds), decades, tuple(oracles)) if subject else None
 
 
 def case_label(case: CaseResult) -> str:
-    """The subject, and the kinds that were asked for where they are not all of its own."""
+    """Name of the subject, with the selected kinds of joints if the user selected some."""
     chunk = case.chunk
     kinds = "" if chunk.kinds == chunk.subject.kinds else f" ({', '.join(chunk.kinds)})"
     return f"{chunk.subject.name}{kinds}"
@@ -143,7 +145,7 @@ SUMMARY_HEADER = ("subject", "check", "judged", "median", "99 %", "worst", "faul
 
 
 def summary_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """Rows of a table under SUMMARY_HEADER; a last line a subject says how many cases it refused."""
+    """Rows of a table under SUMMARY_HEADER; the last rows count the cases that each subject refused."""
     checks: dict[tuple[str, str], list[tuple[float, float]]] = {}
     for case in cases:
         for check, pair in case.result.errors.items():
@@ -153,8 +155,8 @@ def summary_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
         errors = np.sort([error for error, _ in pairs])
         if check == NEEDLESS_REPORT:
             if errors.any():
-                words = f"{errors.sum():.0f} reported, though right"
-                reported.append([subject, words, str(len(pairs)), "", "", "", ""])
+                count = f"{errors.sum():.0f} reported, though right"
+                reported.append([subject, count, str(len(pairs)), "", "", "", ""])
             continue
         quantiles = [_short(errors[math.ceil(share * (len(errors) - 1))]) for share in (0.5, 0.99, 1.0)]
         out.append([subject, check, str(len(pairs)), *quantiles, str(sum(not error <= most for error, most in pairs))])
@@ -163,7 +165,7 @@ def summary_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
 
 
 def count_refusals(cases: Iterable[CaseResult]) -> Mapping[str, int]:
-    """How many cases a subject can't build, by its own word."""
+    """Number of cases that each subject refused as unsupported."""
     return Counter(
         case_label(case) for case in cases if any(why.startswith("unsupported") for why in case.result.skipped)
     )
@@ -177,7 +179,7 @@ FINDINGS_HEADER = ("subject", "check", "error", "may be", "seed", "decades", "ca
 
 
 def finding_rows(cases: Iterable[CaseResult]) -> list[list[str]]:
-    """Rows of a table under FINDINGS_HEADER, one for each check that fails in a case."""
+    """Rows of a table under FINDINGS_HEADER, one for each failing check of a case."""
     out = []
     for case in cases:
         drawn = [str(case.chunk.seed), str(case.chunk.decades), str(case.number), ",".join(case.kinds)]
@@ -187,11 +189,11 @@ def finding_rows(cases: Iterable[CaseResult]) -> list[list[str]]:
 
 
 def count_skip_reasons(cases: Iterable[CaseResult]) -> list[tuple[str, str, int]]:
-    """(oracle, why it did not apply, cases), the most frequent first; numbers in reasons are left out."""
-    found: Counter[tuple[str, str]] = Counter()
+    """(oracle, skip reason, number of cases), the most frequent first; numbers in reasons are masked."""
+    reasons: Counter[tuple[str, str]] = Counter()
     for case in cases:
         for reason in case.result.skipped:
-            oracle, _, why = reason.partition(": ")
+            oracle, _, text = reason.partition(": ")
             if oracle != "unsupported":
-                found[oracle, re.sub(r"\d[\d.e+-]*", "...", why)] += 1
-    return [(oracle, why, count) for (oracle, why), count in found.most_common()]
+                reasons[oracle, re.sub(r"\d[\d.e+-]*", "...", text)] += 1
+    return [(oracle, text, count) for (oracle, text), count in reasons.most_common()]

@@ -1,10 +1,9 @@
-"""Differences of motions and forces, and how large rounding and a solver's tolerance make them, by one rule.
+"""Relative differences of motions and forces, and the tolerance for rounding and for an iterative solver.
 
-A check fails where its error is more than NOISE_MARGIN times the noise of its case, and more than a floor. Noise is the
-largest difference of the same case in descriptions that are shifted and turned a little and rounded otherwise, so that
-every number of every step is rounded anew, and of the same engine with a solver that goes much farther
-(`Engine.stricter`). So it has the condition of the case in it: nearly dependent rows, masses far apart, weights of
-combined runs, gaps that are closed although they are but rounded.
+A check fails if its error exceeds both a floor and NOISE_MARGIN times the noise of the case. The noise is the largest
+difference between the case and copies of it that are slightly shifted, turned and rounded differently, and between the
+engine and the same engine with a smaller solver tolerance (`Engine.stricter`). It therefore contains the conditioning
+of the case: nearly dependent rows, large mass ratios, weights of combined runs, projection of rounded gaps.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from reports.gate.change import Nudge
 
 Array = NDArray[np.float64]
 
-NOISE_MARGIN = 10.0  # noise is the largest of a few draws
+NOISE_MARGIN = 10.0  # the noise is the largest of only a few draws
 NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # of its place and of a radian: what depends on these themselves changes as little
 LAW_TOLERANCE = 1e-9  # of one instant: rounding makes a thousandth of it where rows are independent
 PRECISION_MARGIN = 10.0  # of an engine of lower precision
@@ -43,7 +42,7 @@ class CheckSkipped:
 
 
 class Fault(Exception):
-    """An error without a number; the message is one sentence that says what is wrong."""
+    """A failure without a numerical error; the message is one sentence with the reason."""
 
 
 def iter_nudged(mechanism: Mechanism, away: float = 0.0) -> Iterator[Described]:
@@ -69,13 +68,13 @@ def difference(mechanism: Mechanism, found: Array, expected: Array, scales: tupl
 
 
 def force_difference(mechanism: Mechanism, found: Array, expected: Array, scales: tuple[Array, ...] = ()) -> float:
-    """The same of forces (..., rows): torques count as the forces that they need at the mechanism's own length.
+    """The largest relative difference of forces (..., rows); torques are divided by the mechanism's length.
 
-    Rows whose force is NaN, since the engine can't tell it, are left out.
+    Rows whose force is NaN, since the engine does not report it, are left out.
     """
-    known = ~np.isnan(found)
+    reported = ~np.isnan(found)
     size = np.where(mechanism.is_angular, 1 / mechanism.length_scale, 1.0)
-    return _relative(np.where(known, found, 0.0), np.where(known, expected, 0.0), size, (expected, *scales))
+    return _relative(np.where(reported, found, 0.0), np.where(reported, expected, 0.0), size, (expected, *scales))
 
 
 def _relative(found: Array, expected: Array, size: Array, scales: tuple[Array, ...]) -> float:
@@ -87,7 +86,7 @@ def _relative(found: Array, expected: Array, size: Array, scales: tuple[Array, .
 
 
 def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array) -> float:
-    """By how much the fastest body, or the direction of a row, turns in a step of dt [s] from a state on: rad.
+    """Rotation [rad] of the fastest body, or of the fastest constraint direction, in a step of dt [s] from a state.
 
     A row turns at about the rate |J' v| / (|J| |v|), with the velocities of its bodies: a short rod, say, whose ends
     move apart. Above a radian no integrator follows, and what comes of the motion is rounding.
@@ -112,8 +111,10 @@ def driving_force(mechanism: Mechanism, twist: Array) -> float:
 
 
 def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
-    """Errors of what an engine computes at one instant, in its first steps, against the law that it declares there
-    (`engines.Engine.instants`), relative to the largest of what enters the law."""
+    """Relative errors of an engine's first steps against the law that it declares for single instants.
+
+    See `engines.Engine.instants`; errors are relative to the largest term of the law.
+    """
     here = _instants(engine, mechanism)
     if isinstance(here, NotDeclared):
         return CheckSkipped(here.reason)
@@ -159,7 +160,7 @@ def _instant_error(mechanism: Mechanism, instant: Instant) -> float:
 
 
 def _nudge_effect(mechanism: Mechanism, instant: Instant, other: Instant, back: Callable[[Trajectory], Three]) -> float:
-    """By how much another description changes what is computed, and what is expected."""
+    """Sum of the changes of the computed and of the expected values between two descriptions."""
 
     def described_back(values: Array) -> Array:
         motion, force = np.zeros((1, len(mechanism.bodies), 3)), np.zeros((1, mechanism.row_count))

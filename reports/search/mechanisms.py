@@ -2,15 +2,15 @@
 
     from reports.search.mechanisms import mechanism, recipe
     for number in range(2000):
-        drawn = mechanism(seed=1, number=number)                          # all kinds of joints of the first days
+        drawn = mechanism(seed=1, number=number)                          # kinds of `FIRST_KINDS`
         wide = mechanism(1, number, kinds=("pin", "slot", "skate"), decades=2)
-        whole = mechanism(1, number, kinds=ALL_KINDS)                         # rods, gears, welds and forces too
+        whole = mechanism(1, number, kinds=ALL_KINDS)                     # rods, gears, welds and forces too
 
 A case depends on its own seed, number, kinds and decades alone: numpy's PCG64 gives its whole numbers, which are the
-same on every machine. There are 1 to 6 bodies; most hang on an earlier body or on the ground by a joint of the kinds
-asked for, and up to three further joints close loops. Bodies, blades, slots and contacts stand at odd angles and off
-the centres of mass. Half of the mechanisms are pulled by gravity, three quarters move; never is there neither. The
-joints' rows are independent (`recipe.LEAST_RANK`), and something is free to move or a drive turns.
+same on every machine. A mechanism has 1 to 6 bodies. Most are connected to an earlier body or to the ground by a joint
+of the selected kinds, and up to three further joints close loops. Angles are not special, and points of joints are not
+at centres of mass. Half of the mechanisms have gravity, three quarters move at the start, and each has at least one of
+the two. The rows of the joints are independent (`recipe.DEPENDENCE_LIMIT`), and a freedom is left or a drive turns.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decad
 
 
 class _Draw:
-    """The random numbers of one case, and what is made of them."""
+    """The random generator of one case and the recipe that is drawn from it."""
 
     def __init__(self, random: np.random.Generator, kinds: Kinds, decades: int) -> None:
         self._random, self._decades = random, decades
@@ -100,7 +100,7 @@ class _Draw:
         return self.whole(1, one_in) == 1
 
     def recipe(self) -> Recipe | None:
-        """None where the joints leave nothing to move."""
+        """Draw a recipe; None if its joints leave no freedom."""
         count = self.whole(1, DRAWN_BODIES)
         moving = not self.chance(4)
         pull = self.two(10) if not moving or self.chance(2) else (0, 0)
@@ -131,7 +131,7 @@ class _Draw:
     def _independent(
         self, standing: Standing, links: Sequence[RecipeLink]
     ) -> tuple[tuple[RecipeLink, ...], Sequence[Held]]:
-        """The links and their joints but for those that hold what others hold already, or the last freedom."""
+        """The links that are independent and leave a freedom, and their joints."""
         held: list[Held] = []
         kept: list[RecipeLink] = []
         freedom = 3 * len(standing.bodies)
@@ -178,7 +178,7 @@ class _Draw:
         return RecipeLink(kind, first, second, at, turn, more, rims)
 
     def _further(self, kind: str, first: int, second: int, at: tuple[int, int], turn: int) -> RecipeLink:
-        """A link of a kind that came later; a distance, a ratio or a force of zero would be none."""
+        """Draw a link of a later kind; its distance, ratio or force is not zero."""
         more = self.whole(1, 8) * (1 if self.chance(2) else -1)
         strength, rest = self.whole(-2, 4), self.whole(-10, 10)
         if kind in ("rod", "gear", "force", "torque"):
@@ -197,7 +197,7 @@ class _Draw:
 
 
 def _with_pins(link: RecipeLink) -> tuple[RecipeLink, ...]:
-    """A link after the pins that it needs."""
+    """A link, preceded by the pins that it needs."""
     if link.kind == FOLD:
         return RecipeLink("pin", 0, link.first, link.far), RecipeLink("pin", 0, link.second, link.at), link
     return (RecipeLink("pin", link.first, link.second, link.at), link) if link.kind == TOGGLE else (link,)
@@ -239,7 +239,7 @@ def _shapes(engine: Engine, seed: int, kinds: tuple[str, ...], decades: int) -> 
 
 
 def renumber(shape: Recipe, whole: Whole) -> Recipe:
-    """The same shape with other numbers, in the ranges of `recipe`; `whole(low, high)` draws one, both included.
+    """A recipe of the same shape with new numbers in the ranges of `recipe`; `whole(low, high)` draws one, inclusive.
 
     Zero stays zero, since a drive at rest is held otherwise than one that turns. A ratio of gears is compiled in.
     """

@@ -40,31 +40,33 @@ from reports.search.relations import ESTIMATE_MARGIN
 Array = NDArray[np.float64]
 Floors = dict[str, float]
 
-SPAN = 0.4  # of the mechanism's own time scale: nothing has had time to become chaotic
+SPAN = 0.4  # duration in units of the mechanism's time scale: too short for exponential growth of errors
 MOTION_SAMPLES, COARSE_STEPS = 4, 10  # and steps between samples
-# Above what the promised order lets expect of the coarser step: the next power of the step, and samples (as in
-# engines.conformance.moving).
+# Times the error that the declared order predicts from the coarser step: allows for the next power of the step and for
+# errors that are known at samples only (as in `engines.conformance.moving`).
 ORDER_MARGIN = 2.5
-# Relative to the motion: rounding, that of combined runs and of a drive which a large inertia holds.
+# Smallest tolerances relative to the motion: rounding, also of combined runs and of a drive with a large inertia.
 ERROR_FLOORS = {"motion": 1e-8, "reactions": 1e-5}
 FINEST_DIVISION = 64
-DIVERGED_ERROR = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
-DISTANT_POSE = 0.1  # of a radian, or of the mechanism's length: forces of poses that far away are other forces
-CACHED_MECHANISMS = 16  # mechanisms of which all engines are asked before others come: see `chunk.SIZE`
-RIGID_COMPLIANCE = 1e-10  # of the time scale squared: joints that give way by less are ideal here
+DIVERGED_ERROR = 10.0  # relative to the motion: a run with a larger error has diverged
+DISTANT_POSE = 0.1  # rad, or lengths of the mechanism: at a pose error this large, reactions are not compared
+CACHED_MECHANISMS = (
+    16  # mechanisms in the cache: all engines run one chunk of cases before the next (`chunk.CHUNK_SIZE`)
+)
+RIGID_COMPLIANCE = 1e-10  # compliance in units of the squared time scale: joints with less count as ideal
 ENGINE_WARNED = CheckSkipped("it says itself that something is wrong")
 
 
 @by_identity(CACHED_MECHANISMS)
 def judge_motion(mechanism: Mechanism) -> Trajectory:
-    """The judge's motion of a mechanism, which many engines are asked about."""
+    """The judge's motion of a mechanism; cached, since many engines run the same mechanism."""
     return TRUTH.build(mechanism, SPAN * mechanism.time_scale / MOTION_SAMPLES)(MOTION_SAMPLES, 1)
 
 
 def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
-    """(error at the finer step, what it may be) of "motion", "reactions" and, of an engine that gives one, "estimate".
+    """(error at the finest step, tolerance) of "motion", "reactions" and, with an error estimate, "estimate".
 
-    Raises Fault where a motion is lost in silence.
+    Raises Fault if a run diverges without a warning.
     """
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
         return CheckSkipped(
@@ -105,7 +107,7 @@ def _run(engine: Engine, mechanism: Mechanism, dt: float, parts: int) -> Traject
 
 
 def _has_lasting_compliance(engine: Engine, mechanism: Mechanism, dt: float) -> bool:
-    """Whether joints give way visibly, and at half the step nearly as much."""
+    """Whether the compliance of joints is visible and does not vanish with the step."""
     coarse, fine = (engine.regularisation(mechanism, step) for step in (dt, dt / 2))
     if coarse is None or fine is None:
         return False
@@ -153,7 +155,7 @@ class _Case:
         return np.nan_to_num(self.truth.reaction), arms * max(acting, np.finfo(float).tiny)
 
     def apart(self, run: Trajectory, other: Trajectory | None = None) -> Floors:
-        """By how much a run differs from another, or from the judge's motion."""
+        """Relative differences of a run from another one, or from the judge's motion."""
         other = other or self.truth
         moved = run.pose[1:] - self.mechanism.pose, other.pose[1:] - self.mechanism.pose
         return {
@@ -162,7 +164,7 @@ class _Case:
         }
 
     def halved(self, run: Trajectory) -> tuple[Trajectory, int, dict[str, tuple[float, float]]] | CheckSkipped:
-        """The finest run, its steps as parts of `dt`, and (error, what it may be) by the promised order."""
+        """The finest run, its number of steps in `dt`, and (error, tolerance) from the declared order."""
         out: dict[str, tuple[float, float]] = {}
         parts, warned, silent, longest, coarse = 1, False, 0, 0, run
         while parts < FINEST_DIVISION and (not out or _fails(out)):
@@ -188,7 +190,7 @@ class _Case:
         return run, parts, out
 
     def excuse(self, run: Trajectory, parts: int, out: dict[str, tuple[float, float]]) -> CheckSkipped | None:
-        """Raise what errors may be by noise and by declared softness; the reason why they count for nothing, if any."""
+        """Add noise and declared compliance to the tolerances; return a reason to skip the case, if there is one."""
         if not np.isfinite(run.pose).all():
             stricter = self.engine.stricter(self.mechanism)
             if stricter is not None and np.isfinite(_run(stricter, self.mechanism, self.dt, parts).pose).all():
@@ -212,7 +214,7 @@ class _Case:
         return None
 
     def noise(self, run: Trajectory, parts: int) -> Floors:
-        """How much errors change with the roundings of the run and of the judge, and with what its solver leaves."""
+        """Changes of the errors with rounding of the run and of the judge, and with a smaller solver tolerance."""
         pairs: list[tuple[Trajectory, Trajectory]] = []
         for nudged, back in iter_nudged(self.mechanism):
             truth = judge_motion.__wrapped__(nudged)  # pyright: ignore[reportFunctionMemberAccess]
@@ -226,10 +228,10 @@ class _Case:
         return {name: max(each[name] for each in differences) for name in ERROR_FLOORS}
 
     def resolved(self, parts: int) -> bool:
-        """Whether a textbook method of the promised order, or 4, shows it up to these parts, twice in a row.
+        """Whether a textbook method of the declared order (at most 4) converges with it in two successive halvings.
 
-        A spring that shrinks to nothing for less than a step pushes one way and then the other: the error depends on
-        where a method's stages fall, and on no power of the step.
+        A spring whose length passes zero within a step reverses its force: the error then depends on the instants of
+        the method's stages and follows no power of the step.
         """
         usual = ConvergenceOrder(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
         spacing, parts = SPAN * self.mechanism.time_scale / MOTION_SAMPLES, max(4, parts)
@@ -330,7 +332,7 @@ def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | 
 
 
 def check_claims(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str, tuple[float, float]]:
-    """The same of a run, whose samples are among those of the judge."""
+    """(error, claim) by check of a run whose samples are among those of the judge's motion."""
     at = np.linspace(0, len(truth.t) - 1, len(run.t)).round().astype(int)
     length, arm = mechanism.length_scale, np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
     missed = np.nan_to_num(np.abs(run.pose - truth.pose[at]) / [length, length, 1.0], nan=np.inf).max(axis=(1, 2))

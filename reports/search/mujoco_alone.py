@@ -1,9 +1,9 @@
 """MuJoCo alone, on models in its own XML that the search writes: the law of their accelerations.
 
-No adapter of ours takes part, so a finding is MuJoCo's own, in whatever release `reports.search.release` asks. A model
+No adapter is used, so a finding is a fault of MuJoCo itself, in the release that `reports.search.release` runs. A model
 is a tree of slides and hinges in the plane; `connect`, `weld`, `joint` and `tendon` equalities close it. The law is
-written here in the coordinates of the tree. Derivatives are those of complex steps, which are exact to rounding, and
-only how far each constraint gives way (`efc_R`) is taken from MuJoCo.
+written here in the coordinates of the tree. Derivatives are computed by complex steps, which are exact to rounding;
+only the compliance of each constraint (`efc_R`) is taken from MuJoCo.
 """
 
 from __future__ import annotations
@@ -215,7 +215,7 @@ def _slips(model: RawModel, q: Numbers, v: Numbers) -> list[Numbers]:
 
 @dataclass(frozen=True, eq=False)
 class StartEquations:
-    """A model's equations at the start.
+    """The equations of motion of a model at the start.
 
     `root` (coordinates, coordinates): S, with S^T S the mass matrix. `free`: S times the accelerations without
     equalities. `rows` and `right`: J and J a of each equality; `bent`, the part of `right` that its curve makes;
@@ -230,9 +230,9 @@ class StartEquations:
     rates: Array
 
     def expected(self, give: Array, bent: bool = True) -> Array:
-        """Accelerations of the coordinates, where the equalities' rows give way (rows, any) to their forces.
+        """Accelerations of the coordinates for a compliance `give` (rows, any) of the equalities' rows.
 
-        Without `bent` those of MuJoCo up to 4.0.1, which leaves out the velocity term of curved equalities.
+        Without `bent` the velocity term of curved equalities is left out, as in MuJoCo up to 4.0.1.
         """
         rows: Any = np.linalg.solve(self.root.T, np.vstack([np.zeros((0, len(self.free))), *self.rows]).T).T
         right = [each if bent else each - curve for each, curve in zip(self.right, self.bent, strict=True)]
@@ -240,7 +240,7 @@ class StartEquations:
         return np.asarray(np.linalg.solve(self.root, law.motion), dtype=np.float64)
 
 
-@lru_cache(maxsize=4)  # the same model is drawn, judged, and asked of MuJoCo
+@lru_cache(maxsize=4)  # a model is needed when it is drawn, compared and run
 def start_equations(model: RawModel) -> StartEquations:
     """Raises InvalidMechanism where rows are nearly dependent, or something is joined with itself."""
     order = coordinates(model)

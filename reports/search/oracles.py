@@ -17,10 +17,10 @@ LAW_CHECKS = ("acceleration", CURVED, "velocity", "without velocity terms")
 
 @dataclass(frozen=True)
 class Oracle:
-    """`errors` of an engine in a case: (error, largest admissible error) by check, or the reason why it does not apply.
+    """`errors` of an engine in a case: (error, tolerance) by check, or the reason why the oracle does not apply.
 
     `column`: the word of the page's table, which counts all `checks` of the oracle together; the checks of the oracle
-    of motions are all others. `question`: the sentence of the page. `is_default`: asked without the option --oracles.
+    of motions are all others. `question`: the sentence of the page. `is_default`: used without the option --oracles.
     """
 
     column: str

@@ -41,7 +41,7 @@ ROW_INCHES = 0.24  # inches
 
 
 def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figure | None:
-    """A line a subject, from the median to the worst error of its law of an instant; None where none was asked."""
+    """A line for each subject from the median to the largest error of instants; None if no case has such an error."""
     found: dict[str, list[float]] = {}
     for case in cases:
         for law in LAW_CHECKS:
@@ -71,7 +71,7 @@ def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figu
 
 
 def known_subjects(texts: Sequence[str]) -> list[Subject]:
-    """Every engine that is registered, and MuJoCo alone in the releases that these pieces, as JSON, name."""
+    """Every registered engine, and MuJoCo alone in the releases that occur in these chunks (JSON texts)."""
     releases = dict.fromkeys(release_of(json.loads(text)[0]) for text in texts)
     engines = dict.fromkeys([*ENGINES, *OTHERS, plan.GROOVE_SUBJECT.engine])
     return [*(Adapted(engine) for engine in engines), *(Alone(each) for each in releases if each is not None)]
@@ -81,8 +81,10 @@ Stored = tuple[list[CaseResult], list[tuple[Shrink, Answer]], Mapping[PlantedCon
 
 
 def read_stored(store: Store, published: bool = False) -> Stored:
-    """The cases that are stored for the present sources, the findings among them that were made smaller, and how soon
-    planted faults were found; `published`: of the plan alone (`reports.search.plan`), whose seeds nobody chose."""
+    """Stored results of the present sources: cases, reduced findings, and the controls with planted faults.
+
+    `published`: only cases of the plan (`reports.search.plan`), whose seeds come from the commit's hash.
+    """
     texts = store.remembered()
     subjects = known_subjects(texts)
     pieces = [piece for piece in (chunk_from_json(text, subjects) for text in texts) if piece is not None]
@@ -100,7 +102,7 @@ def render_page(
     foot: str,
     planned: int = 0,
 ) -> dict[str, str]:
-    """search.md and its picture, by name; nothing of a search that asked nothing. `planned`: 0 for no plan."""
+    """search.md and its picture by file name; empty without cases. `planned`: number of planned cases, or 0."""
     if not cases:
         return {}
     picture = draw_distribution(cases)
@@ -130,13 +132,13 @@ def render_page(
 
 
 def _shown_oracles(cases: Sequence[CaseResult]) -> list[Oracle]:
-    """The oracles that are asked by default, and those that these cases were drawn for."""
+    """The default oracles and those with which these cases were run."""
     drawn = {name for case in cases for name in case.chunk.oracles}
     return [oracle for name, oracle in ORACLES.items() if oracle.is_default or name in drawn]
 
 
 def _count_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """A line for each subject: cases, those refused, and of each group of checks how many it judged and found wrong."""
+    """A row for each subject: numbers of cases, of refused cases, and of judged and failed cases by group of checks."""
     subjects: dict[str, list[CaseResult]] = {}
     columns = [oracle.column for oracle in _shown_oracles(cases)]
     for case in cases:
@@ -152,17 +154,17 @@ def _count_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
 
 
 def _skip_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """(question, why it did not apply, cases): the reasons of all subjects together, the rarest in a last line."""
+    """Rows (question, skip reason, number of cases) of all subjects; rare reasons are summed in the last row."""
     reasons = count_skip_reasons(cases)
-    often = [reason for reason in reasons if reason[-1] >= RARE_SHARE * len(cases)]
-    rest = sum(count for *_, count in reasons) - sum(count for *_, count in often)
-    further = [["all", f"{len(reasons) - len(often)} rarer reasons", str(rest)]] if rest else []
+    frequent = [reason for reason in reasons if reason[-1] >= RARE_SHARE * len(cases)]
+    rest = sum(count for *_, count in reasons) - sum(count for *_, count in frequent)
+    rare_row = [["all", f"{len(reasons) - len(frequent)} rarer reasons", str(rest)]] if rest else []
     columns = {name: oracle.column for name, oracle in ORACLES.items()}
-    return [[columns.get(name, name), why, str(count)] for name, why, count in often] + further
+    return [[columns.get(name, name), why, str(count)] for name, why, count in frequent] + rare_row
 
 
 def _finding_rows(cases: Sequence[CaseResult], small: Sequence[tuple[Shrink, Answer]]) -> list[list[str]]:
-    """A line for each check of a subject that fails: in how many cases, the smallest mechanism, and the first case."""
+    """A row for each failing check of a subject: number of cases, smallest mechanism, command for the first case."""
     groups: dict[tuple[str, str], list[CaseResult]] = {}
     for case in cases:
         if case.chunk.subject.name != plan.GROOVE_SUBJECT.name:
@@ -173,20 +175,20 @@ def _finding_rows(cases: Sequence[CaseResult], small: Sequence[tuple[Shrink, Ans
 
 
 def _command(case: CaseResult) -> str:
-    """What draws a case again, and writes its script."""
+    """The command that draws a case again and writes its script."""
     chunk = case.chunk
     name, variant = ("mujoco", "alone") if isinstance(chunk.subject, Alone) else chunk.subject.name.split(" ", 1)
-    words = ["crosscheck", "search", "--engine", name, "--variant", variant, "--seed", str(chunk.seed)]
-    words += ["--decades", str(chunk.decades)] if chunk.decades else []
-    words += ["--kinds", ",".join(chunk.kinds)] if chunk.kinds != chunk.subject.kinds else []
-    return shlex.join([*words, "--cases", str(case.number + 1)])
+    command = ["crosscheck", "search", "--engine", name, "--variant", variant, "--seed", str(chunk.seed)]
+    command += ["--decades", str(chunk.decades)] if chunk.decades else []
+    command += ["--kinds", ",".join(chunk.kinds)] if chunk.kinds != chunk.subject.kinds else []
+    return shlex.join([*command, "--cases", str(case.number + 1)])
 
 
 def _planted_rows(answers: Mapping[PlantedControl, Answer]) -> list[list[str]]:
-    """A line for each fault: the case that found it in each engine, and how large it had to be if not 1e-6."""
-    known = {(task.fault, task.name): _how_soon(answer) for task, answer in answers.items()}
+    """A row for each fault: the case that detected it in each engine, and its size if not the smallest one."""
+    cells = {(task.fault, task.name): _how_soon(answer) for task, answer in answers.items()}
     names = dict.fromkeys(task.name for task in answers)
-    return [[fault, *(known.get((fault, name), "") for name in names)] for fault in PLANTED_FAULTS if answers]
+    return [[fault, *(cells.get((fault, name), "") for name in names)] for fault in PLANTED_FAULTS if answers]
 
 
 def _how_soon(answer: Answer) -> str:

@@ -14,7 +14,7 @@ FIRST_KINDS = ("pin", "slot", "skate", "roll", "drive")
 LINK_KINDS = ("rod", "gear", "weld")
 FORCE_KINDS = ("spring", "damper", "torsion-spring", "torsion-damper", "force", "torque")
 ALL_KINDS = (*FIRST_KINDS, *LINK_KINDS, *FORCE_KINDS)
-# Asked for by their names alone: their rows nearly depend on each other.
+# Drawn only if selected by name: their rows are nearly dependent.
 TOGGLE, FOLD = "toggle", "fold"
 SINGULAR_KINDS = (TOGGLE, FOLD)
 RIM_SHAPES = ("line", "circle", "ring", "ellipse")
@@ -62,9 +62,9 @@ class RecipeLink:
     first body's material on its left. `more`: how far the slot's own point lies from there along it (tenths of the
     size), or the rate of a drive in steps of 0.5 rad/s. `rims`: the curves of the first and the second body of a roll.
 
-    Of a rod, a spring and a damper `more` and `turn` say where the first body's point lies. Of a gear `more` is the
-    ratio, of a force (in the direction `turn`) and a torque how strong it is, in halves. The others' `strength` is a
-    step on the ladder, and `rest` what a spring is shorter than at rest: tenths, or steps of 0.3 rad.
+    Rods, springs and dampers: `more` and `turn` are the distance and direction of the first body's point. Gears: `more`
+    is the ratio in halves. Forces (in the direction `turn`) and torques: `more` is the strength in halves. All others:
+    `strength` is a step on the ladder, and `rest` the deflection of a spring at the start: tenths, or steps of 0.3 rad.
 
     A toggle is a rod between points on both sides of `at`, where a pin holds the same bodies: `more` tenths and half of
     that away along `turn`, on a line that misses `at` by 10^-strength sizes.

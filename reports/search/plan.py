@@ -1,4 +1,4 @@
-"""What is searched for the published page, from seeds that nobody chose; and for as long as there is time, from any."""
+"""The cases of the published page, with seeds from the commit's hash, and endless batches with random seeds."""
 
 from __future__ import annotations
 
@@ -36,23 +36,23 @@ GROOVE_SUBJECT = Adapted(replace(pymunk.DEFAULT, variant="slots as grooves", slo
 def seed_origin() -> tuple[str, str]:
     """(rule, words that seeds are made from): the hash of the last commit, without git that of all sources."""
     if (ROOT / ".git").exists():
-        asked = ["git", "-C", str(ROOT), "rev-parse", "HEAD"]
-        told = subprocess.run(asked, capture_output=True, text=True, check=False)
-        if told.returncode == 0:
-            return COMMIT_RULE, told.stdout.strip()
+        command = ["git", "-C", str(ROOT), "rev-parse", "HEAD"]
+        answer = subprocess.run(command, capture_output=True, text=True, check=False)
+        if answer.returncode == 0:
+            return COMMIT_RULE, answer.stdout.strip()
     files = sorted(path for folder in OURS for path in (ROOT / folder).rglob("*.py"))
     return SOURCES_RULE, digest(b"\0".join(path.read_bytes() for path in files), 64)
 
 
 def published_seeds(many: int = len(SEED_DECADES)) -> tuple[int, ...]:
     """The first eight hexadecimal digits, halved, of the SHA-256 of the origin, a blank and a number from 1."""
-    words = (f"{seed_origin()[1]} {number}" for number in range(1, many + 1))
-    return tuple(int(digest(word, SHORT), 16) // 2 for word in words)
+    texts = (f"{seed_origin()[1]} {number}" for number in range(1, many + 1))
+    return tuple(int(digest(text, SHORT), 16) // 2 for text in texts)
 
 
 @cache
 def supported_kinds(engine: Engine) -> tuple[str, ...]:
-    """The kinds of joints and forces of which an engine builds some mechanism."""
+    """The kinds of joints and forces that an engine can build in at least one of KIND_TRIALS mechanisms."""
     return tuple(kind for kind in ALL_KINDS if any(_is_built(engine, kind, number) for number in range(KIND_TRIALS)))
 
 
@@ -74,8 +74,10 @@ def all_subjects() -> list[Subject]:
 
 
 def published_chunks() -> list[Chunk]:
-    """All engines in the mechanisms of the commit's seeds, each of the kinds that it takes; and two kinds of cases by
-    themselves: rows that nearly depend on each other, and pymunk's grooves off the centre of mass."""
+    """All engines in mechanisms of the commit's seeds and of the kinds that each can build.
+
+    Two kinds of cases are separate: nearly dependent rows, and pymunk's grooves away from the centre of mass.
+    """
     out: list[Chunk] = []
     for seed, decades in zip(published_seeds(), SEED_DECADES, strict=True):
         for subject in all_subjects():
@@ -91,7 +93,7 @@ def published_chunks() -> list[Chunk]:
 
 
 def fresh_chunks(subjects: Sequence[Subject], cases: int) -> Iterator[list[Chunk]]:
-    """So many cases of each subject for one seed after the other, without end; seeds are of the system's randomness."""
+    """Yield endless batches of `cases` of each subject, each with a new seed from the system's random generator."""
     for number in count():
         seed, decades = secrets.randbits(31), SEED_DECADES[number % len(SEED_DECADES)]
         mixed = secrets.SystemRandom().sample(subjects, len(subjects))  # so that all have their turn in a short run

@@ -1,7 +1,7 @@
 """The catalogue of wrong models: engines that are given a mechanism with one number off, and how soon this is found.
 
-This is what a mistake in an adapter comes to: its engine moves another mechanism, and is asked for the right one. A
-fault is of a kind of joint, of a force element, of all inertias, or one that depends on how a mechanism is described.
+A mistake in an adapter has this effect: the engine moves another mechanism than the one that the results are compared
+with. A fault changes a kind of joint, a force element, or all inertias, or it depends on the description.
 """
 
 from __future__ import annotations
@@ -59,9 +59,9 @@ CLOSING_STEPS = 6  # of Newton's method, which closes the joints of a wrong mode
 
 @dataclass(frozen=True)
 class Misbuilt(Mechanism):
-    """What an engine builds its model from, while what is read out of it belongs to the mechanism `right`.
+    """A mechanism with a fault, from which an engine builds its model; reactions are those of the mechanism `right`.
 
-    Joints that can't all be closed with the wrong number are as nearly closed as they can be.
+    If the joints can't all be closed with the fault, their gaps are minimal.
     """
 
     right: Mechanism = field(kw_only=True)
@@ -155,7 +155,7 @@ class PlantedFault:
 
 
 def kind_of(part: Any) -> str:
-    """What a joint or a force element is called in recipes."""
+    """Name of a joint or a force element in recipes."""
     return re.sub(r"(?<!^)(?=[A-Z])", "-", type(part).__name__).lower()
 
 
@@ -178,7 +178,7 @@ FAULT_SIZES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
 @dataclass(frozen=True)
 class PlantedControl(Task):
-    """How soon a search finds a fault of this kind in an engine, and of which of FAULT_SIZES it has to be for that."""
+    """The task of finding the smallest of FAULT_SIZES and the first case at which the search detects a fault."""
 
     name: str  # of the engine
     fault: str
@@ -198,8 +198,10 @@ class PlantedControl(Task):
         return CONTROL_ENGINES[self.name][0]
 
     def run(self) -> Values:
-        """The size, and the check and the number of the case that finds it, NaN where none does; whether the engine
-        builds this kind, and how many times it was asked until then."""
+        """The size, check and number of the first case that detects the fault (NaN if none), and two counts.
+
+        "built": whether the engine builds this kind; "asked": number of cases that were judged.
+        """
         engines, kind, asked = CONTROL_ENGINES[self.name], PlantedFault(self.fault, 0.0).kind, 0
         built = kind not in ALL_KINDS or kind in supported_kinds(engines[0])
         size, case, check = np.nan, np.nan, ""

@@ -1,8 +1,8 @@
 """The mechanism that a recipe of small whole numbers describes (`reports.search.parts`).
 
-Bodies stand anywhere; a joint is then put at a place of the world, and the points of its bodies are those that are
-there now. So every joint is closed from the beginning, whatever the numbers are, and no loop has to be solved.
-Velocities are the nearest ones to those written that the joints allow.
+Bodies are placed first. A joint is then placed at a point of the world, and its bodies' points are computed from that
+point. So every joint is closed at the start for all numbers, and no loop has to be solved. Velocities are those of the
+recipe, projected onto the joints.
 """
 
 from __future__ import annotations
@@ -42,18 +42,18 @@ from reports.search.parts import (
 
 Array = NDArray[np.float64]
 Point = tuple[Decimal, Decimal]
-# Rows of which a combination is smaller than this, beside the largest, are left out: their forces, and what becomes of
-# the motion, depend on digits that no engine keeps.
+# Smallest ratio of the singular values of the rows. Below it a joint is left out: its forces and the motion would
+# depend on digits that rounding destroys in every engine.
 DEPENDENCE_LIMIT = 1e-3
 SINGULAR_LIMIT = 1e-6  # the same where toggles are asked for
 MOTION_ROUNDING = 1e-12  # of the velocities wanted: what rounding leaves where joints allow no motion at all
 
 
 def build(recipe: Recipe) -> Mechanism:
-    """The mechanism of a recipe, which fulfils its joints.
+    """The mechanism of a recipe, with closed joints.
 
-    Raises InvalidMechanism for a recipe that is none: a joint of a body with itself, rows that are nearly dependent,
-    curves that don't fit.
+    Raises InvalidMechanism for an invalid recipe: a joint of a body with itself, nearly dependent rows, curves that
+    don't fit.
     """
     standing = Standing(recipe)
     links = list(enumerate(recipe.links, start=1))
@@ -244,7 +244,7 @@ class Standing:
         return Mechanism(bodies, joints, (down_x, down_y), acting)
 
     def independent(self, held: Sequence[Held]) -> bool:
-        """Whether no row can be nearly told from the others, whatever the unit of length."""
+        """Whether the joints' rows are independent, in units without dimensions."""
         if not held:
             return True
         scaled, norm, _ = self._scaled(held)
@@ -285,7 +285,7 @@ def dependence(rows: Array) -> float:
 
 
 def _with(value: Any, **changed: Any) -> Any:
-    """As dataclasses.replace, for what has fields that its own class computes."""
+    """A copy with changed fields; unlike dataclasses.replace, it accepts classes with computed fields."""
     own = {field.name: getattr(value, field.name) for field in fields(value)}
     return type(value)(**(own | changed))
 

@@ -1,6 +1,6 @@
 """A motion does not depend on how its mechanism is described: turned, shifted, mirrored, renamed, in other units.
 
-The changes are those of the conformance kit, on mechanisms that nobody chose. One change a case, by the case's number.
+The changes are those of the conformance kit, applied to random mechanisms; the case's number selects one change.
 """
 
 from __future__ import annotations
@@ -34,13 +34,15 @@ from reports.search.recipe import build
 Array = NDArray[np.float64]
 State = tuple[Array, Array]  # pose and twist (bodies, 3) after the last step, in the mechanism's own description
 
-# Rounding alone differs. A method that combines runs carries up to a hundred times as much of it, one that hardens its
-# constraints gives away half of the digits.
+# The descriptions differ by rounding. Methods that combine runs amplify it up to a hundred times; very stiff constraints
+# lose half of the digits.
 DESCRIPTION_TOLERANCE = 1e-7
-LOW_PRECISION_ROUNDINGS = 1e4  # roundings of an engine of lower precision: of what moves, places keep few
-POSITION_ROUNDING = 1e-6  # of a place: beside a motion that is smaller, its rounding is seen
-MAX_NOISE = 0.1  # of the motion: a noise that is as large leaves nothing to be seen
-ESTIMATE_MARGIN = 10.0  # times its own estimate an error may be
+LOW_PRECISION_ROUNDINGS = (
+    1e4  # roundings of an engine of lower precision, since displacements are differences of positions
+)
+POSITION_ROUNDING = 1e-6  # relative to a position: smaller displacements are affected by its rounding
+MAX_NOISE = 0.1  # relative to the motion: with more noise the check detects nothing
+ESTIMATE_MARGIN = 10.0  # times a method's error estimate: a larger error contradicts it
 TOO_LONG = CheckSkipped("steps are too long for what turns, so that rounding grows at will")
 
 CHANGES: dict[str, Change] = {
@@ -56,7 +58,7 @@ RELATIONS = (*CHANGES, *UNIT_CHANGES)
 
 
 def relation_errors(engine: Engine, recipe: Recipe, number: int) -> Errors | CheckSkipped:
-    """By what the poses and velocities of two descriptions differ, relative to the motion."""
+    """(error, tolerance) of the poses and velocities in another description, relative to the motion."""
     mechanism = build(recipe)
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
         return CheckSkipped("whether two shapes that just touch do touch depends on rounding")
@@ -71,14 +73,14 @@ def relation_errors(engine: Engine, recipe: Recipe, number: int) -> Errors | Che
     if isinstance(described, CheckSkipped):
         return described
     changed, back = described
-    found = _compare_runs(engine, mechanism, changed, back, engine.stricter(mechanism))
-    return found if isinstance(found, CheckSkipped) else {name: found}
+    comparison = _compare_runs(engine, mechanism, changed, back, engine.stricter(mechanism))
+    return comparison if isinstance(comparison, CheckSkipped) else {name: comparison}
 
 
 def describe_otherwise(
     recipe: Recipe, mechanism: Mechanism, name: str
 ) -> tuple[Mechanism, Callable[[Trajectory], State]] | CheckSkipped:
-    """The mechanism in the description of this name, and what tells its last state in the first description."""
+    """The mechanism in another description, and the function that transforms a run's last state back."""
     if name in UNIT_CHANGES:
         longer, heavier = UNIT_CHANGES[name]
         of_length, of_mass, of_time = recipe.decades
@@ -107,7 +109,7 @@ def _compare_runs(
     back: Callable[[Trajectory], State],
     stricter: Engine | None = None,
 ) -> tuple[float, float] | CheckSkipped:
-    """(error, what it may be): see `law` for the noise that is let pass."""
+    """(error, tolerance); see `reports.search.law` for the noise in the tolerance."""
 
     def run(described: Mechanism) -> Trajectory:
         return engine.build(described, INSTANT_STEP * described.time_scale)(1, INSTANT_STEPS)

@@ -64,7 +64,7 @@ def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
 
 
 def _give_and_found(model: RawModel, law: StartEquations) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """How the law's rows give way (rows, rows), as MuJoCo declares, and its accelerations (coordinates,)."""
+    """Compliance of the law's rows (rows, rows) from MuJoCo's efc_R, and its accelerations (coordinates,)."""
     import mujoco
 
     from engines.mujoco.declared import jacobian
@@ -112,10 +112,10 @@ def _check_in_other_release(version: str, model: str) -> dict[str, Any]:
     if not line:
         process_of.cache_clear()
         raise Fault(f"the process of this release ended with {process.wait()}")
-    told = json.loads(line)
-    if "raised" in told:
-        raise Fault(told["raised"])
-    return told
+    result = json.loads(line)
+    if "raised" in result:
+        raise Fault(result["raised"])
+    return result
 
 
 def release_of(name: str) -> str | None:
@@ -128,10 +128,10 @@ def main() -> None:
     """Answer each model of the standard input."""
     for line in sys.stdin:
         try:
-            told = check_accelerations(case_from_json(line, RawModel))
+            result = check_accelerations(case_from_json(line, RawModel))
         except Exception as error:
-            told = {"raised": f"{type(error).__name__}: {error}"}
-        print(json.dumps(told), flush=True)
+            result = {"raised": f"{type(error).__name__}: {error}"}
+        print(json.dumps(result), flush=True)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A search from its cases to the findings, as a function: pieces are run by workers and kept in a store."""
+"""A search as a function, from drawing the cases to the reduced findings; workers run it and a store keeps it."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ Progress = Callable[..., AbstractContextManager[tuple[Sequence[Any], Callable[..
 def quietly(
     store: Store, items: Sequence[Task], limit: float, words: str, size: Callable[[Any], int] | None = None
 ) -> Iterator[tuple[Sequence[Any], Callable[..., None], Any]]:
-    """A run that nobody watches."""
+    """Run without a progress display."""
     yield missing(items, store, limit), lambda *_: None, None
 
 
@@ -79,8 +79,8 @@ class Search:
     seconds: float | None = None
     progress: Progress = quietly
     begin: float = field(default_factory=monotonic)
-    cases: int = 0  # that were asked now
-    first: str = ""  # when the first finding came
+    cases: int = 0  # number of cases of this run
+    first: str = ""  # sentence with the time of the first finding
 
     @property
     def spent(self) -> float:
@@ -91,10 +91,10 @@ class Search:
         return self.seconds is not None and self.spent >= self.seconds
 
     def run(self, batches: Iterable[Sequence[Chunk]]) -> list[CaseResult]:
-        """Ask what is not stored, until the time is over, and give all results of what was begun."""
+        """Run the chunks that are not stored until the time is over; return all results of the started batches."""
         pieces: list[Chunk] = []
         for batch in batches:
-            if not pieces:  # what a subject takes is asked before anything is drawn
+            if not pieces:  # drawing the first batch tests which kinds each subject can build
                 self.begin = monotonic()
             if self.over:
                 break
@@ -104,9 +104,9 @@ class Search:
         return list(iter_case_results(stored_answers(self.store, pieces)))
 
     def _run_batch(self, batch: Sequence[Chunk]) -> None:
-        """A case that ends its process is found and kept.
+        """Run the chunks of a batch, and the cases of crashed chunks one by one.
 
-        All at once where there is time for all: between two waves workers wait for the last of the first.
+        Without a time limit all chunks are run in one wave, since workers are idle between two waves.
         """
         progress = self.progress(self.store, batch, CHUNK_LIMIT, "pieces", size=lambda piece: piece.count)
         with progress as (waiting, done, watch):
@@ -137,16 +137,16 @@ class Search:
 
     @property
     def summary(self) -> str:
-        """The number of cases that were asked now, the time, and when the first finding came."""
+        """The number of cases of this run, its duration, and when the first finding came."""
         return f"{self.cases} cases were asked in {self.spent:.0f} s.{self.first}"
 
     def run_controls(self) -> None:
-        """Find how soon planted faults are found; those that are stored are not run again."""
+        """Run the controls with planted faults that are not stored."""
         with self.progress(self.store, all_controls(), CONTROL_LIMIT, "planted faults") as (waiting, done, watch):
             self._into(waiting, CONTROL_LIMIT, done, watch)
 
     def shrink(self, results: Iterable[CaseResult]) -> Mapping[Shrink, Answer]:
-        """Make some findings of each check smaller, for as long again as was searched."""
+        """Reduce some findings of each check, within as much time as the search had."""
         tasks = [Shrink.of(check, case) for check, case in choose_worst(results)]
         if not tasks:
             return {}

@@ -28,7 +28,7 @@ from reports.search.recipe import build
 from reports.search.release import check_accelerations
 from reports.search.subjects import Alone, Subject
 
-# What a script imports, by the engine's name, with a function for the poses of bodies.
+# The imports of a script by the engine's name, with a function that returns the poses of bodies.
 POSES_FUNCTION = """
 
 def poses(model, data, start):
@@ -68,7 +68,7 @@ class Block:
 def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
     """The script; empty where none can be written: for other engines, and where our own code steps with the engine.
 
-    `number` is the case's own, by which one of the relations was asked.
+    `number`: of the case; it selects the relation.
     """
     if isinstance(subject, Alone):
         return _of_mujoco_alone(case, subject.release)
@@ -115,7 +115,7 @@ def _motion(engine: Any, title: str, mechanism: Mechanism, dt: float, steps: int
 
 
 def _of_velocities(engine: Any, mechanism: Mechanism) -> str:
-    """pymunk's objects before one step, the step, and the velocities that its joints ask for."""
+    """pymunk's objects before a step, the step, and the expected velocities after it."""
     dt = INSTANT_STEP * mechanism.time_scale
     model = engine.model(mechanism, dt)
     for update in model.before_step:
@@ -127,7 +127,7 @@ def _of_velocities(engine: Any, mechanism: Mechanism) -> str:
 
 
 def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
-    """The model as MJCF and its accelerations by MuJoCo or MJX at the two instants that are asked."""
+    """The model as MJCF and its accelerations by MuJoCo or MJX at two instants."""
     import mujoco
 
     by_mjx = engine.name == "mjx"
@@ -155,7 +155,7 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
 
 
 def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
-    """One call of mj_forward, and the accelerations that the constraints ask for; `other`: another release."""
+    """One call of mj_forward, and the expected accelerations; `other`: another release, or empty."""
     rates, told = mujoco_alone.start_equations(model).rates, check_accelerations(model, other)
     names = ", ".join(f"b{body} {what}" for body, what in mujoco_alone.coordinates(model))
     lines = [f"data.qvel[:] = {rates.tolist()!r}", "mujoco.mj_forward(model, data)"]
@@ -165,7 +165,7 @@ def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
 
 
 def _render_script(engine: Engine | None, blocks: Sequence[Block], law: str, turning: str = "") -> str:
-    """The script of these blocks; no engine: MuJoCo alone. `turning`: what is done with differences of angles."""
+    """The script of these blocks; no engine: MuJoCo alone. `turning`: lines that remove whole turns."""
     runs = "\n\n".join(block.function(number) for number, block in enumerate(blocks))
     rows = "\n".join(
         f"    ({block.title!r}, run_{number}, {np.asarray(block.expected).tolist()!r}),"
@@ -219,7 +219,7 @@ def _model_lines(text: str) -> list[str]:
 
 
 def _pymunk_lines(model: Any, sweeps: int) -> list[str]:
-    """A space as it is before its first step. Raises Unsupported for what can't be written."""
+    """Lines that make a space before its first step. Raises Unsupported for objects that can't be written."""
     settings = f"space.gravity, space.iterations = {tuple(model.space.gravity)!r}, {sweeps}"
     return ["space = pymunk.Space()", settings, *object_lines(model.space, model.bodies)]
 

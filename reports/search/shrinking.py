@@ -1,4 +1,4 @@
-"""A case made smaller as long as it still does what is asked: fewer bodies, fewer joints, smaller whole numbers."""
+"""Test-case reduction: fewer bodies, fewer joints and smaller whole numbers, as long as the check still fails."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from reports.search.subjects import OracleResult, Subject
 
 
 def shrink_case(case: Case, still: Callable[[Case], bool], seconds: float) -> Case:
-    """The smallest case found within so many seconds of CPU time; `still` says whether a smaller one is as wrong."""
+    """The smallest case found within `seconds` of CPU time; `still`: whether a smaller case fails in the same way."""
     end = time.process_time() + seconds
     tried: set[Case] = {case}
     going = True
@@ -63,12 +63,12 @@ def _without_part(case: Any, removed: int) -> Any:
     return replace(case, parts=tuple(parts), links=tuple(links))
 
 
-# Which bodies are joined is no number that is small or large.
+# Fields that are identities, not quantities: they are not reduced.
 IDENTITY_FIELDS = {"parent", "first", "second", "kind", "shape"}
 
 
 def _with_smaller_numbers(value: Any) -> Iterator[Any]:
-    """The same with one number, or all of a tuple, nearer to zero."""
+    """Copies with one number, or all numbers of a tuple, nearer to zero."""
     if is_dataclass(value) and not isinstance(value, type):
         for field in fields(value):
             if field.name not in IDENTITY_FIELDS:
@@ -89,7 +89,7 @@ def _with_smaller_numbers(value: Any) -> Iterator[Any]:
 
 
 SHRINK_TIME = 20.0  # of CPU time for one finding
-# Of the error that was found: what is left of it in a smaller case. Of less, it may be another fault, or a trifle.
+# Smallest error of a reduced case, relative to the original error; a smaller one may be another fault.
 KEPT_SHARE = 0.01
 FINDINGS_SHRUNK = 2  # findings of one check of a subject that are made smaller
 
@@ -164,7 +164,7 @@ class Shrink(Task):
         }
 
     def _oracle(self, case: Any) -> tuple[str, ...]:
-        """The one oracle that finds this fault, so that the others are not asked again and again."""
+        """The oracle that detects this fault, so that the reduction does not run the others."""
         for oracle in (name for name in ORACLES if name in self.chunk.oracles):
             if self.check in self.subject.ask(case, self.chunk.first, (oracle,)).faults:
                 return (oracle,)
@@ -172,7 +172,7 @@ class Shrink(Task):
 
 
 def _kind_of(result: OracleResult) -> str:
-    """What a fault without a number is, its own numbers and names left out: another one is no smaller example."""
+    """The message of a fault without its numbers and names; a reduced case must fail with the same one."""
     return re.sub(r"'[^']*'|[0-9.e+-]+", "", result.words)
 
 

@@ -1,4 +1,4 @@
-"""What is searched: an engine through its adapter, or MuJoCo alone, with what is asked of a case and how it is told."""
+"""The subjects of a search: an engine through its adapter, or MuJoCo alone; each draws its cases and checks them."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from reports.search.parts import ALL_KINDS, Recipe
 from reports.search.recipe import build
 from reports.search.release import check_accelerations
 
-OUR_ERROR = "our own error"  # of an oracle that raises: no fault of the engine
+OUR_ERROR = "our own error"  # check name for an exception that an oracle raised without the engine
 
 
 @dataclass(frozen=True)
 class OracleResult:
-    """The result of one case: (error, what it may be) by check, and the reasons why oracles did not apply."""
+    """The result of one case: (error, tolerance) by check, and the reasons why oracles did not apply."""
 
     errors: dict[str, tuple[float, float]]
     skipped: tuple[str, ...] = ()
@@ -62,7 +62,7 @@ class Adapted:
         return _cached_recipe(seed, number, kinds, decades)
 
     def ask(self, case: Recipe, number: int, oracles: Sequence[str]) -> OracleResult:
-        """All that these oracles ask of one case. Raises InvalidMechanism for a case that is none."""
+        """Run these oracles on one case. Raises InvalidMechanism for an invalid case."""
         asked = self.engine, _cached_mechanism(case), case, number
         return _run_oracles(
             {name: partial(oracle.errors, *asked) for name, oracle in ORACLES.items() if name in oracles}, self.engine
@@ -97,12 +97,12 @@ class Alone:
                 for name, error in check_accelerations(case, self.release)["errors"].items()
             }
 
-        mujoco_alone.start_equations(case)  # a case that is none is no fault
+        mujoco_alone.start_equations(case)  # raises InvalidMechanism for an invalid case
         return _run_oracles({"instant": instant} if "instant" in oracles else {}, None)
 
 
 Subject = Adapted | Alone
-# One mechanism for all engines that are asked: its tables of curves that roll, and what the judge says of it, are kept.
+# Cached, since all engines run the same mechanism: its tables of rolling curves and the judge's motion are reused.
 _cached_recipe, _cached_mechanism = (
     lru_cache(motions.CACHED_MECHANISMS)(mechanisms.recipe),
     lru_cache(motions.CACHED_MECHANISMS)(build),
@@ -115,7 +115,7 @@ def is_shaped(subject: Subject) -> bool:
 
 
 def _run_oracles(oracles: Mapping[str, Callable[[], Errors | CheckSkipped]], engine: Engine | None) -> OracleResult:
-    """What these say of an engine, None for MuJoCo alone; an exception is a fault of whoever raised it."""
+    """Run oracles; an exception is a fault of the engine (None for MuJoCo alone) if its code raised it, else ours."""
     errors: dict[str, tuple[float, float]] = {}
     skipped: list[str] = []
     words: list[str] = []
@@ -128,7 +128,7 @@ def _run_oracles(oracles: Mapping[str, Callable[[], Errors | CheckSkipped]], eng
             except Fault as reason:
                 errors[name] = (np.inf, 0.0)
                 words.append(str(reason))
-            except ImportError:  # no fault of an engine: the case is asked again where the module is there
+            except ImportError:  # a missing module is no fault of an engine
                 raise
             except Exception as error:  # whatever an adapter raises that is no refusal is a fault of its own
                 blamed = engine is not None and _passed_through(error, engine)
@@ -143,12 +143,12 @@ def _run_oracles(oracles: Mapping[str, Callable[[], Errors | CheckSkipped]], eng
 
 
 def _passed_through(error: Exception, engine: Engine) -> bool:
-    """Whether an exception came out of the engine's own code, and not of what asks it alone."""
+    """Whether the traceback of an exception contains code of the engine or of its wrappers."""
     modules = [type(engine).__module__]
     while isinstance(engine, EngineWrapper):
         engine = engine.engine
         modules.append(type(engine).__module__)
-    # A package of an engine is all of it; beside modules of engines stand others, the judge's among them.
+    # An engine is a package, or one module of `engines`, which contains other engines too.
     owners = {module if module.count(".") < 2 else module.rpartition(".")[0] for module in modules}
     called = [frame.f_globals.get("__name__", "") for frame, _ in traceback.walk_tb(error.__traceback__)]
     return any(name == owner or name.startswith(f"{owner}.") for name in called for owner in owners)

@@ -113,7 +113,7 @@ def test_the_text_of_the_report(soft, golden):
     texts = {
         "a missed tolerance": report_sections(found),
         "a tolerance that is met": [answer_section(replace(found, tolerance=1e-2))],
-        "no tolerance": [answer_section(replace(found, asked=False))],
+        "no tolerance": [answer_section(replace(found, has_tolerance=False))],
         "no setting is enough": [answer_section(replace(found, tolerance=1e-9))],
         "exponential growth": [answer_section(wild)],
         "neither softness nor step": [answer_section(replace(found, parts=replace(parts, falling=False)))],
