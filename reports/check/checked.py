@@ -47,11 +47,9 @@ SEARCH_BUDGET = 60.0  # s of CPU time to look for settings that reach a goal
 READER_MEMBERS = ("words", "elements", "reads", "read")  # of a reader
 NAMES_LISTED = 6  # elements in a sentence
 COMPARED_SAMPLES = 200  # about so many instants are compared
-OBSTACLE_CHECKS = 10  # times a sample at most a motion is checked for obstacles; an engine does so once a step
-APPLY_MARGIN = 1.1  # times the promised error: then not all settings have reached the model
-QUICK_TOLERANCE = (
-    1e-9  # of the declared motion, where little time is to be spent: it is compared with errors of two digits
-)
+OBSTACLE_CHECKS = 10  # largest number of obstacle checks between two samples; an engine checks once in each step
+APPLY_MARGIN = 1.1  # times the expected error: with a larger one not all settings have reached the model
+QUICK_TOLERANCE = 1e-9  # of the declared motion with --quick: enough for errors of two digits
 Array = NDArray[np.float64]
 
 

@@ -75,8 +75,8 @@ def soft_motion(
 
 LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # the difference to the judge estimates the judge's error
 JUDGE_SHARE = 0.1  # of a user's tolerance: the largest estimated error of the reference motion
-CURVE_TOLERANCE = 1e-12  # relative error of a step along the curve of one freedom
-CURVE_LOOSER_TOLERANCE = 1e-11  # of the second run, whose difference estimates the error
+ALONG_CURVE_TOLERANCE = 1e-12  # relative error of a step along the curve of one freedom
+LOOSER_CURVE_TOLERANCE = 1e-11  # of the second run, whose difference estimates the error
 DISTURBANCE = 1e-7  # relative to length and speed: small enough to be linear, far above the judge's error
 LINEAR_LIMIT = 1e-2  # relative to length and speed: a larger disturbance does not grow linearly
 DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))  # (seed, size): chaos is reported if both grow exponentially
@@ -126,13 +126,13 @@ def reference_motion(mechanism: Mechanism, samples: int, spacing: float, toleran
     known = _is_accurate(mechanism, motion, tolerance)
     if not known.all() and has_one_freedom(mechanism):
         along, beside = (
-            motion_along_curve(mechanism, motion.t, size) for size in (CURVE_TOLERANCE, CURVE_LOOSER_TOLERANCE)
+            motion_along_curve(mechanism, motion.t, size) for size in (ALONG_CURVE_TOLERANCE, LOOSER_CURVE_TOLERANCE)
         )
         along = replace(along, estimate=np.abs(along.pose - beside.pose))
         known_along = _is_accurate(mechanism, along, tolerance)
         if known_along.all():
             motion, looser, known = along, beside, known_along
-            run = partial(motion_along_curve, t=motion.t, tolerance=CURVE_TOLERANCE)
+            run = partial(motion_along_curve, t=motion.t, tolerance=ALONG_CURVE_TOLERANCE)
     sound = np.isfinite(motion.pose).all(axis=(1, 2))
     if not sound.all():
         raise InvalidMechanism(
@@ -218,9 +218,7 @@ def _growth(
     return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
-START_TOLERANCE = (
-    1e-6  # of the largest acceleration: rounding of equations solved twice, with room for badly scaled masses
-)
+START_AGREEMENT = 1e-6  # of the largest acceleration: rounding of two solutions, also of badly scaled masses
 # Accuracy of the reference motion, relative to the mechanism's speed and its largest force. Less counts as zero.
 ZERO_SHARE = 1e-9
 ERROR_UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
@@ -335,10 +333,10 @@ def refuse_disagreement(reading: Reading) -> float:
     expected = accelerations(mechanism, mechanism.pose, mechanism.twist, 0.0, give)
     found = model.start()
     off = _acceleration_difference(mechanism, found, expected)
-    if off <= START_TOLERANCE:
+    if off <= START_AGREEMENT:
         return off
     for element in model.elements:
-        if _acceleration_difference(mechanism, model.without(element), expected) <= START_TOLERANCE:
+        if _acceleration_difference(mechanism, model.without(element), expected) <= START_AGREEMENT:
             raise Unsupported(
                 f"at t = 0 the accelerations differ from those of the ideal mechanism by {off:.1g} of themselves, and "
                 f"agree without '{element}': it acts at the start, and in no ideal joint; {left_out(element)}"

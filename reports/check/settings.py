@@ -16,9 +16,8 @@ from reports.check.judging import Errors, measure_errors
 MAX_RUN_TIME = 1.0  # s of CPU time for one run: smaller steps are left out
 HELPFUL_RATIO = 0.75  # of the error at the larger step: below it a smaller step counts as helpful
 SATURATED_ERROR = 1.0  # rad, or lengths of the mechanism: a larger error does not reveal its causes
-SATURATED_CHANGE = (
-    0.01  # of such an error: two coarse steps are seldom so near by chance, and twice one after the other
-)
+# Relative change of a saturated error: two coarse steps seldom agree so well by chance, and still less twice in a row.
+SATURATED_CHANGE = 0.01
 SMALLER_STEPS = 4  # runs of the user's settings at smaller steps, from which the causes of the error are separated
 
 

@@ -30,7 +30,7 @@ from reports.run import cluster
 from reports.run.files import write_whole
 from reports.run.installed import installed
 from reports.search import plan
-from reports.search.chunk import FINDINGS_HEADER, SUMMARY_HEADER, CaseResult, finding_rows, make_chunks, summary_rows
+from reports.search.chunk import CHECKS_HEADER, FINDINGS_HEADER, CaseResult, finding_rows, make_chunks, summary_rows
 from reports.search.oracles import DEFAULT_ORACLES, ORACLES
 from reports.search.parts import SINGULAR_KINDS
 from reports.search.release import DISTRIBUTIONS
@@ -100,7 +100,7 @@ def search(
         if published:
             run.run_controls()
         title = "Errors, each relative to the largest of what it is an error of"
-        print_table(terminal, title, SUMMARY_HEADER, summary_rows(found), 2)
+        print_table(terminal, title, CHECKS_HEADER, summary_rows(found), 2)
         if faults := finding_rows(found):
             print_table(terminal, "Findings, by what draws them again", FINDINGS_HEADER, faults, 2)
         terminal.tell(run.summary)

@@ -141,11 +141,11 @@ def case_label(case: CaseResult) -> str:
     return f"{chunk.subject.name}{kinds}"
 
 
-SUMMARY_HEADER = ("subject", "check", "judged", "median", "99 %", "worst", "faults")
+CHECKS_HEADER = ("subject", "check", "judged", "median", "99 %", "worst", "faults")
 
 
 def summary_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """Rows of a table under SUMMARY_HEADER; the last rows count the cases that each subject refused."""
+    """Rows of a table under CHECKS_HEADER; the last rows count the cases that each subject refused."""
     checks: dict[tuple[str, str], list[tuple[float, float]]] = {}
     for case in cases:
         for check, pair in case.result.errors.items():

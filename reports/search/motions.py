@@ -40,7 +40,7 @@ from reports.search.relations import ESTIMATE_MARGIN
 Array = NDArray[np.float64]
 Floors = dict[str, float]
 
-SPAN = 0.4  # duration in units of the mechanism's time scale: too short for exponential growth of errors
+MOTION_SPAN = 0.4  # duration in units of the mechanism's time scale: too short for exponential growth of errors
 MOTION_SAMPLES, COARSE_STEPS = 4, 10  # and steps between samples
 # Times the error that the declared order predicts from the coarser step: allows for the next power of the step and for
 # errors that are known at samples only (as in `engines.conformance.moving`).
@@ -50,9 +50,7 @@ ERROR_FLOORS = {"motion": 1e-8, "reactions": 1e-5}
 FINEST_DIVISION = 64
 DIVERGED_ERROR = 10.0  # relative to the motion: a run with a larger error has diverged
 DISTANT_POSE = 0.1  # rad, or lengths of the mechanism: at a pose error this large, reactions are not compared
-CACHED_MECHANISMS = (
-    16  # mechanisms in the cache: all engines run one chunk of cases before the next (`chunk.CHUNK_SIZE`)
-)
+CACHED_MECHANISMS = 16  # all engines run one chunk of cases before the next one, see `chunk.CHUNK_SIZE`
 RIGID_COMPLIANCE = 1e-10  # compliance in units of the squared time scale: joints with less count as ideal
 ENGINE_WARNED = CheckSkipped("it says itself that something is wrong")
 
@@ -60,7 +58,7 @@ ENGINE_WARNED = CheckSkipped("it says itself that something is wrong")
 @by_identity(CACHED_MECHANISMS)
 def judge_motion(mechanism: Mechanism) -> Trajectory:
     """The judge's motion of a mechanism; cached, since many engines run the same mechanism."""
-    return TRUTH.build(mechanism, SPAN * mechanism.time_scale / MOTION_SAMPLES)(MOTION_SAMPLES, 1)
+    return TRUTH.build(mechanism, MOTION_SPAN * mechanism.time_scale / MOTION_SAMPLES)(MOTION_SAMPLES, 1)
 
 
 def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
@@ -72,7 +70,7 @@ def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped
         return CheckSkipped(
             "shapes that touch may part, and those with corners do not roll as the curves do, at any step"
         )
-    dt = SPAN * mechanism.time_scale / MOTION_SAMPLES / COARSE_STEPS
+    dt = MOTION_SPAN * mechanism.time_scale / MOTION_SAMPLES / COARSE_STEPS
     coarse = _run(engine, mechanism, dt, 1)
     promise = engine.order(mechanism)
     if isinstance(promise, NotDeclared):
@@ -143,7 +141,7 @@ class _Case:
         far = max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
         return max(
             moved,
-            pulled * (SPAN * mechanism.time_scale) ** 2 / 2,
+            pulled * (MOTION_SPAN * mechanism.time_scale) ** 2 / 2,
             NOISE_MARGIN * np.finfo(float).eps * far / ERROR_FLOORS["motion"],
         )
 
@@ -234,7 +232,7 @@ class _Case:
         the method's stages and follows no power of the step.
         """
         usual = ConvergenceOrder(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
-        spacing, parts = SPAN * self.mechanism.time_scale / MOTION_SAMPLES, max(4, parts)
+        spacing, parts = MOTION_SPAN * self.mechanism.time_scale / MOTION_SAMPLES, max(4, parts)
         textbook = in_numpy if usual.order == 1 else stepped  # compiled code has no method of order 1
         try:
             runs = [
@@ -258,7 +256,7 @@ class _Case:
         the compliance scaled by the largest ratio of inverse inertias along the motion, since the judge evaluates the
         inverse inertia at each pose and MuJoCo at the start.
         """
-        mechanism, spacing = self.mechanism, SPAN * self.mechanism.time_scale / MOTION_SAMPLES
+        mechanism, spacing = self.mechanism, MOTION_SPAN * self.mechanism.time_scale / MOTION_SAMPLES
         softness = self.engine.regularisation(mechanism, self.dt / parts)
         if softness is None or not softness.compliance:
             return {}

@@ -28,7 +28,7 @@ Numbers = Any  # an array, real or complex
 EQUALITY_KINDS = ("connect", "weld", "gear", "joint", "tendon")
 HINGED_KINDS = ("connect", "weld", "gear")
 RAW_BODIES, RAW_EQUALITIES = 9, 3
-COMPLEX_STEP = 1e-30  # of a complex step
+DERIVATIVE_STEP = 1e-30  # of a complex step
 
 
 @dataclass(frozen=True)
@@ -258,9 +258,9 @@ def start_equations(model: RawModel) -> StartEquations:
             rates = rates - inverse @ (whole @ rates)
         if np.abs(rates).max(initial=0.0) <= MOTION_ROUNDING * np.abs(wanted).max(initial=0.0):
             rates = np.zeros(count)
-    ahead = 1j * COMPLEX_STEP * rates
-    change = _velocities(model, ahead, rates).imag / COMPLEX_STEP
-    right = tuple(-slip.imag / COMPLEX_STEP for slip in _slips(model, ahead, rates))
+    ahead = 1j * DERIVATIVE_STEP * rates
+    change = _velocities(model, ahead, rates).imag / DERIVATIVE_STEP
+    right = tuple(-slip.imag / DERIVATIVE_STEP for slip in _slips(model, ahead, rates))
     bent = tuple(
         np.zeros_like(each) if link.kind in HINGED_KINDS else each
         for link, each in zip(model.links, right, strict=True)

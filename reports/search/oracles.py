@@ -10,7 +10,7 @@ from reference.mechanism import Mechanism
 from reports.search import motions, relations
 from reports.search.law import CheckSkipped, Errors, instant_errors
 from reports.search.parts import Recipe
-from reports.search.release import BESIDE, CURVED
+from reports.search.release import BESIDE_CURVED, CURVED
 
 LAW_CHECKS = ("acceleration", CURVED, "velocity", "without velocity terms")
 
@@ -36,7 +36,7 @@ ORACLES: Mapping[str, Oracle] = {
         "instant",
         "does the engine solve the equations that its settings stand for?",
         lambda engine, mechanism, recipe, number: instant_errors(engine, mechanism),
-        (*LAW_CHECKS, "reaction", "as its groove pushes", BESIDE),
+        (*LAW_CHECKS, "reaction", "as its groove pushes", BESIDE_CURVED),
     ),
     "relations": Oracle(
         "description",

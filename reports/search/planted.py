@@ -53,7 +53,7 @@ FAULT_FIELDS = {
     "torsion-spring rest_angle": "rest_angle",
     "force force": "force",
 }
-ANGLE_FIELDS = ("line_angle", "angle", "rest_angle")
+FAULT_ANGLES = ("line_angle", "angle", "rest_angle")
 CLOSING_STEPS = 6  # of Newton's method, which closes the joints of a wrong model: quadratic from a miss of 1e-2
 
 
@@ -137,7 +137,7 @@ class PlantedFault:
                 off = ((1 + self.relative) * x, (1 + self.relative) * y)
                 off = off if name == "force" else (x + self.relative * length, y)
             case value:
-                off = value + self.relative if name in ANGLE_FIELDS else (1 + self.relative) * value
+                off = value + self.relative if name in FAULT_ANGLES else (1 + self.relative) * value
         return replace(part, **{name: off})
 
     def _heavier(self, mechanism: Mechanism, body: Body) -> Body:

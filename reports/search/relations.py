@@ -34,12 +34,10 @@ from reports.search.recipe import build
 Array = NDArray[np.float64]
 State = tuple[Array, Array]  # pose and twist (bodies, 3) after the last step, in the mechanism's own description
 
-# The descriptions differ by rounding. Methods that combine runs amplify it up to a hundred times; very stiff constraints
-# lose half of the digits.
+# The descriptions differ by rounding. Methods that combine runs amplify it up to a hundred times; with very stiff
+# constraints half of the digits are lost.
 DESCRIPTION_TOLERANCE = 1e-7
-LOW_PRECISION_ROUNDINGS = (
-    1e4  # roundings of an engine of lower precision, since displacements are differences of positions
-)
+LOW_PRECISION_ROUNDINGS = 1e4  # roundings of an engine of lower precision: displacements are small differences
 POSITION_ROUNDING = 1e-6  # relative to a position: smaller displacements are affected by its rounding
 MAX_NOISE = 0.1  # relative to the motion: with more noise the check detects nothing
 ESTIMATE_MARGIN = 10.0  # times a method's error estimate: a larger error contradicts it

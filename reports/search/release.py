@@ -12,29 +12,27 @@ import json
 import subprocess
 import sys
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from reports.model.fingerprint import ROOT
 from reports.run.installed import environment, installed
 from reports.search.law import Fault
 from reports.search.mujoco_alone import RawModel, StartEquations, start_equations, to_mjcf
 from reports.search.parts import case_from_json, case_to_json
 
 DISTRIBUTIONS = ("mujoco-core", "mujoco")  # the first is a part of the second from 4.0 on
-ROOT = Path(__file__).resolve().parents[2]
 # Checks of curved equalities, whose velocity term MuJoCo leaves out (the page of faults), and of all else in them.
-CURVED, BESIDE = "acceleration, a known fault", "beside the known fault"
+CURVED, BESIDE_CURVED = "acceleration, a known fault", "beside the known fault"
 
 
 def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
     """Relative errors by check, accelerations that are "found" and "expected", and the "version".
 
-    Where the velocity term of a curved equality makes a difference, BESIDE is the error beside the nearer of the law
-    and the law without it. `version`: another release than is installed, as "3.6.0". Raises Fault where that one
-    raises or ends its process.
+    Where the velocity term of a curved equality matters, BESIDE_CURVED is the smaller of the errors with and without it.
+    `version`: another release than the installed one, as "3.6.0". Raises Fault if that one raises or crashes.
     """
     if version:
         return _check_in_other_release(version, case_to_json(model))
@@ -54,7 +52,7 @@ def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
     expected, without = law.expected(give), law.expected(give, bent=False)
     curved = any(curve.any() for curve in law.bent)
     missed = error(expected)
-    errors = {CURVED: missed, BESIDE: min(missed, error(without))} if curved else {"acceleration": missed}
+    errors = {CURVED: missed, BESIDE_CURVED: min(missed, error(without))} if curved else {"acceleration": missed}
     return {
         "errors": errors,
         "found": found.tolist(),

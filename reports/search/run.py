@@ -31,7 +31,7 @@ from reports.search.subjects import Subject
 
 STORE = "cells.sqlite"
 CHUNK_LIMIT = 120.0  # CPU seconds of one piece
-CONTROL_LIMIT = 1800.0  # of a planted fault: 300 cases of each size
+PLANTED_LIMIT = 1800.0  # of a planted fault: 300 cases of each size
 WAVE_CHUNKS = 4  # pieces for each worker between two looks at the clock
 DEFAULT_CASES = 200
 
@@ -142,8 +142,8 @@ class Search:
 
     def run_controls(self) -> None:
         """Run the controls with planted faults that are not stored."""
-        with self.progress(self.store, all_controls(), CONTROL_LIMIT, "planted faults") as (waiting, done, watch):
-            self._into(waiting, CONTROL_LIMIT, done, watch)
+        with self.progress(self.store, all_controls(), PLANTED_LIMIT, "planted faults") as (waiting, done, watch):
+            self._into(waiting, PLANTED_LIMIT, done, watch)
 
     def shrink(self, results: Iterable[CaseResult]) -> Mapping[Shrink, Answer]:
         """Reduce some findings of each check, within as much time as the search had."""

@@ -95,7 +95,7 @@ def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list
         both = [("as it is", mechanism)] + ([] if isinstance(changed, CheckSkipped) else [(name, changed[0])])
         return [(title, each, INSTANT_STEP * each.time_scale, INSTANT_STEPS) for title, each in both]
     steps = motions.MOTION_SAMPLES * motions.COARSE_STEPS
-    dt = motions.SPAN * mechanism.time_scale / steps
+    dt = motions.MOTION_SPAN * mechanism.time_scale / steps
     return [("at this step", mechanism, dt, steps), ("at half of it", mechanism, dt / 2, 2 * steps)]
 
 

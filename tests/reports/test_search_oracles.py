@@ -42,7 +42,7 @@ from reports.search.parts import ALL_KINDS, FIRST_KINDS
 from reports.search.planted import CONTROL_ENGINES, FAULT_SIZES, PLANTED_FAULTS, PlantedControl, PlantedFault
 from reports.search.recipe import build
 from reports.search.relations import RELATIONS
-from reports.search.release import BESIDE, CURVED, check_accelerations, process_of
+from reports.search.release import BESIDE_CURVED, CURVED, check_accelerations, process_of
 from reports.search.shrinking import replay_finding
 from reports.search.subjects import OUR_ERROR, Adapted, OracleResult
 from tests.wrong.adapters import Spoiled
@@ -306,7 +306,7 @@ class Boasting(Lagrange):
         return ConvergenceOrder(4)
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
-        rough = motions.SPAN * mechanism.time_scale / motions.MOTION_SAMPLES / motions.COARSE_STEPS
+        rough = motions.MOTION_SPAN * mechanism.time_scale / motions.MOTION_SAMPLES / motions.COARSE_STEPS
         words = ("it is wrong",) if self.warns == ("fine" if dt < 0.75 * rough else "coarse") else ()
         return Spoiled(super().build(mechanism, dt), lambda run: replace(run, warnings=words))
 
@@ -405,13 +405,13 @@ def test_the_known_fault_of_curved_equalities_hides_no_other(monkeypatch: pytest
     assert len(moving) >= 5
     for case in moving:
         errors = check_accelerations(case)["errors"]
-        assert errors[BESIDE] < 1e-10 < errors[CURVED]
+        assert errors[BESIDE_CURVED] < 1e-10 < errors[CURVED]
 
     def heavier(model: mujoco_alone.RawModel) -> str:
         return re.sub(r'mass="([^"]+)"', lambda one: f'mass="{1.000001 * float(one[1])!r}"', to_mjcf(model), count=1)
 
     monkeypatch.setattr(release, "to_mjcf", heavier)
-    assert any(check_accelerations(case)["errors"][BESIDE] > LAW_TOLERANCE for case in moving)
+    assert any(check_accelerations(case)["errors"][BESIDE_CURVED] > LAW_TOLERANCE for case in moving)
 
 
 @pytest.mark.slow
