@@ -31,7 +31,7 @@ CURVED, BESIDE_CURVED = "acceleration, a known fault", "beside the known fault"
 def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
     """Relative errors by check, accelerations that are "found" and "expected", and the "version".
 
-    Where the velocity term of a curved equality matters, BESIDE_CURVED is the smaller of the errors with and without it.
+    If the velocity term of a curved equality matters, BESIDE_CURVED is the smaller of the errors with and without it.
     `version`: another release than the installed one, as "3.6.0". Raises Fault if that one raises or crashes.
     """
     if version:
