@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.interruption import kept
+from reports.cli.interruption import delayed_signals
 from reports.cli.options import FOLDER, REFERENCES, AsJson, AsMarkdown, Folder, SomeScenes
 from reports.cli.terminal import Terminal, print_table, telling
 from reports.cli.versions import announce_pip, named_scenes, progress_of
@@ -44,7 +44,7 @@ def compare(
         raise BadInput(f"--cost is {cost:g}; give a number above 0, such as 1.5")
     chosen = named_scenes(scenes) if scenes else None
     with telling(WIDTH, as_json, as_markdown) as console:
-        with kept() as check:
+        with delayed_signals() as check:
             progress = progress_of(console, check)
             found = compare_builds(
                 first, second, engine, variant or (), chosen, results, progress, announce=announce_pip
@@ -123,10 +123,10 @@ def _cells(difference: Difference) -> list[str | float]:
 
 
 def _reasons(found: RowComparison) -> tuple[Counter[str], Counter[str]]:
-    """Of each side why cells ended as they did, where the other's did not, and how many for each reason."""
+    """For each side the number of cells by the reason of an outcome that the other side does not have."""
 
     def reason(row: Measurement) -> str:
-        # Of the engine's words alone: what our adapter adds to them is the same in other words.
+        # The engine's words alone, without the sentence that our adapter adds.
         sentence = " ".join(row.sentence.partition("; ours: ")[0].split())[:LONGEST]
         return "" if Outcome(row.outcome).comparable else ": ".join(filter(None, (row.outcome, sentence)))
 

@@ -1,4 +1,4 @@
-"""`crosscheck conform`: whether an engine does what the contract of `engines` says, one line a check.
+"""`crosscheck conform`: whether an engine keeps the contract of `engines`, one line a check.
 
 Checks run in supervised processes, so that one that native code ends, or that hangs, is reported too. An engine
 travels as the words that name it, since not every object that is checked can be pickled: that is one of the checks.
@@ -122,7 +122,7 @@ class Question:
 
 @cache
 def _cases(named: Named, place: int) -> tuple[Case, ...]:
-    """Once in a process: what an engine has run for one check is there for the next."""
+    """Cached in a process, so that checks share the runs of an engine."""
     return tuple(cases(named.engines()[place]))
 
 
@@ -139,7 +139,7 @@ def asked(named: Named, limit: float = TIME_LIMIT) -> Iterator[tuple[Engine, Ite
     """Every engine that is named, and the results of its checks, in their order. `limit`: CPU seconds of a check, and
     more where an engine declares that its models take long to build.
 
-    One worker at a time, so that what an engine has run is kept. Raises BadInput, and WorkersLost (`supervise`).
+    One worker, so that later checks reuse the runs of earlier ones. Raises BadInput, and WorkersLost (`supervise`).
     """
     for place, engine in enumerate(named.engines()):
         yield engine, _answers(named, place, engine, limit + MODELS * engine.build_time)

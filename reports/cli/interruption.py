@@ -52,13 +52,13 @@ def _end(number: int, frame: FrameType | None) -> None:
 
 
 def ending_at_once() -> Any:
-    """A context in which a signal ends the process where it stands; for work that leaves nothing half done."""
+    """A context in which a signal ends the process at once; for work that changes no files."""
     return _handled(_end)
 
 
 @contextmanager
-def kept() -> Iterator[Callable[[], None]]:
-    """Inside, a signal is kept until the function given is called, or the context is left: that raises Interrupted.
+def delayed_signals() -> Iterator[Callable[[], None]]:
+    """A context that delays signals until its function is called or it ends: either raises Interrupted.
 
     So work is left only where it can be left. The second signal does not wait: it raises at once.
     """

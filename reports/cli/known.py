@@ -1,4 +1,4 @@
-"""Scenes, engines and pages that a command can name: registered ones, and those that its words or its store name."""
+"""Scenes, engines and pages that a command can use: registered ones, and those of its references or its store."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from reports.model.page import Page
 from reports.run import supervisor
 from reports.run.running import TIME_LIMIT
 
-SLEEPING = 120.0  # s of wall time for code of somebody else that does not use its CPU time
+SLEEPING = 120.0  # s of wall time for a third party's code that does not use its CPU time
 
 
 @dataclass(frozen=True)
 class Reference:
-    """A scene or an engine that is not registered, in words that find it again: a store keeps these, no objects.
+    """A scene or engine that is not registered, as text that can be stored and loaded again.
 
-    word: a reference (`engines.loading`), or a registered scene's name; folder: where it counts from; settings: the
-    numbers of the scene that are set, as they were typed.
+    word: a reference (`engines.loading`), or the name of a registered scene. folder: the base of a relative path.
+    settings: the changed numbers of the scene, as they were typed.
     """
 
     kind: str  # "scene" or "engine"
@@ -64,16 +64,16 @@ class Reference:
 
 
 @dataclass(frozen=True)
-class Known:
-    """Scenes and engines that can be named, and pages of all of them; `given`: the references that brought some."""
+class Registry:
+    """Scenes and engines that can be named, and pages of all of them; `given`: the references that added some."""
 
     scenes: tuple[Scene, ...]
     engines: tuple[Engine, ...]
     pages: tuple[Page, ...]
     given: tuple[Reference, ...] = ()
 
-    def with_(self, reference: Reference) -> tuple[Known, tuple[Any, ...]]:
-        """(this and what the reference brings, the scenes or engines that it stands for). Raises ValueError."""
+    def add(self, reference: Reference) -> tuple[Registry, tuple[Any, ...]]:
+        """(the registry with the scenes or engines of the reference, these). Raises ValueError."""
         values = reference.values()
         if reference.kind == "engine":
             new = _new(values, self.engines, method_name, reference)
@@ -91,7 +91,7 @@ class Known:
 def _new(
     values: Iterable[Any], known: Iterable[Any], name: Callable[[Any], str], reference: Reference
 ) -> tuple[Any, ...]:
-    """Those that are not known yet. Raises ValueError for another one of a known name."""
+    """The values with a new name. Raises ValueError for another value with a known name."""
     by_name = {name(value): value for value in known}
     new = []
     for value in values:
@@ -104,17 +104,17 @@ def _new(
     return tuple(new)
 
 
-def registered() -> Known:
-    """What is registered. What is wrong there is printed on stderr, a line each, and left out."""
+def registered() -> Registry:
+    """The registered scenes, engines and pages. Invalid entry points are left out, with a line each on stderr."""
     for line in catalogue.TROUBLES:
         said(line)
-    return Known(catalogue.SCENES, known_engines(catalogue.PAGES), catalogue.PAGES)
+    return Registry(catalogue.SCENES, known_engines(catalogue.PAGES), catalogue.PAGES)
 
 
-def with_remembered(known: Known, texts: Iterable[str], motion: bool = False) -> Known:
-    """What a store remembers too. What can't be loaded any more is named on stderr, a line each, and left out.
+def with_stored(known: Registry, texts: Iterable[str], motion: bool = False) -> Registry:
+    """The registry with the references of a store. Those that cannot be loaded are left out, a line each on stderr.
 
-    motion: of a command that computes the motion of scenes.
+    motion: whether the command computes the motion of scenes.
     """
     references = []
     for text in texts:
@@ -125,7 +125,7 @@ def with_remembered(known: Known, texts: Iterable[str], motion: bool = False) ->
         try:
             if reference in bad:
                 raise ValueError(bad[reference])
-            known, _ = known.with_(reference)
+            known, _ = known.add(reference)
         except ValueError as reason:
             said(f"left out, since it is not as it was when it was run: {reason}")
     return known
@@ -133,9 +133,9 @@ def with_remembered(known: Known, texts: Iterable[str], motion: bool = False) ->
 
 @dataclass(frozen=True)
 class Choice:
-    """What the words of a command choose, and all that it knows then."""
+    """The scenes and engines that a command line selects, and the registry with its references."""
 
-    known: Known
+    known: Registry
     scenes: tuple[Scene, ...]
     engines: tuple[Engine, ...]
 
@@ -145,13 +145,13 @@ def choose(
     engine: str | None = None,
     variant: str | None = None,
     settings: Sequence[str] = (),
-    known: Known | None = None,
+    known: Registry | None = None,
     motion: bool = False,
 ) -> Choice:
-    """The scenes and engines of these words, all if there are none. Raises BadInput.
+    """Select scenes and engines, all of them by default. Raises BadInput.
 
-    words: names of scenes or pages, or references; settings: NAME=VALUE for numbers of these scenes; motion: of a
-    command that computes the motion of scenes.
+    words: names of scenes or pages, or references. settings: NAME=VALUE for numbers of these scenes. motion: whether
+    the command computes the motion of scenes.
     """
     known = known or registered()
     folder, values = str(Path.cwd()), _settings(settings)
@@ -168,11 +168,11 @@ def choose(
             raise BadInput(reason)
         engines: tuple[Engine, ...] = ()
         if of_engine is not None:
-            known, engines = known.with_(of_engine)
+            known, engines = known.add(of_engine)
         for word in words:
             loaded: tuple[Any, ...] = ()
             if word in references:
-                known, loaded = known.with_(references[word])
+                known, loaded = known.add(references[word])
             names += [scene.name for scene in loaded] or [word]
     except ValueError as reason:
         raise BadInput(str(reason)) from None
@@ -180,8 +180,8 @@ def choose(
     return Choice(known, scenes, choose_engines(None if engines else engine, variant, engines or known.engines))
 
 
-def one_scene(word: str, settings: Sequence[str] = ()) -> tuple[Known, Scene]:
-    """(what is known, the scene) of a command that computes the motion of one. Raises BadInput."""
+def one_scene(word: str, settings: Sequence[str] = ()) -> tuple[Registry, Scene]:
+    """(registry, scene) for a command that computes the motion of one scene. Raises BadInput."""
     choice = choose([word], settings=settings, motion=True)
     if len(choice.scenes) != 1:
         names = ", ".join(scene.name for scene in choice.scenes)
@@ -192,7 +192,7 @@ def one_scene(word: str, settings: Sequence[str] = ()) -> tuple[Known, Scene]:
 def engines_named(
     word: str | None, variant: str | None, known: Sequence[Engine], folder: Path | None = None
 ) -> tuple[Engine, ...]:
-    """The engines of a reference, or those of this name among `known`, of this variant. Raises BadInput."""
+    """The engines with this variant, from a reference or by name among `known`. Raises BadInput."""
     if word is None or not is_reference(word):
         return choose_engines(word, variant, known)
     try:
@@ -201,8 +201,8 @@ def engines_named(
         raise BadInput(str(reason)) from None
 
 
-def _scene_names(known: Known, word: str) -> list[str]:
-    """A reference or a scene's name as it is; a page's name as those of its scenes. Raises BadInput."""
+def _scene_names(known: Registry, word: str) -> list[str]:
+    """The word itself if it is a reference or a scene's name; the scenes' names if it names a page. Raises BadInput."""
     if is_reference(word) or any(word == scene.name for scene in catalogue.SCENES):
         return [word]
     for page in known.pages:
@@ -225,16 +225,16 @@ def _settings(words: Sequence[str]) -> dict[str, str]:
 
 
 @dataclass(frozen=True)
-class Trial:
-    """The work of a worker: load a reference, and call what a command will call. `motion`: the scene's motion too."""
+class ReferenceTrial:
+    """Loads a reference in a worker and makes the calls of a command. motion: also the motion of a scene."""
 
     motion: bool
 
     def __call__(self, reference: Reference) -> str:
-        """The sentence that says why it can't be used; empty if it can."""
+        """The reason why it cannot be used; empty if it can."""
         try:
             for value in reference.values():
-                # As the tables, dictionaries and lists of a command do.
+                # Commands use it as a dictionary's key, compare it, and print it.
                 if not (isinstance(hash(value), int) and value == value and isinstance(repr(value), str)):
                     raise ValueError("it is not equal to itself")
                 is_scene = isinstance(value, Scene)
@@ -253,14 +253,16 @@ class Trial:
 
 
 def refused(references: Sequence[Reference], motion: bool = False) -> dict[Reference, str]:
-    """Why some references can't be used, a sentence each. Raises WorkersLost.
+    """The references that cannot be used, each with the reason. Raises WorkersLost.
 
-    A worker tries them first: somebody else's code may end its process.
+    They are loaded in a worker first, since a third party's code may end its process.
     """
-    if not references or multiprocessing.parent_process() is not None:  # a worker tries them itself
+    if not references or multiprocessing.parent_process() is not None:  # this is a worker
         return {}
     sentences = {}
-    for reference, result, _ in supervisor.supervise(Trial(motion), references, TIME_LIMIT, workers=1, wall=SLEEPING):
+    for reference, result, _ in supervisor.supervise(
+        ReferenceTrial(motion), references, TIME_LIMIT, workers=1, wall=SLEEPING
+    ):
         if isinstance(result, Loss):
             result = f"{reference.word}: its own code can't be used: {result.sentence}"
         if result:

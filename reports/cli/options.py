@@ -12,7 +12,7 @@ import typer
 from reports.model.ending import BadInput, FileTrouble, nearest
 from reports.run.files import is_stream
 
-# Below the current folder, in the checkout too: no command writes to what is published.
+# Below the current folder, in the checkout too: no command writes into the published results.
 FOLDER = Path("crosscheck-results")
 STORE = "cells.sqlite"
 STDOUT = Path("-")  # as a file that is written: standard output

@@ -17,8 +17,8 @@ import typer
 
 from engines import registry
 from reports.cli import selection
-from reports.cli.interruption import kept
-from reports.cli.known import registered, with_remembered
+from reports.cli.interruption import delayed_signals
+from reports.cli.known import registered, with_stored
 from reports.cli.options import FOLDER, SEARCH, STORE, Folder, refuse_file, with_folder
 from reports.cli.terminal import Terminal
 from reports.gate.prediction import all_tasks
@@ -69,7 +69,7 @@ class WrittenReport:
 
 
 def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport:
-    """Write pages, charts and tables of what is stored in `results`. Raises BadInput where there is nothing."""
+    """Write pages, charts and tables of the rows stored in `results`. Raises BadInput where there is nothing."""
     if publish:
         refuse_outside_a_checkout()
     refuse_file(results)
@@ -85,12 +85,12 @@ def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport
     if publish:  # the searches are run by a command of their own: their published pages stay
         paths = {name: folder / name for name in SEARCHED if (folder / name).is_file()}
         searched = searched or {name: path.read_text(encoding="utf-8") for name, path in paths.items()}
-    material, remembered, left = stored_material(results, publish)
+    material, references, left = stored_material(results, publish)
     if not any(stored.rows for stored in material.values()):
         raise nothing
     if publish:
         material = publishable(material, left)
-    files = rendered(folder, material, remembered, searched, publish)
+    files = rendered(folder, material, references, searched, publish)
     files[DIGESTS] = digests_csv(files)
     texts = {folder / name: text for name, text in files.items()}
     if publish:
@@ -112,8 +112,8 @@ def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str,
     A published report has the pages that are registered, another also those of what else was run.
     """
     with Store.read(results / STORE) as store:
-        remembered = () if publish else tuple(store.remembered())
-        pages = with_remembered(registered(), remembered, motion=True).pages
+        references = () if publish else tuple(store.load_references())
+        pages = with_stored(registered(), references, motion=True).pages
         # A borrowed cell belongs to the full grid as far as the page that it is borrowed from runs it.
         items = [(*selection.page_cells(page), *selection.page_tasks(page)) for page in catalogue.PAGES]
         whole = tuple(dict.fromkeys(item for members in items for item in members))
@@ -127,7 +127,7 @@ def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str,
         if stored.rows or (page.name in names if publish else stored.answers)
     }
     grid = f"{left} of {len(whole)} cells of the full grid are not stored: "
-    return material, remembered, grid + with_folder("crosscheck run --full", results) if left else ""
+    return material, references, grid + with_folder("crosscheck run --full", results) if left else ""
 
 
 def publishable(material: Materials, left: str) -> Materials:
@@ -147,12 +147,12 @@ def publishable(material: Materials, left: str) -> Materials:
 
 
 def rendered(
-    folder: Path, material: Materials, remembered: tuple[str, ...], searched: Mapping[str, str], publish: bool
+    folder: Path, material: Materials, references: tuple[str, ...], searched: Mapping[str, str], publish: bool
 ) -> dict[str, str]:
     """The files of a report into this folder by their names, but for their digests."""
     command = "make publish" if publish else "crosscheck report"
     many = sum(len(stored.rows) for stored in material.values()) > MANY
-    pages = drawn(material, remembered, command, published()) if many else {}
+    pages = drawn(material, references, command, published()) if many else {}
     files = rendering.render_all(material, command, searched, pages)
     files |= moving_picture(material.values())
     if publish:
@@ -189,7 +189,7 @@ class Drawing:
 
 @lru_cache(maxsize=1)
 def _pages(words: tuple[str, ...]) -> dict[str, Page]:
-    pages = {page.name: page for page in with_remembered(registered(), words).pages}
+    pages = {page.name: page for page in with_stored(registered(), words).pages}
     gc.freeze()
     return pages
 
@@ -225,7 +225,7 @@ def moving_picture(material: Iterable[Material]) -> dict[str, str]:
 
 def write_files(texts: Mapping[Path, str], line: str = "") -> None:
     """Write them whole or not at all, and print a line about it, if there is one."""
-    with kept() as check:  # between two files is no place to stop
+    with delayed_signals() as check:  # between two files is no place to stop
         write_whole(texts, "the pages that were there stay as they were")
         check()
     if line:

@@ -68,8 +68,8 @@ def run(
     )
     items = chosen.items
     with telling(140, as_json, as_markdown) as console:
-        with cluster.elsewhere(scheduler) as crew, opened(results / STORE) as store:
-            store.remember(chosen.references)
+        with cluster.connect_cluster(scheduler) as crew, opened(results / STORE) as store:
+            store.save_references(chosen.references)
             count = run_interruptible(console, store, items, fresh, limit, crew or cluster.pool(workers))
             rows = list(store.get(chosen.cells).values())
             print_summary(console, rows)
@@ -152,7 +152,7 @@ def run_grid(
     """The rows of these cells, of which those that are not stored in the folder `results` are run. Raises BadInput."""
     by = cluster.pool(workers)
     with Store(results / STORE) as store:
-        store.remember(chosen.references)
+        store.save_references(chosen.references)
         run_into(store, chosen.items, fresh, chosen.limit, by.threads, supervised=by.supervise)
         rows = list(store.get(chosen.cells).values())
     refuse_without_motion(rows)

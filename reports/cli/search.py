@@ -92,7 +92,7 @@ def search(
     folder = results / SEARCH
     with (
         telling(150, as_json, as_markdown) as terminal,
-        cluster.elsewhere(scheduler) as crew,
+        cluster.connect_cluster(scheduler) as crew,
         opened(folder / STORE) as store,
     ):
         run = Search(store, crew or cluster.pool(workers), seconds, partial(interruptible, terminal))

@@ -1,4 +1,4 @@
-"""From the words of a command line to scenes, engines and cells; what can't be is refused with the nearest that can."""
+"""The scenes, engines and cells that a command line selects; an unknown name is refused with the nearest known one."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
 
 
 def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page]) -> tuple[Engine, ...]:
-    """Of these engines those that the scene's page compares; the variants of every scene where no page teaches it."""
+    """The engines that the scene's page compares; for a scene without a page the variants of all scenes."""
     from engines.registry import VARIANTS
 
     compared = next((page.engines_of(scene) for page in pages if page.teaches(scene)), VARIANTS)
@@ -85,7 +85,7 @@ def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page])
 
 
 def _beside(engines: Sequence[Engine]) -> tuple[Engine, ...]:
-    """Of these engines those that are extras."""
+    """The engines among these that are extras."""
     from engines.registry import OTHERS
 
     return tuple(engine for engine in engines if engine in OTHERS)
@@ -181,7 +181,7 @@ def _quick(cells: Sequence[Cell], most: float) -> tuple[Cell, ...]:
 
 
 def page_cells(page: Page) -> tuple[Cell, ...]:
-    """Every cell that a page asks for; those that it borrows are asked for by other pages."""
+    """All cells of a page, without those that it borrows from other pages."""
     from engines.registry import INSTALLED
 
     cells: list[Cell] = []
@@ -193,12 +193,12 @@ def page_cells(page: Page) -> tuple[Cell, ...]:
 
 
 def page_tasks(page: Page) -> tuple[Task, ...]:
-    """Every task that a page asks for, but those of engines that are not installed here."""
+    """All tasks of a page, without those of engines that are not installed."""
     return tuple(task for task in all_tasks(page) if task.engine is None or not task.engine.missing)
 
 
 def shown_cells(page: Page) -> tuple[Cell, ...]:
-    """Every cell whose row a page may tell: its own, those of engines that are not installed here, what it borrows."""
+    """All cells whose rows a page can print: its own, those of engines that are not installed, and borrowed ones."""
     from engines.registry import OTHERS
 
     further = (*beside_cells(page.scenes, OTHERS), *page.extra_cells())

@@ -10,7 +10,7 @@ import typer
 
 from engines.registry import ENGINES, INSTALLED, method_name
 from reference.scene import Scene
-from reports.cli.known import choose, registered, with_remembered
+from reports.cli.known import choose, registered, with_stored
 from reports.cli.options import (
     FOLDER,
     REFERENCES,
@@ -73,7 +73,7 @@ def show(
     known, is_there = registered(), (results / STORE).exists()
     if is_there:
         with Store.read(results / STORE) as store:
-            known = with_remembered(known, store.remembered())
+            known = with_stored(known, store.load_references())
     choice = choose([scene], engine, variant, settings or (), known)
     refuse_file(results)
     stored: Mapping[Cell, Measurement] = {}

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from reports.cli.interruption import kept
+from reports.cli.interruption import delayed_signals
 from reports.cli.options import FOLDER, SITE, STORE, Folder, with_folder
 from reports.cli.report import CHECKOUT, published
 from reports.cli.run import run_interruptible
@@ -61,7 +61,7 @@ def site(
         said(f"parts of the site will be missing: {trouble}")
     source.answers = _answers(terminal, results)
     files = build(source)
-    with kept() as check:
+    with delayed_signals() as check:
         size = write_site(output, files)
         check()
     for trouble in source.troubles:

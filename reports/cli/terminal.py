@@ -1,4 +1,4 @@
-"""What the command line prints: rich tables and the progress of a run."""
+"""Output of the command line: rich tables and the progress of a run."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 from engines.registry import mislabelled
-from reports.cli.interruption import kept
+from reports.cli.interruption import delayed_signals
 from reports.cli.streams import said, written
 from reports.model.ending import FINE, BadInput, Broken, visible
 from reports.model.measure import Measurement
@@ -87,7 +87,7 @@ def opened(path: Path) -> Iterator[Store]:
 
 @contextmanager
 def telling(width: int, as_json: bool, as_markdown: bool) -> Iterator[Terminal]:
-    """A terminal whose form is asked by these options. In JSON the document is printed at the end: `tables`, each with
+    """A terminal with the format of these options. In JSON the document is printed at the end: `tables`, each with
     `title` and `rows` (an object a row, by column; null for a number that is not known), `sentences`, and `status`, the
     exit status, with `message`. Raises BadInput for both options at once; what is wrong with input has no document.
     """
@@ -159,7 +159,7 @@ def interruptible(
     """
     if sentence := mislabelled():
         raise BadInput(sentence)
-    with kept() as check:
+    with delayed_signals() as check:
         waiting = items if fresh else missing(items, store, limit)
         try:
             total, unit = (len(waiting), "cells") if size is None else (sum(map(size, waiting)), "cases")

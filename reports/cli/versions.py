@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import typer
 
 from reference.scene import Scene
-from reports.cli.interruption import kept
+from reports.cli.interruption import delayed_signals
 from reports.cli.known import choose
 from reports.cli.options import FOLDER, STORE, AsJson, AsMarkdown, Folder, SomeScenes
 from reports.cli.report import published, refuse_outside_a_checkout
@@ -59,7 +59,7 @@ def versions(
     table = released(data) if everything else None
     wrong: list[str] = []
     rows: list[Measurement] = []
-    with telling(WIDTH, as_json, as_markdown) as console, kept() as check:
+    with telling(WIDTH, as_json, as_markdown) as console, delayed_signals() as check:
         for name, numbers in wanted.items():
             columns = []
             for number in numbers:

@@ -1,8 +1,8 @@
 """Every scene of every page in every method: below what theory promises, and equal to the baseline's numbers.
 
-The cells are of the report's grid. No number of a scene and no bound stands here: `reports.gate.theory` says where a
-bound comes from, `reports.gate.change` what a baseline's number is worth. It stands in the package, so that an
-installation has it, in any folder: pytest -m crosscheck (planar_crosscheck_pytest.py)
+The cells are those of the report's grid. `reports.gate.theory` computes the bounds, `reports.gate.change` compares with
+the baseline. The tests are part of the package, so that an installed copy runs them in any folder with
+`pytest -m crosscheck` (planar_crosscheck_pytest.py).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def verdict_of(verdicts: dict[Case, CaseVerdict], case: Case) -> CaseVerdict:
 def test_a_method_is_as_exact_as_theory_promises(verdicts: dict[Case, CaseVerdict], case: Case) -> None:
     verdict = verdict_of(verdicts, case)
     if verdict.rows[-1].outcome == Outcome.UNSUPPORTED:
-        # What can't be built can't be at any step, and says why.
+        # It is unsupported at every step, with a reason.
         assert all(row.outcome == Outcome.UNSUPPORTED and row.sentence for row in verdict.rows)
         assert not case.known
         return
@@ -73,5 +73,5 @@ def test_the_grid_has_every_scene_and_method_of_the_baseline(request: pytest.Fix
 
 
 def absence(method: str) -> str:
-    """How to install what a method of an extra needs; empty where it is there, or is no extra's."""
+    """How to install the extra of a method; empty if it is installed, or the method needs no extra."""
     return next((told for name, told in registry.ABSENT.items() if method.startswith(f"{name} ")), "")

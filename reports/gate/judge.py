@@ -1,10 +1,9 @@
-"""The judge: a mechanism with exact multipliers, or with joints that give way in a known manner, by textbook methods.
+"""The judge of the gate: a mechanism with ideal or regularised joints, integrated by textbook methods.
 
-It is `engines.lagrange`: its compiled rows and steps with numba, a hundred times as fast as those in numpy, which do
-the work without. So others stand beside it, which share no code with it. In scenes that is the truth, a closed form or
-an integration of few angles, to which its errors fall with the order of its method (`tests/engines/test_judge.py`). In
-random mechanisms of all joints but rolling ones, and of all forces, it is Newton's law with multipliers, written anew
-there (`tests/engines/test_judge_witness.py`). Soft joints are held by the sag of a spring.
+It uses the compiled rows and steps of `engines.lagrange`, or, without numba, those in numpy, which are a hundred times
+slower. Tests compare it with independent solutions: with the exact motion of scenes, to which its errors converge with
+the order of its method (`tests/engines/test_judge.py`), with another implementation of Newton's law with multipliers in
+random mechanisms (`tests/engines/test_judge_witness.py`), and with the sag of a spring for regularised joints.
 """
 
 from __future__ import annotations
@@ -39,9 +38,10 @@ from reports.model.quantities import QUANTITIES
 Array = NDArray[np.float64]
 QUANTITY_NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
-# `refined`: pieces of a sample; how little a third of the step may change; and after how many steps it gives up, half a
-# minute for 60 rows. With a tenth of SAME no error of the N-four-bars moves by more than a tenth.
-PARTS, SAME, MOST = 10, 1e-6, 200_000
+# Of `refined`.
+PARTS = 10  # of the time between two samples
+SAME = 1e-6  # largest change by a third of the step; a tenth of it changes no error of the N-four-bars by a tenth
+MOST_TRIED = 200_000  # steps until it gives up: half a minute for 60 rows
 
 TABLEAUS: dict[int, Tableau] = {
     1: Tableau(np.zeros((1, 1)), np.array([1.0]), np.zeros(1)),
@@ -51,8 +51,10 @@ TABLEAUS: dict[int, Tableau] = {
 
 
 def giving_way(mechanism: Mechanism, soft: Regularisation) -> NDArray[np.bool_]:
-    """Which rows give way (rows,): those declared, but a drive only if its row has a compliance. Else it is held by its
-    rate, and no spring pulls it to an angle."""
+    """Which rows are regularised (rows,): the declared ones, but a drive only if its row has a compliance.
+
+    Without a compliance a drive prescribes its rate alone, and no spring acts on its angle.
+    """
     return np.array(soft.rows) & ((mechanism.rate == 0) | (soft.compliance > 0))
 
 
@@ -80,13 +82,13 @@ def stepped(
     soft: Regularisation | None = None,
     project: bool = False,
 ) -> Trajectory:
-    """A mechanism's motion as the gate has it: by compiled steps where there are some, else as `in_numpy`."""
-    found = _compiled(mechanism, samples, spacing, order, every, soft, project)
-    return found or in_numpy(mechanism, samples, spacing, order, every, soft, project)
+    """A mechanism's motion, by compiled steps if possible, else by `in_numpy`."""
+    compiled = _compiled(mechanism, samples, spacing, order, every, soft, project)
+    return compiled or in_numpy(mechanism, samples, spacing, order, every, soft, project)
 
 
 def _samples(scene: Scene) -> int:
-    """Up to the end of what can be compared."""
+    """The number of samples up to the end of the comparable time."""
     return max(1, math.floor(min(scene.duration, scene.comparable_until) / scene.spacing * (1 + 1e-12)))
 
 
@@ -99,9 +101,9 @@ def _compiled(
     soft: Regularisation | None,
     project: bool,
 ) -> Trajectory | None:
-    """As `in_numpy`; None where rows depend on each other, a motion is lost, or what is soft is to be projected too.
+    """As `in_numpy`; None if rows are dependent, the motion is lost, or regularised joints have to be projected.
 
-    Rows that depend on each other at the start are told apart by their compliances, if they give way.
+    Regularised rows may be dependent at the start, since their compliances make the system regular.
     """
     machine = _machine(mechanism, soft)
     if machine is None or (project if soft is not None else machine.has_dependent_rows):
@@ -117,7 +119,7 @@ def _compiled(
 
 
 def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel | None:
-    """The compiled mechanism, with joints that give way where a softness is given; None without numba."""
+    """The compiled mechanism, regularised if `soft` is given; None without numba."""
     machine = CompiledModel.of(mechanism) if installed() else None
     if machine is not None and soft is not None:
         machine.regularise(soft, giving_way(mechanism, soft))
@@ -125,10 +127,11 @@ def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel
 
 
 def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Regularisation) -> Trajectory | None:
-    """A soft motion by the method of order 4, samples `spacing` [s] apart. Each PART of a sample is stepped anew with a
-    third of the step until that changes it by less than SAME, in parts of the mechanism's length and speed: so a
-    singular position is passed, where a spring pulls with its gap over a singular value. None without numba, or where
-    more than MOST steps don't do.
+    """A regularised motion by the method of order 4 with step control, samples `spacing` [s] apart.
+
+    Each of the PARTS between two samples is repeated with a third of the step until it changes by less than SAME,
+    relative to the mechanism's length and speed. So it passes singular positions, where spring forces grow with the
+    inverse of a singular value. None without numba, or after MOST_TRIED steps.
     """
     machine = _machine(mechanism, soft)
     if machine is None:
@@ -146,7 +149,7 @@ def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Regularisa
         coarse = stepped(part, steps)
         while True:
             taken += 4 * steps
-            if taken > MOST:
+            if taken > MOST_TRIED:
                 return None
             fine = stepped(part, 3 * steps)
             if coarse is not None and fine is not None:
@@ -206,8 +209,7 @@ def errors(
 
 
 def errors_as_soft(scene: Scene, soft: Regularisation) -> Mapping[str, float]:
-    """The same of joints that give way in a method's own manner, in steps that are as short as each part of the motion
-    asks for; infinite without numba, or where steps don't end."""
+    """Largest errors of `refined` with a method's own regularisation, by quantity; infinite if it gives no motion."""
     return _told(scene, lambda: refined(scene.mechanism(), _samples(scene), scene.spacing, soft))
 
 

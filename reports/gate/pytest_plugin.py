@@ -46,7 +46,7 @@ def lines(verdicts: Iterable[CaseVerdict]) -> list[list[str]]:
 
 
 def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
-    """Sentences on the baseline: its versions if they differ, what changed then, what is dear, and cells it lacks."""
+    """Sentences on the baseline: other versions and the changes with them, large CPU times, and missing cells."""
     verdicts = tuple(verdicts)
     out = [told] if (told := mixed(baseline)) else []
     out += [f"The baseline has no column {name!r}: this quantity is not compared." for name in baseline.unmeasured]
@@ -193,7 +193,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def _wanted(item: pytest.Item, scenes: Sequence[str], engines: Sequence[str]) -> bool:
-    """Whether a test is kept once some are asked for: of those about no case, the ones that look at all verdicts."""
+    """Whether a test is selected by --scene and --engine; so are tests without a case that check all verdicts."""
     case = case_of(item)
     if case is None:
         return "verdicts" in getattr(item, "fixturenames", ())

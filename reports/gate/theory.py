@@ -65,7 +65,7 @@ ROOM = 20.0
 # over the samples may be at another sample. Smaller than 10^0.5, so that an error that does not fall between the two
 # finest steps fails even at first order.
 ROOM_OWN = 2.5
-# The same for a prescribed motion: errors do not propagate, and the largest one is at the same instant at every step.
+# This factor in a prescribed motion: errors do not propagate, and the largest one is at the same instant at every step.
 # The next power alone counts: in the driven four-bar 6 % at the coarsest step, from the two orders of the judge.
 ROOM_PRESCRIBED = 1.25
 # Coarser steps that are needed to predict an error: at a single one two errors may cancel.

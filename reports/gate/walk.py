@@ -110,7 +110,7 @@ def run_and_check(
 ) -> dict[Case, CaseVerdict]:
     """Run the judge and the cells of these cases in worker processes (one per processor if None), and check the rows.
 
-    dearest: the largest allowed CPU time over the baseline's; if given, runs are timed as in a report. Raises
+    dearest: the largest ratio of the CPU time to the baseline's; if given, runs are timed as in a report. Raises
     RuntimeError if the judge fails.
     """
     chosen, workers = tuple(chosen), workers or worker_count()

@@ -1,6 +1,6 @@
 """How a cell can end: the closed list, what each word means, and the one place where it is decided.
 
-`of_motion` decides of a cell that gave a motion; `refusal`, `failure`, `out_of_time` and `of_lost_process` of others.
+`of_motion` decides of a cell that gave a motion; `refusal`, `failure`, `out_of_time` and `second_crash` of others.
 `converged` and `plateau` need a sweep (`reports.model.convergence`).
 """
 
@@ -156,7 +156,7 @@ def out_of_time(limit: float, wall: float | None = None) -> Loss:
     return Loss(Outcome.TIMED_OUT, f"did not end within {wall:g} s, and used less than {limit:g} s of CPU time")
 
 
-def of_lost_process(code: int | None, words: str, earlier: str) -> Loss:
+def second_crash(code: int | None, words: str, earlier: str) -> Loss:
     """Of a cell whose process ended, with this exit code and in these words, at its second try. earlier: the first."""
     if from_outside(code):
         return Loss(Outcome.LOST, f"{words}, perhaps for want of memory; before that: {earlier}")

@@ -32,7 +32,7 @@ class Quantity:
     # or, for relative quantities and angles [rad], itself.
     largest: float = 1.0
     # Whether the time scale of an order below 2 is the angle's if that is shorter: the fourth-order run of the judge
-    # tells little here, as its positions hold the drift of the constraints, and its energy is an order better.
+    # does not show it, as its positions hold the drift of the constraints, and its energy is an order better.
     scales_with_angle: bool = False
 
     @property
@@ -59,7 +59,7 @@ QUANTITIES = (
 QUANTITY: Mapping[str, Quantity] = {each.name: each for each in QUANTITIES}
 
 
-# Field of a Measurement -> the quantity of which it is another measure.
+# Field of a Measurement -> the quantity that it measures in another way.
 OF: Mapping[str, str] = {
     "position_rms": "position",
     **dict.fromkeys(("angle_rms", "angle_duration", "drive_gap", "estimate"), "angle"),

@@ -99,7 +99,7 @@ def run_chunk(data: bytes) -> bytes:
 
 
 @contextmanager
-def elsewhere(scheduler: str | None) -> Iterator[Workforce | None]:
+def connect_cluster(scheduler: str | None) -> Iterator[Workforce | None]:
     """A cluster by the words of a command line, None without. Raises BadInput: wrong words, no Dask or scheduler."""
     if scheduler is None:
         yield None

@@ -118,13 +118,13 @@ class Store:
         # SQLite would write on, into a file without a name.
         raise FileTrouble(f"{self.path} was removed or replaced while it was written; run again, or {ELSEWHERE}")
 
-    def remember(self, words: Iterable[str]) -> None:
+    def save_references(self, words: Iterable[str]) -> None:
         """Store references to scenes and engines that are not registered, so that a report shows them too."""
         with _file_trouble(self.path), self._connection:
             self._connection.executemany("insert or ignore into given values (?)", [(each,) for each in words])
 
-    def remembered(self) -> tuple[str, ...]:
-        """The references that were passed to `remember`, in that order."""
+    def load_references(self) -> tuple[str, ...]:
+        """The references that were passed to `save_references`, in that order."""
         with _file_trouble(self.path):
             return tuple(words for (words,) in self._connection.execute("select words from given order by rowid"))
 

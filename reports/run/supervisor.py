@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.model.ending import Broken, describe
-from reports.model.outcomes import Loss, Outcome, describe_exit, failure, from_outside, of_lost_process, out_of_time
+from reports.model.outcomes import Loss, Outcome, describe_exit, failure, from_outside, out_of_time, second_crash
 from reports.run.files import temporary_folder
 from reports.run.worker import (
     READY,
@@ -206,7 +206,7 @@ class Pool:
         elif not job.earlier:
             self._retries.append(Job(job.item, words, from_outside(code)))
         else:
-            yield job.item, of_lost_process(code, words, job.earlier), ""
+            yield job.item, second_crash(code, words, job.earlier), ""
 
     def _end_overdue(self, worker: Worker) -> Iterator[Answer]:
         _, limit, wall = self._terms

@@ -85,7 +85,7 @@ def read_stored(store: Store, published: bool = False) -> Stored:
 
     `published`: only cases of the plan (`reports.search.plan`), whose seeds come from the commit's hash.
     """
-    texts = store.remembered()
+    texts = store.load_references()
     subjects = known_subjects(texts)
     pieces = [piece for piece in (chunk_from_json(text, subjects) for text in texts) if piece is not None]
     cases = list(iter_case_results(stored_answers(store, plan.published_chunks() if published else pieces)))

@@ -98,7 +98,7 @@ class Search:
                 self.begin = monotonic()
             if self.over:
                 break
-            self.store.remember(chunk_to_json(piece) for piece in batch)
+            self.store.save_references(chunk_to_json(piece) for piece in batch)
             self._run_batch(batch)
             pieces += batch
         return list(iter_case_results(stored_answers(self.store, pieces)))

@@ -132,7 +132,7 @@ def test_a_soft_motion_passes_a_singular_position_and_shorter_steps_change_it_li
 
 @compiled
 def test_a_soft_motion_that_takes_too_many_steps_is_lost(monkeypatch):
-    monkeypatch.setattr(judge, "MOST", 100)
+    monkeypatch.setattr(judge, "MOST_TRIED", 100)
     assert errors_as_soft(THROUGH, spring(THROUGH.mechanism())) == dict.fromkeys(QUANTITY_NAMES, np.inf)
 
 

@@ -17,7 +17,7 @@ from reports.model.measure import TIMINGS
 from reports.model.outcomes import Loss, Outcome
 from reports.model.tasks import Motion
 from reports.run import cluster as clusters
-from reports.run.cluster import Refusal, chunks, elsewhere, run_item
+from reports.run.cluster import Refusal, chunks, connect_cluster, run_item
 from reports.run.running import run_cells, run_into
 from reports.run.store import Store
 from reports.run.supervisor import WorkersLost
@@ -51,7 +51,7 @@ def untimed(row):
 def test_a_local_cluster_gives_the_same_rows_and_answers_as_the_pool(tmp_path):
     cells = [Cell(Disc(), toy, 1) for toy in (Toy(), *map(FailingToy, ("abort", "refuse", "raise")))]
     items = [*cells, Motion(Cell(Disc(), Toy(), 2))]
-    with elsewhere("local:2") as cluster, Store(tmp_path / "cells.sqlite") as store:
+    with connect_cluster("local:2") as cluster, Store(tmp_path / "cells.sqlite") as store:
         assert cluster is not None
         assert run_into(store, items, supervised=cluster.supervise) == 5
         assert run_into(store, items, supervised=cluster.supervise) == 0
@@ -64,7 +64,7 @@ def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(workers, 
     monkeypatch.setattr(workers.scheduler, "allowed_failures", 1)
     monkeypatch.setattr(clusters, "CHUNK", 0.0)
     cells = [Cell(Disc(), Toy(), every) for every in (1, 2, 901)]
-    with elsewhere(workers.scheduler_address) as cluster:
+    with connect_cluster(workers.scheduler_address) as cluster:
         assert cluster is not None
         found = {cell.every: result for cell, result, _ in cluster.supervise(end_the_supervisor, cells, 60.0)}
     lost = found.pop(901)
@@ -76,7 +76,7 @@ def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(workers, 
 
 def test_without_workers_a_run_ends_after_a_while_in_a_sentence(workers, monkeypatch):
     monkeypatch.setattr(clusters, "WORKERS_WITHIN", 5.0)
-    with elsewhere(workers.scheduler_address) as cluster:
+    with connect_cluster(workers.scheduler_address) as cluster:
         assert cluster is not None
         workers.scale(0)
         with pytest.raises(WorkersLost, match=r"no worker.*dask worker"):
@@ -105,13 +105,13 @@ def test_an_item_with_other_source_files_or_none_is_not_run(tmp_path, monkeypatc
 
 
 def test_without_a_scheduler_or_dask_one_line_says_so(monkeypatch):
-    with pytest.raises(BadInput, match=r"tcp://HOST:PORT .* or local:N"), elsewhere("local:0"):
+    with pytest.raises(BadInput, match=r"tcp://HOST:PORT .* or local:N"), connect_cluster("local:0"):
         pass
     monkeypatch.setattr(clusters, "ANSWERS_WITHIN", 0.3)
-    with pytest.raises(BadInput, match="no scheduler with workers answers there"), elsewhere("tcp://127.0.0.1:1"):
+    with pytest.raises(BadInput, match="no scheduler with workers answers there"), connect_cluster("tcp://127.0.0.1:1"):
         pass
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(BadInput, match=r"pip install '\.\[cluster\]'"), elsewhere("local:2"):
+    with pytest.raises(BadInput, match=r"pip install '\.\[cluster\]'"), connect_cluster("local:2"):
         pass
 
 

@@ -109,7 +109,7 @@ def test_fresh_seeds_are_drawn_until_the_time_is_over_and_told(here: Path, capfd
     assert call("search", "--fresh", *words) == FINE
     assert "cases were asked" in capfd.readouterr().out
     with Store.read(here / "crosscheck-results" / SEARCH / STORE) as store:
-        seeds = {json.loads(words)[1] for words in store.remembered()}
+        seeds = {json.loads(words)[1] for words in store.load_references()}
     assert seeds
     assert not seeds & {*plan.published_seeds()}
 

@@ -137,7 +137,7 @@ def test_a_delayed_ctrl_c_raises_when_checked_at_the_second_and_when_the_context
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with ExitStack() as leaving:
-            check = leaving.enter_context(interruption.kept())
+            check = leaving.enter_context(interruption.delayed_signals())
             check()
             signal.raise_signal(signal.SIGINT)
             with pytest.raises(KeyboardInterrupt):
@@ -147,7 +147,7 @@ def test_a_delayed_ctrl_c_raises_when_checked_at_the_second_and_when_the_context
             with pytest.raises(interruption.Interrupted):
                 leaving.close()
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        with interruption.kept() as check, interruption.ending_at_once():
+        with interruption.delayed_signals() as check, interruption.ending_at_once():
             signal.raise_signal(signal.SIGINT)  # ignored, as for a job in the background
             check()
     finally:

@@ -54,8 +54,8 @@ def test_what_is_put_is_returned_whole_and_the_last_row_of_a_cell_counts(tmp_pat
     with Store(path) as store:
         assert store.notice == ""
         store.put(put)
-        store.remember(["second", "first"])
-        store.remember(["third", "second"])
+        store.save_references(["second", "first"])
+        store.save_references(["third", "second"])
         found = store.get(CELLS[::-1])
         assert list(found) == CELLS[2::-1]
         assert math.isnan(found[CELLS[0]].energy)
@@ -63,7 +63,7 @@ def test_what_is_put_is_returned_whole_and_the_last_row_of_a_cell_counts(tmp_pat
         experiment = replace(CELLS[0], purpose="failure")  # it takes the row of the sweep
         assert [each.purpose for each in store.get([experiment]).values()] == ["failure"]
     with Store.read(path) as store:
-        assert store.remembered() == ("second", "first", "third")
+        assert store.load_references() == ("second", "first", "third")
 
 
 def test_reading_leaves_no_trace_and_sees_what_a_run_that_continues_has_stored(tmp_path):
