@@ -134,13 +134,13 @@ def step_spectral_radius(
     eigenvalues, vectors = (part[..., -count:] for part in np.linalg.eigh(system.matrix))
     iteration = np.eye(len(matrix)) - np.linalg.pinv(_lower(system)) @ system.matrix
     correction = vectors.T @ (np.asarray(corrected)[system.indices, None] * vectors)
-    one, zero = np.eye(count), np.zeros((count, count))
+    identity, zero = np.eye(count), np.zeros((count, count))
     with np.errstate(all="ignore"):
         residual = safety * np.linalg.matrix_power(vectors.T @ iteration @ vectors, iterations)
-        inverse = (one - residual) / eigenvalues
-        impulses = np.hstack([-inverse @ (one + correction), residual, -inverse @ correction])
-        velocities = np.hstack([one, zero, zero]) + eigenvalues[:, None] * impulses
-        step = np.vstack([velocities, impulses, np.hstack([one, zero, one])])
+        inverse = (identity - residual) / eigenvalues
+        impulses = np.hstack([-inverse @ (identity + correction), residual, -inverse @ correction])
+        velocities = np.hstack([identity, zero, zero]) + eigenvalues[:, None] * impulses
+        step = np.vstack([velocities, impulses, np.hstack([identity, zero, identity])])
         try:
             return float(np.abs(np.linalg.eigvals(step)).max())
         except np.linalg.LinAlgError:

@@ -136,14 +136,14 @@ def _is_off_centre(joint: Joint) -> bool:
 
 
 def _is_link(joint: Joint, mechanism: Mechanism) -> bool:
-    """Whether the exact construction of a slot is a `Link`, because a groove would not be exact."""
+    """Whether the exact construction of a slot is a `MovedPinJoint`, because a groove would not be exact."""
     if not isinstance(joint, Slot):
         return False
     cranks, turned = find_cranks(mechanism), find_turned(mechanism)
-    known = joint.first is None or joint.first in cranks
+    is_known = joint.first is None or joint.first in cranks
     origin = cranks[joint.second].own_point if joint.second in cranks else (0.0, 0.0)
     point = (joint.second_point[0] - origin[0], joint.second_point[1] - origin[1])
-    return not (known and groove_is_exact(point, turns=joint.second not in turned))
+    return not (is_known and groove_is_exact(point, turns=joint.second not in turned))
 
 
 def instants(

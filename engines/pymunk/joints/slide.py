@@ -4,7 +4,7 @@ A slot, by `SlotConstruction`:
 
 - "exact": a `GrooveJoint` if the groove is in a body of known motion and the anchor is the centre of mass of the second
   body, or that body cannot turn: only then does an impulse along the normal move the anchor along the normal. Otherwise
-  a `Link`.
+  a `MovedPinJoint`.
 - "groove": always a `GrooveJoint`, as a user would build it. Off the centre of mass of a body that turns, its impulse
   does not stop the motion across the groove, at any step, unless the arm from the centre of mass to the point is along
   or across the groove. It solves for both directions and keeps the normal part (applyImpulse and grooveConstrain in
@@ -22,11 +22,12 @@ perpendicular from the centre of mass: there the arm is along the blade, and a g
 - "projection": the same by an impulse at the blade, with the body's inertia. First order.
 - "groove": a `GrooveJoint` in the ground, placed before each step at the pose after the step's drift. The drift is
   explicit, so the pose is exact; the motion is of first order, and the slip is rounding. On another body than the
-  ground it is a `Link`. Contact with friction is no alternative: in the plane, nothing presses a blade on the ice.
+  ground it is a `MovedPinJoint`. Contact with friction is no alternative: in the plane, nothing presses a blade on the
+  ice.
 
-A `Link` is a `PinJoint`, placed before every step. It keeps the distance of two points, so its row is their relative
-velocity along the line between them. One end is the point; the other is a point of the first body straight across the
-line. So its row is that of a Slot or a Skate between any two bodies.
+A `MovedPinJoint` is a `PinJoint` that is placed before every step. It keeps the distance of two points, so its row is
+their relative velocity along the line between them. One end is the point; the other is a point of the first body
+straight across the line. So its row is that of a Slot or a Skate between any two bodies.
 """
 
 from __future__ import annotations
@@ -65,8 +66,8 @@ def build_slot(
     length: float,
 ) -> tuple[list[Constraint], list[BeforeStep]]:
     """The constraint and its update before each step. Points are from the engine's origins; `length` [m]: the scale."""
-    known = first.body_type != pymunk.Body.DYNAMIC
-    if construction == "groove" or (known and groove_is_exact(second_point, turns=not isinf(second.moment))):
+    is_prescribed = first.body_type != pymunk.Body.DYNAMIC
+    if construction == "groove" or (is_prescribed and groove_is_exact(second_point, turns=not isinf(second.moment))):
         cosine, sine, reach = cos(joint.line_angle), sin(joint.line_angle), GROOVE_REACH * length
         x, y = first.world_to_local(second.local_to_world(second_point))
         # The groove's middle is at the second body, which may be farther away than the mechanism is long.
@@ -75,7 +76,7 @@ def build_slot(
             (first_point[0] + end * cosine, first_point[1] + end * sine) for end in (along - reach, along + reach)
         )
         return [GrooveJoint(first, second, back, front, second_point)], []
-    link = Link(joint, first, second, second_point, first_point, reach=length)
+    link = MovedPinJoint(joint, first, second, second_point, first_point, reach=length)
     return [link.constraint], [link]
 
 
@@ -84,7 +85,7 @@ def groove_is_exact(point: Vector, turns: bool) -> bool:
     return point == (0.0, 0.0) or not turns
 
 
-class Link:
+class MovedPinJoint:
     """The pin joint of one Slot or Skate; `reach` [m] is its length, points are from the engine's origins."""
 
     def __init__(
@@ -136,7 +137,7 @@ def build_skate(
     `point` [m] is the blade's from the origin of the engine's second body; `length` [m] is the mechanism's scale.
     """
     if construction == "groove" and joint.first is not None:
-        link = Link(joint, first, second, point, reach=LINK_REACH * length)
+        link = MovedPinJoint(joint, first, second, point, reach=LINK_REACH * length)
         return [link.constraint], [link], []
     if joint.first is not None:
         raise Unsupported(

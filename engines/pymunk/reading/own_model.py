@@ -134,12 +134,12 @@ class OwnPymunk:
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
         """The whole gap is corrected only with iterations that are stable at all poses of the pilot run."""
-        users, more = self.imported.space.iterations, max(MORE_ITERATIONS, 2 * self.imported.space.iterations)
+        users, increased = self.imported.space.iterations, max(MORE_ITERATIONS, 2 * self.imported.space.iterations)
         rho = worst_factor(self.mechanism, PILOT_DURATION * self.mechanism.time_scale)
         enough = iterations_in_step(rho, max(1, len(self.mechanism.joints)), work=LARGEST_WORK)
-        counts = sorted({users, more, enough, *((10 * more,) if further else ())})
+        counts = sorted({users, increased, enough, *((10 * increased,) if further else ())})
         whole_gap = [(count, 0.0, ahead) for count in counts if stable_gain(rho, count) == 1 for ahead in (False, True)]
-        options = dict.fromkeys([(users, None, self.ahead), (more, None, self.ahead), *whole_gap])
+        options = dict.fromkeys([(users, None, self.ahead), (increased, None, self.ahead), *whole_gap])
         steps = [self.dt / divisor for divisor in (FURTHER_DIVISORS if further else DIVISORS)]
         return [self._change(*option, dt) for option in options for dt in steps if dt >= smallest]
 
@@ -331,8 +331,8 @@ def _reached(limit: Any) -> bool:
     """Whether a limit is at or beyond an end where its bodies are now."""
     a, b = limit.a, limit.b
     if isinstance(limit, constraints.SlideJoint):
-        apart = a.local_to_world(limit.anchor_a).get_distance(b.local_to_world(limit.anchor_b))
-        return not limit.min < apart < limit.max
+        distance = a.local_to_world(limit.anchor_a).get_distance(b.local_to_world(limit.anchor_b))
+        return not limit.min < distance < limit.max
     if isinstance(limit, constraints.RotaryLimitJoint):
         return not limit.min < b.angle - a.angle < limit.max
     begin, end = a.local_to_world(limit.groove_a), a.local_to_world(limit.groove_b)

@@ -302,22 +302,24 @@ def rewritten(path: Path, script: ScriptSpace, step: float, change: Change) -> b
     if not script.name:
         raise refuse("the script", "its space has no name of its own where it is stepped, so no line can change it")
     lines = path.read_text(encoding="utf-8").splitlines()
-    before = None if script.line is None else script.line - 1
+    insert_at = None if script.line is None else script.line - 1
     marks = [next((i for i, line in enumerate(lines) if line.strip() == mark), None) for mark in (BEGIN, END)]
     has_earlier = None not in marks
     if has_earlier:
         begin, end = marks[0] or 0, (marks[1] or 0) + 1
-        before = before - (end - begin) if before is not None and before >= end else before
+        insert_at = insert_at - (end - begin) if insert_at is not None and insert_at >= end else insert_at
         del lines[begin:end]
     if script.ahead and not has_earlier:
         raise refuse(
             "the script", "its own lines start half a step ahead of a step of that length: change them by hand"
         )
     settings = _setting_lines(script, step, change, has_earlier)
-    before = len(lines) if before is None else before
-    indent = "" if before == len(lines) else lines[before][: len(lines[before]) - len(lines[before].lstrip())]
+    insert_at = len(lines) if insert_at is None else insert_at
+    indent = (
+        "" if insert_at == len(lines) else lines[insert_at][: len(lines[insert_at]) - len(lines[insert_at].lstrip())]
+    )
     block = [f"{indent}{line}".rstrip() for line in (BEGIN, *settings, END)]
-    return "\n".join([*lines[:before], *block, *lines[before:], ""]).encode()
+    return "\n".join([*lines[:insert_at], *block, *lines[insert_at:], ""]).encode()
 
 
 def _setting_lines(script: ScriptSpace, step: float, change: Change, has_earlier: bool) -> list[str]:
