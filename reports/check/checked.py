@@ -256,16 +256,18 @@ def check(
         raise Unsupported(f"{met.words} at {met.t:.3g} s, which an ideal mechanism doesn't know; {shorter}{met.remedy}")
     facts = compute_facts(mechanism, truth)
     on_progress("running your own settings")
-    own = model.run(samples, every)
-    reading = replace(reading, notes=(*model.remarks(own), *reading.notes))
+    user_run = model.run(samples, every)
+    reading = replace(reading, notes=(*model.remarks(user_run), *reading.notes))
 
     def progress(number: int, count: int) -> None:
         on_progress(f"trying documented settings, {number + 1} of {count}")
 
-    table = run_settings_sweep(reading, truth, samples, every, own, progress, plan, tolerance)
+    table = run_settings_sweep(reading, truth, samples, every, user_run, progress, plan, tolerance)
     on_progress("telling softness from the step")
     smaller = runs_by_step(table, table[0])[1 : 1 + SMALLER_STEPS]
-    parts = split_error(reading, truth, own, smaller, QUICK_TOLERANCE if plan.quick else SOFT_TOLERANCE, judge.horizon)
+    parts = split_error(
+        reading, truth, user_run, smaller, QUICK_TOLERANCE if plan.quick else SOFT_TOLERANCE, judge.horizon
+    )
     return CheckResult(
         name,
         reading,
@@ -275,7 +277,7 @@ def check(
         facts,
         judge,
         measure_errors(mechanism, truth, judge.looser),
-        find_opening(mechanism, own),
+        find_opening(mechanism, user_run),
         parts,
         table,
         has_tolerance,
@@ -305,8 +307,10 @@ def apply_advised(result: CheckResult, target: Path) -> Applied:
             f"--apply: no documented setting that was tried meets {result.tolerance:g}, so nothing was written; give "
             "--fix-to for a longer search, or a larger tolerance"
         )
-    own = result.table[0]
-    change, words = (own.change, "your settings as they are") if result.met else (advised.change, advised.change.words)
+    user_setting = result.table[0]
+    change, applied_words = (
+        (user_setting.change, "your settings as they are") if result.met else (advised.change, advised.change.words)
+    )
     text = source.path.read_bytes() if result.met else source.changed(change)
     try:
         # Beside the target, where the files that the model names are looked for.
@@ -321,12 +325,12 @@ def apply_advised(result: CheckResult, target: Path) -> Applied:
     except OSError as reason:
         raise Unsupported(f"--apply: {target} can't be written ({reason.strerror or reason})") from None
     notes = [f"{note.element}: {note.reason}" for note in reading.notes if note not in result.reading.notes]
-    promised = own.error if result.met else advised.error
+    promised = user_setting.error if result.met else advised.error
     if not error <= APPLY_MARGIN * promised + 1e-12:
         notes.append(
             f"{promised:.2g} was expected: some elements keep values of their own, such as those of an included file"
         )
-    return Applied(str(target), words, error, cpu, tuple(notes))
+    return Applied(str(target), applied_words, error, cpu, tuple(notes))
 
 
 def resample(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:

@@ -104,11 +104,11 @@ def compare_with_ideal(mechanism: Mechanism, engine: Engine | str, dt: float, du
 
 def _engine_named(name: str) -> Engine:
     """By "engine" or "engine variant". Raises ValueError."""
-    known = {method_name(engine): engine for engine in registry.ENGINES}
-    found = known.get(name) or known.get(f"{name} default")
-    if found is None:
-        raise ValueError(f"no engine is called {name!r}; there are {', '.join(known)}")
-    return found
+    engines = {method_name(engine): engine for engine in registry.ENGINES}
+    engine = engines.get(name) or engines.get(f"{name} default")
+    if engine is None:
+        raise ValueError(f"no engine is called {name!r}; there are {', '.join(engines)}")
+    return engine
 
 
 def draw_mechanism(mechanism: Mechanism, pose: Any = None) -> Picture:
@@ -116,10 +116,10 @@ def draw_mechanism(mechanism: Mechanism, pose: Any = None) -> Picture:
     with settings():
         figure = new_figure(3.4, LIGHT, width=4.6)
         panel = figure.subplots()
-        shown = mechanism.pose if pose is None else np.asarray(pose, dtype=float)
+        poses = mechanism.pose if pose is None else np.asarray(pose, dtype=float)
         draw_plane(panel, LIGHT, ground_points(mechanism))
-        draw_ideal(panel, LIGHT, pose_lines(mechanism, shown))
-        for body, (x, y, _) in zip(mechanism.bodies, shown, strict=True):
+        draw_ideal(panel, LIGHT, pose_lines(mechanism, poses))
+        for body, (x, y, _) in zip(mechanism.bodies, poses, strict=True):
             paper = {"facecolor": LIGHT.paper, "edgecolor": "none", "pad": 1.0}
             panel.annotate(body.name, (x, y), ha="center", va="center", color=LIGHT.ink, bbox=paper)
     title = f"A mechanism of {len(mechanism.bodies)} bodies"

@@ -134,9 +134,9 @@ def schema() -> dict[str, Any]:
 def _members(kind: str) -> Iterator[tuple[str, str, str, str]]:
     """(name, where it is found, type, words) of an object of OBJECTS."""
     for line in OBJECTS[kind].strip().splitlines():
-        name, its_kind, words = line.split(": ", 2)
-        name, _, place = name.partition(" = ")
-        yield name, place or name, its_kind, words
+        name, its_kind, description = line.split(": ", 2)
+        name, _, path = name.partition(" = ")
+        yield name, path or name, its_kind, description
 
 
 def _plain(kind: str, value: Any) -> Any:
@@ -144,18 +144,20 @@ def _plain(kind: str, value: Any) -> Any:
     if value is None:
         return None
     if kind.startswith("["):
-        return [_plain(kind[1:-1], each) for each in value]
+        return [_plain(kind[1:-1], item) for item in value]
     if kind == "object":
         return dict(value)
     if kind not in OBJECTS:
         return None if isinstance(value, float) and not math.isfinite(value) else value
-    known = value.get if isinstance(value, Mapping) else lambda place: attrgetter(place)(value)
-    return {name: _plain(its_kind, known(place)) for name, place, its_kind, _ in _members(kind)}
+    lookup = value.get if isinstance(value, Mapping) else lambda place: attrgetter(place)(value)
+    return {name: _plain(its_kind, lookup(place)) for name, place, its_kind, _ in _members(kind)}
 
 
 def _object(kind: str) -> dict[str, Any]:
-    own = {name: {**_type(its_kind), "description": words} for name, _, its_kind, words in _members(kind)}
-    return {"type": "object", "required": list(own), "additionalProperties": False, "properties": own}
+    properties = {
+        name: {**_type(its_kind), "description": description} for name, _, its_kind, description in _members(kind)
+    }
+    return {"type": "object", "required": list(properties), "additionalProperties": False, "properties": properties}
 
 
 def _type(kind: str) -> dict[str, Any]:
@@ -164,5 +166,5 @@ def _type(kind: str) -> dict[str, Any]:
     if kind.startswith("["):
         return {"type": "array", "items": _type(kind[1:-1])}
     if "|" in kind:
-        return {"anyOf": [_type(each) for each in kind.split("|")]}
+        return {"anyOf": [_type(alternative) for alternative in kind.split("|")]}
     return {"$ref": f"#/$defs/{kind}"} if kind in OBJECTS else {"type": TYPES[kind]}

@@ -67,9 +67,9 @@ def soft_motion(
         return np.concatenate([state[count:], change.reshape(-1)])
 
     start = np.concatenate([mechanism.pose.reshape(-1), (mechanism.twist if twist is None else twist).reshape(-1)])
-    found: Any = solve_ivp(rates, (0.0, float(t[-1])), start, "LSODA", t_eval=t, rtol=tolerance, atol=allowed)
+    solution: Any = solve_ivp(rates, (0.0, float(t[-1])), start, "LSODA", t_eval=t, rtol=tolerance, atol=allowed)
     out = np.full((len(t), *mechanism.pose.shape), np.nan)
-    out[: found.y.shape[1]] = found.y[:count].T.reshape(-1, *mechanism.pose.shape)
+    out[: solution.y.shape[1]] = solution.y[:count].T.reshape(-1, *mechanism.pose.shape)
     return out
 
 
@@ -123,15 +123,15 @@ def reference_motion(mechanism: Mechanism, samples: int, spacing: float, toleran
 
     run: Callable[[Mechanism], Trajectory] = by_multipliers
     motion, looser = run(mechanism), None
-    known = _is_accurate(mechanism, motion, tolerance)
-    if not known.all() and has_one_freedom(mechanism):
+    accurate = _is_accurate(mechanism, motion, tolerance)
+    if not accurate.all() and has_one_freedom(mechanism):
         along, beside = (
             motion_along_curve(mechanism, motion.t, size) for size in (ALONG_CURVE_TOLERANCE, LOOSER_CURVE_TOLERANCE)
         )
         along = replace(along, estimate=np.abs(along.pose - beside.pose))
-        known_along = _is_accurate(mechanism, along, tolerance)
-        if known_along.all():
-            motion, looser, known = along, beside, known_along
+        accurate_along = _is_accurate(mechanism, along, tolerance)
+        if accurate_along.all():
+            motion, looser, accurate = along, beside, accurate_along
             run = partial(motion_along_curve, t=motion.t, tolerance=ALONG_CURVE_TOLERANCE)
     sound = np.isfinite(motion.pose).all(axis=(1, 2))
     if not sound.all():
@@ -139,8 +139,8 @@ def reference_motion(mechanism: Mechanism, samples: int, spacing: float, toleran
             f"the ideal motion can't be followed beyond {motion.t[int(np.argmin(sound))]:.4g} s: the joints are in a "
             f"singular position or the forces grow without bound; give a shorter --duration"
         )
-    if not known.all():
-        if (last := int(np.argmin(known)) - 1) < 1:
+    if not accurate.all():
+        if (last := int(np.argmin(accurate)) - 1) < 1:
             raise InvalidMechanism(
                 f"the judge does not know the ideal motion to a tenth of the tolerance {tolerance:g} beyond "
                 f"{motion.t[max(last, 0)]:.4g} s: the joints are near a singular position; give a larger --tolerance"
@@ -331,8 +331,8 @@ def refuse_disagreement(reading: Reading) -> float:
     mechanism, model = reading.mechanism, reading.model
     give = model.regularisation(np.zeros(mechanism.row_count), mechanism.pose) if model.has_soft_joints else None
     expected = accelerations(mechanism, mechanism.pose, mechanism.twist, 0.0, give)
-    found = model.start()
-    off = _acceleration_difference(mechanism, found, expected)
+    computed = model.start()
+    off = _acceleration_difference(mechanism, computed, expected)
     if off <= START_AGREEMENT:
         return off
     for element in model.elements:
@@ -343,7 +343,7 @@ def refuse_disagreement(reading: Reading) -> float:
             )
     for element, reason in model.suspects.items():
         raise Unsupported(f"{element}: {reason}; at t = 0 the accelerations are wrong by {off:.1g} of themselves")
-    size = np.abs(found - expected) * [1.0, 1.0, mechanism.length_scale]
+    size = np.abs(computed - expected) * [1.0, 1.0, mechanism.length_scale]
     body = mechanism.bodies[int(size.max(axis=1).argmax())].name
     raise Unsupported(
         f"at t = 0 the accelerations of {model.engine} differ from those of the ideal mechanism by {off:.1g} of "

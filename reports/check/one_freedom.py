@@ -97,9 +97,9 @@ def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
     allowed: Any = tolerance * np.append(unit, speed)
     begin = np.append(mechanism.pose.reshape(-1), start)
     with np.errstate(all="ignore"):
-        found: Any = solve_ivp(rates, (0.0, float(t[-1])), begin, "DOP853", t_eval=t, rtol=tolerance, atol=allowed)
+        solution: Any = solve_ivp(rates, (0.0, float(t[-1])), begin, "DOP853", t_eval=t, rtol=tolerance, atol=allowed)
     out = np.full((len(t), count + 1), np.nan)
-    out[: found.y.shape[1]] = found.y.T
+    out[: solution.y.shape[1]] = solution.y.T
     return out
 
 

@@ -124,7 +124,7 @@ def pose_lines(mechanism: Mechanism, pose: Array) -> Pose:
             rails.append([(middle - way).tolist(), (middle + way).tolist()])
     for link in (*mechanism.joints, *mechanism.forces):
         if link.acts_along_line:
-            first, second = (point(*place) for place in link.points)
+            first, second = (point(*end) for end in link.points)
             if np.linalg.norm(second - first) < 3 * reach:  # a longer one represents a spring along a slide
                 links.append([first.tolist(), second.tolist()])
     for name, points in body_points(mechanism, pose).items():

@@ -124,12 +124,14 @@ def run_check(request: CheckRequest, model: Any = None) -> CheckReport | Refused
     if sentence := mislabelled():
         return Refused(sentence)
     tolerance = DEFAULT_TOLERANCE if request.tolerance is None else request.tolerance
-    trouble, drawn = "", {}
+    trouble, svg_pictures = "", {}
     try:
         note("reading")
-        terms = ReadingTerms(tuple(request.without), request.key, request.step)
+        reading_terms = ReadingTerms(tuple(request.without), request.key, request.step)
         reading = (
-            read_user_model(request.word, Path(request.folder), terms) if model is None else read_object(model, terms)
+            read_user_model(request.word, Path(request.folder), reading_terms)
+            if model is None
+            else read_object(model, reading_terms)
         )
         name = reading.title or Path(request.word).name
         result = check(reading, name, request.duration, tolerance, note, request.plan, request.tolerance is not None)
@@ -145,6 +147,6 @@ def run_check(request: CheckRequest, model: Any = None) -> CheckReport | Refused
         note("drawing")
         from reports.check.pictures import picture_data_of, render_pictures  # a second of imports
 
-        drawn = render_pictures(picture_data_of(result))
-    shown = answer_section(result), report_sections(result, drawn), summary_row(result)
-    return CheckReport(request, result.verdict, *shown, check_data(result), trouble)
+        svg_pictures = render_pictures(picture_data_of(result))
+    report_parts = answer_section(result), report_sections(result, svg_pictures), summary_row(result)
+    return CheckReport(request, result.verdict, *report_parts, check_data(result), trouble)

@@ -88,7 +88,7 @@ def run_settings_sweep(
     done = {0: result(changes[0], user_run)}
     for number, index in enumerate(order):
         change, settings = changes[index], list(done.values())
-        alike = [setting for setting in settings if setting.change.options == change.options]
+        same_options = [setting for setting in settings if setting.change.options == change.options]
         if plan.goal is not None and settings[-1].error <= plan.goal:
             break
         on_progress(number, len(order))
@@ -96,9 +96,9 @@ def run_settings_sweep(
         cost = steps * rates.get(change.options, max(rates.values()))
         if time.process_time() - begin + cost > plan.patience:
             continue
-        for_parts = plan.goal is None and alike[:1] == settings[:1] and len(alike) <= SMALLER_STEPS
+        for_parts = plan.goal is None and same_options[:1] == settings[:1] and len(same_options) <= SMALLER_STEPS
         dear = plan.goal is None and cost > _cost_limit(settings, tolerance)
-        if (dear or _has_plateaued(alike)) and not (all_wanted or for_parts):
+        if (dear or _has_plateaued(same_options)) and not (all_wanted or for_parts):
             continue
         run = model.run(samples, every, change)
         rates[change.options] = max(run.stepping / steps, rates.get(change.options, 0.0))

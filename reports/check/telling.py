@@ -187,17 +187,17 @@ def _written(result: CheckResult) -> str:
 
 def _front(result: CheckResult) -> tuple[tuple[str, ...], ...]:
     """The user's own settings, and those that none beats in both error and cost."""
-    shown = [result.table[0]]
+    rows_shown = [result.table[0]]
     for setting in pareto_front(result.table):
-        if setting is not result.table[0] and not setting.error > BETTER_ERROR * shown[-1].error:
-            shown.append(setting)
-    return tuple(_row(result, setting, "" if index else "yours") for index, setting in enumerate(shown))
+        if setting is not result.table[0] and not setting.error > BETTER_ERROR * rows_shown[-1].error:
+            rows_shown.append(setting)
+    return tuple(_row(result, setting, "" if index else "yours") for index, setting in enumerate(rows_shown))
 
 
 def _row(result: CheckResult, setting: SettingRun, *marks: str) -> tuple[str, ...]:
-    words = [*marks, "meets the tolerance" if setting.error <= result.tolerance else ""]
+    remarks = [*marks, "meets the tolerance" if setting.error <= result.tolerance else ""]
     cells = number(setting.error), number(setting.reaction), number(1e3 * setting.cost)
-    return setting.change.words, *cells, "; ".join(filter(None, words))
+    return setting.change.words, *cells, "; ".join(filter(None, remarks))
 
 
 def _read(result: CheckResult) -> Section:
@@ -266,9 +266,9 @@ def _opening(result: CheckResult) -> str:
 
 def _table(result: CheckResult) -> Section:
     """Every setting that was tried; of those with the same errors the cheapest, or the user's."""
-    alike: dict[tuple[str, str], list[SettingRun]] = {}
+    groups: dict[tuple[str, str], list[SettingRun]] = {}
     for setting in result.table:
-        alike.setdefault((number(setting.error), number(setting.reaction)), []).append(setting)
+        groups.setdefault((number(setting.error), number(setting.reaction)), []).append(setting)
 
     def row(group: list[SettingRun]) -> tuple[str, ...]:
         shown = group[0] if group[0] is result.table[0] else min(group, key=lambda setting: setting.cost)
@@ -280,5 +280,5 @@ def _table(result: CheckResult) -> Section:
         "alone, on this machine. Of settings with the same errors the cheapest is listed, or yours.",
     )
     return Section(
-        "What to change", sentences, header=SETTINGS_HEADER, rows=tuple(row(group) for group in alike.values())
+        "What to change", sentences, header=SETTINGS_HEADER, rows=tuple(row(group) for group in groups.values())
     )

@@ -115,12 +115,12 @@ def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkippe
 
     See `engines.Engine.instants`; errors are relative to the largest term of the law.
     """
-    here = _instants(engine, mechanism)
-    if isinstance(here, NotDeclared):
-        return CheckSkipped(here.reason)
+    declared_instants = _instants(engine, mechanism)
+    if isinstance(declared_instants, NotDeclared):
+        return CheckSkipped(declared_instants.reason)
     bound = max(LAW_TOLERANCE, PRECISION_MARGIN * engine.precision)
     missed: dict[str, float] = {}
-    for instant in here:
+    for instant in declared_instants:
         missed[instant.check] = max(missed.get(instant.check, 0.0), _instant_error(mechanism, instant))
     noise = dict.fromkeys(missed, 0.0)
     if all(error <= bound for error in missed.values()):
@@ -128,7 +128,9 @@ def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkippe
     for nudged, back in iter_nudged(mechanism):
         others = _instants(engine, nudged)
         if not isinstance(others, NotDeclared):
-            for instant, other in zip(here, others, strict=False):  # the later states of one may be left out
+            for instant, other in zip(
+                declared_instants, others, strict=False
+            ):  # the later states of one may be left out
                 noise[instant.check] = max(noise[instant.check], _nudge_effect(mechanism, instant, other, back))
     return {check: (error, max(bound, NOISE_MARGIN * noise[check])) for check, error in missed.items()}
 
@@ -144,11 +146,11 @@ def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDe
 
     rolls = any(isinstance(joint, Roll) for joint in mechanism.joints)
     short = turned_in_a_step(mechanism, dt, mechanism.pose, mechanism.twist) <= 1 and not rolls
-    found = engine.stepped(mechanism).instants(mechanism, dt, INSTANT_STEPS if short else 0)
-    if isinstance(found, NotDeclared):
-        return found
-    first = len({instant.check for instant in found})
-    return [instant for place, instant in enumerate(found) if place < first or followed(instant)]
+    declared = engine.stepped(mechanism).instants(mechanism, dt, INSTANT_STEPS if short else 0)
+    if isinstance(declared, NotDeclared):
+        return declared
+    first = len({instant.check for instant in declared})
+    return [instant for index, instant in enumerate(declared) if index < first or followed(instant)]
 
 
 def _instant_error(mechanism: Mechanism, instant: Instant) -> float:

@@ -162,11 +162,11 @@ class _Draw:
         at, turn = self.two(6), self.whole(-10, 10)
         if self.chance(6):
             at = (0, 0)  # the centre of mass is a place of its own in many an adapter
-        more, rims = 0, ()
+        along, rims = 0, ()
         if kind == "drive":
-            more = self.whole(-6, 6)
+            along = self.whole(-6, 6)
         elif kind == "slot":
-            more = self.whole(-8, 8)
+            along = self.whole(-8, 8)
         elif kind == "roll":
             pair = RIM_PAIRS[self.whole(0, len(RIM_PAIRS) - 1)]
             rims = tuple(Rim(shape, self.whole(-3, 0), self.whole(-2, 2), self.whole(-10, 10)) for shape in pair)
@@ -175,25 +175,27 @@ class _Draw:
             rims = tuple(rim if rim.shape == "ellipse" else Rim(rim.shape, rim.size) for rim in rims)
         elif kind not in FIRST_KINDS:
             return self._further(kind, first, second, at, turn)
-        return RecipeLink(kind, first, second, at, turn, more, rims)
+        return RecipeLink(kind, first, second, at, turn, along, rims)
 
     def _further(self, kind: str, first: int, second: int, at: tuple[int, int], turn: int) -> RecipeLink:
         """Draw a link of a later kind; its distance, ratio or force is not zero."""
-        more = self.whole(1, 8) * (1 if self.chance(2) else -1)
+        amount = self.whole(1, 8) * (1 if self.chance(2) else -1)
         strength, rest = self.whole(-2, 4), self.whole(-10, 10)
         if kind in ("rod", "gear", "force", "torque"):
-            return RecipeLink(kind, first, second, at, turn, more)
+            return RecipeLink(kind, first, second, at, turn, amount)
         if kind == "weld":
             return RecipeLink(kind, first, second, at)
         if kind == FOLD and first:
             parallel = self.chance(2)
             strength, far = self.whole(2, 5), self.two(6)
             return RecipeLink(
-                kind, first, second, at, 0, more, strength=strength, rest=0 if parallel else rest, far=far
+                kind, first, second, at, 0, amount, strength=strength, rest=0 if parallel else rest, far=far
             )
         if kind in SINGULAR_KINDS:
-            return RecipeLink(TOGGLE, first, second, at, turn, more, strength=self.whole(3, 5))
-        return RecipeLink(kind, first, second, at, turn, more, strength=strength, rest=rest if "spring" in kind else 0)
+            return RecipeLink(TOGGLE, first, second, at, turn, amount, strength=self.whole(3, 5))
+        return RecipeLink(
+            kind, first, second, at, turn, amount, strength=strength, rest=rest if "spring" in kind else 0
+        )
 
 
 def _with_pins(link: RecipeLink) -> tuple[RecipeLink, ...]:
@@ -223,19 +225,19 @@ def recipe_of_shape(engine: Engine, seed: int, number: int, kinds: tuple[str, ..
 
 @lru_cache(maxsize=8)
 def _shapes(engine: Engine, seed: int, kinds: tuple[str, ...], decades: int) -> tuple[Recipe, ...]:
-    found: list[Recipe] = []
+    shapes: list[Recipe] = []
     for number in range(SHAPE_TRIALS):
-        drawn = recipe(seed, number, kinds, decades)
-        joints = [link for link in drawn.links if link.kind not in FORCE_KINDS]
-        if len(found) % 2 and len(joints) <= len(drawn.parts):
+        candidate = recipe(seed, number, kinds, decades)
+        joints = [link for link in candidate.links if link.kind not in FORCE_KINDS]
+        if len(shapes) % 2 and len(joints) <= len(candidate.parts):
             continue
-        mechanism = build(drawn)
+        mechanism = build(candidate)
         with suppress(Unsupported):
             engine.build(mechanism, mechanism.time_scale)
-            found.append(drawn)
-        if len(found) == SHAPE_COUNT:
+            shapes.append(candidate)
+        if len(shapes) == SHAPE_COUNT:
             break
-    return tuple(found)
+    return tuple(shapes)
 
 
 def renumber(shape: Recipe, whole: Whole) -> Recipe:
@@ -260,10 +262,10 @@ def renumber(shape: Recipe, whole: Whole) -> Recipe:
         moving = whole(1, 4) > 1
         pull = (whole(-10, 10), whole(-10, 10)) if not moving or whole(0, 1) else (0, 0)
         parts, links = tuple(map(part, shape.parts)), tuple(map(link, shape.links))
-        drawn = replace(shape, parts=parts, links=links, gravity=pull)
+        candidate = replace(shape, parts=parts, links=links, gravity=pull)
         try:
-            mechanism = build(drawn)
+            mechanism = build(candidate)
         except InvalidMechanism:  # rows that are nearly dependent
             continue
         if any(pull) or mechanism.twist.any():
-            return drawn
+            return candidate

@@ -179,8 +179,8 @@ class _Case:
             far = errors["motion"] * self.size > DISTANT_POSE * self.mechanism.length_scale
             for name, error in errors.items():
                 floor = DIVERGED_ERROR if far and name == "reactions" else ERROR_FLOORS[name]
-                known = floor < DIVERGED_ERROR and (coarser[name] < DIVERGED_ERROR or parts == FINEST_DIVISION)
-                if known and (name not in out or not out[name][0] <= out[name][1]):
+                is_comparable = floor < DIVERGED_ERROR and (coarser[name] < DIVERGED_ERROR or parts == FINEST_DIVISION)
+                if is_comparable and (name not in out or not out[name][0] <= out[name][1]):
                     out[name] = (error, _tolerance_for(self.promise, name, coarser[name], floor))
         # What two steps after each other say nothing of is silent.
         if warned and longest < 2 and (_fails(out) or not np.isfinite(run.pose).all()):
@@ -223,7 +223,7 @@ class _Case:
         if stricter is not None:
             pairs.append((_run(stricter, self.mechanism, self.dt, parts), run))
         differences = [self.apart(*pair) for pair in pairs]
-        return {name: max(each[name] for each in differences) for name in ERROR_FLOORS}
+        return {name: max(pair_difference[name] for pair_difference in differences) for name in ERROR_FLOORS}
 
     def resolved(self, parts: int) -> bool:
         """Whether a textbook method of the declared order (at most 4) converges with it in two successive halvings.
@@ -241,10 +241,10 @@ class _Case:
             ]
         except ValueError:  # it went where curves can't touch
             return False
-        found = [self.apart(run) for run in runs]
+        differences = [self.apart(run) for run in runs]
         return not any(
             _fails({name: (fine[name], _tolerance_for(usual, name, coarse[name], ERROR_FLOORS[name])) for name in fine})
-            for coarse, fine in pairwise(found)
+            for coarse, fine in pairwise(differences)
         )
 
     def as_declared(self, run: Trajectory, parts: int) -> dict[str, tuple[float, float]]:
@@ -291,7 +291,9 @@ class _Case:
     def estimated(self, run: Trajectory) -> float:
         """Tolerance from the error estimates of a run and of the judge, relative to the motion."""
         arm = np.array([1.0, 1.0, self.mechanism.length_scale])
-        estimates = [np.abs(one * arm).max() for one in (run.estimate, self.truth.estimate) if one is not None]
+        estimates = [
+            np.abs(estimate * arm).max() for estimate in (run.estimate, self.truth.estimate) if estimate is not None
+        ]
         return ESTIMATE_MARGIN * float(max(estimates)) / self.size + ERROR_FLOORS["motion"]
 
     def of_estimate(self, run: Trajectory, parts: int) -> tuple[float, float]:
@@ -336,13 +338,13 @@ def check_claims(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> di
     missed = np.nan_to_num(np.abs(run.pose - truth.pose[at]) / [length, length, 1.0], nan=np.inf).max(axis=(1, 2))
     until = run.t < (np.inf if run.unresolved_at is None else run.unresolved_at)
     of_reactions = run.warnings_of("reactions")
-    told = run.unresolved_at is not None or len(of_reactions) < len(run.warnings)
+    has_reported = run.unresolved_at is not None or len(of_reactions) < len(run.warnings)
     out = {}
-    if run.unresolved_at is not None or not told:
+    if run.unresolved_at is not None or not has_reported:
         out[CLAIMED_POSES] = (float(missed[until].max(initial=0.0)), CLAIM)
     if missed.max() <= CLAIM:
-        out[NEEDLESS_REPORT] = (float(told), 1.0)
-    if mechanism.row_count and not told and not of_reactions:
+        out[NEEDLESS_REPORT] = (float(has_reported), 1.0)
+    if mechanism.row_count and not has_reported and not of_reactions:
         off = np.nan_to_num(run.reaction[1:] - truth.reaction[at][1:]) / arm
         largest = largest_force(mechanism, truth.pose[at], truth.twist[at], truth.reaction[at])
         out[CLAIMED_REACTIONS] = (float(np.abs(off).max()) / largest, FORCES)

@@ -121,8 +121,8 @@ def to_mjcf(model: RawModel) -> str:
     ET.SubElement(root, "option", gravity=text(*model.gravity, 0), jacobian=jacobian, tolerance="1e-20")
     elements = [ET.SubElement(root, "worldbody")]
     for number, part in enumerate(model.parts, start=1):
-        place, turn = text(*np.divide(part.offset, 10), 0), text(0, 0, 1, part.angle * 0.3)
-        body = ET.SubElement(elements[part.parent], "body", name=f"b{number}", pos=place, axisangle=turn)
+        position, turn = text(*np.divide(part.offset, 10), 0), text(0, 0, 1, part.angle * 0.3)
+        body = ET.SubElement(elements[part.parent], "body", name=f"b{number}", pos=position, axisangle=turn)
         elements.append(body)
         for name in part.rates:
             axis = {"slide 0": "1 0 0", "slide 1": "0 1 0", "hinge": "0 0 1"}[name]
@@ -172,13 +172,13 @@ def _frames(model: RawModel, q: Numbers, v: Numbers) -> list[Frame]:
     values = {name: (q[number], v[number]) for number, name in enumerate(coordinates(model))}
     frames: list[Frame] = [(np.zeros(2), 0.0, np.zeros(2), 0.0)]
     for number, part in enumerate(model.parts, start=1):
-        place, angle, speed, rate = frames[part.parent]
+        position, angle, speed, rate = frames[part.parent]
         angle = angle + part.angle * 0.3
         slides = [values.get((number, name), (0.0, 0.0)) for name in ("slide 0", "slide 1")]
         hinge = values.get((number, "hinge"), (0.0, 0.0))
         arm = _turned(angle - part.angle * 0.3, np.divide(part.offset, 10)) + _turned(angle, [s for s, _ in slides])
         speed = speed + rate * _across(arm) + _turned(angle, [ds for _, ds in slides])
-        frames.append((place + arm, angle + hinge[0], speed, rate + hinge[1]))
+        frames.append((position + arm, angle + hinge[0], speed, rate + hinge[1]))
     return frames
 
 
@@ -192,17 +192,17 @@ def _velocities(model: RawModel, q: Numbers, v: Numbers) -> Numbers:
 
 def _slips(model: RawModel, q: Numbers, v: Numbers) -> list[Numbers]:
     """The velocities (rows,) with which each equality would open; anchors are those of the start, where q is 0."""
-    still, frames = _frames(model, 0.0 * q.real, 0.0 * q.real), _frames(model, q, v)
+    start_frames, frames = _frames(model, 0.0 * q.real, 0.0 * q.real), _frames(model, q, v)
     out: list[Numbers] = []
     for link in model.links:
         if link.kind in ("connect", "weld"):
             if not 0 < link.first < len(frames) or not 0 <= link.second < len(frames) or link.first == link.second:
                 raise InvalidMechanism(f"model: an equality joins bodies {link.first} and {link.second}")
-            anchor = _turned(still[link.first][1], np.divide(link.at, 10)) + still[link.first][0]
+            anchor = _turned(start_frames[link.first][1], np.divide(link.at, 10)) + start_frames[link.first][0]
             speeds = []
             for body in (link.first, link.second):
                 _, angle, speed, rate = frames[body]
-                arm = _turned(angle - still[body][1], anchor - still[body][0])
+                arm = _turned(angle - start_frames[body][1], anchor - start_frames[body][0])
                 speeds.append([*(speed + rate * _across(arm)), rate][: 2 if link.kind == "connect" else 3])
             out.append(np.subtract(*speeds))
         else:
@@ -244,18 +244,18 @@ class StartEquations:
 def start_equations(model: RawModel) -> StartEquations:
     """Raises InvalidMechanism where rows are nearly dependent, or something is joined with itself."""
     order = coordinates(model)
-    count, still = len(order), np.zeros(len(order))
-    slips = [_slips(model, still, unit) for unit in np.eye(count)]
+    count, zeros = len(order), np.zeros(len(order))
+    slips = [_slips(model, zeros, unit) for unit in np.eye(count)]
     rows = tuple(np.array([slip[number] for slip in slips]).T for number in range(len(model.links)))
     rates = np.array([model.parts[body - 1].rates[name] for body, name in order])
     if rows:
-        whole = np.vstack(rows)
-        sizes = np.linalg.svd(whole, compute_uv=False)
-        if len(whole) > count or not sizes[-1] > DEPENDENCE_LIMIT * sizes[0]:
+        all_rows = np.vstack(rows)
+        sizes = np.linalg.svd(all_rows, compute_uv=False)
+        if len(all_rows) > count or not sizes[-1] > DEPENDENCE_LIMIT * sizes[0]:
             raise InvalidMechanism("model: an equality holds nothing, or the equalities' rows are nearly dependent")
-        wanted, inverse = rates, np.linalg.pinv(whole)
+        wanted, inverse = rates, np.linalg.pinv(all_rows)
         for _ in range(2):  # the second time for the rounding of the first
-            rates = rates - inverse @ (whole @ rates)
+            rates = rates - inverse @ (all_rows @ rates)
         if np.abs(rates).max(initial=0.0) <= MOTION_ROUNDING * np.abs(wanted).max(initial=0.0):
             rates = np.zeros(count)
     ahead = 1j * DERIVATIVE_STEP * rates
@@ -265,7 +265,7 @@ def start_equations(model: RawModel) -> StartEquations:
         np.zeros_like(each) if link.kind in HINGED_KINDS else each
         for link, each in zip(model.links, right, strict=True)
     )
-    directions = np.array([_velocities(model, still, unit) for unit in np.eye(count)]).T.reshape(-1, count)
+    directions = np.array([_velocities(model, zeros, unit) for unit in np.eye(count)]).T.reshape(-1, count)
     weights = np.sqrt([w for p in model.parts for w in (*[float(ladder(p.mass))] * 2, float(ladder(p.inertia)))])
     orthogonal, root = np.linalg.qr(weights[:, None] * directions)
     free = orthogonal.T @ (weights * (np.tile([*model.gravity, 0.0], len(model.parts)) - change))
@@ -279,9 +279,9 @@ def draw_model(seed: int, number: int, kinds: tuple[str, ...]) -> RawModel:
     """
     random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, len(kinds)])))
     while True:
-        drawn = _draw_once(random, kinds)
-        if drawn.links and (any(drawn.gravity) or start_equations(drawn).rates.any()):
-            return drawn
+        candidate = _draw_once(random, kinds)
+        if candidate.links and (any(candidate.gravity) or start_equations(candidate).rates.any()):
+            return candidate
 
 
 def _draw_once(random: np.random.Generator, kinds: tuple[str, ...]) -> RawModel:
@@ -315,10 +315,10 @@ def _draw_once(random: np.random.Generator, kinds: tuple[str, ...]) -> RawModel:
         if kind not in ("connect", "weld"):
             slope, bend = two(4)
             curve = (slope, 0 if kind == "gear" else bend)
-        more = replace(out, links=(*out.links, Equality(kind, first, second, at, curve)))
+        extended = replace(out, links=(*out.links, Equality(kind, first, second, at, curve)))
         try:
-            start_equations(more)
+            start_equations(extended)
         except InvalidMechanism:
             continue
-        out = more
+        out = extended
     return out

@@ -42,27 +42,29 @@ ROW_INCHES = 0.24  # inches
 
 def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figure | None:
     """A line for each subject from the median to the largest error of instants; None if no case has such an error."""
-    found: dict[str, list[float]] = {}
+    errors_by_subject: dict[str, list[float]] = {}
     for case in cases:
         for law in LAW_CHECKS:
             if law in case.result.errors:
-                found.setdefault(case.chunk.subject.name, []).append(case.result.errors[law][0])
-    if not found:
+                errors_by_subject.setdefault(case.chunk.subject.name, []).append(case.result.errors[law][0])
+    if not errors_by_subject:
         return None
     with settings():
-        figure = new_figure(0.9 + ROW_INCHES * len(found), theme, 7.0)
+        figure = new_figure(0.9 + ROW_INCHES * len(errors_by_subject), theme, 7.0)
         axes = figure.subplots()
         style_axes(axes, theme)
         axes.grid(False, axis="y")
-        for place, errors in enumerate(found.values()):
+        for row, errors in enumerate(errors_by_subject.values()):
             ordered = np.sort(np.clip(np.nan_to_num(errors, posinf=AXIS_MOST), AXIS_LEAST, AXIS_MOST))
             median, most = ordered[len(ordered) // 2], ordered[math.ceil(0.99 * (len(ordered) - 1))]
-            axes.plot([median, ordered[-1]], [place, place], color=theme.first, linewidth=1.2)
+            axes.plot([median, ordered[-1]], [row, row], color=theme.first, linewidth=1.2)
             for value, mark, size in ((median, "o", 5), (most, "|", 8), (ordered[-1], ".", 6)):
-                axes.plot([value], [place], mark, color=theme.first, markersize=size)
+                axes.plot([value], [row], mark, color=theme.first, markersize=size)
         axes.axvline(1e-9, color=theme.quiet, linewidth=0.8, linestyle=(0, (4, 3)))
-        axes.set_yticks(range(len(found)), [f"{name} ({len(errors)})" for name, errors in found.items()])
-        axes.set_ylim(len(found) - 0.4, -0.6)
+        axes.set_yticks(
+            range(len(errors_by_subject)), [f"{name} ({len(errors)})" for name, errors in errors_by_subject.items()]
+        )
+        axes.set_ylim(len(errors_by_subject) - 0.4, -0.6)
         axes.set_xscale("log")
         axes.set_xlim(AXIS_LEAST / 3, AXIS_MOST)
         axes.set_xlabel("relative error; circle: median, bar: 99 %, dot: worst; (cases)")
@@ -74,7 +76,7 @@ def known_subjects(texts: Sequence[str]) -> list[Subject]:
     """Every registered engine, and MuJoCo alone in the releases that occur in these chunks (JSON texts)."""
     releases = dict.fromkeys(release_of(json.loads(text)[0]) for text in texts)
     engines = dict.fromkeys([*ENGINES, *OTHERS, plan.GROOVE_SUBJECT.engine])
-    return [*(Adapted(engine) for engine in engines), *(Alone(each) for each in releases if each is not None)]
+    return [*(Adapted(engine) for engine in engines), *(Alone(release) for release in releases if release is not None)]
 
 
 Stored = tuple[list[CaseResult], list[tuple[Shrink, Answer]], Mapping[PlantedControl, Answer]]
@@ -91,8 +93,8 @@ def read_stored(store: Store, published: bool = False) -> Stored:
     cases = list(iter_case_results(stored_answers(store, plan.published_chunks() if published else pieces)))
     tasks = [Shrink.of(check, case) for check, case in choose_worst(cases)]
     small, soon = store.answers(tasks), store.answers(all_controls())
-    found = [(task, small[task]) for task in tasks if task in small]
-    return cases, found, {task: soon[task] for task in all_controls() if task in soon}
+    reduced = [(task, small[task]) for task in tasks if task in small]
+    return cases, reduced, {task: soon[task] for task in all_controls() if task in soon}
 
 
 def render_page(
@@ -133,8 +135,8 @@ def render_page(
 
 def _shown_oracles(cases: Sequence[CaseResult]) -> list[Oracle]:
     """The default oracles and those with which these cases were run."""
-    drawn = {name for case in cases for name in case.chunk.oracles}
-    return [oracle for name, oracle in ORACLES.items() if oracle.is_default or name in drawn]
+    used = {name for case in cases for name in case.chunk.oracles}
+    return [oracle for name, oracle in ORACLES.items() if oracle.is_default or name in used]
 
 
 def _count_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
@@ -160,7 +162,7 @@ def _skip_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
     rest = sum(count for *_, count in reasons) - sum(count for *_, count in frequent)
     rare_row = [["all", f"{len(reasons) - len(frequent)} rarer reasons", str(rest)]] if rest else []
     columns = {name: oracle.column for name, oracle in ORACLES.items()}
-    return [[columns.get(name, name), why, str(count)] for name, why, count in frequent] + rare_row
+    return [[columns.get(name, name), text, str(count)] for name, text, count in frequent] + rare_row
 
 
 def _finding_rows(cases: Sequence[CaseResult], small: Sequence[tuple[Shrink, Answer]]) -> list[list[str]]:

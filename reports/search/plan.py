@@ -98,7 +98,9 @@ def fresh_chunks(subjects: Sequence[Subject], cases: int) -> Iterator[list[Chunk
         seed, decades = secrets.randbits(31), SEED_DECADES[number % len(SEED_DECADES)]
         mixed = secrets.SystemRandom().sample(subjects, len(subjects))  # so that all have their turn in a short run
         yield [
-            piece for one in mixed for piece in make_chunks([one], seed, cases, _kinds(one), decades, DEFAULT_ORACLES)
+            piece
+            for subject in mixed
+            for piece in make_chunks([subject], seed, cases, _kinds(subject), decades, DEFAULT_ORACLES)
         ]
 
 

@@ -202,17 +202,19 @@ class PlantedControl(Task):
 
         "built": whether the engine builds this kind; "asked": number of cases that were judged.
         """
-        engines, kind, asked = CONTROL_ENGINES[self.name], PlantedFault(self.fault, 0.0).kind, 0
+        engines, kind, judged_count = CONTROL_ENGINES[self.name], PlantedFault(self.fault, 0.0).kind, 0
         built = kind not in ALL_KINDS or kind in supported_kinds(engines[0])
         size, case, check = np.nan, np.nan, ""
-        for tried in self.sizes if built else ():
-            for number, was_asked, check in search_with_fault(engines, PlantedFault(self.fault, tried), self.cases):
-                asked += was_asked
+        for fault_size in self.sizes if built else ():
+            for number, was_asked, check in search_with_fault(
+                engines, PlantedFault(self.fault, fault_size), self.cases
+            ):
+                judged_count += was_asked
                 if check:
-                    size, case = tried, number
-            if check or not asked:
+                    size, case = fault_size, number
+            if check or not judged_count:
                 break
-        numbers = {"size": size, "case": case, "built": built, "asked": asked}
+        numbers = {"size": size, "case": case, "built": built, "asked": judged_count}
         return {name: np.array(value) for name, value in numbers.items()} | {"check": check}
 
 
@@ -235,8 +237,8 @@ def search_with_fault(engines: tuple[Engine, ...], change: PlantedFault, cases: 
             faults = [check for check in result.faults if check != "raised"]
             faults = [check for check in faults if not change.is_relation or check == change.kind]
             if faults:
-                before = right.ask(case, number, (oracle,)).faults
-                faults = [check for check in faults if check not in before]
+                right_faults = right.ask(case, number, (oracle,)).faults
+                faults = [check for check in faults if check not in right_faults]
             yield number, bool(result.errors), f"{engine.variant}: {faults[0]}" if faults else ""
             if faults:
                 return

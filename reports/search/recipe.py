@@ -150,11 +150,11 @@ class Standing:
         if not math.hypot(across, up) > 0:
             raise InvalidMechanism(f"recipe: joint {number} is a fold whose two pins are at one place")
         beyond, miss = link.more / 10, 10.0**-link.strength
-        further = beyond * (1 + link.rest / 10)
-        one = self._moved(link.first, other, beyond * across, beyond * up)
-        two = self._moved(link.second, pin, further * across - miss * up, further * up + miss * across)
-        length = math.hypot(across, up) * math.hypot(1 + beyond - further, miss)
-        return Rod(f"{link.kind} {number}", *self._ends(link), one, two, length)
+        end_share = beyond * (1 + link.rest / 10)
+        first_point = self._moved(link.first, other, beyond * across, beyond * up)
+        second_point = self._moved(link.second, pin, end_share * across - miss * up, end_share * up + miss * across)
+        length = math.hypot(across, up) * math.hypot(1 + beyond - end_share, miss)
+        return Rod(f"{link.kind} {number}", *self._ends(link), first_point, second_point, length)
 
     def _force(self, link: RecipeLink, number: int) -> ForceElement:
         """The force of a link. Raises InvalidMechanism for one that can't be.

@@ -156,11 +156,11 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
 
 def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
     """One call of mj_forward, and the expected accelerations; `other`: another release, or empty."""
-    rates, told = mujoco_alone.start_equations(model).rates, check_accelerations(model, other)
+    rates, accelerations = mujoco_alone.start_equations(model).rates, check_accelerations(model, other)
     names = ", ".join(f"b{body} {what}" for body, what in mujoco_alone.coordinates(model))
     lines = [f"data.qvel[:] = {rates.tolist()!r}", "mujoco.mj_forward(model, data)"]
-    title = f"accelerations of {names}; expected with the R of MuJoCo {told['version']}"
-    block = Block(title, [*_model_lines(mujoco_alone.to_mjcf(model)), *lines], "data.qacc", told["expected"])
+    title = f"accelerations of {names}; expected with the R of MuJoCo {accelerations['version']}"
+    block = Block(title, [*_model_lines(mujoco_alone.to_mjcf(model)), *lines], "data.qacc", accelerations["expected"])
     return _render_script(None, [block], DECLARED_LAW)
 
 

@@ -22,14 +22,14 @@ from reports.search.subjects import OracleResult, Subject
 def shrink_case(case: Case, still: Callable[[Case], bool], seconds: float) -> Case:
     """The smallest case found within `seconds` of CPU time; `still`: whether a smaller case fails in the same way."""
     end = time.process_time() + seconds
-    tried: set[Case] = {case}
+    seen: set[Case] = {case}
     going = True
     while going and time.process_time() < end:
         going = False
         for smaller in (*_with_less(case), *_with_smaller_numbers(case)):
-            if smaller in tried:
+            if smaller in seen:
                 continue
-            tried.add(smaller)
+            seen.add(smaller)
             if still(smaller):
                 case, going = smaller, True
                 break
@@ -75,11 +75,11 @@ def _with_smaller_numbers(value: Any) -> Iterator[Any]:
                 for smaller in _with_smaller_numbers(getattr(value, field.name)):
                     yield replace(value, **{field.name: smaller})
     elif isinstance(value, tuple):
-        if value and all(type(one) is int for one in value) and any(value) and len(value) > 1:
+        if value and all(type(item) is int for item in value) and any(value) and len(value) > 1:
             yield tuple(0 for _ in value)
-        for place, one in enumerate(value):
-            for smaller in _with_smaller_numbers(one):
-                yield (*value[:place], smaller, *value[place + 1 :])
+        for index, item in enumerate(value):
+            for smaller in _with_smaller_numbers(item):
+                yield (*value[:index], smaller, *value[index + 1 :])
     elif isinstance(value, bool):
         if value:
             yield False
@@ -178,13 +178,13 @@ def _kind_of(result: OracleResult) -> str:
 
 def choose_worst(cases: Iterable[CaseResult], most: int = FINDINGS_SHRUNK) -> list[tuple[str, CaseResult]]:
     """(check, case): of each check of each subject those with fewest kinds of joints, at most so many; one of a set."""
-    found: dict[tuple[str, str], dict[tuple[str, ...], CaseResult]] = {}
+    by_check: dict[tuple[str, str], dict[tuple[str, ...], CaseResult]] = {}
     for case in cases:
         for check in case.result.faults[:1]:
-            found.setdefault((case.chunk.subject.name, check), {}).setdefault(case.kinds, case)
+            by_check.setdefault((case.chunk.subject.name, check), {}).setdefault(case.kinds, case)
     return [
         (check, case)
-        for (_, check), kinds in found.items()
+        for (_, check), kinds in by_check.items()
         for case in sorted(kinds.values(), key=lambda case: (len(case.kinds), case.number))[:most]
     ]
 

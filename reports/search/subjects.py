@@ -118,28 +118,28 @@ def _run_oracles(oracles: Mapping[str, Callable[[], Errors | CheckSkipped]], eng
     """Run oracles; an exception is a fault of the engine (None for MuJoCo alone) if its code raised it, else ours."""
     errors: dict[str, tuple[float, float]] = {}
     skipped: list[str] = []
-    words: list[str] = []
+    messages: list[str] = []
     with np.errstate(all="ignore"):
         for name, oracle in oracles.items():
             try:
-                found = oracle()
+                answer = oracle()
             except Unsupported as reason:
-                return OracleResult(errors, (f"unsupported: {reason}",), "; ".join(words))
+                return OracleResult(errors, (f"unsupported: {reason}",), "; ".join(messages))
             except Fault as reason:
                 errors[name] = (np.inf, 0.0)
-                words.append(str(reason))
+                messages.append(str(reason))
             except ImportError:  # a missing module is no fault of an engine
                 raise
             except Exception as error:  # whatever an adapter raises that is no refusal is a fault of its own
                 blamed = engine is not None and _passed_through(error, engine)
                 errors["raised" if blamed else OUR_ERROR] = (np.inf, 0.0)
-                words.append(f"{'' if blamed else 'ours: '}{type(error).__name__}: {error}"[:300])
+                messages.append(f"{'' if blamed else 'ours: '}{type(error).__name__}: {error}"[:300])
             else:
-                if isinstance(found, CheckSkipped):
-                    skipped.append(f"{name}: {found.reason}")
+                if isinstance(answer, CheckSkipped):
+                    skipped.append(f"{name}: {answer.reason}")
                 else:
-                    errors.update(found)
-    return OracleResult(errors, tuple(skipped), "; ".join(words))
+                    errors.update(answer)
+    return OracleResult(errors, tuple(skipped), "; ".join(messages))
 
 
 def _passed_through(error: Exception, engine: Engine) -> bool:
