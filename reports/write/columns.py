@@ -15,7 +15,7 @@ from types import MappingProxyType
 
 from engines import Enforcement, Engine
 from engines.registry import method_name
-from reference.joints import Joint, Skate
+from reference.joints import Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.scene import Scene
@@ -76,28 +76,23 @@ def describe_enforcement(engine: Engine, mechanism: Mechanism) -> str:
 
     Joints are named by their kind, and by their own names where joints of one kind differ.
     """
-    by_joint: list[tuple[Joint, Enforcement]] = [
-        (joint, engine.enforcement(joint, mechanism)) for joint in mechanism.joints
+    joints: list[tuple[str, str, Enforcement]] = [
+        (type(joint).__name__.lower(), joint.name, engine.enforcement(joint, mechanism)) for joint in mechanism.joints
     ]
     by_kind: dict[str, set[Enforcement]] = {}
-    for joint, enforcement in by_joint:
-        by_kind.setdefault(_kind(joint), set()).add(enforcement)
+    for kind, _, enforcement in joints:
+        by_kind.setdefault(kind, set()).add(enforcement)
     names: dict[Enforcement, dict[str, None]] = {}
-    for joint, enforcement in by_joint:
-        name = _kind(joint) if len(by_kind[_kind(joint)]) == 1 else joint.name
-        names.setdefault(enforcement, {})[name] = None
+    for kind, name, enforcement in joints:
+        names.setdefault(enforcement, {})[kind if len(by_kind[kind]) == 1 else name] = None
     if len(names) <= 1:
         return next((ENFORCEMENT_LABELS[enforcement] for enforcement in names), "no joints")
     others = [
-        f"{' and '.join(joints)}: {ENFORCEMENT_LABELS[enforcement]}"
-        for enforcement, joints in sorted(names.items())
+        f"{' and '.join(of_one)}: {ENFORCEMENT_LABELS[enforcement]}"
+        for enforcement, of_one in sorted(names.items())
         if enforcement != "engine"
     ]
     return "; ".join(["engine", *others] if "engine" in names else others)
-
-
-def _kind(joint: Joint) -> str:
-    return type(joint).__name__.lower()
 
 
 @cache  # a method examines its whole model for each joint, and a scene may have a hundred
@@ -114,10 +109,8 @@ def enforcement_by_method(cells: Iterable[Cell]) -> dict[str, str]:
     return {method: " or ".join(descriptions) for method, descriptions in found.items()}
 
 
-# CPU seconds per simulated second within which methods are compared: a hundredth of real time.
-CPU_BUDGET = 1e-2
-# CPU times within the scatter of timings above the budget are accepted.
-ACCEPTED_CPU = EQUAL_COST_FACTOR * CPU_BUDGET
+CPU_BUDGET = 1e-2  # CPU seconds per simulated second within which methods are compared: a hundredth of real time
+ACCEPTED_CPU = EQUAL_COST_FACTOR * CPU_BUDGET  # the scatter of timings is not counted
 
 NO_JOINT, NOT_BUILT, TOO_SLOW = "no such joint", "not built", "too slow"
 SMALLER_STEP_FAILS = "a smaller step fails"
@@ -218,12 +211,8 @@ def _table(
 ) -> str:
     """A line a scene, a column for each engine and kind of method; `remarks` are appended to the headers."""
     engines = dict.fromkeys(line.engine for line in lines)
-    heads = [
-        (engine, column)
-        for engine in engines
-        for column in Column
-        if any(line.engine == engine and column in line.columns for line in lines)
-    ]
+    present = {(line.engine, column) for line in lines for column in line.columns}
+    heads = [(engine, column) for engine in engines for column in Column if (engine, column) in present]
     body = []
     for key in dict.fromkeys((line.page.name, line.scene) for line in lines):
         of_scene = {line.engine: line for line in lines if (line.page.name, line.scene) == key}
@@ -266,6 +255,10 @@ def error_by_cost(methods: Iterable[Sequence[Measurement]], name: str) -> list[t
     return [pair for index, pair in enumerate(pairs) if index in (0, len(pairs) - 1) or pair[1] < pairs[index - 1][1]]
 
 
+def _swept(entries: Iterable[PageRows]) -> list[EngineLine]:
+    return engine_lines((page, [row for row in rows if row.purpose == "sweep"]) for page, rows in entries)
+
+
 def equal_cost(entries: Iterable[PageRows]) -> str:
     """One table of all engines: the least error of each column within CPU_BUDGET; empty without rows."""
     lines = _swept(entries)
@@ -297,10 +290,6 @@ def equal_error(entries: Iterable[PageRows]) -> dict[str, str]:
         return ", ".join(map(milliseconds, costs)) if any(map(math.isfinite, costs)) else DASH
 
     return {engine: _table(lines, least_costs) for engine, lines in _by_engine(_swept(entries))}
-
-
-def _swept(entries: Iterable[PageRows]) -> list[EngineLine]:
-    return engine_lines((page, [row for row in rows if row.purpose == "sweep"]) for page, rows in entries)
 
 
 def equal_step(entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_STEPS) -> dict[str, str]:

@@ -143,8 +143,7 @@ class DecidingMotion(NamedTuple):
 
 
 COMPANIONS: tuple[Scene, ...] = (HILL, SLEIGH, DrivenFourBar(), LinkPendulum())
-# Description of the motion -> the motion.
-QUESTIONS: dict[str, DecidingMotion] = {
+QUESTIONS: dict[str, DecidingMotion] = {  # by the description of the motion
     "a disc rolls off a round hill": DecidingMotion(HILL.mechanism, _rolling),
     "a sleigh on one skate coasts": DecidingMotion(SLEIGH.mechanism, _skate),
     "the crank of sample 18.15 turns at 10 rad/s": DecidingMotion(DrivenFourBar().mechanism, _four_bar),
