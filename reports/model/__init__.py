@@ -1,1 +1,1 @@
-"""What is measured: cells, tasks, outcomes, quantities, the row and how it is measured, and what a page is made of."""
+"""Cells, tasks, outcomes, quantities, rows and their measurement, and the parts of a page."""

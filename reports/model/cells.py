@@ -130,7 +130,7 @@ def _call(engine: Engine, method: str, scene: Scene, convert: Callable[[Any], An
 
 @lru_cache(maxsize=512)
 def mechanism_of(scene: Scene) -> Mechanism:
-    """The scene's mechanism, made once: cells, tables and pictures ask for it hundreds of times."""
+    """The scene's mechanism, cached: cells, tables and pictures need it hundreds of times."""
     return scene.mechanism()
 
 

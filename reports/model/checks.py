@@ -10,16 +10,16 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
 
 CHECKS = ("outcome", *dict.fromkeys(quantity.check for quantity in QUANTITIES), "order")
-CHANGE = "change"  # stands apart: it is of a baseline, and no deviation excuses it
+CHANGE = "change"  # the check against a baseline, which no known deviation excuses
 BEGINNINGS = ("upstream:", "by design:", "ours:")
 WORSE = 2.0  # times the stated deviation: a larger one fails
-BACK = 0.5  # of the bound: a deviation that has come back to this is none any more, and fails too
+BACK = 0.5  # of the bound: a known deviation below this no longer occurs, which fails too
 ROUNDED = 10.0  # times the stated one for roundings that the motion amplifies; another processor gave 2 and 1/17
 
 
 @dataclass(frozen=True)
 class Check:
-    """`measured` must not exceed `bound`; `terms` are what the bound is the sum of, by name, in the same unit.
+    """`measured` must not exceed `bound`; `terms`: the summands of the bound by name, in its unit.
 
     `name`: one of CHECKS, or "change"; `quantity`: the field of the Measurement.
     """
@@ -33,7 +33,7 @@ class Check:
 
     @property
     def nearness(self) -> float:
-        """measured / bound: above 1 the check fails, infinite for a number that is none."""
+        """measured / bound: above 1 the check fails; infinite for NaN and infinity."""
         if not math.isfinite(self.measured):
             return math.inf
         return self.measured / self.bound if self.bound > 0 else (math.inf if self.measured > 0 else 0.0)
@@ -84,7 +84,7 @@ def nearest(checks: Iterable[Check]) -> Check:
 
 
 def complaints(checks: Iterable[Check], known: Mapping[str, Deviation], outcome: str = "") -> tuple[str, ...]:
-    """What is wrong, in sentences: checks that fail unknown, deviations that grew, and those that are none any more.
+    """Sentences about unexpected failures, known deviations that grew, and those that no longer occur.
 
     `outcome`: of the run that is checked, which has to be the one that is known.
     """

@@ -1,4 +1,4 @@
-"""What a sweep over steps tells: the observed order (discretisation) and the plateau (the model), kept apart."""
+"""The observed order (discretisation) and the plateau (the model) of a sweep over steps."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ POWERS = (0.5, 8.0)  # of the step with which an error may come to its limit: fr
 
 
 class Verdict(StrEnum):
-    """What the error does as the step goes to zero."""
+    """The behaviour of the error as the step goes to zero."""
 
     FALLS = "falls"
     ROUNDING = "reaches rounding"
@@ -211,7 +211,7 @@ def by_method(found: Iterable[Sweep], quantity: str) -> Mapping[tuple[str, str, 
 
 
 def judged(rows: Iterable[Measurement], quantity: str = "angle") -> list[Measurement]:
-    """The rows with `finished` replaced by what their sweep says: converged or plateau, where it says either."""
+    """The rows with `finished` replaced by `converged` or `plateau`, if their sweep shows either."""
     rows = list(rows)
     verdicts = by_method(sweeps(rows, [q for q in QUANTITIES if q.name == quantity]), quantity)
     out = []

@@ -40,7 +40,7 @@ class BadInput(Ending, ValueError):
 
 
 class FileTrouble(Ending):
-    """Which file, what is wrong with it, and what to do."""
+    """A file that cannot be used; the message names the file, the reason and the remedy."""
 
     status = REFUSED
 

@@ -75,7 +75,7 @@ class Measurement:
     slip: float = NAN
     energy: float = NAN
     reaction: float = NAN
-    reaction_rows: int = 0  # how many rows' reactions the engine can tell
+    reaction_rows: int = 0  # constraint rows whose reaction the engine reports
     flips: int = 0
     estimate: float = NAN  # rad, the method's own estimate of its largest angle error
     bodies: int = 0
@@ -100,7 +100,7 @@ class Measurement:
         return asdict(self)
 
     def _repr_html_(self) -> str:
-        """What is known of it, for a notebook."""
+        """The fields that have a value, as a table for a notebook."""
         known = ((name, value) for name, value in self.as_dict().items() if value not in ("", 0) and value == value)
         rows = (f"<tr><th>{name}</th><td>{escape(str(value))}</td></tr>" for name, value in known)
         return f"<table>{''.join(rows)}</table>"
@@ -174,7 +174,7 @@ def _own_freedoms(scene: Scene) -> int:
 def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Measurement:
     """Build, run, compare and time one cell, in this process. `truths`: the folder of exact motions, if there is one.
 
-    Refusals and what the engine itself reports become outcomes; other exceptions pass (the pool records them).
+    Refusals and warnings of the engine become outcomes; other exceptions pass (the pool records them).
     """
     row = blank(cell)
     with np.errstate(all="ignore"):

@@ -1,4 +1,4 @@
-"""How a cell can end: the closed list, what each word means, and the one place where it is decided.
+"""The outcomes of a cell: the closed list, their meanings, and the functions that decide them.
 
 `of_motion` decides of a cell that gave a motion; `refusal`, `failure`, `out_of_time` and `second_crash` of others.
 `converged` and `plateau` need a sweep (`reports.model.convergence`).
@@ -97,20 +97,20 @@ class Outcome(StrEnum):
 
     @property
     def wrong(self) -> bool:
-        """Whether the cell ran and what it did is not the scene's motion."""
+        """Whether the cell gave another motion than the scene's."""
         return self.grade == 2
 
 
 @dataclass(frozen=True)
 class Loss:
-    """Why a cell has no result: what a supervised process leaves instead of one."""
+    """Why a cell has no result; a supervised process gives it instead of one."""
 
     outcome: Outcome
     sentence: str
 
 
-# Sent by somebody else: a user, a batch system at its own limits, the kernel for want of memory (SIGKILL). All other
-# signals that end a process are raised by what runs in it. Windows has few of these names.
+# Sent by another process: a user's, a batch system's at its limits, the kernel's if memory is short (SIGKILL). All
+# other signals that end a process come from its own code. Windows has few of these names.
 FROM_OUTSIDE = {
     getattr(signal, name)
     for name in ("SIGKILL", "SIGTERM", "SIGHUP", "SIGINT", "SIGQUIT", "SIGXCPU", "SIGXFSZ")
@@ -119,7 +119,7 @@ FROM_OUTSIDE = {
 
 
 def from_outside(code: int | None) -> bool:
-    """Whether a process with this exit code was ended by somebody else; None: nobody knows how it ended."""
+    """Whether a process with this exit code was ended by another process; also if the code is unknown (None)."""
     return code is None or -code in FROM_OUTSIDE
 
 
@@ -134,30 +134,30 @@ def describe_exit(code: int | None) -> str:
             name = "unknown"
         how = "killed from outside" if from_outside(code) else "aborted"
         return f"{how} with signal {-code} ({name})"
-    if code >= 2**31:  # Windows ends a process that does what it may not with such a status
+    if code >= 2**31:  # Windows ends a process with such a status for a forbidden operation
         return f"aborted with status 0x{code:08X}"
     return f"the process ended by itself with exit status {code}"
 
 
 def refusal(reason: Exception) -> Loss:
-    """Of a cell that an engine or the reference can't do, in its own words: ValueError, or `engines.Unsupported`."""
+    """The loss of a cell that an engine or the reference refused by ValueError or `engines.Unsupported`."""
     return Loss(Outcome.REFUSED if isinstance(reason, ValueError) else Outcome.UNSUPPORTED, str(reason))
 
 
 def failure(error: BaseException) -> Loss:
-    """Of a cell that raised anything else. An import that fails says nothing about the engine."""
+    """The loss of a cell that raised another exception; a failed import says nothing about the engine."""
     return Loss(Outcome.LOST if isinstance(error, ImportError) else Outcome.FAILED, describe(error))
 
 
 def out_of_time(limit: float, wall: float | None = None) -> Loss:
-    """Of a cell that used up its CPU time [s]; or, with `wall`, that slept longer than this [s]."""
+    """The loss of a cell that used up its CPU time [s], or, with `wall`, slept longer than this [s]."""
     if wall is None:
         return Loss(Outcome.TIMED_OUT, f"did not end within {limit:g} s of CPU time")
     return Loss(Outcome.TIMED_OUT, f"did not end within {wall:g} s, and used less than {limit:g} s of CPU time")
 
 
 def second_crash(code: int | None, words: str, earlier: str) -> Loss:
-    """Of a cell whose process ended, with this exit code and in these words, at its second try. earlier: the first."""
+    """The loss of a cell whose process ended twice; code, words: of the second time, earlier: words of the first."""
     if from_outside(code):
         return Loss(Outcome.LOST, f"{words}, perhaps for want of memory; before that: {earlier}")
     return Loss(Outcome.ABORTED, words)

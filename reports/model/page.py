@@ -1,4 +1,4 @@
-"""What a page is made of, and what it is given: the parts that every mechanism's page shares."""
+"""The parts of a page, and the data that it is rendered from."""
 
 from __future__ import annotations
 

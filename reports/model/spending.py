@@ -1,4 +1,4 @@
-"""What the CPU time of a process goes into, part by part: each part's own time, without that of the parts inside it.
+"""CPU time of a process by parts, each without the time of the parts inside it.
 
 Always counted, since a look at the clock takes a microsecond; asked by `crosscheck bench suite` alone.
 """
@@ -29,7 +29,7 @@ def spending(part: str) -> Iterator[None]:
 
 
 def taken() -> Mapping[str, float]:
-    """CPU seconds by part since this was asked last."""
+    """CPU seconds by part since the last call."""
     out = dict(_spent)
     _spent.clear()
     return out

@@ -1,4 +1,4 @@
-"""A task is what a page tells of beside its rows: a motion, or a number by integration. It is run once, and kept.
+"""A task gives a page data beside its rows: a motion, or a number by integration. It is run once, and kept.
 
 Nothing is stepped or integrated while a page is written: it reads the answers to its tasks, as it reads rows.
 """
@@ -28,7 +28,7 @@ Values = Mapping[str, Array | str]
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What became of a task: its values by name if it finished, else a sentence that says why there are none."""
+    """The result of a task: its values by name if it finished, else a sentence with the reason."""
 
     outcome: Outcome
     sentence: str = ""
@@ -74,7 +74,7 @@ class Task(ABC):
 
     @property
     def engine(self) -> Engine | None:
-        """What is run; None for a method that is no engine."""
+        """The engine that is run; None for a method that is no engine."""
         return None
 
     @abstractmethod
@@ -90,7 +90,7 @@ class Task(ABC):
 
 @dataclass(frozen=True)
 class Motion(Task):
-    """The whole trajectory of a cell, for a picture or for what an experiment reads from it."""
+    """The whole trajectory of a cell, for a picture or an experiment."""
 
     cell: Cell
 

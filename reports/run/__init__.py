@@ -1,1 +1,1 @@
-"""How cells and tasks are run and kept: supervised workers, the queue, clusters, the store."""
+"""Cells and tasks are run by supervised workers or a cluster, and stored."""

@@ -53,7 +53,7 @@ class Workforce:
 
 
 def pool(workers: int | None) -> Workforce:
-    """So many workers on this machine; as many as processors for None."""
+    """Workers on this machine, one per processor if None."""
     return Workforce(workers or worker_count())
 
 
@@ -100,7 +100,7 @@ def run_chunk(data: bytes) -> bytes:
 
 @contextmanager
 def connect_cluster(scheduler: str | None) -> Iterator[Workforce | None]:
-    """A cluster by the words of a command line, None without. Raises BadInput: wrong words, no Dask or scheduler."""
+    """Connect to the cluster that `--scheduler` names; None without one. Raises BadInput."""
     if scheduler is None:
         yield None
         return

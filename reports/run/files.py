@@ -77,8 +77,8 @@ def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
     """Write all files, each under its name only when all are complete on disk; links are replaced, never followed.
 
     All are written aside first, so that a full disk or an error leaves every old file as it was. A kill while they get
-    their names leaves some old and some new ones, each of them whole. What is no file, such as /dev/stdout or a pipe,
-    is written into at the end. Raises FileTrouble, ending in the remedy.
+    their names leaves some old and some new ones, each of them whole. Devices and pipes such as /dev/stdout
+    are written at the end. Raises FileTrouble, ending in the remedy.
     """
     path = Path()
     try:

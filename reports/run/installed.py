@@ -110,7 +110,7 @@ def _place(name: str) -> Path:
 
 
 def _used(folder: Path) -> Path:
-    """The folder, marked as used now; of all that were installed the MOST that were used last are kept."""
+    """The folder, marked as used now; only the MOST that were used last stay installed."""
     with suppress(OSError):
         os.utime(folder.parent)
         others = [each for each in (cache_folder() / "versions").glob("*/*") if not each.name.startswith(".")]

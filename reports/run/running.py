@@ -117,10 +117,10 @@ def run_into(
     timed: bool = True,
     supervised: Supervise = supervise,
 ) -> int:
-    """Run what is missing (everything if fresh), the longest first; store each result as it arrives; how many were run.
+    """Run the missing items (all if fresh), longest first, and store each result as it arrives; return their number.
 
-    An interruption passes through, with the results so far stored. What was killed from outside is not stored; when all
-    others are done, WorkersLost is raised, with one line about it.
+    An interruption passes through, with the results so far stored. An item whose process was killed from outside is
+    not stored; WorkersLost is raised when all others are done.
     """
     waiting = tuple(items) if fresh else missing(items, store, limit)  # an old row stays until the new one replaces it
     lost: list[str] = []

@@ -53,7 +53,7 @@ class Damaged(Exception):
 class Store:
     """Measurements by the key of their cell, answers by that of their task; a context manager.
 
-    What is put outlives this program, however it ends, when `put` returns. A damaged file is renamed, and a new one
+    A row is on disk when `put` returns, however the program ends. A damaged file is renamed, and a new one
     begun; `notice` says so (empty otherwise). Raises FileTrouble, here and in every method, where the file can't be
     used.
     """
@@ -158,7 +158,7 @@ def _file_trouble(path: Path) -> Iterator[None]:
 
 
 def _connected(path: Path) -> sqlite3.Connection:
-    """A connection to a store, made if there is none. Raises Damaged, FileTrouble and what SQLite raises."""
+    """A connection to a store, created if missing. Raises Damaged, FileTrouble and what SQLite raises."""
     beside = path.with_name(path.name + "-wal")
     if path.is_file() and not path.stat().st_size and beside.is_file() and beside.stat().st_size:
         raise Damaged("it is empty, while rows lie beside it")  # SQLite would delete them

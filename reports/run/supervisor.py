@@ -1,6 +1,6 @@
 """Work supervised from outside: each item in a worker process, so that a crash in native code is a result too.
 
-The pools of the kept libraries (pebble, loky, concurrent.futures) share a queue and its lock: a worker killed while it
+The pools of pebble, loky and concurrent.futures share a queue and its lock: a worker killed while it
 holds the lock, or while it starts, stops the others, and limits count wall time only. Here every worker has a
 connection of its own, and a job counts as run only once its answer is whole.
 
@@ -135,7 +135,7 @@ class Pool:
         return [worker for worker in self._workers if worker.job is not None]
 
     def _start_workers(self) -> None:
-        """As many as there is work for."""
+        """Start workers up to the number of jobs."""
         wanted = min(self._most, len(self._waiting) + len(self._retries) + len(self._busy()))
         while len(self._workers) < wanted:
             try:
@@ -152,7 +152,7 @@ class Pool:
         time.sleep(PAUSE * self._failed_starts)
 
     def _assign_job(self, worker: Worker) -> Iterator[Answer]:
-        """Give an idle worker a job, or end it if there is none that it may do."""
+        """Give an idle worker a job, or end it if no job is left for it."""
         if self._retries and not worker.used:
             job = self._retries.popleft()
         elif self._waiting:

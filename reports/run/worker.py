@@ -47,7 +47,7 @@ _reading = threading.Lock()
 
 
 def cpu_time(process: int) -> float | None:
-    """CPU seconds of a process, all threads together; None where the system does not tell those of another process.
+    """CPU seconds of a process, all threads together; None if the system does not report those of another process.
 
     On Linux by the process's clock, whose number clock_getcpuclockid(3) makes in this way. While a timer for the CPU
     time is set (ITIMER_PROF, RLIMIT_CPU), that clock, by which stepping is timed, moves in jumps of 4 ms only.
@@ -59,7 +59,7 @@ def cpu_time(process: int) -> float | None:
 
 
 def stop_all() -> None:
-    """End every worker of this process; for a process that ends where it stands."""
+    """End every worker of this process; for a process that ends at once."""
     for child in multiprocessing.active_children():
         _kill(child)
 
@@ -80,10 +80,10 @@ class Worker:
     used: bool = False
     job: Any = None  # of `supervisor.Job`; None: it waits for one
     awake: float = 0.0  # s since it was started or given its job, as far as the parent was awake
-    cpu: float | None = None  # s of CPU time when it was given its job; None where the system does not tell
+    cpu: float | None = None  # s of CPU time when it was given its job; None if the system does not report it
 
     def used_cpu(self) -> float:
-        """CPU seconds that its job has used so far; zero where the system does not tell."""
+        """CPU seconds that its job has used so far; zero if the system does not report them."""
         now = cpu_time(self.process.pid or 0)
         return 0.0 if now is None or self.cpu is None else now - self.cpu
 
@@ -96,7 +96,7 @@ class Worker:
             return self.process.exitcode
 
     def stop(self) -> None:
-        """End the process, whatever it does, and what it has started."""
+        """Kill the process and the processes that it has started."""
         _kill(self.process)
         self.connection.close()
         if self.exit_code() is not None:
@@ -313,7 +313,7 @@ def _timers(clock: Clock, limit: float, wall: float) -> Iterator[None]:
 
 
 def _process_state() -> tuple[Any, ...]:
-    """What a job could leave behind for the next one: a worker in which this differs afterwards is replaced."""
+    """Process state that a job could change for the next one; a worker with a changed state is replaced."""
     try:
         folder = os.getcwd()
         streams = [(os.fstat(number).st_dev, os.fstat(number).st_ino) for number in (1, 2)]
