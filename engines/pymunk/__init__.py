@@ -30,7 +30,7 @@ from itertools import repeat
 from engines import Engine
 from engines.extrapolated import Extrapolated
 from engines.pymunk.engine import SHIPPED_ERROR_BIAS, SHIPPED_ITERATIONS, Extended, Pymunk
-from engines.pymunk.joints.roll import Contact
+from engines.pymunk.joints.roll import ContactSettings
 from engines.pymunk.methods import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, VARIANTS
 from reference.checks import Count, Positive, validated
 from reference.mechanism import Mechanism
@@ -68,7 +68,7 @@ __all__ = [
     "SHIPPED_ITERATIONS",
     "TUNED",
     "VARIANTS",
-    "Contact",
+    "ContactSettings",
     "Extended",
     "Pymunk",
     "bare_loop",

@@ -14,7 +14,7 @@ from engines.motions import over_three
 from engines.pymunk import declared
 from engines.pymunk.convergence import MIN_ITERATIONS
 from engines.pymunk.iterations import IterationPlan, Whole, plan_by_rule, plan_with, worst_factor
-from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstruction
+from engines.pymunk.joints.roll import SHIPPED_CONTACT, ContactSettings, RollConstruction
 from engines.pymunk.joints.slide import SkateConstruction, SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
 from engines.pymunk.running import PymunkRun
@@ -75,7 +75,7 @@ class Pymunk(Engine, Valid):
     skate: SkateConstruction = "centre"
     roll: RollConstruction = "contact"
     slot: SlotConstruction = "exact"
-    contact: Contact = SHIPPED_CONTACT
+    contact: ContactSettings = SHIPPED_CONTACT
     startup_steps: Whole = 0
     min_iterations: Count = MIN_ITERATIONS
     max_work: Whole = 0

@@ -7,11 +7,12 @@ from dataclasses import replace
 from engines import Engine
 from engines.extrapolated import Extrapolated
 from engines.pymunk.engine import Extended, Pymunk
-from engines.pymunk.joints.roll import Contact
+from engines.pymunk.joints.roll import ContactSettings
 
 DEFAULT = Pymunk("default")
 # Contact: no overlap is corrected (bias 1), because pushing bodies apart also rolls them. `slop` then has no effect.
-TUNED = Pymunk("tuned", "contraction", "contraction", skate="groove", contact=Contact(slop=1.0, bias=1.0, vertices=512))
+UNCORRECTED_OVERLAP = ContactSettings(slop=1.0, bias=1.0, vertices=512)
+TUNED = Pymunk("tuned", "contraction", "contraction", skate="groove", contact=UNCORRECTED_OVERLAP)
 LEAPFROG = Pymunk("leapfrog", "contraction", "contraction", leapfrog=True, skate="groove", roll="pivot")
 # Extrapolation needs a stable method whose error is smooth in the step from the first sample on. This limits a step to
 # about two milliseconds for the few mechanisms with nearly dependent rows, where 300 iterations reduce little.
@@ -47,7 +48,7 @@ SKATE_METHODS: tuple[Engine, ...] = (
 # A round body is a circle shape without corners, so these are one method for it.
 POLYGON_CORNERS = (8, 32, 128, 512)
 ROLL_FACETED = tuple(
-    Pymunk(f"roll: contact, {corners} corners", roll="contact", contact=Contact(1.0, 1.0, vertices=corners))
+    Pymunk(f"roll: contact, {corners} corners", roll="contact", contact=ContactSettings(1.0, 1.0, vertices=corners))
     for corners in POLYGON_CORNERS
 )
 ROLL_PIVOT = Pymunk("roll: pivot, predicted contact", 5, 0.0, leapfrog=True, roll="pivot")

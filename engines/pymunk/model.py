@@ -22,7 +22,14 @@ from pymunk._chipmunk_cffi import lib
 from engines import Size, Unsupported
 from engines.capability import Capability
 from engines.pymunk.joints.drive import crank_body, find_cranks, find_turned, motor, turned_body
-from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, MovedPivot, RollConstruction, contact_shapes, extent_of
+from engines.pymunk.joints.roll import (
+    SHIPPED_CONTACT,
+    ContactSettings,
+    MovedPivot,
+    RollConstruction,
+    contact_shapes,
+    extent_of,
+)
 from engines.pymunk.joints.slide import (
     AfterStep,
     BeforeStep,
@@ -58,7 +65,7 @@ class Settings:
     skate: SkateConstruction
     roll: RollConstruction
     slot: SlotConstruction = "exact"
-    contact: Contact = SHIPPED_CONTACT
+    contact: ContactSettings = SHIPPED_CONTACT
 
 
 @dataclass(frozen=True)

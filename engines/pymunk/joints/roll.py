@@ -27,6 +27,7 @@ from reference.rolling.roll import Roll
 from reference.validators import from_to
 
 RollConstruction = Literal["contact", "pivot"]
+ToEngine = Callable[[Vector], Vector]  # converts a point of a body frame to the origin of the engine's body
 
 
 def _shipped() -> tuple[float, float]:
@@ -40,7 +41,7 @@ GROUND_REACH = 1e3  # half the length of flat ground, in multiples of `extent_of
 
 
 @dataclass(frozen=True)
-class Contact(Valid):
+class ContactSettings(Valid):
     """Settings of contact: the overlap `slop` [m] is not corrected; `bias` is the fraction of the rest after a second.
 
     `friction` of each shape (the engine multiplies two); number of `vertices` of a body that is not round, at equal arc
@@ -61,7 +62,7 @@ class Contact(Valid):
     thickness: NonNegative = 0.1
 
 
-SHIPPED_CONTACT = Contact()
+SHIPPED_CONTACT = ContactSettings()
 
 
 def extent_of(mechanism: Mechanism) -> float:
@@ -71,10 +72,10 @@ def extent_of(mechanism: Mechanism) -> float:
 
 def contact_shapes(
     joint: Roll,
-    contact: Contact,
+    contact: ContactSettings,
     extent: float,
     index: int,
-    sides: tuple[tuple[pymunk.Body, Callable[[Vector], Vector]], tuple[pymunk.Body, Callable[[Vector], Vector]]],
+    sides: tuple[tuple[pymunk.Body, ToEngine], tuple[pymunk.Body, ToEngine]],
 ) -> list[pymunk.Shape]:
     """The shapes of both curves, which collide with each other only.
 
@@ -96,7 +97,12 @@ def contact_shapes(
 
 
 def _shape(
-    joint: Roll, curve: Curve, body: pymunk.Body, to_engine: Callable[[Vector], Vector], contact: Contact, extent: float
+    joint: Roll,
+    curve: Curve,
+    body: pymunk.Body,
+    to_engine: Callable[[Vector], Vector],
+    contact: ContactSettings,
+    extent: float,
 ) -> pymunk.Shape:
     inner, shift, turn = unplaced(curve)
     if isinstance(inner, Circle):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from engines import pymunk
-from engines.pymunk.joints.roll import Contact
+from engines.pymunk.joints.roll import ContactSettings
 from engines.pymunk.methods import ROLL_FACETED
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
@@ -19,7 +19,7 @@ FEW, MANY = "a polygon of 8 corners", "a polygon of 512 corners"
 CORNERS = (
     (SHIPPED, pymunk.DEFAULT),
     (DOCUMENTED, pymunk.TUNED),
-    (FEW, replace(pymunk.DEFAULT, contact=Contact(vertices=8))),
+    (FEW, replace(pymunk.DEFAULT, contact=ContactSettings(vertices=8))),
     (MANY, ROLL_FACETED[-1]),
 )
 
