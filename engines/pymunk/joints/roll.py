@@ -100,7 +100,7 @@ def _shape(
     joint: Roll,
     curve: Curve,
     body: pymunk.Body,
-    to_engine: Callable[[Vector], Vector],
+    to_engine: ToEngine,
     contact: ContactSettings,
     extent: float,
 ) -> pymunk.Shape:
