@@ -20,7 +20,7 @@ from reports.site.lessons import take_like
 from reports.write.tables import number
 
 KINDS = ("svg", "gif", "mp4")
-MOST = 4  # methods in one picture: more can't be told apart
+MOST_SHOWN = 4  # methods in one picture: more can't be told apart
 
 
 def animate(
@@ -59,11 +59,13 @@ def animate(
 def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engine]:
     """The engines of these names. Raises BadInput for one that is not known, and for too many."""
     if words is None:
-        return [engine for engine in engines if engine.variant == "default"][:MOST]
+        return [engine for engine in engines if engine.variant == "default"][:MOST_SHOWN]
     known = {method_name(engine): engine for engine in engines}
     names = listed("--engines", words, known)
-    if len(names) > MOST:
-        raise BadInput(f"--engines names {len(names)} methods; more than {MOST} can't be told apart in one picture")
+    if len(names) > MOST_SHOWN:
+        raise BadInput(
+            f"--engines names {len(names)} methods; more than {MOST_SHOWN} can't be told apart in one picture"
+        )
     return [known[name] for name in names]
 
 

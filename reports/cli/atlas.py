@@ -18,7 +18,7 @@ from reports.pages.atlas.subjects import MAPS
 from reports.run import cluster
 from reports.run.running import run_into
 
-LIMIT = 600.0  # CPU seconds of one cell, far above any that is known
+MAP_LIMIT = 600.0  # CPU seconds of one cell, far above any that is known
 STRIDE = 4  # of so many steps one is run, and those between only where a border is; in small maps all
 SMALL = 16  # points along a side
 VARIANTS_SHOWN = ("default", "tuned")
@@ -51,9 +51,9 @@ def atlas(
 
         def run(cells: list[Cell]) -> Mapping[Cell, Measurement]:
             nonlocal run_now
-            with interruptible(terminal, store, cells, LIMIT, "cells") as (waiting, done, watch):
+            with interruptible(terminal, store, cells, MAP_LIMIT, "cells") as (waiting, done, watch):
                 run_now += len(waiting)
-                run_into(store, waiting, False, LIMIT, crew.threads, done, watch, False, crew.supervise)
+                run_into(store, waiting, False, MAP_LIMIT, crew.threads, done, watch, False, crew.supervise)
             return store.get(cells)
 
         rows = run_columns(columns, run, 1 if every_point or points < SMALL else STRIDE)

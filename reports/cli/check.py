@@ -26,7 +26,7 @@ from reports.run import supervisor, worker
 from reports.run.files import temporary_folder, write_whole
 from reports.run.running import worker_count
 
-WIDTH = 120  # columns at most
+MAX_WIDTH = 120  # columns at most
 OVERWRITE = "\r\x1b[K"  # on a terminal
 # What a check imports: the process from which workers are forked does so while this one gets ready.
 EARLY = ("reports.check.document", "reports.check.telling", "numba")
@@ -105,7 +105,7 @@ def check(
         from reports.cli.terminal import Terminal, print_table
 
         print_table(
-            Terminal(WIDTH), f"Models of {model}", many.FOLDER_HEADER, many.rows(answers), len(many.FOLDER_HEADER)
+            Terminal(MAX_WIDTH), f"Models of {model}", many.FOLDER_HEADER, many.rows(answers), len(many.FOLDER_HEADER)
         )
     else:
         _print(answers[0][1], as_json, everything)
@@ -237,7 +237,7 @@ def _print(answer: CheckReport | Refused, as_json: bool, everything: bool) -> No
         raise BadInput(answer.sentence)
     if as_json:
         return _say(json.dumps(answer.data, indent=1, allow_nan=False))
-    width = min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns)
+    width = min(MAX_WIDTH, shutil.get_terminal_size((MAX_WIDTH, 24)).columns)
     if everything:
         return _say(rendering.plain(answer.sections, width))
     hint = "" if answer.data["applied"] else "; to have these settings written: --apply FILE"

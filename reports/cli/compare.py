@@ -11,7 +11,7 @@ import typer
 from reports.cli.interruption import delayed_signals
 from reports.cli.options import FOLDER, REFERENCES, AsJson, AsMarkdown, Folder, SomeScenes
 from reports.cli.terminal import Terminal, print_table, telling
-from reports.cli.versions import announce_pip, named_scenes, progress_of
+from reports.cli.versions import WIDTH, announce_pip, named_scenes, progress_of
 from reports.gate.change import DEAR
 from reports.model.ending import BadInput, Broken
 from reports.model.measure import Measurement
@@ -20,7 +20,6 @@ from reports.model.quantities import quantity
 from reports.versions.builds import BuildComparison, compare_builds
 from reports.versions.comparison import Difference, RowComparison
 
-WIDTH = 150  # into a file or a pipe
 LONGEST = 300  # letters of a reason
 
 

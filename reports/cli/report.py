@@ -44,7 +44,7 @@ from reports.write.templates import without_dead_links
 CHECKOUT = Path(__file__).parents[2]
 SEARCHED = ("search.md", "search_errors.svg")
 MANY = 1000  # rows: of fewer, pages are rendered sooner than workers have started
-LIMIT = 600.0  # CPU seconds of one page
+PAGE_LIMIT = 600.0  # CPU seconds of one page
 Materials = Mapping[Page, Material]
 
 
@@ -206,7 +206,7 @@ def drawn(material: Materials, words: Iterable[str], command: str, order: Path) 
     pages = sorted(((page.name, stored) for page, stored in material.items()), key=size, reverse=True)
     files: dict[str, dict[str, str]] = {}
     with suppress(WorkersLost):
-        for (name, _), result, _ in supervise(Drawing(tuple(words), command), pages, LIMIT, worker_count()):
+        for (name, _), result, _ in supervise(Drawing(tuple(words), command), pages, PAGE_LIMIT, worker_count()):
             if not isinstance(result, Loss):
                 files[name] = result
     return files

@@ -17,8 +17,7 @@ from reports.gate.judge import errors_as_soft
 from reports.gate.prediction import Prediction, kinds, prediction
 from reports.model.cells import FULL, QUICK, Cell, mechanism_of, sweep_cells
 from reports.model.checks import Check, Deviation
-from reports.model.convergence import ENOUGH as ENOUGH_POINTS
-from reports.model.convergence import ROOM_SOFT, Verdict, fit
+from reports.model.convergence import ENOUGH_POINTS, ROOM_SOFT, Verdict, fit
 from reports.model.measure import Measurement
 from reports.model.outcomes import SATURATED, Outcome
 from reports.model.page import Page

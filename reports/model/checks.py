@@ -12,7 +12,7 @@ from reports.model.quantities import QUANTITIES
 CHECKS = ("outcome", *dict.fromkeys(quantity.check for quantity in QUANTITIES), "order")
 CHANGE = "change"  # the check against a baseline, which no known deviation excuses
 BEGINNINGS = ("upstream:", "by design:", "ours:")
-WORSE = 2.0  # times the stated deviation: a larger one fails
+WORSE_DEVIATION = 2.0  # times the stated deviation: a larger one fails
 BACK = 0.5  # of the bound: a known deviation below this no longer occurs, which fails too
 ROUNDED = 10.0  # times the stated one for roundings that the motion amplifies; another processor gave 2 and 1/17
 
@@ -104,6 +104,6 @@ def complaints(checks: Iterable[Check], known: Mapping[str, Deviation], outcome:
         elif deviation.factor is None:
             if outcome != deviation.outcome:
                 out.append(f"{worst}: known is {deviation.outcome} ({deviation.reason})")
-        elif worst.nearness > (ROUNDED if deviation.rounding else WORSE) * deviation.factor:
+        elif worst.nearness > (ROUNDED if deviation.rounding else WORSE_DEVIATION) * deviation.factor:
             out.append(f"{worst}: {worst.nearness:.2g} times the bound, known are {deviation.factor:.2g}")
     return tuple(out)

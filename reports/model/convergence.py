@@ -19,7 +19,7 @@ from reports.model.quantities import QUANTITIES, Quantity
 
 ROOM_SOFT = 2.0  # times the error of the declared softness, whose estimate of a row's inertia is right within this
 FLAT = 0.35  # a local slope below this is no convergence: half a decade of steps then wins less than a factor 1.5
-ENOUGH = 3  # fewest points that carry an order; two give a slope and nothing to check it by
+ENOUGH_POINTS = 3  # fewest points that carry an order; two give a slope and nothing to check it by
 ROUNDING_GROWTH = 100.0  # rounding may grow so much after it was met: the finest steps are so many times as many
 NEAR_PLATEAU = 3.0  # an error within this factor of the plateau is the sum of both, and its slope is neither
 POWERS = (0.5, 8.0)  # of the step with which an error may come to its limit: from the root of a kink to order 8
@@ -176,7 +176,7 @@ def _order(
         stop -= 1
     if stop - start < 2:
         return NAN, 0, NAN
-    while stop - start > ENOUGH and abs(slopes[start] - np.median(slopes[start : stop - 1])) > 0.5:
+    while stop - start > ENOUGH_POINTS and abs(slopes[start] - np.median(slopes[start : stop - 1])) > 0.5:
         start += 1
     order = float(np.polyfit(np.log(steps[start:stop]), np.log(errors[start:stop]), 1)[0])
     return order, stop - start, float(np.max(np.abs(slopes[start : stop - 1] - order)))
@@ -218,7 +218,7 @@ def judged(rows: Iterable[Measurement], quantity: str = "angle") -> list[Measure
     for row in rows:
         sweep = verdicts.get((row.scene, row.engine, row.variant))
         if row.purpose == "sweep" and row.outcome == Outcome.FINISHED and sweep is not None:
-            checked = sweep.verdict is Verdict.FALLS and sweep.points >= ENOUGH
+            checked = sweep.verdict is Verdict.FALLS and sweep.points >= ENOUGH_POINTS
             if checked or sweep.verdict is Verdict.ROUNDING:
                 row = replace(row, outcome=Outcome.CONVERGED)
             elif sweep.verdict is Verdict.PLATEAU:

@@ -26,7 +26,7 @@ from reports.run.files import folder_for, temporary_folder
 
 SCHEMA = 2  # the file's `user_version`
 TABLES = {"results": "(key text primary key, row text not null)", "given": "(words text primary key)"}
-BESIDE = ("-wal", "-shm")  # what SQLite keeps beside a file: the first holds rows until they move into it
+SQLITE_SUFFIXES = ("-wal", "-shm")  # what SQLite keeps beside a file: the first holds rows until they move into it
 WAIT = 30.0  # s for another process that is writing
 COPIES = 100  # tries to copy a store while another process writes it
 ELSEWHERE = "give another folder with --results"
@@ -211,10 +211,10 @@ def _copy(path: Path, copy: Path) -> None:
 def _put_aside(path: Path) -> Path:
     """Give a damaged file, and the files beside it, a name that is free; the new name."""
     number = 1
-    while any(path.with_name(f"{path.name}.damaged-{number}{end}").exists() for end in ("", *BESIDE)):
+    while any(path.with_name(f"{path.name}.damaged-{number}{end}").exists() for end in ("", *SQLITE_SUFFIXES)):
         number += 1
     aside = path.with_name(f"{path.name}.damaged-{number}")
-    for end in (*BESIDE, ""):  # the main file last: without it SQLite would delete the rows that lie beside
+    for end in (*SQLITE_SUFFIXES, ""):  # the main file last: without it SQLite would delete the rows that lie beside
         with suppress(FileNotFoundError):
             path.with_name(path.name + end).rename(f"{aside}{end}")
     return aside

@@ -189,7 +189,7 @@ def last_words(folder: Path, pid: int | None) -> str:
 PARENT_SEES_CPU = cpu_time(os.getpid()) is not None  # whether the parent sees when a job has used up its CPU time
 
 
-class Clock:
+class CpuDeadline:
     """The CPU time at which the present job is ended; infinite between jobs."""
 
     def __init__(self) -> None:
@@ -220,7 +220,7 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
     if hidden := import_module(GUARD).clash():
         print(hidden, file=sys.stderr, flush=True)
         os._exit(1)
-    clock = Clock()
+    clock = CpuDeadline()
     threading.Thread(target=_watch, args=(clock,), daemon=True).start()
     connection.send_bytes(READY)
     stays, number = True, os.getpid()
@@ -262,7 +262,7 @@ def _redirect(folder: Path) -> None:
     os.close(log)
 
 
-def _watch(clock: Clock) -> None:
+def _watch(clock: CpuDeadline) -> None:
     """In a thread: end the process when its parent is gone, or when its CPU time is used up and the parent can't see
     that."""
     parent = multiprocessing.parent_process()
@@ -274,7 +274,7 @@ def _watch(clock: Clock) -> None:
     os._exit(1)
 
 
-def _answer(job: bytes, clock: Clock, limit: float, wall: float) -> tuple[bool, bytes]:
+def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[bool, bytes]:
     """(whether the process is as it was before, the pickled result or Loss)."""
     try:
         # Imports an engine for the first time, which is no part of the job's CPU time, and may change the process.
@@ -297,7 +297,7 @@ def _answer(job: bytes, clock: Clock, limit: float, wall: float) -> tuple[bool, 
 
 
 @contextmanager
-def _timers(clock: Clock, limit: float, wall: float) -> Iterator[None]:
+def _timers(clock: CpuDeadline, limit: float, wall: float) -> Iterator[None]:
     """A timer of the system ends the process even inside native code that never returns to the interpreter."""
     clock.end = time.process_time() + limit
     if hasattr(signal, "setitimer"):

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from unicodedata import combining, east_asian_width
 
-from reports.model.convergence import ENOUGH, Sweep, Verdict, by_method, groups, sweeps
+from reports.model.convergence import ENOUGH_POINTS, Sweep, Verdict, by_method, groups, sweeps
 from reports.model.errors import NAN
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
@@ -129,7 +129,9 @@ def sweep_words(sweep: Sweep, lost: str = "") -> str:
     """
     order = ""
     if sweep.points >= 2:
-        checked = f"±{sweep.spread:.2g}, {sweep.points} points" if sweep.points >= ENOUGH else "2 points, unchecked"
+        checked = (
+            f"±{sweep.spread:.2g}, {sweep.points} points" if sweep.points >= ENOUGH_POINTS else "2 points, unchecked"
+        )
         order = f"{sweep.order:.2f} ({checked})"
     match sweep.verdict:
         case _ if lost and math.isfinite(sweep.best):

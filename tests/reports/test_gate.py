@@ -28,7 +28,7 @@ SCENE = Disc()
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
 
-class Slow(Disc):
+class SlowDisc(Disc):
     name = "slow disc"
 
 
@@ -166,7 +166,7 @@ def test_without_a_promise_an_error_may_not_be_far_above_what_the_methods_own_st
 
 def test_a_page_knows_better_what_its_motion_asks_for_than_the_engine_and_of_no_other_scene():
     own = ConvergenceOrder(1)
-    page = Page("discs", "Discs", "Discs turn.", (SCENE, Slow()), (Toy(),), orders={("disc", "toy default"): own})
+    page = Page("discs", "Discs", "Discs turn.", (SCENE, SlowDisc()), (Toy(),), orders={("disc", "toy default"): own})
     assert [case.promise for case in cases([page])] == [own, ConvergenceOrder(2)]
 
 

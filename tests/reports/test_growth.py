@@ -54,7 +54,7 @@ def test_a_power_law_is_found_at_the_large_end_only():
 
 
 @dataclass(frozen=True)
-class Chain(Disc):
+class ToyChain(Disc):
     """A toy with a number of links."""
 
     links: int = 1
@@ -62,7 +62,7 @@ class Chain(Disc):
 
 def test_a_point_of_a_series_is_its_own_cell():
     def cell(links, duration=0.2, every=1, variant="tuned"):
-        return Cell(Chain(links=links, duration=duration), Toy(variant), every, "growth", 10)
+        return Cell(ToyChain(links=links, duration=duration), Toy(variant), every, "growth", 10)
 
     rows = {
         cell(100): row_of("toy tuned", cpu=7e-3, angle=1.3e-3),
@@ -83,7 +83,7 @@ def test_a_point_of_a_series_is_its_own_cell():
     assert (other.points[0].step, other.points[0].error) == (pytest.approx(3.4e-4), 1.9e-3)
 
 
-class Clock:
+class ToyClock:
     """A process time that goes on by what it is told."""
 
     def __init__(self, monkeypatch):
@@ -92,10 +92,10 @@ class Clock:
 
 
 @dataclass(frozen=True)
-class Slow(Plain):
+class SlowToy(Plain):
     """Builds and steps in the times of two lists."""
 
-    clock: Clock
+    clock: ToyClock
     builds: list
     steps: list
     variant: str = "slow"
@@ -113,17 +113,17 @@ class Slow(Plain):
 
 
 def test_a_cost_is_the_least_of_several_runs_the_first_left_out_and_a_long_run_is_not_repeated(monkeypatch):
-    clock = Clock(monkeypatch)
-    engine = Slow(clock, [2e-3, 1e-3, 1.5e-3, 1.5e-3, 4.5e-3], [2e-3, 1e-3, 1.5e-3, 1.5e-3, 2.5e-3])
+    clock = ToyClock(monkeypatch)
+    engine = SlowToy(clock, [2e-3, 1e-3, 1.5e-3, 1.5e-3, 4.5e-3], [2e-3, 1e-3, 1.5e-3, 1.5e-3, 2.5e-3])
     found = repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3)
     assert found == (pytest.approx(1e-3), 5, pytest.approx(1e-3))
-    engine = Slow(clock, [2.5e-3] * 3, [1e-2, 1.5e-2, 5e-3])
+    engine = SlowToy(clock, [2.5e-3] * 3, [1e-2, 1.5e-2, 5e-3])
     assert repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3) == (
         1e-2,
         2,
         pytest.approx(2.5e-3),
     )
-    never = Slow(clock, [], [])
+    never = SlowToy(clock, [], [])
     assert repeated_stepping(Cell(Disc(), never, 1), Disc().mechanism(), 0.5, 4e-3) == (0.5, 1, 4e-3)
     assert measuring.process_seconds(lambda: setattr(clock, "now", clock.now + 3.0)) == (pytest.approx(3.0), None)
 
