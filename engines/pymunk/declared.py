@@ -49,28 +49,32 @@ Kind = Literal[
 ]
 
 # Velocities are read at the ends of steps: all errors are of first order.
-FIRST = ConvergenceOrder(1, differences=1)
+FIRST_ORDER = ConvergenceOrder(1, differences=1)
 # A step corrects the whole gap, so that only the gap of one drift remains.
-CORRECTED = ConvergenceOrder(1, gap=2, differences=1)
+WHOLE_GAP_ORDER = ConvergenceOrder(1, gap=2, differences=1)
 # One row at the pose after the drift is solved exactly, and a skate has no gap.
 SINGLE_ROW = ConvergenceOrder(1, gap=2, slip=EXACT, differences=1)
 # A half kick ahead makes every step symmetric in time.
-SYMMETRIC = ConvergenceOrder(2, differences=1)
+SYMMETRIC_ORDER = ConvergenceOrder(2, differences=1)
 # The orders by kind of mechanism: if a step corrects a fraction of a gap; the whole gap; the whole gap in a leapfrog.
 ORDERS: Mapping[Kind, tuple[ConvergenceOrder, ConvergenceOrder, ConvergenceOrder]] = {
-    "contact": (FIRST, FIRST, FIRST),
-    "set velocity": (FIRST, FIRST, FIRST),
+    "contact": (FIRST_ORDER, FIRST_ORDER, FIRST_ORDER),
+    "set velocity": (FIRST_ORDER, FIRST_ORDER, FIRST_ORDER),
     "single skate": (SINGLE_ROW, SINGLE_ROW, SINGLE_ROW),
     # A row at the end of the step is of first order, in a leapfrog too.
-    "skate": (FIRST, CORRECTED, CORRECTED),
-    "damper": (FIRST, CORRECTED, CORRECTED),
+    "skate": (FIRST_ORDER, WHOLE_GAP_ORDER, WHOLE_GAP_ORDER),
+    "damper": (FIRST_ORDER, WHOLE_GAP_ORDER, WHOLE_GAP_ORDER),
     # A prescribed motion needs no kick: the error of a pose is its gap.
-    "prescribed": (FIRST, ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1, differences=1), SYMMETRIC),
+    "prescribed": (
+        FIRST_ORDER,
+        ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1, differences=1),
+        SYMMETRIC_ORDER,
+    ),
     # Only the pin acts: its kick is perpendicular to the path and keeps the energy.
-    "steady": (FIRST, ConvergenceOrder(2, rate=1, slip=1, reaction=1, differences=1), SYMMETRIC),
+    "steady": (FIRST_ORDER, ConvergenceOrder(2, rate=1, slip=1, reaction=1, differences=1), SYMMETRIC_ORDER),
     # The missing half kick is a delay of dt/2, which the last step's kick compensates in the velocities.
-    "at rest": (FIRST, ConvergenceOrder(1, rate=2, gap=2, slip=1, differences=1), SYMMETRIC),
-    "moving": (FIRST, CORRECTED, SYMMETRIC),
+    "at rest": (FIRST_ORDER, ConvergenceOrder(1, rate=2, gap=2, slip=1, differences=1), SYMMETRIC_ORDER),
+    "moving": (FIRST_ORDER, WHOLE_GAP_ORDER, SYMMETRIC_ORDER),
 }
 
 

@@ -49,8 +49,8 @@ class Pymunk(Engine, Valid):
 
     `iterations` over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left after one
     second. Either may be "contraction": by the convergence of the iterations (`engines.pymunk.iterations`). Then a step
-    makes at least `min_iterations`, and more than `iterations.MAX_ITERATIONS` only while iterations times joints do not
-    exceed `max_work`. `startup_steps`: steps in each stage of the start-up, in which the iterations decrease from
+    makes at least `min_iterations`, and more than `iterations.ITERATION_LIMIT` only while iterations times joints do
+    not exceed `max_work`. `startup_steps`: steps in each stage of the start-up, in which the iterations decrease from
     converged; 0 for no start-up.
 
     `leapfrog`: start half a step ahead, average the velocities, and step without the checks of `Space.step`, which

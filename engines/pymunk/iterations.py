@@ -36,7 +36,7 @@ from reference.validators import from_to
 # Factor on the stable gain (1 - r)/r where the iterations do not reach RESIDUAL.
 SAFETY = 0.8
 # With more iterations, a step of a hundred links costs more than a smaller step gains.
-MAX_ITERATIONS = 300
+ITERATION_LIMIT = 300
 # Residual that counts as converged.
 CONVERGED_RESIDUAL = 1e-16
 # Stages of the start-up phase after the converged steps; the last one ends at the tenth step, often the first sample.
@@ -99,10 +99,10 @@ def plan_with(rho: float, iterations: int, converged: int = 1000) -> IterationPl
 def iterations_in_step(rho: Factor, joints: Count = 1, fewest: Count = MIN_ITERATIONS, work: Whole = 0) -> int:
     """Iterations after which RESIDUAL of the slowest mode is left, at least `fewest`.
 
-    More than MAX_ITERATIONS only if iterations times joints do not exceed `work`; else MAX_ITERATIONS.
+    More than ITERATION_LIMIT only if iterations times joints do not exceed `work`; else ITERATION_LIMIT.
     """
     needed = iterations_for(rho, fewest)
-    return needed if needed * joints <= work else min(needed, max(MAX_ITERATIONS, fewest))
+    return needed if needed * joints <= work else min(needed, max(ITERATION_LIMIT, fewest))
 
 
 @validated

@@ -165,7 +165,7 @@ class _Builder:
                 self.rows += CONSTRAINT_ROWS[type(constraint)]
                 self.solver_rows += CONSTRAINT_ROWS[type(constraint)]
         for element in self.mechanism.forces:
-            FORCES[type(element)](self, element, self._pair(element))
+            MUNK_FORCES[type(element)](self, element, self._pair(element))
         self._add_pushes()
         count = len(self.bodies)
         size = Size(bodies=count, coordinates=3 * count, rows=self.rows, solver_rows=self.solver_rows)
@@ -338,7 +338,7 @@ CONSTRUCTIONS: Mapping[type, Callable[[_Builder, Any, Pair], Constraints]] = {
     Skate: _Builder.skate,
     Roll: _Builder.roll,
 }
-FORCES: Mapping[type, Callable[[_Builder, Any, Pair], None]] = {
+MUNK_FORCES: Mapping[type, Callable[[_Builder, Any, Pair], None]] = {
     Spring: _Builder.spring,
     Damper: _Builder.damper,
     TorsionSpring: _Builder.torsion_spring,
@@ -346,4 +346,4 @@ FORCES: Mapping[type, Callable[[_Builder, Any, Pair], None]] = {
     Torque: _Builder.torque,
     Force: _Builder.force,
 }
-PYMUNK_CAPABILITY = Capability("pymunk", frozenset(CONSTRUCTIONS), frozenset(FORCES))
+PYMUNK_CAPABILITY = Capability("pymunk", frozenset(CONSTRUCTIONS), frozenset(MUNK_FORCES))

@@ -22,9 +22,9 @@ import time
 from pathlib import Path
 
 # The signals of Windows (documentation of the module `signal`), and SIGKILL, which multiprocessing needs here.
-SIGNALS = {"SIGKILL", "SIGABRT", "SIGFPE", "SIGILL", "SIGINT", "SIGSEGV", "SIGTERM", "SIG_DFL", "SIG_IGN"}
+WINDOWS_SIGNALS = {"SIGKILL", "SIGABRT", "SIGFPE", "SIGILL", "SIGINT", "SIGSEGV", "SIGTERM", "SIG_DFL", "SIG_IGN"}
 for name in dir(signal):
-    if name.startswith(("SIG", "ITIMER")) and name not in SIGNALS:
+    if name.startswith(("SIG", "ITIMER")) and name not in WINDOWS_SIGNALS:
         delattr(signal, name)
 for name in ("setitimer", "getitimer", "alarm", "pthread_sigmask", "pthread_kill"):
     delattr(signal, name)

@@ -17,7 +17,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 from engines import Engine, method_name, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.pymunk.convergence import RESIDUAL
-from engines.pymunk.iterations import MAX_ITERATIONS
+from engines.pymunk.iterations import ITERATION_LIMIT
 from reference.scenes.pendulum.scenes import LongPendulum
 from reports.model.cells import Cell
 from reports.model.measure import Measurement
@@ -191,7 +191,7 @@ CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SCALING
 
 # With equal links an iteration leaves 1 - pi^2/(4 N^2) of the slowest mode; a step has to leave RESIDUAL of it.
 SWEEPS_OVER_SQUARE = -4 * log(RESIDUAL) / pi**2
-CAPPED = ceil(sqrt(MAX_ITERATIONS / SWEEPS_OVER_SQUARE))
+CAPPED = ceil(sqrt(ITERATION_LIMIT / SWEEPS_OVER_SQUARE))
 
 # Sizes (smallest, largest) of the fits of methods that change: the iterations of pymunk tuned have an upper limit, and
 # at COSTLY_SIZES its first steps, which have more iterations, are a large part of the few steps.
@@ -280,7 +280,7 @@ def context(material: Material) -> Mapping[str, Any]:
         "costs": cost_table(all_series),
         "errors": error_table(all_series),
         "laws": {series.method: fitted(series) for series in all_series},
-        "sweeps": {"over_square": SWEEPS_OVER_SQUARE, "capped": CAPPED, "most": MAX_ITERATIONS},
+        "sweeps": {"over_square": SWEEPS_OVER_SQUARE, "capped": CAPPED, "most": ITERATION_LIMIT},
         "crossing": crossing(by_method.get("mujoco tuned"), by_method.get(f"mujoco {SCALING_SPARSE_NEWTON.variant}"))
         or UNMEASURED,
         "tree": {n: at(mujoco.TUNED, n) for n in (100, 1000)},

@@ -23,7 +23,7 @@ from typing import Any
 from tests import ROOT
 
 LIST = Path(__file__).with_name("physics.toml")
-PACKAGES = ("reference", "engines", "reports")
+MUTATED_PACKAGES = ("reference", "engines", "reports")
 
 
 class BadList(ValueError):
@@ -81,7 +81,7 @@ def read_mistakes(path: Path = LIST) -> tuple[Mutation, ...]:
 @cache
 def _functions() -> dict[str, set[str]]:
     """The qualified names of all functions and classes of every file; "" is the module."""
-    paths = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+    paths = sorted(path for package in MUTATED_PACKAGES for path in (ROOT / package).rglob("*.py"))
     trees = {path.relative_to(ROOT).as_posix(): ast.parse(path.read_bytes()) for path in paths}
     return {file: {"", *(name for name, _ in _walk(tree, ""))} for file, tree in trees.items()}
 
