@@ -1,4 +1,4 @@
-"""`crosscheck bench`: tables of what `reports.bench` measures."""
+"""`crosscheck bench`: tables of the measurements of `reports.bench`."""
 
 from __future__ import annotations
 

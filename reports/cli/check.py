@@ -230,7 +230,7 @@ def _write(model: str, answers: Answers, files: Mapping[str, Path | None], secon
 
 
 def _print(answer: CheckReport | Refused, as_json: bool, everything: bool) -> None:
-    """The answer for one model. Raises BadInput if there is none."""
+    """The answer for one model. Raises BadInput without one."""
     from reports.check import rendering
 
     if isinstance(answer, Refused):

@@ -149,7 +149,7 @@ class Selection:
 def run_grid(
     chosen: Selection, results: Path = FOLDER, workers: int | None = None, fresh: bool = False
 ) -> list[Measurement]:
-    """The rows of these cells, of which those that are not stored in the folder `results` are run. Raises BadInput."""
+    """The rows of these cells; those that are not stored in the folder `results` are run. Raises BadInput."""
     by = cluster.pool(workers)
     with Store(results / STORE) as store:
         store.save_references(chosen.references)
@@ -175,7 +175,7 @@ def run_interruptible(
 ) -> int:
     """Run cells and tasks with a bar of progress, by `crew` or all processors; how many were run.
 
-    Raises KeyboardInterrupt, having said what is stored.
+    Raises KeyboardInterrupt after a line about the stored rows.
     """
     by = crew or cluster.pool(None)
     if is_cold(adaptive=False):

@@ -155,7 +155,7 @@ def interruptible(
     """(the items that are to be run, done, watch): a run into a store that Ctrl-C leaves where it can be left.
 
     `words`: what the items are called; `fresh`: those that are stored too; `size`: how many cases are in one, which are
-    then counted; done and watch: see `progress`. Raises KeyboardInterrupt, having said what is stored.
+    then counted; done and watch: see `progress`. Raises KeyboardInterrupt after a line about the stored rows.
     """
     if sentence := mislabelled():
         raise BadInput(sentence)

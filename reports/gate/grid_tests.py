@@ -65,7 +65,7 @@ def test_with_other_versions_no_method_is_worse_over_all_its_scenes(
 @pytest.mark.crosscheck
 def test_the_grid_has_every_scene_and_method_of_the_baseline(request: pytest.FixtureRequest) -> None:
     left = lost(request.config.stash[KNOWN], GRID)
-    absent = {told for _, method in left if (told := absence(method))}
+    absent = {sentence for _, method in left if (sentence := absence(method))}
     gone = [f"{scene}-{method}" for scene, method in left if not absence(method)]
     assert not gone, f"the grid has lost what the baseline has: {', '.join(gone)}"
     if absent:
@@ -74,4 +74,4 @@ def test_the_grid_has_every_scene_and_method_of_the_baseline(request: pytest.Fix
 
 def absence(method: str) -> str:
     """How to install the extra of a method; empty if it is installed, or the method needs no extra."""
-    return next((told for name, told in registry.ABSENT.items() if method.startswith(f"{name} ")), "")
+    return next((sentence for name, sentence in registry.ABSENT.items() if method.startswith(f"{name} ")), "")

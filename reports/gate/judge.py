@@ -205,15 +205,15 @@ def errors(
     scene: Scene, order: int, every: int, soft: Regularisation | None = None, project: bool = False
 ) -> Mapping[str, float]:
     """Largest errors of the judge's own run, by the name of the quantity; infinite ones where it failed."""
-    return _told(scene, lambda: integrate(scene, order, every, soft, project))
+    return _largest_errors(scene, lambda: integrate(scene, order, every, soft, project))
 
 
 def errors_as_soft(scene: Scene, soft: Regularisation) -> Mapping[str, float]:
     """Largest errors of `refined` with a method's own regularisation, by quantity; infinite if it gives no motion."""
-    return _told(scene, lambda: refined(scene.mechanism(), _samples(scene), scene.spacing, soft))
+    return _largest_errors(scene, lambda: refined(scene.mechanism(), _samples(scene), scene.spacing, soft))
 
 
-def _told(scene: Scene, run: Callable[[], Trajectory | None]) -> Mapping[str, float]:
+def _largest_errors(scene: Scene, run: Callable[[], Trajectory | None]) -> Mapping[str, float]:
     """Largest errors of a run of the scene."""
     mechanism = scene.mechanism()
     try:
@@ -222,7 +222,7 @@ def _told(scene: Scene, run: Callable[[], Trajectory | None]) -> Mapping[str, fl
             if found is None or not np.isfinite(found.pose).all():
                 return dict.fromkeys(QUANTITY_NAMES, math.inf)
             truth = _truth(scene, found.t.tobytes())
-            told = constraint_errors(mechanism, found) | motion_errors(scene, mechanism, truth, found)
+            largest_errors = constraint_errors(mechanism, found) | motion_errors(scene, mechanism, truth, found)
     except (ValueError, np.linalg.LinAlgError):
         return dict.fromkeys(QUANTITY_NAMES, math.inf)
-    return {name: told[name] for name in QUANTITY_NAMES}
+    return {name: largest_errors[name] for name in QUANTITY_NAMES}

@@ -35,7 +35,7 @@ def lines(verdicts: Iterable[CaseVerdict]) -> list[list[str]]:
         if worst is None:
             out.append([*first, "-", "-", "-", "-", "can't be built"])
             continue
-        angles = [each for each in verdict.theory if each.quantity == "angle" and math.isfinite(each.bound)]
+        angles = [check for check in verdict.theory if check.quantity == "angle" and math.isfinite(check.bound)]
         angle = [number(angles[0].measured), number(angles[0].bound)] if angles else ["-", "-"]
         near = f"{worst.name} ({worst.quantity})" if worst.quantity != worst.name else worst.name
         gates = {"theory": verdict.theory_complaints, "change": verdict.change_complaints}
@@ -48,7 +48,7 @@ def lines(verdicts: Iterable[CaseVerdict]) -> list[list[str]]:
 def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
     """Sentences on the baseline: other versions and the changes with them, large CPU times, and missing cells."""
     verdicts = tuple(verdicts)
-    out = [told] if (told := mixed(baseline)) else []
+    out = [sentence] if (sentence := mixed(baseline)) else []
     out += [f"The baseline has no column {name!r}: this quantity is not compared." for name in baseline.unmeasured]
     if not baseline.same_versions:
         out.append(
@@ -61,7 +61,7 @@ def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
                 if abs(check.measured - before) > 1e-3 * check.measured:
                     out.append(f"{verdict.case.label}: {check}")
         out += [str(check) for check in grown(verdicts, baseline) if not check.passed]
-    out += [f"{verdict.case.label}: {told}." for verdict in verdicts for told in remarks(verdict)]
+    out += [f"{verdict.case.label}: {sentence}." for verdict in verdicts for sentence in remarks(verdict)]
     new = sum(verdict.new for verdict in verdicts)
     if new:
         named = ", ".join(verdict.case.label for verdict in verdicts if verdict.new)
@@ -89,16 +89,18 @@ def report(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> str:
     ]
     if failed:
         parts.append("## Failed")
-        sentences = [f"{v.case.label}: {told}" for v in failed for told in (*v.theory_complaints, *v.change_complaints)]
-        parts.append("\n".join(f"* {told}" for told in sentences))
+        sentences = [
+            f"{v.case.label}: {sentence}" for v in failed for sentence in (*v.theory_complaints, *v.change_complaints)
+        ]
+        parts.append("\n".join(f"* {sentence}" for sentence in sentences))
     if known:
         parts.append("## Known deviations")
         body = [[v.case.scene.name, v.case.method, name, d.told, d.reason] for v in known for name, d in v.case.known]
         parts.append(markdown(["scene", "method", "check", "times its bound", "why"], body, left=5))
-    parts += ["## Checks that can't fail", "\n".join(f"* {told}" for told in vacuous_checks(verdicts))]
+    parts += ["## Checks that can't fail", "\n".join(f"* {sentence}" for sentence in vacuous_checks(verdicts))]
     changed = changes(verdicts, baseline)
     if changed:
-        parts += ["## Baseline", "\n".join(f"* {told}" for told in changed)]
+        parts += ["## Baseline", "\n".join(f"* {sentence}" for sentence in changed)]
     parts += ["## All", markdown(HEADER, lines(verdicts), left=2)]
     return "\n\n".join(parts) + "\n"
 
@@ -184,12 +186,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     scenes, engines = config.option.scene, config.stash[WANTED]
     if not (scenes or engines):
         return
-    kept = [item for item in items if _wanted(item, scenes, engines)]
-    if not any(map(case_of, kept)):
+    selected = [item for item in items if _wanted(item, scenes, engines)]
+    if not any(map(case_of, selected)):
         known = sorted({case.scene.name for case in map(case_of, items) if case is not None})
         raise pytest.UsageError(f"no case of --scene {scenes} --engine {list(engines)}; scenes are {', '.join(known)}")
-    config.hook.pytest_deselected(items=[item for item in items if item not in kept])
-    items[:] = kept
+    config.hook.pytest_deselected(items=[item for item in items if item not in selected])
+    items[:] = selected
 
 
 def _wanted(item: pytest.Item, scenes: Sequence[str], engines: Sequence[str]) -> bool:

@@ -1,4 +1,4 @@
-"""Releases and builds of an engine found, installed apart, run, and compared: what the commands and notebooks call."""
+"""Functions that install, run and compare releases and builds of an engine, for commands and notebooks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which releases are compared by `--all`, what is known of each by name, and where an engine's versions are found."""
+"""The releases that `--all` compares, with their known changes, and the distributions of each engine."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ RELEASES = (
     NamedRelease("pymunk", "7.3.1"),
 )
 
-# The release of MuJoCo with which a step as shipped became dearer, measured once beside 3.3.0 (the page says how).
+# The release of MuJoCo with which a step as shipped needs more CPU time, measured once beside 3.3.0 (see the page).
 COST_ROSE_IN = "3.3.1"
 
 # Names that a distribution had before; the first that has a version is taken.

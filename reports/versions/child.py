@@ -17,11 +17,11 @@ from typing import Any
 
 def main() -> None:
     """Answer one request: pickled messages on the standard output, the last one None or a Loss."""
-    # The parent alone decides what a signal to all processes of the command means.
+    # The parent alone handles signals that are sent to all processes of the command.
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
-    # What an engine prints, also from native code and while it is imported, goes to the standard error.
+    # Output of an engine, also from native code and during its import, goes to the standard error.
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     sys.path += [path for path in pickle.load(sys.stdin.buffer) if path not in sys.path]

@@ -138,7 +138,7 @@ def _as_text(value: Any) -> str:
 
 
 def read(path: Path) -> ReleaseTable:
-    """Read such a file; an empty table where there is none. Raises ValueError for a file of another kind."""
+    """Read such a file; an empty table if the file does not exist. Raises ValueError for a file of another kind."""
     if not path.is_file():
         return ReleaseTable((), {})
     lines = path.read_text(encoding="utf-8").splitlines()

@@ -67,7 +67,7 @@ class Trees(Task):
 def trees(bodies: int, loops: int, count: int) -> tuple[Mechanism, ...]:
     """Random trees, each body on an earlier one or on the ground, with this many pins more that close loops.
 
-    Lengths are about a metre, masses 0.1 to 10 kg; all move and fall. Those whose rows nearly depend are drawn anew.
+    Lengths are about a metre, masses 0.1 to 10 kg; all move and fall. Those with nearly dependent rows are drawn again.
     """
     random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([SEED, bodies, loops])))
     drawn: list[Mechanism] = []
