@@ -171,7 +171,7 @@ def rendered(
 
 @dataclass(frozen=True)
 class Drawing:
-    """The work of a worker on (a page's name, what is stored of it). words: references that the store remembers."""
+    """Draws a page in a worker from (its name, its stored material). words: references that the store remembers."""
 
     words: tuple[str, ...]
     command: str

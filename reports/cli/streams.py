@@ -13,7 +13,7 @@ from reports.model.ending import FileTrouble, visible
 
 @contextmanager
 def written() -> Iterator[None]:
-    """Raises FileTrouble where standard output can't be written inside, and BrokenPipeError if nobody reads it."""
+    """Raises FileTrouble where standard output can't be written inside, and BrokenPipeError if its reader has ended."""
     try:
         yield
         sys.stdout.flush()

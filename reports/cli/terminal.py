@@ -34,7 +34,7 @@ class Terminal(Console):
 
     `form`: "text"; "markdown", for a comment; or "json", one document at the end (`telling`). In the last two only what
     `tell` and `print_table` are given goes to standard output, and all else, such as progress, to standard error.
-    `print` raises BrokenPipeError where nobody reads it any more, and FileTrouble where it can't be written.
+    `print` raises BrokenPipeError if its reader has ended, and FileTrouble where it can't be written.
     """
 
     def __init__(self, width: int, form: str = "text") -> None:

@@ -2,7 +2,7 @@
 
 A distribution registers under `crosscheck.scenes` a scene, or a tuple or list of scenes; under `crosscheck.pages` a
 page (`reports.model.page.Page`), or a tuple or list of pages. A page shows the scenes that it names, whether they are
-registered or not. Ours are in pyproject.toml, and pages are told in the order there.
+registered or not. Those of this suite are in pyproject.toml, which has the order of the pages.
 """
 
 from __future__ import annotations
