@@ -32,7 +32,7 @@ from reports.write.provenance import still_installed
 # (scene, method, samples, steps per sample): identifies a cell in all runs, even if its settings have changed.
 Identity = tuple[str, str, int, int]
 IDENTITY = ("scene", "engine", "variant", "samples", "every")  # its columns
-TIMINGS = "timings.csv"  # beside errors.csv; its comments hold the versions (`reports.write.provenance.versions`)
+TIMINGS_FILE = "timings.csv"  # beside errors.csv; its comments hold the versions (`reports.write.provenance.versions`)
 MOST_FILES_NAMED = 5  # in a sentence
 
 
@@ -102,7 +102,7 @@ def _read_timings(path: Path) -> tuple[str, dict[Identity, float]]:
     seconds: dict[Identity, float] = {}
     remarks: list[str] = []
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
-        remarks, rows = read_lines(path.with_name(TIMINGS).read_text(encoding="utf-8"))
+        remarks, rows = read_lines(path.with_name(TIMINGS_FILE).read_text(encoding="utf-8"))
         for row in rows:
             if row["purpose"] == "sweep":
                 seconds[_identity(row)] = float(row["cpu"])

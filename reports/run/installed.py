@@ -31,7 +31,7 @@ VERSION = re.compile(r"[0-9][0-9A-Za-z.!+_-]*")
 OFFERED = re.compile(r"from versions: ([^)]*)\)")
 UNCONNECTED = ("NewConnectionError", "Name or service not known", "Failed to establish a new connection")
 OFFLINE = "no connection to a package index; with network it is installed once and kept"
-MOST = 60  # versions and builds that are kept; more than any command uses in one go
+MOST_INSTALLED = 60  # versions and builds that are kept; more than any command uses in one go
 SHOWN = 6  # versions that are named when another was asked for
 # Older MuJoCo imports its windows together with itself, and so packages that nobody needs here.
 WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
@@ -110,11 +110,11 @@ def _place(name: str) -> Path:
 
 
 def _used(folder: Path) -> Path:
-    """The folder, marked as used now; only the MOST that were used last stay installed."""
+    """The folder, marked as used now; only the MOST_INSTALLED that were used last stay installed."""
     with suppress(OSError):
         os.utime(folder.parent)
         others = [each for each in (cache_folder() / "versions").glob("*/*") if not each.name.startswith(".")]
-        for old in sorted(others, key=lambda each: each.stat().st_mtime, reverse=True)[MOST:]:
+        for old in sorted(others, key=lambda each: each.stat().st_mtime, reverse=True)[MOST_INSTALLED:]:
             shutil.rmtree(old, ignore_errors=True)
     return folder
 
