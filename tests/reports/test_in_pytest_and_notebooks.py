@@ -71,7 +71,7 @@ def test_a_linkage_is_bars_between_points_that_stand_where_they_are_said_to():
         (POINTS, {"crank": "AX"}, "A", "no point is called 'X'; there are A, B, C, D"),
         ({**POINTS, "B": 3}, BARS, "AD", "point 'B' is 3; it must be two numbers, x and y [m]"),
         (POINTS, {"crank": "A"}, "A", "bar 'crank': its ends are 'A'; give the names of two different points"),
-        ({**POINTS, "E": (0, 0)}, {"crank": "AE"}, "A", "are the same place; it has no length"),
+        ({**POINTS, "E": (0, 0)}, {"crank": "AE"}, "A", "at the same point"),
     ],
 )
 def test_what_is_no_linkage_is_refused_in_a_sentence(points, bars, ground, sentence):
