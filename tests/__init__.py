@@ -1,4 +1,4 @@
-"""The tests by rooms: `reference`, `engines`, `reports`, `tools`; `wrong` has models and adapters that are wrong."""
+"""Tests of `reference`, `engines`, `reports` and `tools`; `wrong` has wrong models and adapters."""
 
 from pathlib import Path
 

@@ -10,38 +10,39 @@ import pytest
 
 pytest_plugins = ["pytester"]
 
-# A shell that starts the tests in the background has them ignore Ctrl-C, and the programs that they start inherit it.
+# Tests that a shell starts in the background ignore Ctrl-C, and so would the programs that they start.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-os.environ.pop("COLUMNS", None)  # how wide somebody's window is: tables would be folded
+os.environ.pop("COLUMNS", None)  # the width of the user's window, at which tables would be folded
 
-# The longest, each of which would keep one worker busy after the others have ended.
-FIRST = (
+# The longest test files, which begin first, so that no worker runs one of them after the others have ended.
+LONGEST_FILES = (
     *("site_in_browser", "installations", "cluster", "wrong_models", "any_rows", "lagrange_compiled"),
     *("promised", "matrix", "random", "scenes", "conformance"),
 )
 
 GOLDEN = Path(__file__).parent / "golden"
 
-# The one file whose tests are marked `crosscheck`, which a test there holds.
-GRID = "test_crosscheck.py"
+# The only file whose tests are marked `crosscheck`.
+GRID_FILE = "test_crosscheck.py"
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Where `-m` asks for the grid alone, no other file is imported: importing them all takes ten seconds."""
-    alone = config.getoption("-m") in ("crosscheck", "crosscheck and not slow")
-    return True if alone and collection_path.name.startswith("test_") and collection_path.name != GRID else None
+    """Ignore other files if `-m` selects the grid alone, since the import of all files takes ten seconds."""
+    is_grid_alone = config.getoption("-m") in ("crosscheck", "crosscheck and not slow")
+    is_other = collection_path.name.startswith("test_") and collection_path.name != GRID_FILE
+    return True if is_grid_alone and is_other else None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the longest files; the order within a file stays."""
-    place = {f"test_{name}.py": number for number, name in enumerate(FIRST)}
-    items.sort(key=lambda item: place.get(Path(item.path).name, len(FIRST)))
+    """Begin with the longest files, without a change of the order within a file."""
+    ranks = {f"test_{name}.py": rank for rank, name in enumerate(LONGEST_FILES)}
+    items.sort(key=lambda item: ranks.get(Path(item.path).name, len(LONGEST_FILES)))
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--renew-golden", action="store_true", help="Write tests/golden/* from what is rendered now.")
+    parser.addoption("--renew-golden", action="store_true", help="Write tests/golden/* from the current output.")
 
 
 @pytest.fixture
@@ -59,14 +60,14 @@ def golden(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
 
 @pytest.fixture
 def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Commands run what they run in this process: workers take seconds to start, and are the subject of other tests."""
+    """Make commands run in this process, without workers, which take seconds to start."""
     from reports.gate import walk
     from reports.run import cluster, supervisor, worker
     from tests.toys import in_process
 
     monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Workforce(1, in_process))
     monkeypatch.setattr(worker, "start_early", lambda *modules: None)
-    monkeypatch.setattr(supervisor, "supervise", in_process)  # for what commands import when they are called
+    monkeypatch.setattr(supervisor, "supervise", in_process)  # for functions that commands import when they are called
     monkeypatch.setattr(walk, "supervise", in_process)
 
 

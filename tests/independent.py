@@ -1,4 +1,4 @@
-"""Motions of MuJoCo models by equations that share no code with the judge: tree coordinates, multipliers, DOP853."""
+"""Motions of MuJoCo models by equations without code of the judge: tree coordinates, multipliers, DOP853."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -18,7 +18,7 @@ Rows = Callable[[Any, Any], tuple[Array, Array]]
 
 
 def connected(name: str | int) -> Rows:
-    """Rows of a connect between bodies or sites: velocities of its point on the first less those on the second."""
+    """Rows of a connect between bodies or sites: velocity of its point on the first minus that on the second."""
 
     def rows(model: Any, data: Any) -> tuple[Array, Array]:
         equality = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_EQUALITY, name) if isinstance(name, str) else name
@@ -32,7 +32,7 @@ def connected(name: str | int) -> Rows:
             mujoco.mj_jac(model, data, jac, None, at, body)
             mujoco.mj_jacDot(model, data, rate, None, at, body)
             out, rates = out + sign * jac, rates + sign * rate
-        flat = np.abs(out).max(axis=1) > 1e-6 * np.abs(out).max()  # none across the plane
+        flat = np.abs(out).max(axis=1) > 1e-6 * np.abs(out).max()  # without the row normal to the plane
         return out[flat], rates[flat] @ data.qvel
 
     return rows
@@ -63,9 +63,9 @@ def equalities(model: Any) -> list[Rows]:
     return [connected(number) if is_point else coupled(*factors(number)) for number, is_point in enumerate(connects)]
 
 
-def motion(model: Any, data: Any, held: list[Rows], t: Array) -> tuple[Array, Array]:
-    """Coordinates (times, nv) of a tree that these rows hold, from the state of `data`, and the forces of
-    the rows (times, rows). MuJoCo gives the mass matrix, and the forces of gravity, springs, dampers and actuators.
+def motion(model: Any, data: Any, constraints: list[Rows], t: Array) -> tuple[Array, Array]:
+    """Coordinates (times, nv) of a tree with these rows, from the state of `data`, and the forces of the rows (times,
+    rows). The mass matrix and the forces of gravity, springs, dampers and actuators are MuJoCo's.
     """
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 
@@ -75,14 +75,14 @@ def motion(model: Any, data: Any, held: list[Rows], t: Array) -> tuple[Array, Ar
         mass = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, mass)
         force = data.qfrc_passive + data.qfrc_actuator - data.qfrc_bias
-        pairs = [(np.zeros((0, model.nv)), np.zeros(0)), *(rows(model, data) for rows in held)]
+        pairs = [(np.zeros((0, model.nv)), np.zeros(0)), *(rows(model, data) for rows in constraints)]
         matrix, rate = (np.concatenate([pair[i] for pair in pairs]) for i in (0, 1))
-        whole = np.block([[mass, -matrix.T], [matrix, np.zeros((len(matrix), len(matrix)))]])
-        out = np.linalg.solve(whole, np.concatenate([force, -rate]))
+        system = np.block([[mass, -matrix.T], [matrix, np.zeros((len(matrix), len(matrix)))]])
+        out = np.linalg.solve(system, np.concatenate([force, -rate]))
         return out[: model.nv], out[model.nv :]
 
     start = np.concatenate([data.qpos, data.qvel])
-    found = solve_ivp(
+    solution = solve_ivp(
         lambda _, state: np.concatenate([state[model.nv :], solved(state)[0]]),
         (0.0, float(t[-1])),
         start,
@@ -91,4 +91,4 @@ def motion(model: Any, data: Any, held: list[Rows], t: Array) -> tuple[Array, Ar
         rtol=1e-11,
         atol=1e-12,
     )
-    return found.y[: model.nv].T, np.array([solved(state)[1] for state in found.y.T], dtype=np.float64)
+    return solution.y[: model.nv].T, np.array([solved(state)[1] for state in solution.y.T], dtype=np.float64)

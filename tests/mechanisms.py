@@ -1,4 +1,4 @@
-"""Mechanisms built by hand for tests of the core, with every kind of joint and force, and scenes at their limits."""
+"""Mechanisms for tests of the core, with every joint and force class, and scenes in which methods fail."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def pendulum(angle: float = -np.pi / 2 + 1.0, rate: float = 0.0, length: float =
 def rolling_disc(
     rolling: Rolling, rate: float = 0.0, name: str = "disc", first: str | None = None
 ) -> tuple[Body, Roll]:
-    """A disc of 1 kg whose circle rolls at `rate` [rad/s] on a curve of `first` or the ground; and its joint."""
+    """A disc of 1 kg whose circle rolls at `rate` [rad/s] on a curve of `first` or the ground, and its joint."""
     x, y, angle = (float(value) for value in rolling.pose(rolling.theta))
     vx, vy = (float(value) for value in rolling.velocity(rolling.theta, rate))
     inertia = cast(Circle, rolling.body).radius ** 2 / 2
@@ -78,7 +78,7 @@ def rolling_disc(
 
 
 def elbow() -> Mechanism:
-    """Two bars from the origin, driven against each other where they meet."""
+    """Two bars from the origin, with a drive at the pin between them."""
     upper, lower = bar("upper", (0.0, 0.0), (1.0, 0.0)), bar("lower", (1.0, 0.0), (1.0, -0.7), rate=2.0)
     joints = (
         Pin("A", None, "upper", (0.0, 0.0), (-0.5, 0.0)),
@@ -94,12 +94,12 @@ MASSES = {"a": (1.0, 0.3), "b": (1.5, 0.2), "c": (0.7, 0.1), "d": (0.7, 0.1)}
 
 
 def bodies(*names: str) -> tuple[Body, ...]:
-    """At rest."""
+    """Bodies at rest."""
     return tuple(Body(name, *MASSES[name], POSES[name]) for name in names)
 
 
 def world(name: str | None, point: Vector) -> Vector:
-    """A body's own point [m] in the world at the start."""
+    """The world coordinates [m] of a body's point at the start."""
     if name is None:
         return point
     x, y, angle = POSES[name]
@@ -108,7 +108,7 @@ def world(name: str | None, point: Vector) -> Vector:
 
 
 def own(name: str | None, point: Vector) -> Vector:
-    """The world's point [m] in the body's own frame at the start."""
+    """The coordinates [m] of a world point in the body's frame at the start."""
     if name is None:
         return point
     x, y, angle = POSES[name]
@@ -117,12 +117,12 @@ def own(name: str | None, point: Vector) -> Vector:
 
 
 def pin(name: str, first: str | None, second: str, point: Vector) -> Pin:
-    """At a point of the world."""
+    """A pin at a point of the world."""
     return Pin(name, first, second, own(first, point), own(second, point))
 
 
 def rod(name: str, first: str | None, second: str, first_point: Vector, second_point: Vector) -> Rod:
-    """As long as its points are apart at the start."""
+    """A rod with the length between its points at the start."""
     length = math.dist(world(first, first_point), world(second, second_point))
     return Rod(name, first, second, first_point, second_point, length)
 

@@ -1,4 +1,4 @@
-"""What may be missing by its type, and by the test's own premise is there."""
+"""Values whose type allows None, and which are not None in a test."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ Value = TypeVar("Value")
 
 
 def present(value: Value | None) -> Value:
-    """The value; a test that supposes it fails if it is None."""
+    """The value; fails the test if it is None."""
     assert value is not None
     return value

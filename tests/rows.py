@@ -1,4 +1,4 @@
-"""Rows made by hand, with another number in every field: what is taken from the wrong field shows."""
+"""Rows with a different number in every field, so that a value from the wrong field is noticed."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 
-# Errors, step and costs are two-digit primes times a power of ten, so that a printed pair of digits names its field;
-# counts are three-digit primes.
+# Errors, step and costs are two-digit primes times a power of ten, so that two printed digits identify the field.
+# Counts are three-digit primes.
 ROW = Measurement(
     key="the key",
     purpose="sweep",

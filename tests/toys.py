@@ -19,7 +19,7 @@ from reference.trajectory import Trajectory
 
 
 def in_process(work: Callable[[Any], Any], items: Iterable[Any], *_: Any, **__: Any) -> Iterator[tuple[Any, Any, str]]:
-    """Stands for `supervise` where workers, which take seconds to start, are not the subject."""
+    """A substitute for `supervise` without worker processes, which take seconds to start."""
     return ((item, work(item), "") for item in items)
 
 
@@ -42,13 +42,13 @@ class Disc(Scene):
         return turning(self.mechanism(), times)
 
     def branch_of(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
-        """Beyond 2 rad, which it never reaches by itself: a change of assembly that opens no joint."""
+        """-1 beyond 2 rad, which the motion never reaches: a change of assembly that opens no joint."""
         return np.where(pose[..., 0, 2] > 2.0, -1, 1)
 
 
 @dataclass(frozen=True)
 class ImpossibleDisc(Disc):
-    """The mechanism exists, the textbook has no motion for it."""
+    """A scene with a mechanism and without a reference motion."""
 
     name: ClassVar[str] = "impossible_disc"
 
@@ -73,12 +73,12 @@ class ToyRun:
 
 
 class Plain(Engine):
-    """What the contract asks of an engine beside a name and a model, as plainly as can be: for engines of tests."""
+    """Base of test engines: the members of the contract other than name and model, as simple as possible."""
 
     packages = ()
 
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        return NotDeclared("nobody thought about it")
+        return NotDeclared("no order is derived")
 
     def step_cost(self, mechanism: Mechanism) -> float:
         return 50e-6
@@ -89,7 +89,7 @@ class Plain(Engine):
 
 @dataclass(frozen=True)
 class Toy(Plain):
-    """Angle error `factor` * step ** `power` + `plateau`, reached linearly in time."""
+    """An engine whose angle error grows linearly in time to `factor` * step ** `power` + `plateau`."""
 
     variant: str = "default"
     factor: float = 1.0
@@ -110,7 +110,7 @@ class Toy(Plain):
 
 @dataclass(frozen=True)
 class SlowToy(Toy):
-    """Takes its time [s] without using the processor."""
+    """An engine that sleeps [s] while it builds."""
 
     seconds: float = 0.02
 
@@ -121,7 +121,7 @@ class SlowToy(Toy):
 
 @dataclass(frozen=True)
 class FailingToy(Toy):
-    """Fails as its variant, a key of FAILURES, says; "blind" loses its velocities alone."""
+    """An engine that fails in the way of its variant, a key of FAILURES."""
 
     def build(self, mechanism: Mechanism, dt: float) -> ToyRun:
         match self.variant:
@@ -129,6 +129,8 @@ class FailingToy(Toy):
                 raise ValueError("mass is -1; it must be greater than zero")
             case "unsupported":
                 raise Unsupported("it has no pins")
+            case _:
+                pass
         return super().build(mechanism, dt)
 
     def spoil(self, exact: Trajectory, dt: float) -> Trajectory:
@@ -158,6 +160,8 @@ class FailingToy(Toy):
                 return Trajectory(exact.t, exact.pose, exact.twist, exact.reaction, 1e-4, reset_at=float(exact.t[5]))
             case "saturate":
                 exact.pose[:, 0, 2] += 5 * exact.t
+            case _:
+                pass
         return exact
 
 

@@ -21,7 +21,7 @@ from tests import ROOT
 from tests.reports.test_gate import row
 from tests.reports.test_gate_baseline import written
 from tests.toys import Disc, Toy
-from tests.wrong.adapters import SMALL, Wrong
+from tests.wrong.adapters import SMALL_MISTAKES, Wrong
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ def test_the_judge_runs_in_processes_of_its_own_and_one_that_fails_ends_the_gate
 SCENE = DrivenFourBar()
 ENGINES: dict[str, Engine] = {"pymunk": pymunk.TUNED, "mujoco": mujoco.TUNED}
 ASKED = (
-    *SMALL,
+    *SMALL_MISTAKES,
     "velocities are half a step late",
     "velocities are of the step before",
     "reactions are twice as large",

@@ -18,7 +18,7 @@ from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reports.model.outcomes import Loss
 from reports.run.running import worker_count
 from reports.run.supervisor import supervise
-from tests.wrong.mistakes import KINDS, Mistake, MistakeTrial, Sighting, mistakes, noticed
+from tests.wrong.mistakes import NUMBER_KINDS, Mistake, MistakeTrial, Sighting, mistakes, noticed
 
 # What has to be noticed: a ten-thousandth by methods that reach rounding, a hundredth by what documented settings give.
 EXTENDED: dict[Engine, float] = {pymunk.EXTENDED: 1e-4, mujoco.EXTENDED: 1e-4}
@@ -169,7 +169,7 @@ def representative(trials: Iterable[MistakeTrial], each: int = 2) -> list[Mistak
     for trial in trials:
         counts = met.setdefault(trial.engine.name, Counter())
         last = {mistake.kind: mistake for mistake in trial.mistakes if not excuse(trial.scene, trial.engine, mistake)}
-        rarest = sorted(last, key=lambda kind: (counts[kind], KINDS.index(kind)))[:each]
+        rarest = sorted(last, key=lambda kind: (counts[kind], NUMBER_KINDS.index(kind)))[:each]
         counts.update(rarest)
         out.append(replace(trial, mistakes=tuple(last[kind] for kind in rarest)))
     return out

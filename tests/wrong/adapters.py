@@ -1,4 +1,4 @@
-"""Engines with one mistake each, around a right one: what `engines.conformance` and the gates have to find."""
+"""Engines with one mistake each, around a right one, which `engines.conformance` and the gates must find."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ from tests.wrong.builds import (
     any_count,
     any_step,
     before,
+    from_neighbours,
     from_the_ground_up,
     goes_on,
     kicked_start,
@@ -34,7 +35,6 @@ from tests.wrong.builds import (
     right_handed,
     time_without_every,
     times,
-    told_by,
     unsupported,
     wall_clock,
     walled,
@@ -46,33 +46,33 @@ from tests.wrong.mistakes import Mistake
 
 @dataclass(frozen=True)
 class Wrong(EngineWrapper):
-    """A right engine with the mistake that its variant names: in what it builds, or in an answer about itself."""
+    """A right engine with the mistake of its variant: in the run that it builds, or in a declaration."""
 
     variant: str
     engine: Engine = LEAPFROG
     name: str = "wrong"  # pyright: ignore[reportIncompatibleMethodOverride]
 
     def build(self, mechanism: Mechanism, dt: float) -> Any:
-        building = {**MISTAKES, **SMALL}.get(self.variant, ("", right))[1]
+        building = {**MISTAKES, **SMALL_MISTAKES}.get(self.variant, ("", right))[1]
         return building(self.engine, mechanism, dt)
 
 
 def answer_of(member: str) -> Callable[..., Any]:
-    """The method that gives the right engine's answer, or the mistake's."""
+    """The method of the right engine, or the wrong one of the variant."""
 
     def answer(self: Wrong, *arguments: Any) -> Any:
-        _, wrong, given = ANSWERS.get(self.variant, ("", "", None))
-        return given(*arguments) if given and wrong == member else getattr(self.engine, member)(*arguments)
+        _, wrong, function = ANSWERS.get(self.variant, ("", "", None))
+        return function(*arguments) if function and wrong == member else getattr(self.engine, member)(*arguments)
 
     return answer
 
 
-for MEMBER in ("order", "step_cost", "enforcement", "regularisation", "inner_steps"):
-    setattr(Wrong, MEMBER, answer_of(MEMBER))
+for member in ("order", "step_cost", "enforcement", "regularisation", "inner_steps"):
+    setattr(Wrong, member, answer_of(member))
 
 
-LATE = "velocities are half a step late"
-# By the name of the mistake: the check that finds it before any other, and how the wrong engine builds.
+HALF_STEP_LATE = "velocities are half a step late"
+# By the name of the mistake: the first check that finds it, and the function that builds the wrong run.
 MISTAKES: dict[str, tuple[str, Build]] = {
     "a kind of joint is looked up": (
         "builds_or_refuses",
@@ -96,7 +96,7 @@ MISTAKES: dict[str, tuple[str, Build]] = {
     "the cost is of the wall's clock": ("tells_the_cpu_time_of_stepping", wall_clock),
     "the state after the first step comes first": (
         "first_pose_is_the_start",
-        told_by(lambda now, later, earlier: later, True, "pose", "twist", "reaction"),
+        from_neighbours(lambda now, later, earlier: later, True, "pose", "twist", "reaction"),
     ),
     "the first velocity has had half a kick": ("first_twist_is_the_start", after(kicked_start)),
     "random noise": ("gives_the_same_bits", after(noisy)),
@@ -109,10 +109,13 @@ MISTAKES: dict[str, tuple[str, Build]] = {
         "poses_stand_at_their_instants",
         after(lambda run, m, dt: moved(run, "pose", run.twist * dt / 2)),
     ),
-    LATE: ("twists_stand_at_their_instants", told_by(lambda now, later, earlier: (now + later) / 2, False, "twist")),
+    HALF_STEP_LATE: (
+        "twists_stand_at_their_instants",
+        from_neighbours(lambda now, later, earlier: (now + later) / 2, False, "twist"),
+    ),
     "velocities are of the step before": (
         "twists_stand_at_their_instants",
-        told_by(lambda now, later, earlier: earlier, False, "twist"),
+        from_neighbours(lambda now, later, earlier: earlier, False, "twist"),
     ),
     "poses are of first order": (
         "poses_have_their_order",
@@ -136,7 +139,7 @@ MISTAKES: dict[str, tuple[str, Build]] = {
 
 
 def numbers_off(kind: str, relative: float) -> Build:
-    """The mistake of a number that is off in every model: of the middle body, or of gravity."""
+    """The mistake of a wrong number in every model: of the middle body, or of gravity."""
 
     def change(mechanism: Mechanism) -> Mechanism:
         owner = "" if kind == "gravity" else mechanism.bodies[len(mechanism.bodies) // 2].name
@@ -155,12 +158,12 @@ def driven_backwards(mechanism: Mechanism) -> Mechanism:
 
 
 def longer_steps(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """Steps that are 1 % longer than those asked for, at the times of these."""
-    return Spoiled(inner.build(mechanism, 1.01 * dt), lambda given: replace(given, t=given.t / 1.01))
+    """The mistake of steps that are 1 % too long, with the times of the right ones."""
+    return Spoiled(inner.build(mechanism, 1.01 * dt), lambda run: replace(run, t=run.t / 1.01))
 
 
-# Mistakes of which some are smaller than what the conformance checks see; the gate of theory is asked.
-SMALL: dict[str, tuple[str, Build]] = {
+# Mistakes for the gate of theory; some are too small for the conformance checks.
+SMALL_MISTAKES: dict[str, tuple[str, Build]] = {
     "a mass is 1 % off": ("", numbers_off("mass", 1e-2)),
     "a mass is 0.1 % off": ("", numbers_off("mass", 1e-3)),
     "an inertia is 10 % off": ("", numbers_off("inertia", 1e-1)),
@@ -176,7 +179,7 @@ SMALL: dict[str, tuple[str, Build]] = {
     "reactions are 1.1 times as large": ("", times("reaction", 1.1)),
     "reactions are no numbers": ("", times("reaction", np.nan)),
 }
-# By the name of the mistake: the check that finds it, the member of the engine, and its wrong answer.
+# By the name of the mistake: the check that finds it, the member of the engine, and the wrong function.
 ANSWERS: dict[str, tuple[str, str, Callable[..., Any]]] = {
     "the order is a number": ("promises_an_order", "order", lambda mechanism: 2),
     "an order is refused in a word": ("promises_an_order", "order", lambda mechanism: NotDeclared("no")),
@@ -207,7 +210,7 @@ class TwoLines(Wrong):
 
 @dataclass
 class Changeable(EngineWrapper):
-    """Not frozen."""
+    """An engine that is not frozen."""
 
     variant: str = "changeable"
     engine: Engine = LEAPFROG
@@ -230,7 +233,7 @@ class Listing(Wrong):
 
 
 def local() -> Any:
-    """An engine of a class that no other process finds."""
+    """An engine of a local class, which can't be pickled."""
 
     @dataclass(frozen=True)
     class Local(Wrong):
@@ -241,7 +244,7 @@ def local() -> Any:
 
 @dataclass(frozen=True)
 class Forgetful(Wrong):
-    """An attribute that is no field is lost by pickle."""
+    """An engine with an attribute that is no field, so that pickling loses it."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_factor", 0.5)
@@ -269,5 +272,5 @@ WRONG: dict[str, tuple[str, Any]] = {
     "what is no field is lost": ("can_be_pickled", Forgetful("nothing")),
     "a package has another name": ("names_its_packages", Imported("nothing")),
 }
-HALF_A_STEP_LATE = Wrong(LATE)
+HALF_A_STEP_LATE = Wrong(HALF_STEP_LATE)
 NO_ENGINES: tuple[Wrong, ...] = ()

@@ -1,4 +1,4 @@
-"""The mistakes that an adapter can make, each a function that builds a wrong run around a right engine."""
+"""Mistakes of adapters: each function builds a wrong run around a right engine."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Build = Callable[[Engine, Mechanism, float], Any]
 
 
 class Spoiled:
-    """A run whose trajectory is changed before it is given; `size` is that of the right one."""
+    """A run whose trajectory is changed before it is returned; `size` is that of the right one."""
 
     def __init__(self, run: Run, spoil: Callable[[Trajectory], Trajectory]) -> None:
         self._run, self._spoil = run, spoil
@@ -30,7 +30,7 @@ class Spoiled:
 
 
 class Careless:
-    """A run that calls a function of (samples, every), whatever these are."""
+    """A run that calls a function of (samples, every) without a check of these."""
 
     def __init__(self, size: Any, call: Callable[[int, int], Any]) -> None:
         self.size, self._call = size, call
@@ -40,7 +40,7 @@ class Careless:
 
 
 class Calls(Careless):
-    """The same, for valid counts."""
+    """A run that calls a function of (samples, every) and refuses wrong counts."""
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Any:
@@ -53,7 +53,7 @@ def right(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 def after(spoil: Callable[[Trajectory, Mechanism, float], Trajectory]) -> Build:
     """The mistake of changing the trajectory of a right run."""
-    return lambda inner, mechanism, dt: Spoiled(inner.build(mechanism, dt), lambda given: spoil(given, mechanism, dt))
+    return lambda inner, mechanism, dt: Spoiled(inner.build(mechanism, dt), lambda run: spoil(run, mechanism, dt))
 
 
 def before(change: Callable[[Mechanism], Mechanism]) -> Build:
@@ -61,11 +61,11 @@ def before(change: Callable[[Mechanism], Mechanism]) -> Build:
     return lambda inner, mechanism, dt: inner.build(change(mechanism), dt)
 
 
-def moved(given: Trajectory, name: str, by: Any) -> Trajectory:
-    """With something added to one array, from the second sample on."""
-    values = getattr(given, name).copy()
+def moved(trajectory: Trajectory, name: str, by: Any) -> Trajectory:
+    """The trajectory with `by` added to one array, from the second sample on."""
+    values = getattr(trajectory, name).copy()
     values[1:] += np.broadcast_to(by, values.shape)[1:]
-    return replace(given, **{name: values})
+    return replace(trajectory, **{name: values})
 
 
 def times(name: str, factor: float) -> Build:
@@ -73,7 +73,7 @@ def times(name: str, factor: float) -> Build:
 
 
 def refusing(raise_if: Callable[[Mechanism], Any]) -> Build:
-    """The mistake of failing, by whatever `raise_if` raises, for some mechanisms."""
+    """The mistake of failing for mechanisms for which `raise_if` raises."""
 
     def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
         raise_if(mechanism)
@@ -102,17 +102,15 @@ def any_count(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 
 def goes_on(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """A second call continues after the first."""
+    """The mistake that a second call continues after the first."""
     done = 0
 
     def call(samples: int, every: int) -> Trajectory:
         nonlocal done
-        whole = inner.build(mechanism, dt)(done + samples, every)
-        part = slice(done, None)
+        run = inner.build(mechanism, dt)(done + samples, every)
+        arrays = {name: getattr(run, name)[done:] for name in ("pose", "twist", "reaction")}
         done += samples
-        return replace(
-            whole, t=whole.t[: samples + 1], **{k: getattr(whole, k)[part] for k in ("pose", "twist", "reaction")}
-        )
+        return replace(run, t=run.t[: samples + 1], **arrays)
 
     return Calls(inner.build(mechanism, dt).size, call)
 
@@ -128,14 +126,17 @@ def wall_clock(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
     def call(samples: int, every: int) -> Trajectory:
         begin = time.perf_counter()
         time.sleep(0.002)
-        given = run(samples, every)
-        return replace(given, stepping=time.perf_counter() - begin)
+        trajectory = run(samples, every)
+        return replace(trajectory, stepping=time.perf_counter() - begin)
 
     return Calls(run.size, call)
 
 
-def told_by(tell: Callable[[Any, Any, Any], Any], first: bool, *names: str) -> Build:
-    """Samples made of the states at them, a step later and a step before; the `first` sample too, or right."""
+def from_neighbours(combine: Callable[[Any, Any, Any], Any], first: bool, *names: str) -> Build:
+    """The mistake that arrays are combined from the states at a sample, a step later and a step before it.
+
+    `first`: the first sample is wrong too.
+    """
 
     def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
         run = inner.build(mechanism, dt)
@@ -144,10 +145,10 @@ def told_by(tell: Callable[[Any, Any, Any], Any], first: bool, *names: str) -> B
             fine = run(samples * every + 1, 1)
             parts = {name: getattr(fine, name)[:-1:every].copy() for name in ("pose", "twist", "reaction")}
             for name in names:
-                whole = getattr(fine, name)
-                earlier = np.concatenate([whole[:1], whole])[: samples * every + 1 : every]
-                told = tell(parts[name], whole[1::every], earlier)
-                parts[name][0 if first else 1 :] = told[0 if first else 1 :]
+                states = getattr(fine, name)
+                earlier = np.concatenate([states[:1], states])[: samples * every + 1 : every]
+                wrong = combine(parts[name], states[1::every], earlier)
+                parts[name][0 if first else 1 :] = wrong[0 if first else 1 :]
             return replace(fine, t=np.arange(samples + 1) * every * dt, **parts)
 
         return Calls(run.size, call)
@@ -155,47 +156,47 @@ def told_by(tell: Callable[[Any, Any, Any], Any], first: bool, *names: str) -> B
     return build
 
 
-def kicked_start(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    twist = given.twist.copy()
+def kicked_start(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    twist = trajectory.twist.copy()
     twist[0, :, 1] += mechanism.gravity[1] * dt / 2
-    return replace(given, twist=twist)
+    return replace(trajectory, twist=twist)
 
 
-NOISE = np.random.default_rng(1)
+NOISE_GENERATOR = np.random.default_rng(1)
 
 
-def noisy(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return moved(given, "pose", 1e-12 * NOISE.standard_normal(given.pose.shape))
+def noisy(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    return moved(trajectory, "pose", 1e-12 * NOISE_GENERATOR.standard_normal(trajectory.pose.shape))
 
 
 def written_into(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
     run = inner.build(mechanism, dt)
 
     def call(samples: int, every: int) -> Trajectory:
-        given = run(samples, every)
-        mechanism.twist.flags.writeable = True  # against numpy's own refusal
-        mechanism.twist[:] = given.twist[-1]
-        return given
+        trajectory = run(samples, every)
+        mechanism.twist.flags.writeable = True
+        mechanism.twist[:] = trajectory.twist[-1]
+        return trajectory
 
     return Calls(run.size, call)
 
 
 def one_long_step(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    kept = [inner.build(mechanism, dt)]
-    return Calls(kept[0].size, lambda samples, every: kept.pop() and inner.build(mechanism, dt * every)(samples, 1))
+    runs = [inner.build(mechanism, dt)]
+    return Calls(runs[0].size, lambda samples, every: runs.pop() and inner.build(mechanism, dt * every)(samples, 1))
 
 
-def wrapped(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    turned = given.pose[..., 2] - given.pose[0, :, 2]
-    pose = given.pose.copy()
-    pose[..., 2] = given.pose[0, :, 2] + np.arctan2(np.sin(turned), np.cos(turned))
-    return replace(given, pose=pose)
+def wrapped(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    turned = trajectory.pose[..., 2] - trajectory.pose[0, :, 2]
+    pose = trajectory.pose.copy()
+    pose[..., 2] = trajectory.pose[0, :, 2] + np.arctan2(np.sin(turned), np.cos(turned))
+    return replace(trajectory, pose=pose)
 
 
-def walled(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """A box of six metres stands around the origin."""
-    beyond = np.where(np.abs(mechanism.pose[:, 0]) > 3.0, given.t[:, None] ** 2, 0.0)
-    return moved(given, "pose", beyond[..., None])
+def walled(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    """The mistake that there is a box of six metres around the origin."""
+    beyond = np.where(np.abs(mechanism.pose[:, 0]) > 3.0, trajectory.t[:, None] ** 2, 0.0)
+    return moved(trajectory, "pose", beyond[..., None])
 
 
 def right_handed(mechanism: Mechanism) -> Mechanism:
@@ -203,19 +204,19 @@ def right_handed(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, joints=joints)
 
 
-def from_the_ground_up(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """Bodies that a joint holds on the ground come first."""
+def from_the_ground_up(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    """The mistake that bodies with a joint to the ground are returned first."""
     grounded = {name for j in mechanism.joints if None in (j.first, j.second) for name in (j.first, j.second)}
     order = sorted(range(len(mechanism.bodies)), key=lambda i: mechanism.bodies[i].name not in grounded)
-    return replace(given, pose=given.pose[:, order], twist=given.twist[:, order])
+    return replace(trajectory, pose=trajectory.pose[:, order], twist=trajectory.twist[:, order])
 
 
-def pins_first(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    kinds = [not isinstance(joint, Pin) for joint in mechanism.joints for _ in range(joint.size)]
-    return replace(given, reaction=given.reaction[:, sorted(range(len(kinds)), key=kinds.__getitem__)])
+def pins_first(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    other = [not isinstance(joint, Pin) for joint in mechanism.joints for _ in range(joint.size)]
+    return replace(trajectory, reaction=trajectory.reaction[:, sorted(range(len(other)), key=other.__getitem__)])
 
 
-def always_on_the_body(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """Reactions of joints with the ground are forces on the body, whichever is named second."""
+def always_on_the_body(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    """The mistake that reactions of joints with the ground are always forces on the body."""
     signs = [-1.0 if joint.second is None else 1.0 for joint in mechanism.joints for _ in range(joint.size)]
-    return replace(given, reaction=given.reaction * signs)
+    return replace(trajectory, reaction=trajectory.reaction * signs)

@@ -1,7 +1,7 @@
-"""Wrong models: an engine that is given a mechanism in which one number is wrong, and read out as if it were right.
+"""Wrong models: an engine gets a mechanism with one wrong number, and its results are compared with the right scene.
 
-A mistake in an adapter has the same effect: its engine moves another mechanism, and the report asks for the scene's.
-And whether the gates of the grid notice a wrong model: right and wrong at the same steps, from coarse to fine.
+A mistake in an adapter has this effect. The second half tests whether the gates of the grid notice a wrong model: right
+and wrong models are run at the same steps, from coarse to fine.
 """
 
 from __future__ import annotations
@@ -32,21 +32,21 @@ from reports.search.planted import Misbuilt
 
 Some = TypeVar("Some")
 
-KINDS = ("mass", "inertia", "length", "gravity", "point", "angle", "size", "rate")
-# In longer chains the first, the middle and the last body and joint stand for all.
-MANY = 6
+NUMBER_KINDS = ("mass", "inertia", "length", "gravity", "point", "angle", "size", "rate")
+# Bodies or joints that are all tried; of more, only the first, the middle and the last one.
+MOST_TRIED = 6
 
 
 @dataclass(frozen=True)
 class Mistake:
-    """One number of a mechanism that is wrong: `owner` is a body or joint ("" for gravity and the ground's points).
+    """One wrong number of a mechanism; `owner` is a body or joint ("" for gravity and the ground's points).
 
     Kinds, for a relative error r, with L the mechanism's length and T its time scale:
 
     mass, inertia: of a body, times 1 + r. length: all joint points of a body, times 1 + r. gravity: times 1 + r, or r L
-    / T^2 downwards where there is none. point: of a joint, moved by r L. angle: of a skate's blade, a slot's line, a
+    / T^2 downwards if there is none. point: of a joint, moved by r L. angle: of a skate's blade, a slot's line, a
     drive's start or a rolling curve, plus r. size: of a rolling curve, times 1 + r. rate: of a drive, or of the whole
-    start where nothing is driven, times 1 + r, or r / T where it is zero.
+    start if nothing is driven, times 1 + r, or r / T if it is zero.
     """
 
     kind: str
@@ -57,7 +57,7 @@ class Mistake:
         return " ".join(filter(None, (self.kind, self.owner, self.detail)))
 
     def made(self, right: Mechanism, relative: float) -> Misbuilt:
-        """The wrong model, its start closed again: poses and twists next to the right ones, by mass."""
+        """The wrong model. Its start satisfies the joints; it is next to the right one in the metric of masses."""
         bodies, joints, gravity = list(right.bodies), list(right.joints), right.gravity
         twist = right.twist.copy()
         length, time = right.length_scale, right.time_scale
@@ -72,7 +72,7 @@ class Mistake:
             case "length":
                 joints = [_lengthened(joint, self.owner or None, 1 + relative) for joint in joints]
             case "rate" if not self.owner:
-                # From rest every body begins to turn; what the joints allow of it is left by the closing.
+                # From rest every body gets a rotation rate, which is then projected to the joints.
                 twist = twist * (1 + relative) if twist.any() else np.add(twist, [0.0, 0.0, relative / time])
             case _:
                 index = [joint.name for joint in joints].index(self.owner)
@@ -81,7 +81,7 @@ class Mistake:
 
 
 def _lengthened(joint: Joint, body: str | None, factor: float) -> Joint:
-    """The joint with its point on this body (None: the ground) so many times as far from the centre of mass."""
+    """The joint with the distance of its point from the centre of mass of this body (None: ground) times `factor`."""
     changes = {}
     for name, point in ((joint.first, "first_point"), (joint.second, "second_point")):
         if name == body and point in joint.__dataclass_fields__:
@@ -104,9 +104,9 @@ def _wrong_joint(joint: Any, kind: str, detail: str, relative: float, length: fl
             return replace(joint, rolling=_wrong_rolling(rolling, kind, detail, relative, length))
         case _:
             point, axis = detail.split()
-            moved = list(getattr(joint, point))
-            moved["xy".index(axis)] += relative * length
-            return replace(joint, **{point: tuple(moved)})
+            position = list(getattr(joint, point))
+            position["xy".index(axis)] += relative * length
+            return replace(joint, **{point: tuple(position)})
 
 
 def _wrong_rolling(rolling: Rolling, kind: str, detail: str, relative: float, length: float) -> Rolling:
@@ -135,7 +135,7 @@ def _scaled(curve: Curve, factor: float) -> Curve:
         case Placed():
             return Placed(_scaled(curve.curve, factor), _times(curve.shift, factor), curve.turn)
         case _:
-            raise TypeError(f"no size is known of {curve!r}")
+            raise TypeError(f"{curve!r} has no size")
 
 
 def _times(values: Any, factor: float) -> Any:
@@ -143,11 +143,11 @@ def _times(values: Any, factor: float) -> Any:
 
 
 def _some(many: Sequence[Some]) -> Sequence[Some]:
-    return many if len(many) <= MANY else (many[0], many[len(many) // 2], many[-1])
+    return many if len(many) <= MOST_TRIED else (many[0], many[len(many) // 2], many[-1])
 
 
 def mistakes(mechanism: Mechanism) -> tuple[Mistake, ...]:
-    """Everything in a mechanism that can be wrong by itself; of long chains the ends and the middle."""
+    """All numbers of a mechanism that can be wrong; for long chains those of the ends and the middle."""
     return tuple(_mistakes(mechanism))
 
 
@@ -181,7 +181,7 @@ def _mistakes(mechanism: Mechanism) -> Iterator[Mistake]:
 
 @dataclass(frozen=True)
 class Misnumbered:
-    """The change of a mechanism that makes this mistake, so large."""
+    """The change of a mechanism by a mistake of a relative size."""
 
     mistake: Mistake
     relative: float
@@ -191,13 +191,13 @@ class Misnumbered:
 
 
 def mistaken(engine: Engine, mistake: Mistake, relative: float) -> Altered:
-    """An engine with one mistake in every model that it builds, held to the promises of the right one."""
+    """An engine with one mistake in every model that it builds, and with the declarations of the right one."""
     return Altered(engine, Misnumbered(mistake, relative))
 
 
 @dataclass(frozen=True)
 class MistakeTrial:
-    """Mistakes of one relative size in a scene and engine, in runs that are estimated to step `limit` [s] at most."""
+    """Mistakes of one relative size in a scene and engine, in runs with an estimated cost of at most `limit` [s]."""
 
     scene: Scene
     engine: Engine
@@ -212,11 +212,12 @@ class MistakeTrial:
 
 @dataclass(frozen=True)
 class Sighting:
-    """What noticed a mistake: the check of theory that the wrong model fails and the right one passes, "" without one.
+    """How a mistake was noticed.
 
-    `every`: the last number of steps a sample that was tried. `changed`: whether at any of them the gate of change sees
-    another row than the right model's. `shift`: the largest difference between an error and the right model's (in m,
-    rad, and per s; relative), at the step where the right model's largest error, `noise`, is least.
+    `check`: the check of theory that the wrong model fails and the right one passes, or "". `every`: the last number of
+    steps per sample that was tried. `changed`: whether the gate of change distinguishes the wrong row from the right
+    one at any of the steps. `shift`: the largest difference between an error and the right model's (in m, rad, and per
+    s; relative), at the step with the smallest `noise`, the right model's largest error.
     """
 
     check: str = ""
@@ -226,39 +227,41 @@ class Sighting:
     noise: float = math.inf
 
     def after(self, every: int, right: Measurement, wrong: Measurement, amplified: float) -> Sighting:
-        """This and one more step, at which nothing has noticed the mistake yet."""
-        before = Old(Outcome(right.outcome), {quantity.name: getattr(right, quantity.name) for quantity in QUANTITIES})
-        out = replace(self, every=every, changed=self.changed or moved(wrong, before, amplified))
-        noise = max((abs(error) for error in before.errors.values() if not math.isnan(error)), default=0.0)
+        """The result with one more step, at which no check has noticed the mistake."""
+        baseline = Old(
+            Outcome(right.outcome), {quantity.name: getattr(right, quantity.name) for quantity in QUANTITIES}
+        )
+        out = replace(self, every=every, changed=self.changed or moved(wrong, baseline, amplified))
+        noise = max((abs(error) for error in baseline.errors.values() if not math.isnan(error)), default=0.0)
         return replace(out, shift=shift(right, wrong), noise=noise) if noise < self.noise else out
 
 
 def shift(right: Measurement, wrong: Measurement) -> float:
-    """The largest difference between two rows' errors; infinite if they end differently or know different ones."""
+    """The largest difference between two rows' errors; infinite for different outcomes or different known errors."""
     pairs = [(getattr(right, quantity.name), getattr(wrong, quantity.name)) for quantity in QUANTITIES]
-    if right.outcome != wrong.outcome or any(math.isnan(one) != math.isnan(other) for one, other in pairs):
+    if right.outcome != wrong.outcome or any(math.isnan(a) != math.isnan(b) for a, b in pairs):
         return math.inf
-    return max((abs(one - other) for one, other in pairs if not math.isnan(one)), default=0.0)
+    return max((abs(a - b) for a, b in pairs if not math.isnan(a)), default=0.0)
 
 
 def noticed(trials: Sequence[MistakeTrial]) -> tuple[Mapping[Mistake, Sighting], ...]:
-    """What noticed the mistakes of trials in one scene, in their order: the judge works the scene out once."""
+    """The sightings of each of the trials, which are in one scene, so that the judge runs the scene once."""
     scene = trials[0].scene
     judge = prediction(scene, kinds(scene, [trial.engine for trial in trials]))
     return tuple(sightings(trial, judge) for trial in trials)
 
 
 def sightings(trial: MistakeTrial, judge: Prediction) -> Mapping[Mistake, Sighting]:
-    """Every mistake with what noticed it. Empty where the engine can't build the scene.
+    """The sighting of every mistake; empty if the engine can't build the scene.
 
-    Runs at finer and finer steps, those alone which nothing has noticed yet. In the grid a wrong engine is wrong at
-    every step, so a wrong row is judged with the coarser wrong ones.
+    Mistakes that are not noticed are run again at finer and finer steps. A wrong row is judged together with the
+    coarser wrong rows, since in the grid a wrong engine is wrong at every step.
     """
     scene, engine = trial.scene, trial.engine
-    page = next(page for page in PAGES if scene.name in {each.name for each in page.scenes})
+    page = next(page for page in PAGES if scene.name in {member.name for member in page.scenes})
     promise = page.orders.get((scene.name, trial.method)) or engine.order(scene.mechanism())
     case = Case(scene, engine, promise)
-    found: dict[Mistake, Sighting] = {}
+    noticed_mistakes: dict[Mistake, Sighting] = {}
     waiting = {mistake: Sighting() for mistake in trial.mistakes}
     rights: list[Measurement] = []
     wrongs: dict[Mistake, list[Measurement]] = {mistake: [] for mistake in trial.mistakes}
@@ -270,14 +273,14 @@ def sightings(trial: MistakeTrial, judge: Prediction) -> Mapping[Mistake, Sighti
         if right.outcome == Outcome.UNSUPPORTED:
             return {}
         rights.append(right)
-        held = {(check.name, check.quantity) for check in checks(case, rights, judge) if check.passed}
-        for mistake, before in tuple(waiting.items()):
+        passed = {(check.name, check.quantity) for check in checks(case, rights, judge) if check.passed}
+        for mistake, sighting in tuple(waiting.items()):
             wrong = measure(replace(cell, engine=mistaken(engine, mistake, trial.relative)), repeat=False)
             wrongs[mistake].append(wrong)
-            waiting[mistake] = before.after(every, right, wrong, case.amplified)
-            told = [check for check in checks(case, wrongs[mistake], judge) if (check.name, check.quantity) in held]
-            failed = [check for check in told if not check.passed]
+            waiting[mistake] = sighting.after(every, right, wrong, case.amplified)
+            results = [check for check in checks(case, wrongs[mistake], judge) if not check.passed]
+            failed = [check for check in results if (check.name, check.quantity) in passed]
             if failed:
                 worst = max(failed, key=lambda check: check.nearness)
-                found[mistake] = replace(waiting.pop(mistake), check=str(worst))
-    return found | waiting
+                noticed_mistakes[mistake] = replace(waiting.pop(mistake), check=str(worst))
+    return noticed_mistakes | waiting
