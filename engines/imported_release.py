@@ -1,7 +1,8 @@
-"""Whether the code of an engine that is imported is of the release that its distribution's metadata name.
+"""Whether the imported code of an engine belongs to the release in its distribution's metadata.
 
-Versions in reports and cache keys come from metadata. pip writes the files of one distribution over those of another
-without a word (`mujoco` 3.17.0 over `mujoco-core`), and an editable installation keeps the version of its first day.
+Versions in reports and cache keys come from metadata. pip overwrites the files of one distribution with those of
+another without a message (`mujoco` 3.17.0 over `mujoco-core`), and the metadata of an editable installation are those of its
+first day.
 """
 
 from __future__ import annotations
@@ -17,15 +18,15 @@ from pathlib import Path
 
 from engines.contract import Engine
 
-RELEASE = re.compile(r"v?(\d+(?:\.\d+)*)")  # of a version; what follows names a build of it: 7.3.1+patched
+# The numbers of a version; the rest names a build, as in 7.3.1+patched.
+RELEASE = re.compile(r"v?(\d+(?:\.\d+)*)")
 
 
 def other_release(engines: Iterable[Engine], elsewhere: bool = True) -> str:
-    """Which distribution of these engines has another version than its module that is imported, and what mends it: one
-    line; empty if none has.
+    """The first distribution whose version differs from that of its imported module, and a remedy, in one line.
 
-    A module whose files are all as they were installed may call itself anything: pymunk 7.0.0 says 2.0.0. `elsewhere`:
-    modules outside the distribution's folder count too, of an editable installation or of a folder on the path.
+    Empty if there is none. A module with unchanged files may have any version: pymunk 7.0.0 contains 2.0.0.
+    `elsewhere`: include modules outside the distribution's folder, in an editable installation or on the path.
     """
     packages = {package: engine.modules for engine in engines for package in engine.packages}
     differences = (_difference(package, _modules(package, names), elsewhere) for package, names in packages.items())
@@ -34,17 +35,17 @@ def other_release(engines: Iterable[Engine], elsewhere: bool = True) -> str:
 
 @cache
 def _modules(package: str, names: tuple[str, ...]) -> tuple[str, ...]:
-    """The top-level modules of a distribution, as it says itself, else `names`; none if it is not installed."""
+    """The top-level modules of a distribution by its metadata, or `names`; none if it is not installed."""
     try:
-        words = (metadata.distribution(package).read_text("top_level.txt") or "").split()
+        modules = (metadata.distribution(package).read_text("top_level.txt") or "").split()
     except metadata.PackageNotFoundError:
         return ()
-    return tuple(words) or names or (package,)
+    return tuple(modules) or names or (package,)
 
 
 def _difference(package: str, modules: tuple[str, ...], elsewhere: bool) -> str:
-    found = (_difference_of(package, module, elsewhere) for module in modules if module in sys.modules)
-    return next(filter(None, found), "")
+    differences = (_difference_of(package, module, elsewhere) for module in modules if module in sys.modules)
+    return next(filter(None, differences), "")
 
 
 @cache
@@ -57,8 +58,8 @@ def _difference_of(package: str, module: str, elsewhere: bool) -> str:
     folder, home = Path(imported.__file__ or "").resolve().parent, Path(str(distribution.locate_file(""))).resolve()
     line = f"{package} is {distribution.version} by its metadata, and {module} that is imported is {version}"
     if not folder.is_relative_to(home):
-        mend = "install that folder (pip install, with -e if it was), or take it off the path"
-        return f"{line}, from {folder}: {mend}" if elsewhere else ""
+        remedy = "install that folder (pip install, with -e if it was), or take it off the path"
+        return f"{line}, from {folder}: {remedy}" if elsewhere else ""
     files = [file for file in distribution.files or () if Path(str(file.locate())).resolve().is_relative_to(folder)]
     if not any(file.name == "__init__.py" and file.parent.name == module for file in files):
         return ""  # it adds to a package of another distribution, as mujoco-mjx to mujoco
@@ -74,9 +75,9 @@ def _difference_of(package: str, module: str, elsewhere: bool) -> str:
 
 
 def _release(version: object) -> tuple[int, ...]:
-    """(7, 3, 1) of '7.3.1+patched', (4, 1) of '4.1.0'; empty for what is no version."""
-    found = RELEASE.match(version) if isinstance(version, str) else None
-    return tuple(map(int, re.sub(r"(\.0+)+$", "", found[1]).split("."))) if found else ()
+    """The numbers of a version: (7, 3, 1) for '7.3.1+patched', (4, 1) for '4.1.0'; empty if it is no version."""
+    match = RELEASE.match(version) if isinstance(version, str) else None
+    return tuple(map(int, re.sub(r"(\.0+)+$", "", match[1]).split("."))) if match else ()
 
 
 def _is_changed(file: metadata.PackagePath) -> bool:

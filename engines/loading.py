@@ -1,11 +1,11 @@
-"""Values that a reference or an entry point names.
+"""Load the values that a reference or an entry point names.
 
 A reference is `package.module:NAME`, `path/to/file.py`, or `path/to/file.py:NAME`. NAME is one value, or a tuple or
-list of them; a file without a name stands for all values at its top level. Entry points, words of a command
-line and stored references are read by this one rule.
+list of values; a file without a name means all values at its top level. This rule applies to entry points, to words of
+a command line and to stored references.
 
-Our entry points stand in `pyproject.toml`. In a checkout that file itself is read: so a clone that was never installed
-has them, and one that was installed before the file changed has the present ones.
+Our entry points are in `pyproject.toml`. In a checkout that file is read directly, so that a clone works without
+installation, and an editable installation sees changes of the file.
 """
 
 from __future__ import annotations
@@ -28,41 +28,43 @@ FORMS = "package.module:NAME, path/to/file.py or path/to/file.py:NAME"
 
 @dataclass(frozen=True)
 class Kind:
-    """What a reference must name. `trouble`: why a value is none, a clause; empty if it is one.
+    """A kind of value that a reference must name.
 
-    `defaults`: of a class in a file, what it is without arguments; None where a class can't stand for its default.
+    word: its name in messages, such as "engine"
+    trouble: returns why a value is not of this kind, as a clause; empty if it is
+    defaults: returns the instance of a class without arguments, or None; without it, classes in a file do not count
     """
 
-    word: str  # "engine"
+    word: str
     trouble: Callable[[Any], str]
     defaults: Callable[[type], Any] | None = None
 
 
 def is_reference(word: str) -> bool:
-    """Whether a word of the command line names a file or a module, and no registered name."""
+    """Whether a word of the command line is a reference, and not a registered name."""
     return ":" in word or word.endswith(".py")
 
 
 def load(reference: str, kind: Kind, folder: Path | None = None) -> tuple[Any, ...]:
-    """The values that a reference names, each once. Raises ValueError, a sentence, where there are none.
+    """The values that a reference names, without duplicates. Raises ValueError, in one sentence, if there are none.
 
-    `folder`: where it counts from, the current one unless it is given. A module's folder, or this one, is added to the
-    end of `sys.path` and stays there, since worker processes import what they are given by its name.
+    `folder`: the base of relative paths, by default the current folder. The folder of the module, or this one, is
+    appended to `sys.path` for good, since worker processes import the module by its name.
     """
-    place, name = _parts(reference)
+    source, name = _parts(reference)
     folder = Path.cwd() if folder is None else folder
-    module = _module_of_file(folder / place) if place.endswith(".py") else _imported(place, place, folder)
+    module = _module_of_file(folder / source) if source.endswith(".py") else _imported(source, source, folder)
     try:
         values = _named(module, name) if name else tuple(_at_top(module, kind, reference))
     except AttributeError:
-        raise ValueError(f"{reference}: {place} has no {name}") from None
-    for each in values:
+        raise ValueError(f"{reference}: {source} has no {name}") from None
+    for value in values:
         try:
-            why = kind.trouble(each) or _unhashable(each)
+            trouble = kind.trouble(value) or _unhashable(value)
         except Exception as error:
-            why = f"its own code can't be used: {describe(error)}"
-        if why:
-            raise ValueError(f"{reference}: a value of the type {type(each).__name__} is no {kind.word}: {why}")
+            trouble = f"its own code can't be used: {describe(error)}"
+        if trouble:
+            raise ValueError(f"{reference}: a value of the type {type(value).__name__} is no {kind.word}: {trouble}")
     if not values:
         where = "it is empty" if name else "nothing at the top level of this file is one"
         raise ValueError(f"{reference} should hold at least one {kind.word}: {where}")
@@ -70,13 +72,13 @@ def load(reference: str, kind: Kind, folder: Path | None = None) -> tuple[Any, .
 
 
 def _parts(reference: str) -> tuple[str, str]:
-    """(module or file, name in it or nothing). Raises ValueError."""
+    """The module or file, and the name in it, which may be empty. Raises ValueError."""
     if reference.endswith(".py"):
         return reference, ""
-    place, _, name = reference.rpartition(":")
-    if not place.strip() or not all(part.isidentifier() for part in name.split(".")):
+    source, _, name = reference.rpartition(":")
+    if not source.strip() or not all(part.isidentifier() for part in name.split(".")):
         raise ValueError(f"{reference!r} names nothing; give {FORMS}")
-    return place.strip(), name
+    return source.strip(), name
 
 
 def _named(module: ModuleType, name: str) -> tuple[Any, ...]:
@@ -85,7 +87,7 @@ def _named(module: ModuleType, name: str) -> tuple[Any, ...]:
 
 
 def _unhashable(value: Any) -> str:
-    """Why a value can't be a key, a clause; empty if it can. Results are kept by what they are of."""
+    """Why a value can't be the key of stored results, as a clause; empty if it can."""
     try:
         hash(value)
     except TypeError:
@@ -96,22 +98,22 @@ def _unhashable(value: Any) -> str:
 def _at_top(module: ModuleType, kind: Kind, reference: str) -> Iterator[Any]:
     """The values of a module in their order, and its own classes by their defaults where no value is of that class."""
     values = list(vars(module).values())
-    given = {type(value) for value in values}
+    classes = {type(value) for value in values}
     for value in values:
         if not isinstance(value, type):
             if not kind.trouble(value):
                 yield value
-        elif kind.defaults is not None and value.__module__ == module.__name__ and value not in given:
+        elif kind.defaults is not None and value.__module__ == module.__name__ and value not in classes:
             try:
-                made = kind.defaults(value)
+                instance = kind.defaults(value)
             except Exception as error:
                 raise ValueError(f"{reference}: {value.__name__}() can't be made: {describe(error)}") from None
-            if made is not None:
-                yield made
+            if instance is not None:
+                yield instance
 
 
 def _module_of_file(path: Path) -> ModuleType:
-    """A file as the module that it is to any other file: `path/to/package/file.py` is `package.file`. ValueError."""
+    """The file as a module by its usual name, so `path/to/package/file.py` is `package.file`. Raises ValueError."""
     if not path.is_file():
         raise ValueError(f"{path}: there is no such file")
     path = path.resolve()
@@ -119,29 +121,29 @@ def _module_of_file(path: Path) -> ModuleType:
     while (folder / "__init__.py").is_file():
         folder, name = folder.parent, f"{folder.name}.{name}"
     module = _imported(name, str(path), folder)
-    found = getattr(module, "__file__", None)
-    if found is None or Path(found).resolve() != path:
+    origin = getattr(module, "__file__", None)
+    if origin is None or Path(origin).resolve() != path:
         raise ValueError(
-            f"{path}: another module is called {name!r} ({found or 'built in'}); give the file another name"
+            f"{path}: another module is called {name!r} ({origin or 'built in'}); give the file another name"
         )
     return module
 
 
 def _imported(name: str, owner: str, folder: Path) -> ModuleType:
-    """A module by its name, in this folder too. Raises ValueError."""
+    """Import a module, also from this folder. Raises ValueError."""
     if str(folder) not in sys.path:
         sys.path.append(str(folder))  # at the end: it must not hide what is installed
     try:
         return import_module(name)
-    except (Exception, SystemExit) as error:  # whatever somebody else's module does while it is imported
+    except (Exception, SystemExit) as error:  # the code of the module may raise anything
         raise ValueError(f"{owner} can't be imported: {describe(error)}") from None
 
 
 def describe(error: BaseException) -> str:
-    """'file.py:12: NameError: name 'x' is not defined': the line of the module that was imported, on one line."""
-    words = f"{type(error).__name__}: {error}"
+    """An error in one line, with the line of the imported module: "file.py:12: NameError: name 'x' is not defined"."""
+    text = f"{type(error).__name__}: {error}"
     if isinstance(error, SyntaxError) and error.filename:
-        words = f"{error.filename}:{error.lineno}: {type(error).__name__}: {error.msg}"
+        text = f"{error.filename}:{error.lineno}: {type(error).__name__}: {error.msg}"
     else:
         machinery = (__file__, import_module.__code__.co_filename)
         frames = [
@@ -149,16 +151,16 @@ def describe(error: BaseException) -> str:
             for frame in traceback.extract_tb(error.__traceback__)
             if not frame.filename.startswith("<frozen") and frame.filename not in machinery
         ]
-        # The first file is the module itself; what it called may lie in a library that is right.
-        own = [frame for frame in frames if frame.filename == frames[0].filename]
-        if own:
-            words = f"{own[-1].filename}:{own[-1].lineno}: {words}"
-    return " ".join(words.split())
+        # The first file is the module itself; later ones may be libraries without a fault.
+        in_module = [frame for frame in frames if frame.filename == frames[0].filename]
+        if in_module:
+            text = f"{in_module[-1].filename}:{in_module[-1].lineno}: {text}"
+    return " ".join(text.split())
 
 
 @dataclass(frozen=True)
 class Registered:
-    """What a group holds, and a line about each entry point that can't be used; it names the distribution."""
+    """The values of a group, and a line for each entry point that can't be used, with its distribution."""
 
     values: tuple[Any, ...]
     troubles: tuple[str, ...] = ()
@@ -171,10 +173,10 @@ def registered(
     known: Mapping[str, Any] = MappingProxyType({}),
     extras: bool = False,
 ) -> Registered:
-    """All values of a group, no two of one `name`; of two, ours stays, or that of the first distribution.
+    """All values of a group with unique names. Of two with one name, ours is used, or that of the first distribution.
 
-    `known`: what is registered elsewhere already, by name: another value of such a name is left out too. `extras`:
-    those entry points alone that name an extra, as `engines.exudyn:VARIANTS [exudyn]` does; else those that name none.
+    known: values of other groups by name; a different value with such a name is left out
+    extras: whether to use the entry points with an extra, such as `engines.exudyn:VARIANTS [exudyn]`, or the others
     """
     values: dict[str, Any] = {}
     owners = dict.fromkeys(known, "another group")
@@ -185,25 +187,25 @@ def registered(
             continue
         about = f"{group}: {key!r} of the distribution {owner}"
         try:
-            found = load(reference.strip(), kind)
+            loaded = load(reference.strip(), kind)
         except ValueError as reason:
             troubles.append(f"{about} is left out: {reason}")
             continue
-        for value in found:
-            word = name(value)
-            if word in owners and value != {**known, **values}[word]:
-                troubles.append(f"{about}: {word!r} is left out, since {owners[word]} has one of this name")
-            elif word not in values:
-                values[word], owners[word] = value, owner
+        for value in loaded:
+            label = name(value)
+            if label in owners and value != {**known, **values}[label]:
+                troubles.append(f"{about}: {label!r} is left out, since {owners[label]} has one of this name")
+            elif label not in values:
+                values[label], owners[label] = value, owner
     return Registered(tuple(values.values()), tuple(troubles))
 
 
 def registered_by_key(group: str, kind: Kind) -> dict[str, Any]:
-    """The first value of each key of a group; one of a key that ours has is left out.
+    """The first value of each key of a group; ours come first.
 
-    So is what can't be used: with a warning, unless a package is not installed that it needs.
+    A value that can't be loaded is left out, with a warning unless a package that it needs is not installed.
     """
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for owner, key, reference in (*_ours(group), *_theirs(group)):
         try:
             value = load(reference, kind)[0]
@@ -211,19 +213,19 @@ def registered_by_key(group: str, kind: Kind) -> dict[str, Any]:
             if not _lacks_a_package(reason.__context__):
                 warnings.warn(f"{group}: {key!r} of the distribution {owner} is left out: {reason}", stacklevel=2)
             continue
-        found.setdefault(key, value)
-    return found
+        values.setdefault(key, value)
+    return values
 
 
 def _lacks_a_package(error: BaseException | None) -> bool:
-    """Whether an import failed since a package that is none of ours is not installed."""
-    lacking = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
-    return lacking not in ("", "reference", "engines", "reports")
+    """Whether an import failed because another package than ours is not installed."""
+    package = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+    return package not in ("", "reference", "engines", "reports")
 
 
 @functools.cache
 def _checkout() -> dict[str, Any] | None:
-    """The project table of the pyproject.toml beside these packages; None where there is none, or another project's."""
+    """The project table of the pyproject.toml next to these packages; None without one, or in another project."""
     file = Path(__file__).resolve().parents[1] / "pyproject.toml"
     if not file.is_file():
         return None
@@ -233,7 +235,7 @@ def _checkout() -> dict[str, Any] | None:
 
 
 def _ours(group: str) -> list[tuple[str, str, str]]:
-    """(distribution, key, reference) of what we register, by key: the order of a file is lost in an installation."""
+    """(distribution, key, reference) of our entry points, sorted by key, since installations lose the file's order."""
     project = _checkout()
     if project is None:
         return [point for point in _installed(group) if point[0] == OURS]
@@ -241,7 +243,7 @@ def _ours(group: str) -> list[tuple[str, str, str]]:
 
 
 def _theirs(group: str) -> list[tuple[str, str, str]]:
-    """(distribution, key, reference) of what others register, in an order that does not depend on the path."""
+    """(distribution, key, reference) of all other entry points, in an order that does not depend on the path."""
     return [point for point in _installed(group) if point[0] != OURS]
 
 

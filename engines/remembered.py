@@ -1,4 +1,4 @@
-"""The last answers to questions about a mechanism: an extrapolation or a report asks the same many times in a row."""
+"""A cache of the last results for a mechanism or a rolling pair: reports ask for the same one many times in a row."""
 
 from __future__ import annotations
 
@@ -7,30 +7,30 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any, TypeVar
 
-Asked = TypeVar("Asked", bound=Callable[..., Any])
+Cached = TypeVar("Cached", bound=Callable[..., Any])
 
 
-def by_identity(most: int = 8) -> Callable[[Asked], Asked]:
-    """Keep the last `most` answers of a function whose first argument equals itself alone; none to named arguments.
+def by_identity(size: int = 8) -> Callable[[Cached], Cached]:
+    """Cache the last `size` results of a function; the first argument is compared by identity.
 
-    To compare all numbers of two mechanisms, or of two rolling pairs, would take as long as many an answer.
+    Comparing all numbers of two mechanisms, or of two rolling pairs, would take as long as many a result. Calls with
+    keyword arguments are not cached.
     """
 
-    def keeping(function: Asked) -> Asked:
-        known: deque[tuple[tuple[Any, ...], Any]] = deque(maxlen=most)
+    def with_cache(function: Cached) -> Cached:
+        cache: deque[tuple[tuple[Any, ...], Any]] = deque(maxlen=size)
 
         @wraps(function)
-        def asked(*given: Any, **named: Any) -> Any:
-            if named or not given:
-                return function(*given, **named)
-            first, rest = given[0], given[1:]
-            for (before, *others), answer in known:
-                if before is first and tuple(others) == rest:
-                    return answer
-            answer = function(*given)
-            known.append((given, answer))
-            return answer
+        def cached(*arguments: Any, **named: Any) -> Any:
+            if named or not arguments:
+                return function(*arguments, **named)
+            for (first, *others), result in cache:
+                if first is arguments[0] and tuple(others) == arguments[1:]:
+                    return result
+            result = function(*arguments)
+            cache.append((arguments, result))
+            return result
 
-        return asked  # type: ignore[return-value]
+        return cached  # type: ignore[return-value]
 
-    return keeping
+    return with_cache

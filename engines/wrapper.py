@@ -16,9 +16,9 @@ def _forwarded(member: str) -> Any:
 
 
 class EngineWrapper(Engine):
-    """An engine that runs another one, `engine`.
+    """An engine that runs another one, `engine`, and forwards its declarations.
 
-    It forwards what the inner engine declares. A subclass defines `variant` and `build`, and what it changes.
+    A subclass defines `variant` and `build`, and overrides the members in which it differs.
     """
 
     engine: Engine

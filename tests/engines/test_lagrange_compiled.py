@@ -12,7 +12,7 @@ import pytest
 from engines import Regularisation
 from engines.lagrange import METHODS, Lagrange, loading
 from engines.lagrange.compiled_model import CompiledModel
-from engines.lagrange.dynamics import RK4
+from engines.lagrange.dynamics import RK4, Dynamics
 from engines.lagrange.system import FORCE_FIELDS, JOINT_FIELDS, system_of
 from reference.couplings import Coupling
 from reference.forces import CoupledForce, Damper, TorsionDamper
@@ -50,6 +50,18 @@ def test_random_mechanisms_of_all_joints_links_and_forces_move_as_in_numpy(numbe
     mechanism = random_mechanism(21, number, ALL_KINDS)
     # The largest difference of the first 150 is 1.2e-14.
     assert max(differences(mechanism, Lagrange("rk4"), 1e-3 * mechanism.time_scale)) < 1e-12
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_accelerations_in_states_that_violate_the_joints_are_those_of_numpy(number):
+    """Terms of the bias that vanish with the slip matter here only."""
+    mechanism, random = random_mechanism(21, number, ALL_KINDS), np.random.default_rng(number)
+    pose = mechanism.pose + 1e-2 * mechanism.pose_unit * random.normal(size=mechanism.pose.shape)
+    twist = mechanism.twist + mechanism.pose_unit / mechanism.time_scale * random.normal(size=pose.shape)
+    _, acceleration = present(CompiledModel.of(mechanism)).reactions(1.0, pose[None], twist[None])
+    expected = Dynamics(mechanism).acceleration(pose, twist, 0.0)
+    size = np.abs(expected / mechanism.pose_unit).max()
+    assert np.abs((acceleration[0] - expected) / mechanism.pose_unit).max() < 1e-10 * size
 
 
 def test_the_random_mechanisms_have_every_joint_link_and_force_of_the_compiled_code():
