@@ -1,8 +1,8 @@
 """Whether the imported code of an engine belongs to the release in its distribution's metadata.
 
 Versions in reports and cache keys come from metadata. pip overwrites the files of one distribution with those of
-another without a message (`mujoco` 3.17.0 over `mujoco-core`), and the metadata of an editable installation are those of its
-first day.
+another without a message (`mujoco` 3.17.0 over `mujoco-core`), and the metadata of an editable installation are from
+its first day.
 """
 
 from __future__ import annotations
