@@ -38,7 +38,7 @@ SKATE = Lesson(
         ),
     ),
     (
-        Experiment("the sleigh", BOTH, overlays=FORCES + CENTRE, section="What the row takes, and what it leaves"),
+        Experiment("the sleigh", BOTH, overlays=FORCES + CENTRE, section="Degrees of freedom"),
         Experiment("the sleigh", after={"steps": 3000}, claims=(Claim("mujoco", 1.5, 2.5),)),
         Experiment(
             "the sleigh",
