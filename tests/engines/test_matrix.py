@@ -280,7 +280,10 @@ REFUSED = (
     *((engine, RollingInRing(), "no hollow side") for engine in (mujoco.DEFAULT, mujoco.TUNED, *ROLLS)),
     *((engine, RollingCam(), "no shape like a cam") for engine in (mujoco.DEFAULT, mujoco.TUNED, *ROLLS)),
     (mujoco.DEFAULT, disc_on_a_plank(), "planes are fixed to the ground"),
-    *((engine, blade_on_a_board(), "needs a skate on the ground") for engine in (methods.SKATE_CENTRE, methods.SKATE_PROJECTED)),
+    *(
+        (engine, blade_on_a_board(), "needs a skate on the ground")
+        for engine in (methods.SKATE_CENTRE, methods.SKATE_PROJECTED)
+    ),
     *((engine, blade_on_a_board(), "runs on the body 'board'") for engine in (mujoco.DEFAULT, BLADE)),
     # A crank, and a body that can only turn as driven.
     *(

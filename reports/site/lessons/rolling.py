@@ -63,7 +63,7 @@ ROLLING = Lesson(
             after={"steps": 2000},
             claims=(Claim("munk", 0.7, 1.3), Claim("mujoco", 0.7, 2.0)),
             causes=(({"munk": MANY}, Claim("munk", most=0.25)),),
-            section="Errors that no step removes",
+            section="Errors that no smaller step removes",
         ),
         Experiment(
             "a disc",
