@@ -56,15 +56,15 @@ def line(
 
 
 def test_every_map_has_scenes_steps_and_a_frequency_over_its_whole_range():
-    for subject in MAPS:
-        values, steps = subject.at(40), subject.steps(40)
+    for failure_map in MAPS:
+        values, steps = failure_map.at(40), failure_map.steps(40)
         assert len(steps) == 40
-        assert (values[0], values[-1]) == pytest.approx(subject.values)
+        assert (values[0], values[-1]) == pytest.approx(failure_map.values)
         assert all(np.diff(values) > 0)
         assert len({samples for samples, _ in steps}) <= 11
         for value in (values[0], values[-1]):
-            assert subject.make(value).mechanism().bodies
-            assert 0 < subject.frequency(value) < math.inf
+            assert failure_map.make(value).mechanism().bodies
+            assert 0 < failure_map.frequency(value) < math.inf
 
 
 def test_frequencies_of_maps_agree_with_closed_forms_and_fine_grids():
@@ -72,7 +72,7 @@ def test_frequencies_of_maps_agree_with_closed_forms_and_fine_grids():
     assert stiffest_hanging(LinkPendulum(links=1)) == pytest.approx(math.sqrt(1.5 * 9.81), rel=1e-12)
     two = LinkPendulum(links=2, length=0.7)
     assert stiffest_hanging(two) == pytest.approx(math.sqrt((3 + 6 / math.sqrt(7)) * 9.81 / 0.7), rel=1e-12)
-    scene = next(each for each in MAPS if each.name == "offset").make(1e-3)
+    scene = next(case_map for case_map in MAPS if case_map.name == "offset").make(1e-3)
     angles = np.linspace(0, 2 * math.pi, 200_001)
     largest = np.abs(scene.shape.rates(angles)[0]).max() * scene.rate  # type: ignore[attr-defined]
     assert rod_rate(1e-3) == pytest.approx(largest, rel=1e-3)
@@ -84,7 +84,7 @@ def test_frequencies_of_maps_agree_with_closed_forms_and_fine_grids():
 
 @dataclass
 class Soft:
-    """Declares a softness: the gap that carries a body is compliance g / stiffness; `tied`: at a step of 1 s."""
+    """An engine with a declared softness: gravity opens a gap of compliance g / stiffness; `tied`: at a step of 1 s."""
 
     stiffness: float
     compliance: float = 0.1
@@ -107,7 +107,7 @@ def test_the_tearing_step_is_where_the_weight_opens_the_joint_by_the_bound():
     assert [gives(Soft(limit * 0.99)), gives(Soft(limit * 1.01))] == [0.0, math.inf]
     # Gives at a step of 1e-2 s, looked for at 81 steps over two decades.
     assert gives(Soft(limit * 1e-4, tied=True)) == pytest.approx(1e-2, rel=0.07)
-    # The pin stays where it is, so that an engine without the term of velocities loses nothing.
+    # The pin stays where it is, so that an engine without the velocity terms has no error.
     assert gives(Soft(1.0, 0.0, complete=False)) == math.inf
 
 
@@ -177,8 +177,8 @@ def test_regions_lie_where_the_cells_of_their_outcome_are():
     [panel] = [axes for axes in figure.axes if axes.get_visible()]
     across, up = edges([1.0, 10.0], False), edges([0.0125, 0.025, 0.05, 0.1], False)
     painted = [patch for patch in panel.patches if isinstance(patch, PathPatch) and patch.get_fill()]
-    for column, own in enumerate(LINES[:2]):
-        for row, end in enumerate(page.regions_of_steps(own)[::-1]):
+    for column, map_line in enumerate(LINES[:2]):
+        for row, end in enumerate(page.regions_of_steps(map_line)[::-1]):
             middle = math.sqrt(across[column] * across[column + 1]), math.sqrt(up[row] * up[row + 1])
             colours = [to_hex(p.get_facecolor()) for p in painted if p.get_path().contains_point(middle)]
             assert colours[0] == (outcome_colour(end) if isinstance(end, Outcome) else getattr(LIGHT, end))
@@ -190,45 +190,43 @@ def test_the_largest_step_is_below_its_bound_at_every_value_and_smaller_step():
     assert page.largest_step([line(1.0, "·S··"), line(2.0, "TTS·")], inf) == "12 ms"
     assert page.largest_step([line(1.0, "·S··")], inf) == "25 ms"
     assert page.largest_step([line(1.0, "···T")], inf) == "-"
-    # 0.1 and 0.01 rad, one that was not run and counts as the one before, 0.001 rad.
-    own = replace(line(1.0, "··=·"), errors=(-1.0, -2.0, float("nan"), -3.0))
-    assert [page.largest_step([own], bound) for bound in (inf, 0.011, 0.01, 1e-4)] == ["100 ms", "50 ms", "12 ms", "-"]
+    # Errors of 0.1 and 0.01 rad, a step that was not run and counts as the step before it, and 0.001 rad.
+    falling_line = replace(line(1.0, "··=·"), errors=(-1.0, -2.0, float("nan"), -3.0))
+    largest = [page.largest_step([falling_line], bound) for bound in (inf, 0.011, 0.01, 1e-4)]
+    assert largest == ["100 ms", "50 ms", "12 ms", "-"]
     assert page.agreement(
         [line(1.0, "TT··", gives=0.1), line(2.0, "TT··", gives=0.3), line(3.0, "····", gives=0.1)]
-    ) == (
-        1,
-        2,
-    )
+    ) == (1, 2)
 
 
 def test_the_page_is_rendered_with_and_without_maps(monkeypatch):
     def text() -> str:
         files = render_page(page.PAGE, Material({}), "crosscheck report")
-        assert set(files) - {"atlas.md"} == {f"atlas_{name}.svg" for name in {each.name for each in MAPS} & shown}
+        assert set(files) - {"atlas.md"} == {f"atlas_{name}.svg" for name in {item.name for item in MAPS} & displayed}
         return files["atlas.md"]
 
-    shown: set[str] = set()
+    displayed: set[str] = set()
     monkeypatch.setattr(page, "stored_columns", lambda: ())
     assert "Nothing was run yet" in text()
-    shown = {"coupler"}
+    displayed = {"coupler"}
     monkeypatch.setattr(page, "stored_columns", lambda: (replace(LINES[0], subject="coupler", outcomes="·==·"),))
-    for words in (
+    for sentence in (
         "Not run yet: A four-bar driven fast;",
         "2 of 4 points were run",
     ):
-        assert words in text()
+        assert sentence in text()
 
 
 def test_the_command_writes_its_file_and_continues_an_earlier_run(monkeypatch, tmp_path, capsys, at_home):
     monkeypatch.chdir(tmp_path)
-    words = ("atlas", "--scenes", "length", "--points", "3", "--workers", "1")
-    assert call(*words) == FINE
+    text = ("atlas", "--scenes", "length", "--points", "3", "--workers", "1")
+    assert call(*text) == FINE
     folder = tmp_path / "crosscheck-results" / "atlas"
-    found = read(folder / FILE)
-    assert {each.method for each in found} == {method_name(engine) for engine in SHOWN}
-    assert all(len(each.outcomes) == 3 for each in found)
+    result = read(folder / FILE)
+    assert {item.method for item in result} == {method_name(engine) for engine in SHOWN}
+    assert all(len(item.outcomes) == 3 for item in result)
     assert f"{3 * 3 * len(SHOWN)} of {3 * 3 * len(SHOWN)} cells were run" in capsys.readouterr().out
-    assert call(*words) == FINE
+    assert call(*text) == FINE
     assert f"0 of {3 * 3 * len(SHOWN)} cells were run" in capsys.readouterr().out
     for unknown in ("lenght", ","):
         assert call("atlas", "--scenes", unknown) == REFUSED

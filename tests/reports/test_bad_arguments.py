@@ -149,10 +149,10 @@ def test_a_scene_refuses_times_and_poses_that_can_not_be_meant(scene):
     for count in (0, bodies - 1, bodies + 1):
         with pytest.raises(InvalidMechanism, match=f"pose is of {count} bodies; it must be of {bodies}"):
             scene.branch_of(np.zeros((4, count, 3)))
-    one, none = scene.motion(0), scene.motion([])
+    at_one_time, at_no_time = scene.motion(0), scene.motion([])
     for name in ("t", "pose", "twist", "reaction"):
-        assert getattr(one, name).shape[0] == 1
-        assert getattr(none, name).shape == (0, *getattr(one, name).shape[1:])
+        assert getattr(at_one_time, name).shape[0] == 1
+        assert getattr(at_no_time, name).shape == (0, *getattr(at_one_time, name).shape[1:])
 
 
 def test_a_long_value_is_shortened_in_the_message():

@@ -48,14 +48,14 @@ def described(figure: Figure) -> Iterator[str]:
     for panel in figure.axes:
         if not panel.get_visible():
             continue
-        words = (
+        description = (
             panel.get_title(loc="left"),
             panel.get_xscale(),
             panel.get_xlabel(),
             panel.get_yscale(),
             panel.get_ylabel(),
         )
-        yield f"### {' | '.join(words)}"
+        yield f"### {' | '.join(description)}"
         for line in panel.get_lines():
             if line.get_linewidth() != GUIDE:
                 numbers = " ".join(f"({round(x, 12):.4g}, {round(y, 12):.4g})" for x, y in points(line))
@@ -65,8 +65,8 @@ def described(figure: Figure) -> Iterator[str]:
                 getattr(text, "xy", ()) if not text.get_text().isdigit() else ()
             )  # the number of a guide is beside its line
             yield f"- {text.get_text()!r} {at}"
-    for found in figure.legends:
-        lines = [handle for handle in found.legend_handles if isinstance(handle, Line2D)]
+    for legend in figure.legends:
+        lines = [handle for handle in legend.legend_handles if isinstance(handle, Line2D)]
         yield from (f"- {line.get_label()}: {look_of(line)}" for line in lines)
 
 
@@ -84,17 +84,17 @@ FACTORS = {"one_scene": 1.0, "other": 7.0}
 
 def rows():
     """Two scenes and three methods, another number in each point; failures, maps and zeros that must not be drawn."""
-    found = []
+    results = []
     for scene, factor in FACTORS.items():
         for method, errors in METHODS.items():
-            found += falling(method, tuple(factor * error for error in errors), scene=scene)
-        found += falling("mujoco own", (2.9e-2, 3.1e-3), scene=scene)
-        found.append(row_of("pymunk default", scene=scene, step=1e-4, angle=1e-9, outcome=Outcome.SATURATED))
-        found.append(row_of("pymunk default", scene=scene, step=1e-5, angle=1e-9, purpose="map"))
-        found.append(row_of("pymunk default", scene=scene, step=1e-6, angle=0.0))
-        found.append(row_of("lagrange rk4", scene=scene, outcome=Outcome.TORN, angle=1e-9))
+            results += falling(method, tuple(factor * error for error in errors), scene=scene)
+        results += falling("mujoco own", (2.9e-2, 3.1e-3), scene=scene)
+        results.append(row_of("pymunk default", scene=scene, step=1e-4, angle=1e-9, outcome=Outcome.SATURATED))
+        results.append(row_of("pymunk default", scene=scene, step=1e-5, angle=1e-9, purpose="map"))
+        results.append(row_of("pymunk default", scene=scene, step=1e-6, angle=0.0))
+        results.append(row_of("lagrange rk4", scene=scene, outcome=Outcome.TORN, angle=1e-9))
     # Not in the order of steps, and the first scene's last.
-    return found[::-1]
+    return results[::-1]
 
 
 def featured(row) -> bool:
@@ -133,7 +133,7 @@ def planes() -> Figure:
 
 
 def test_each_chart_has_its_numbers_with_the_look_of_their_method(golden):
-    found = {
+    results = {
         "Error against CPU time": charts.work_precision(rows(), featured),
         "All methods as lines": charts.work_precision(rows()),
         "Error against step": charts.error_against_step(rows(), featured),
@@ -142,13 +142,13 @@ def test_each_chart_has_its_numbers_with_the_look_of_their_method(golden):
         "Paths in a plane": planes(),
     }
     golden(
-        "charts.md", "\n".join(line for name, figure in found.items() for line in (f"## {name}", *described(figure)))
+        "charts.md", "\n".join(line for name, figure in results.items() for line in (f"## {name}", *described(figure)))
     )
     # A path that is not framed does not enlarge the picture.
-    left = found["Paths in a plane"].axes[0]
-    assert left.get_xlim()[1] < 2
-    assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
-    assert len({(panel.get_xlim(), panel.get_ylim()) for panel in found["Engines at equal CPU time"].axes}) == 1
+    panel = results["Paths in a plane"].axes[0]
+    assert panel.get_xlim()[1] < 2
+    assert panel.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
+    assert len({(panel.get_xlim(), panel.get_ylim()) for panel in results["Engines at equal CPU time"].axes}) == 1
     failed = [row_of("pymunk default", outcome=outcome) for outcome in Outcome if not outcome.comparable]
     for draw in (charts.work_precision, charts.error_against_step):
         assert all(not panel.get_lines() for panel in draw(failed).axes)
@@ -180,13 +180,13 @@ def has(panel: Axes, wanted: Any) -> bool:
 
 def test_a_bodys_points_are_its_joints_turned_and_moved():
     mechanism = four_bar()
-    found = outlines.body_points(mechanism, mechanism.pose)
+    result = outlines.body_points(mechanism, mechanism.pose)
     # A = (0, 0), B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0).
-    assert found["crank"] == pytest.approx(np.array([[0.0, 0.0], [0.0, 0.4]]), abs=1e-12)
-    assert found["coupler"] == pytest.approx(np.array([[0.0, 0.4], [0.4, 0.8]]), abs=1e-12)
-    assert found["rocker"] == pytest.approx(np.array([[0.4, 0.8], [1.2, 0.0]]), abs=1e-12)
+    assert result["crank"] == pytest.approx(np.array([[0.0, 0.0], [0.0, 0.4]]), abs=1e-12)
+    assert result["coupler"] == pytest.approx(np.array([[0.0, 0.4], [0.4, 0.8]]), abs=1e-12)
+    assert result["rocker"] == pytest.approx(np.array([[0.4, 0.8], [1.2, 0.0]]), abs=1e-12)
     assert outlines.ground_points(mechanism) == pytest.approx(np.array([[0.0, 0.0], [1.2, 0.0]]))
-    # A slot in the ground holds to a line: its point is no support.
+    # A slot in the ground constrains to a line, so its point is not drawn as a support.
     crank = DrivenSliderCrank(offset=0.1).mechanism()
     assert any(isinstance(joint, Slot) and joint.first is None for joint in crank.joints)
     assert outlines.ground_points(crank) == pytest.approx(np.zeros((1, 2)))
@@ -200,19 +200,19 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
     poses = np.zeros((len(theta), 2, 3))
     poses[:, 0] = np.stack([-0.5 * theta, 0 * theta + 0.5, theta], axis=-1)
     space = np.stack([-0.5 * theta, 0 * theta], axis=-1)
-    own = -0.5 * np.stack([np.sin(theta), np.cos(theta)], axis=-1)
-    curves = Centrodes(poses[:, 0], space, own, 0.0)
+    body_curve = -0.5 * np.stack([np.sin(theta), np.cos(theta)], axis=-1)
+    curves = Centrodes(poses[:, 0], space, body_curve, 0.0)
     for panel, index in zip(draw_centrodes(mechanism, poses, curves, (5, 30), 0).axes, (5, 30), strict=True):
         assert has(panel, space)
         assert has(panel, [space[index]])
         c, s = math.cos(theta[index]), math.sin(theta[index])
-        assert has(panel, own @ np.array([[c, s], [-s, c]]) + poses[index, 0, :2])
+        assert has(panel, body_curve @ np.array([[c, s], [-s, c]]) + poses[index, 0, :2])
         assert has(panel, [[0.0, 0.0], space[index]])  # the crank's line, produced to the centre
     run, total = (np.array(points(line)) for line in draw_rate(curves).axes[0].get_lines())
-    # The centre runs its radius in a radian; splines of the curves know that to 1e-6 away from their ends.
+    # The centre moves by one radius per radian; splines of the curves give that to 1e-6, except near their ends.
     assert run[5:-5] == pytest.approx(np.column_stack([np.degrees(theta), np.full(41, 0.5)])[5:-5], abs=1e-6)
     assert total[:, 1] == pytest.approx(1 / (curves.space_curvature + curves.body_curvature))
-    [missed] = draw_rate(replace(curves, body=2 * own)).axes[1].get_lines()
+    [missed] = draw_rate(replace(curves, body=2 * body_curve)).axes[1].get_lines()
     assert points(missed)[20][1] > 0.1
 
 
@@ -225,15 +225,15 @@ def test_the_band_ends_at_rounding_and_guides_have_their_slopes():
     guides = [points(line) for line in panel.get_lines() if line.get_marker() in (None, "None", "")]
     assert [text.get_text() for text in panel.texts] == ["1", "2", "4"]
     texts: list[Any] = list(panel.texts)
-    for text, ((left, bottom), (right, top)) in zip(texts, guides, strict=True):
-        assert math.log(top / bottom) / math.log(right / left) == pytest.approx(float(text.get_text()))
+    for text, ((left_end, bottom), (right, top)) in zip(texts, guides, strict=True):
+        assert math.log(top / bottom) / math.log(right / left_end) == pytest.approx(float(text.get_text()))
         assert text.xy == (pytest.approx(right), pytest.approx(top))
     assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
 
 
 def test_an_outline_has_further_points_in_order_and_a_strip_its_poses_at_equal_times():
     mechanism = pendulum(angle=math.pi / 2)  # from the origin straight up, one metre
-    found = drawings.outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
-    assert found == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
+    result = drawings.outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
+    assert result == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
     strip = drawings.Strip(Disc(duration=2.0), "Turning", 5, start=0.5, end=1.5)
     assert strip.times() == pytest.approx([0.5, 0.75, 1.0, 1.25, 1.5])

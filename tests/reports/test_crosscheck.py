@@ -1,4 +1,4 @@
-"""The grid as tests, which stand in the package, and what has to hold of the grid itself."""
+"""Tests of the grid itself; the package has the tests of its cells."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ def test_every_known_deviation_names_a_real_case_and_a_check():
 
 
 def test_what_an_engine_that_is_not_installed_leaves_out_is_skipped_by_its_extra_and_any_other_loss_fails(monkeypatch):
-    lost = Baseline({("disc", "gone default", 20, 1): Old(Outcome.FINISHED, {})})
-    request: Any = SimpleNamespace(config=SimpleNamespace(stash={KNOWN: lost}))
+    missing = Baseline({("disc", "gone default", 20, 1): Old(Outcome.FINISHED, {})})
+    request: Any = SimpleNamespace(config=SimpleNamespace(stash={KNOWN: missing}))
     with pytest.raises(AssertionError, match="has lost what the baseline has: disc-gone default"):
         test_the_grid_has_every_scene_and_method_of_the_baseline(request)
     monkeypatch.setattr(registry, "ABSENT", {"gone": 'gone is not installed: pip install "planar-crosscheck[gone]"'})

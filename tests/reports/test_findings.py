@@ -49,7 +49,7 @@ OF_RELEASES = {"faults", "releases", "trees"}  # the first from answers, the oth
 
 
 def changed(change):
-    """The pages' material, each row as `change(row)` gives it; None leaves it out."""
+    """The material of the pages with each row replaced by `change(row)`; None removes the row."""
     pages = {
         FAULTS: Material({}, {task: answer_to(task) for task in (OFFSETS, *SCRIPTS.values())}),
         VERSIONS: Material({}),
@@ -71,7 +71,7 @@ def times(factor, step, name, row):
 
 
 def falls(name, row):
-    """The row with an error that is its step."""
+    """The row with its error set to its step."""
     return replace(row, **{name: row.step})
 
 
@@ -87,36 +87,36 @@ def changes(names):
 @pytest.mark.parametrize("name", [name for name, plan in FINDING_PLANS.items() if "rows" in plan])
 def test_every_claim_of_a_finding_can_be_contradicted_by_the_rows_of_one_method(name):
     plan = FINDING_PLANS[name]
-    methods = {word: sources().rows.of(*which) for word, which in plan["rows"].items()}
+    methods = {label: sources().rows.of(*which) for label, which in plan["rows"].items()}
 
     def contradicted(methods):
         return set(finding(name, Sources(Rows(row for rows in methods.values() for row in rows))).contradicted)
 
     assert not contradicted(methods)
     unharmed = set(plan["holds"])
-    for word, change in product(methods, changes(("angle", "gap", "energy", "position", "reaction", "cpu"))):
+    for label, change in product(methods, changes(("angle", "gap", "energy", "position", "reaction", "cpu"))):
         if unharmed:
-            unharmed -= contradicted(methods | {word: change(methods[word])})
+            unharmed -= contradicted(methods | {label: change(methods[label])})
     assert not unharmed
 
 
 def test_without_rows_findings_are_dropped_and_those_of_other_sources_stay():
-    left = findings(changed(lambda row: None if row.scene == "free_four_bar" else row))
-    assert {each.name for each in left} == set(FINDING_PLANS) - {"spring", "start", "exact"}
-    assert all(UNKNOWN_MARK not in each.title + each.text for each in left)
+    rest = findings(changed(lambda row: None if row.scene == "free_four_bar" else row))
+    assert {item.name for item in rest} == set(FINDING_PLANS) - {"spring", "start", "exact"}
+    assert all(UNKNOWN_MARK not in item.title + item.text for item in rest)
     assert findings({}) == []
-    assert {each.name for each in findings({VERSIONS: Material({})})} == OF_RELEASES - {"faults"}
+    assert {item.name for item in findings({VERSIONS: Material({})})} == OF_RELEASES - {"faults"}
     failed = findings(changed(lambda row: replace(row, outcome=Outcome.TORN)))
     # The energy error of a failed run may be used: a pendulum with an angle error of a radian has lost energy too.
-    assert {each.name for each in failed} - OF_RELEASES <= {"energy"}
+    assert {item.name for item in failed} - OF_RELEASES <= {"energy"}
 
 
 def test_findings_that_the_releases_contradict_are_dropped(monkeypatch):
-    whole = released()
+    total = released()
 
     def entries(chosen, **changes):
-        mended = tuple(replace(entry, **changes) if chosen(entry) else entry for entry in whole.entries)
-        monkeypatch.setattr(module, "released", lambda: replace(whole, entries=mended))
+        mended = tuple(replace(entry, **changes) if chosen(entry) else entry for entry in total.entries)
+        monkeypatch.setattr(module, "released", lambda: replace(total, entries=mended))
 
     entries(lambda entry: (entry.version, entry.variant) == ("3.7.0", "tuned"), error=4e-3)
     assert not finding("releases", Sources(Rows())).is_sound
@@ -128,9 +128,9 @@ def test_findings_that_the_releases_contradict_are_dropped(monkeypatch):
     values = {**answers[groove].values, "found": answers[groove].values["expected"]}
     answers[groove] = replace(answers[groove], values=values)
     assert not finding("faults", Sources(Rows(), answers)).is_sound
-    lost = Entry("toy", "0", "disc", "default", 1e-3, "angle", 0.5, Outcome.TORN, 1.0, "")
-    known = replace(lost, version="1", outcome=Outcome.FINISHED)
-    assert module.of_releases("disc", [lost, known]).points == (("1", 0.5),)
+    missing = Entry("toy", "0", "disc", "default", 1e-3, "angle", 0.5, Outcome.TORN, 1.0, "")
+    expected = replace(missing, version="1", outcome=Outcome.FINISHED)
+    assert module.of_releases("disc", [missing, expected]).points == (("1", 0.5),)
 
 
 def test_a_findings_picture_has_its_points_and_its_lines_differ_without_colours():
@@ -150,8 +150,8 @@ def test_every_symptom_has_a_link_to_an_existing_section():
     files |= render_page(YOUR_LOOP, Material({}), "the command")
     assert len(symptoms()) > 10
     for symptom in symptoms():
-        name, _, place = link(symptom.page, symptom.heading, files).partition("#")
-        assert not symptom.heading or place in {anchor(heading) for heading in headings(files[name])}, symptom
+        name, _, index = link(symptom.page, symptom.heading, files).partition("#")
+        assert not symptom.heading or index in {anchor(heading) for heading in headings(files[name])}, symptom
 
 
 def test_the_programs_of_the_settings_print_the_weight_of_the_hanging_body():

@@ -52,10 +52,10 @@ def test_a_changed_file_of_ours_makes_rows_stale_unless_it_is_of_a_page(tmp_path
     file = tmp_path / path
     file.parent.mkdir(parents=True)
     file.write_text("a = 1\n")
-    before = key(Disc(), Toy()), key(Disc(), folders=OURS)
+    earlier = key(Disc(), Toy()), key(Disc(), folders=OURS)
     file.write_text("a = 2\n")
-    after = key(Disc(), Toy()), key(Disc(), folders=OURS)
-    assert tuple(a != b for a, b in zip(before, after, strict=True)) == (rows, tasks)
+    later = key(Disc(), Toy()), key(Disc(), folders=OURS)
+    assert tuple(a != b for a, b in zip(earlier, later, strict=True)) == (rows, tasks)
 
 
 ENGINE = """
@@ -74,7 +74,7 @@ class Theirs(Toy):
 
 @pytest.fixture
 def theirs(tmp_path, monkeypatch):
-    """An engine in a file of somebody else, with a module and data beside it and a file that it does not name."""
+    """An engine in a user's file, with a module and a data file beside it, and a file that the engine does not name."""
     files = {"their_engine.py": ENGINE, "helping.py": "number = 1\n", "numbers.txt": "7\n", "notes.txt": "x\n"}
     for name, text in files.items():
         (tmp_path / name).write_text(text)
@@ -89,13 +89,13 @@ def theirs(tmp_path, monkeypatch):
 def test_a_changed_file_of_somebody_s_engine_makes_its_rows_stale(theirs, tmp_path, name, counts):
     @dataclass(frozen=True)
     class EngineInTuple:
-        held: tuple[Any, ...]
+        parts: tuple[Any, ...]
 
-    engines = (theirs, Altered(theirs, Nudge(1)), EngineInTuple((theirs,)))  # wherever it is held
-    before = [key(Disc(), engine) for engine in engines]
+    engines = (theirs, Altered(theirs, Nudge(1)), EngineInTuple((theirs,)))  # directly, in a wrapper and in a tuple
+    earlier = [key(Disc(), engine) for engine in engines]
     other = key(Disc(), DEFAULT)
     (tmp_path / name).write_text((tmp_path / name).read_text() + "# more\n")
-    assert [key(Disc(), engine) != old for engine, old in zip(engines, before, strict=True)] == [counts] * 3
+    assert [key(Disc(), engine) != old for engine, old in zip(engines, earlier, strict=True)] == [counts] * 3
     assert key(Disc(), DEFAULT) == other
 
 
@@ -108,15 +108,15 @@ def test_what_is_installed_counts_by_its_version_and_not_by_its_bytes(tmp_path, 
     (info / "top_level.txt").write_text("installed_theirs\n")
     monkeypatch.syspath_prepend(folder)
     engine = importlib.import_module("installed_theirs").Theirs()
-    known = {**fingerprint._distributions(), "installed_theirs": ["theirs"]}
-    monkeypatch.setattr(fingerprint, "_distributions", lambda: known)
-    before = key(engine)
+    expected = {**fingerprint._distributions(), "installed_theirs": ["theirs"]}
+    monkeypatch.setattr(fingerprint, "_distributions", lambda: expected)
+    earlier = key(engine)
     (folder / "installed_theirs.py").write_text("# another text\n")
-    assert key(engine) == before
+    assert key(engine) == earlier
     assert versions_of(engine)["theirs"] == "1.0"
     info.rename(folder / "theirs-1.1.dist-info")
     (folder / "theirs-1.1.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: theirs\nVersion: 1.1\n")
-    assert key(engine) != before
+    assert key(engine) != earlier
     sys.modules.pop("installed_theirs")
 
 
@@ -130,9 +130,9 @@ def test_what_is_installed_counts_by_its_version_and_not_by_its_bytes(tmp_path, 
     ],
 )
 def test_a_packages_version_counts_for_the_rows_that_use_it(monkeypatch, engine, distribution, counts):
-    before, real = key(Disc(), engine), metadata.version
+    earlier, real = key(Disc(), engine), metadata.version
     monkeypatch.setattr(metadata, "version", lambda name: "99" if name == distribution else real(name))
-    assert (key(Disc(), engine) != before) == counts
+    assert (key(Disc(), engine) != earlier) == counts
 
 
 def test_every_number_of_a_cell_is_in_its_key():
@@ -145,15 +145,15 @@ def test_every_number_of_a_cell_is_in_its_key():
         Cell(Disc(), Toy(), 3, samples=7),
     ]
     assert len({cell.key, *(other.key for other in others)}) == 6
-    assert replace(cell, purpose="failure").key == cell.key  # an experiment takes the row of the sweep
+    assert replace(cell, purpose="failure").key == cell.key  # an experiment uses the row of the sweep
     assert Motion(cell).key != Motion(others[0]).key
 
 
 def test_a_release_of_another_name_is_in_the_key_of_rows(monkeypatch):
     """MuJoCo 3.6 is the distribution mujoco, 4.0 is mujoco-core, and both hold the package mujoco."""
-    known = dict(fingerprint._distributions())
+    expected = dict(fingerprint._distributions())
     assert "pytest" not in versions_of(Disc(), DEFAULT)
-    monkeypatch.setattr(fingerprint, "_distributions", lambda: {**known, "pymunk": ["pymunk", "pytest"]})
+    monkeypatch.setattr(fingerprint, "_distributions", lambda: {**expected, "pymunk": ["pymunk", "pytest"]})
     forget()
     assert "pytest" in versions_of(Disc(), DEFAULT)
     assert fingerprint._rivals(["nothing"]) == set()

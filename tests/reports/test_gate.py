@@ -1,4 +1,4 @@
-"""The gates themselves: each check fails where it should, and lets through what it should."""
+"""The checks of the gate fail for wrong rows and pass for right ones."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def of(found: tuple[Check, ...], quantity: str) -> Check:
 )
 def test_two_orders_tell_what_any_order_costs(order_of, expected):
     assert JUDGE.error("angle", order_of, FINE) == pytest.approx(expected, rel=1e-12)
-    # Of first order a position's time scale is no longer than the angle's.
+    # At first order the time scale of a position is at most that of the angle.
     drifting = replace(JUDGE, fourth={**JUDGE.fourth, "position": 1e-6})
     assert order_of > 2 or drifting.error("position", order_of, FINE) == pytest.approx(expected, rel=1e-12)
 
@@ -73,8 +73,8 @@ def test_two_orders_tell_what_any_order_costs(order_of, expected):
 @pytest.mark.parametrize("quantity", NAMES)
 def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
     # Second order at a tenth of the judge's step: a hundredth of 1e-4, and the room above it.
-    found = theory(JUDGE, ConvergenceOrder(2), None, row(**alone(quantity, 1.1 * (ROOM * 1e-6 + 2e-9))))
-    assert [check.quantity for check in found if not check.passed] == [quantity]
+    result = theory(JUDGE, ConvergenceOrder(2), None, row(**alone(quantity, 1.1 * (ROOM * 1e-6 + 2e-9))))
+    assert [check.quantity for check in result if not check.passed] == [quantity]
     assert all(
         check.passed for check in theory(JUDGE, ConvergenceOrder(2), None, row(**alone(quantity, 0.9 * ROOM * 1e-6)))
     )
@@ -87,7 +87,7 @@ def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
         (True, {"compliance": 0.005}, 5e-4),
         (True, {"stiffness": 25000.0}, 1e-4),
         (True, {"stiffness": 25000.0, "damping": 50.0}, 1e-4),
-        (False, {"stiffness": 25000.0, "damping": 50.0}, 2e-3),  # without a gap a row gives way by its damper
+        (False, {"stiffness": 25000.0, "damping": 50.0}, 2e-3),  # without a gap a row yields by its damper
     ],
 )
 def test_softness_costs_in_proportion_to_compliance_over_stiffness(holonomic, change, give):
@@ -108,7 +108,7 @@ LOST = replace(JUDGE, second=dict.fromkeys(NAMES, math.inf), fourth=dict.fromkey
 WILD = replace(JUDGE, second=dict.fromkeys(NAMES, 1e3), fourth=dict.fromkeys(NAMES, 1e3))
 PRESCRIBED = replace(JUDGE, prescribed=True, lag=dict.fromkeys(NAMES, 2.0))
 Given = tuple[Prediction, ConvergenceOrder | NotDeclared, Regularisation | None, list[Measurement]]
-BOUNDS: dict[str, tuple[Given, str, float]] = {  # what is known of a row, a quantity, and its bound
+BOUNDS: dict[str, tuple[Given, str, float]] = {  # the declared facts of a row, a quantity, and its bound
     "two coarser steps bound by the promised order": (
         (JUDGE, ConvergenceOrder(2), None, coarser(at1=1e-7, at3=1e-8)), "angle", ROOM_OWN * 1e-9 + 1e-11),
     "one coarser step may be luck": (
@@ -143,44 +143,44 @@ def test_a_row_passes_just_below_its_bound_and_fails_just_above_it(name):
 
 
 def test_where_nothing_is_in_proportion_to_softness_its_own_run_bounds_a_row():
-    own = dict.fromkeys(NAMES, 1e-5)
+    steps, solver_errors = [row(every=1), row(every=3)], dict.fromkeys(NAMES, 1e-5)
     for error, passes in ((1.9e-5, True), (2.1e-5, False)):  # ROOM_SOFT
-        found = theory(WITHOUT_SOFT, ConvergenceOrder(2), SOFT, row(angle=error), [row(every=1), row(every=3)], own)
-        assert of(found, "angle").passed is passes
+        result = theory(WITHOUT_SOFT, ConvergenceOrder(2), SOFT, row(angle=error), steps, solver_errors)
+        assert of(result, "angle").passed is passes
 
 
 def test_rounding_of_a_change_of_velocity_is_carried_by_a_combination_of_runs():
     for carried in (1.0, 17.0):
-        found = of(theory(JUDGE, ConvergenceOrder(2, differences=8, amplified=carried), None, row()), "reaction")
+        result = of(theory(JUDGE, ConvergenceOrder(2, differences=8, amplified=carried), None, row()), "reaction")
         # 1e-10 m/s over 1/8000 s in parts of 10 m/s^2, above the 1e-9 of any reaction.
-        assert dict(found.terms)["rounding"] == pytest.approx(carried * 8e-8 + 1e-9, rel=1e-12)
+        assert dict(result.terms)["rounding"] == pytest.approx(carried * 8e-8 + 1e-9, rel=1e-12)
 
 
 def test_without_a_promise_an_error_may_not_be_far_above_what_the_methods_own_steps_change_in_it():
     for coarse, error, passes in (((0.013, 0.011), 0.01, True), ((0.072, 0.071), 0.07, False)):
-        found = theory(JUDGE, UNKNOWN, None, row(angle=error), coarser(at1=coarse[0], at3=coarse[1]))
-        assert of(found, "angle").passed is passes
+        result = theory(JUDGE, UNKNOWN, None, row(angle=error), coarser(at1=coarse[0], at3=coarse[1]))
+        assert of(result, "angle").passed is passes
     assert not theory(JUDGE, UNKNOWN, None, row(outcome=Outcome.TORN))[0].passed
     assert order(UNKNOWN, rows(*falling_errors(2))) == ()
 
 
-def test_a_page_knows_better_what_its_motion_asks_for_than_the_engine_and_of_no_other_scene():
-    own = ConvergenceOrder(1)
-    page = Page("discs", "Discs", "Discs turn.", (SCENE, SlowDisc()), (Toy(),), orders={("disc", "toy default"): own})
-    assert [case.promise for case in cases([page])] == [own, ConvergenceOrder(2)]
+def test_an_order_declared_by_a_page_replaces_that_of_the_engine_for_this_scene_only():
+    first_order, disc_case = ConvergenceOrder(1), ("disc", "toy default")
+    page = Page("discs", "Discs", "Discs turn.", (SCENE, SlowDisc()), (Toy(),), orders={disc_case: first_order})
+    assert [case.promise for case in cases([page])] == [first_order, ConvergenceOrder(2)]
 
 
 def test_a_run_that_can_not_be_compared_fails_by_its_outcome_and_an_unsupported_one_has_no_check():
-    found = theory(JUDGE, ConvergenceOrder(1), None, row(outcome=Outcome.TORN))
-    assert [check.name for check in found if not check.passed] == ["outcome"]
-    assert count_vacuous(found) == {"the run is not comparable, so its outcome alone is checked": len(NAMES)}
+    result = theory(JUDGE, ConvergenceOrder(1), None, row(outcome=Outcome.TORN))
+    assert [check.name for check in result if not check.passed] == ["outcome"]
+    assert count_vacuous(result) == {"the run is not comparable, so its outcome alone is checked": len(NAMES)}
     assert theory(JUDGE, ConvergenceOrder(1), None, row(outcome=Outcome.UNSUPPORTED)) == ()
 
 
 def test_a_number_that_is_none_fails_unless_there_is_none_to_tell_and_that_is_counted():
-    found = theory(JUDGE, ConvergenceOrder(1), None, row(reaction=math.nan, angle=math.inf))
-    assert [check.quantity for check in found if not check.passed] == ["angle", "reaction"]
-    assert not count_vacuous(found)
+    result = theory(JUDGE, ConvergenceOrder(1), None, row(reaction=math.nan, angle=math.inf))
+    assert [check.quantity for check in result if not check.passed] == ["angle", "reaction"]
+    assert not count_vacuous(result)
     untold = theory(JUDGE, ConvergenceOrder(1, reaction=math.nan), None, row(reaction=math.nan))
     assert count_vacuous(untold) == {"the engine declares that it does not report it": 1}
     for none in (replace(JUDGE, holonomic=(False, False)), replace(JUDGE, second={**JUDGE.second, "gap": math.nan})):
@@ -218,12 +218,12 @@ def test_the_promised_order_passes_and_another_a_plateau_and_growth_do_not(promi
 
 
 def test_no_order_is_asked_of_two_points_or_of_rounding():
-    for few in (rows(*falling_errors(2, points=2)), rows(1e-12, 1e-13, 1e-13, 1e-12)):
-        assert count_vacuous(order(ConvergenceOrder(2), few)) == {TOO_FEW: 1}
+    for some in (rows(*falling_errors(2, points=2)), rows(1e-12, 1e-13, 1e-13, 1e-12)):
+        assert count_vacuous(order(ConvergenceOrder(2), some)) == {TOO_FEW: 1}
 
 
 def toy_checks(engine: Toy) -> tuple[Check, ...]:
-    """The angle's checks of a toy that promises second order, by a judge that says 1 rad/s^2 times the step squared."""
+    """The checks of the angle of a toy with declared order 2; the judge's error is 1 rad/s^2 times the step squared."""
     case = Case(SCENE, engine, ConvergenceOrder(2))
     measured = [measure(cell, repeat=False) for cell in case.cells()]
     return tuple(check for check in checks(case, measured, JUDGE) if check.quantity == "angle")
@@ -234,7 +234,7 @@ def toy_checks(engine: Toy) -> tuple[Check, ...]:
     [
         (Toy("good", factor=1.0), set()),
         (Toy("bad", factor=30.0), {"error"}),
-        # Its model is wrong by a constant: every step is below the judge's own bound.
+        # The model has a constant error, and at every step it is below the judge's own bound.
         (Toy("soft", factor=1.0, plateau=2e-6), {"error", "order"}),
     ],
     ids=lambda value: getattr(value, "variant", ""),
@@ -247,27 +247,27 @@ def test_a_deviation_that_doubled_or_went_away_or_has_no_check_is_a_complaint():
     def found(measured: float) -> tuple[Check, ...]:
         return (Check("error", "angle", measured, 1.0),)
 
-    known = {"error": Deviation("by design: soft", 10.0)}
-    assert not complaints(found(10.0), known)
-    assert not complaints(found(19.0), known)
-    assert "known are 10" in complaints(found(21.0), known)[0]
-    assert "no longer" in complaints(found(0.4), known)[0]
-    assert "no such check" in complaints((), known)[0]
+    expected = {"error": Deviation("by design: soft", 10.0)}
+    assert not complaints(found(10.0), expected)
+    assert not complaints(found(19.0), expected)
+    assert "known are 10" in complaints(found(21.0), expected)[0]
+    assert "no longer" in complaints(found(0.4), expected)[0]
+    assert "no such check" in complaints((), expected)[0]
     assert complaints(found(1.1), {}) == (str(found(1.1)[0]),)
-    # Roundings that a motion amplifies are others on another processor.
-    known = {"error": Deviation("by design: rank", 10.0, rounding=True)}
-    assert not complaints(found(0.1), known)
-    assert not complaints(found(99.0), known)
-    assert "known are 10" in complaints(found(101.0), known)[0]
+    # Rounding errors that a motion amplifies differ between processors.
+    expected = {"error": Deviation("by design: rank", 10.0, rounding=True)}
+    assert not complaints(found(0.1), expected)
+    assert not complaints(found(99.0), expected)
+    assert "known are 10" in complaints(found(101.0), expected)[0]
 
 
 @pytest.mark.parametrize("outcome", [Outcome.ABORTED, Outcome.TORN, Outcome.SATURATED])
-def test_an_outcome_that_is_known_is_that_one_and_no_other(outcome):
+def test_a_deviation_with_an_outcome_excuses_this_outcome_only(outcome):
     case = Case(SCENE, Toy(), ConvergenceOrder(2), (("outcome", Deviation("by design: x", outcome=Outcome.SATURATED)),))
     ended = row(outcome=outcome)
-    told = CaseVerdict(case, (ended,), theory(JUDGE, ConvergenceOrder(2), None, ended)).theory_complaints
-    assert len(told) == (outcome != Outcome.SATURATED)
-    assert all("known is saturated" in line for line in told)
+    reported = CaseVerdict(case, (ended,), theory(JUDGE, ConvergenceOrder(2), None, ended)).theory_complaints
+    assert len(reported) == (outcome != Outcome.SATURATED)
+    assert all("known is saturated" in line for line in reported)
     better = CaseVerdict(case, (row(),), theory(JUDGE, ConvergenceOrder(2), None, row())).theory_complaints
     assert any("deviates no longer" in line for line in better)
 
@@ -290,15 +290,15 @@ def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> 
     return CaseVerdict(Case(SCENE, Toy(), ConvergenceOrder(2), known), (row(angle=2e-5),), found, moved, before=(None,))
 
 
-def test_the_report_tells_every_case_its_bound_and_what_failed():
+def test_the_report_has_the_bound_of_every_case_and_its_failed_checks():
     good = verdict(Check("error", "angle", 2e-5, 1e-4), Check("gap", "gap", 0.9, 1.0))
     assert lines([good]) == [["disc", "toy default", "1e-3", "2e-5", "1e-4", "gap", "0.9", "passed"]]
     bad = verdict(Check("error", "angle", 2e-4, 1e-4))
     assert lines([bad])[0][-1] == "FAILED: theory"
     changed = verdict(Check("error", "angle", 1.0, 2.0), moved=(Check("change", "angle", 1.0, 0.5),))
     assert lines([changed])[0][-1] == "FAILED: change"
-    known = verdict(Check("error", "angle", 2e-4, 1e-4), known=(("error", Deviation("by design: soft", 3.0)),))
-    text = report([good, bad, known, changed], Baseline({}))
+    expected = verdict(Check("error", "angle", 2e-4, 1e-4), known=(("error", Deviation("by design: soft", 3.0)),))
+    text = report([good, bad, expected, changed], Baseline({}))
     assert "4 scenes and methods, 2 failed, 1 with known deviations" in text
     assert "disc-toy default: change (angle): 1, bound 0.5" in text
     assert "disc-toy default: error (angle): 0.0002, bound 0.0001" in text

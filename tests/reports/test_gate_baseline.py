@@ -1,4 +1,4 @@
-"""Rows held against the baseline: which numbers may move, and what a file that is none says."""
+"""Comparison of rows with the baseline: which numbers may change, and the message for a file that is no baseline."""
 
 from __future__ import annotations
 
@@ -48,48 +48,48 @@ def old(outcome: Outcome = Outcome.FINISHED, **errors: float) -> Old:
 @pytest.mark.parametrize("name", [*NAMES, *OF])
 def test_two_values_of_a_quantity_agree_within_its_rounding_and_one_printed_digit(name):
     rounding = quantity(OF.get(name, name)).rounding
-    for now, before, amplified, same in (
+    for now, earlier, amplified, same in (
         (1e-14 + 0.9 * rounding, 1e-14, 1.0, True),
         (1e-14 + 1.1 * rounding, 1e-14, 1.0, False),
         (1e-14 + 1.1 * rounding, 1e-14, 2.0, True),
         (0.33649, 0.3364, 1.0, True),
         (0.33661, 0.3364, 1.0, False),
     ):
-        assert agrees(name, now, before, amplified) is same
+        assert agrees(name, now, earlier, amplified) is same
 
 
 @pytest.mark.parametrize("quantity", NAMES)
 def test_a_number_that_changed_by_a_hundredth_or_is_not_known_any_more_is_noticed(quantity):
     changed = change(row(**alone(quantity, 1.01e-5)), old(**alone(quantity, 1e-5)))
     gone = [gate(row(**alone(quantity, math.nan)), old()) for gate in (change, drift)]
-    for found in (changed, *gone):
-        assert [check.quantity for check in found if not check.passed] == [quantity]
+    for result in (changed, *gone):
+        assert [check.quantity for check in result if not check.passed] == [quantity]
 
 
 def test_the_bound_of_a_change_is_what_other_roundings_do_and_never_zero():
-    now, before = row(angle=3e-9), old(angle=2e-9)
-    lost = [row(outcome=Outcome.TORN, angle=9.0), row(angle=math.nan)]
+    now, earlier = row(angle=3e-9), old(angle=2e-9)
+    missing = [row(outcome=Outcome.TORN, angle=9.0), row(angle=math.nan)]
     for others, passes in (([], False), ([2.8e-9, 3.1e-9], True), ([3.001e-9], False)):
-        found = change(now, before, [*(row(angle=angle) for angle in others), *lost])
-        assert of(found, "angle").passed is passes
-    now, before = row(angle=2.29e-14, velocity=5e-10), old(angle=2.55e-14, velocity=0.0)
-    assert of(change(now, before), "angle").passed
-    assert not of(change(now, before), "velocity").passed
-    assert of(change(now, before, amplified=17.0), "velocity").passed  # as much as a combination of runs carries
+        result = change(now, earlier, [*(row(angle=angle) for angle in others), *missing])
+        assert of(result, "angle").passed is passes
+    now, earlier = row(angle=2.29e-14, velocity=5e-10), old(angle=2.55e-14, velocity=0.0)
+    assert of(change(now, earlier), "angle").passed
+    assert not of(change(now, earlier), "velocity").passed
+    assert of(change(now, earlier, amplified=17.0), "velocity").passed  # as much as a combination of runs carries
 
 
 @pytest.mark.parametrize("gate", [change, drift])
 def test_reactions_of_fewer_rows_than_before_fail(gate):
-    before = replace(old(), reaction_rows=8)
-    assert [check.quantity for check in gate(row(reaction_rows=2), before) if not check.passed] == ["reaction_rows"]
-    assert all(check.passed for check in gate(row(reaction_rows=8), before))
+    earlier = replace(old(), reaction_rows=8)
+    assert [check.quantity for check in gate(row(reaction_rows=2), earlier) if not check.passed] == ["reaction_rows"]
+    assert all(check.passed for check in gate(row(reaction_rows=8), earlier))
 
 
-def test_a_number_where_none_was_known_is_told_and_with_the_same_versions_it_is_a_change():
-    before = old(reaction=math.nan)
-    assert describe_improvements(row(reaction=3e-9), before) == ("reaction: 3e-09; it was not known",)
-    assert all(check.passed for check in drift(row(reaction=3e-9), before))
-    assert not of(change(row(reaction=3e-9), before), "reaction").passed
+def test_a_number_that_was_unknown_before_is_reported_and_with_the_same_versions_it_is_a_change():
+    earlier = old(reaction=math.nan)
+    assert describe_improvements(row(reaction=3e-9), earlier) == ("reaction: 3e-09; it was not known",)
+    assert all(check.passed for check in drift(row(reaction=3e-9), earlier))
+    assert not of(change(row(reaction=3e-9), earlier), "reaction").passed
     assert describe_improvements(row(), old()) == ()
 
 
@@ -100,11 +100,11 @@ def test_an_outcome_that_changed_is_noticed_unless_rounding_changes_it():
 
 
 def test_the_numbers_of_a_run_that_is_not_resolved_are_held_and_those_of_a_torn_one_are_luck():
-    now, before = row(outcome=Outcome.UNRESOLVED, angle=2e-5), old(Outcome.UNRESOLVED, angle=1e-5)
-    assert [check.quantity for check in change(now, before) if not check.passed] == ["angle"]
+    now, earlier = row(outcome=Outcome.UNRESOLVED, angle=2e-5), old(Outcome.UNRESOLVED, angle=1e-5)
+    assert [check.quantity for check in change(now, earlier) if not check.passed] == ["angle"]
     near = [row(outcome=Outcome.UNRESOLVED, angle=1.8e-5), row(outcome=Outcome.TORN, angle=9.0)]
-    assert of(change(now, before, near), "angle").passed
-    assert not of(change(now, before, near[1:]), "angle").passed
+    assert of(change(now, earlier, near), "angle").passed
+    assert not of(change(now, earlier, near[1:]), "angle").passed
     assert [check.quantity for check in change(row(outcome=Outcome.TORN, angle=1.0), old(Outcome.TORN))] == ["outcome"]
 
 
@@ -127,7 +127,7 @@ def test_another_outcome_fails_with_the_same_versions_and_an_improvement_is_a_re
 
 
 def of_scenes(*factors: float) -> list[tuple[Measurement, Old]]:
-    """A pair a scene, whose angle has become so many times 1e-5."""
+    """One pair per scene: a row whose angle error is `factor` times 1e-5, and its baseline row of 1e-5."""
     return [(replace(row(angle=1e-5 * f), scene=f"scene {n}"), old(angle=1e-5)) for n, f in enumerate(factors)]
 
 
@@ -143,13 +143,13 @@ def test_in_many_scenes_a_method_may_not_be_nearly_three_times_as_wrong_in_the_m
     assert failed(*[0.3] * 4, *[1.0], *[2.9] * 4) == []
     # The cells of one scene count as one.
     assert [check for check in growth(of_scenes(2.9) * 9) if not check.passed] == []
-    below = [(replace(now, angle=3e-13), replace(before, errors={"angle": 1e-13})) for now, before in of_scenes(1, 1)]
+    below = [(replace(now, angle=3e-13), replace(earlier, errors={"angle": 1e-13})) for now, earlier in of_scenes(1, 1)]
     assert [check.passed for check in growth(below)] == [True]
 
 
 def test_with_other_versions_three_times_as_large_fails_and_twice_does_not():
-    for now, before, passes in ((2e-5, 1e-5, True), (4e-5, 1e-5, False), (5e-12, 1e-13, True)):  # the last: rounding
-        assert of(drift(row(angle=now), old(angle=before)), "angle").passed is passes
+    for now, earlier, passes in ((2e-5, 1e-5, True), (4e-5, 1e-5, False), (5e-12, 1e-13, True)):  # the last: rounding
+        assert of(drift(row(angle=now), old(angle=earlier)), "angle").passed is passes
 
 
 def known_of(row: Measurement) -> Old:
@@ -184,30 +184,30 @@ def test_a_cost_is_that_of_the_cells_that_both_have_timed():
 def test_run_and_check_compares_each_row_and_its_cost_with_the_baselines_row_of_the_same_cell(at_home):
     case = Case(SCENE, Toy("one", factor=1e-4), ConvergenceOrder(2))
     measured = [measure(cell, repeat=False) for cell in case.cells()]
-    same = {identity(each): known_of(each) for each in measured}
+    same = {identity(item): known_of(item) for item in measured}
     coarsest = identity(measured[0])
 
     def angle(value: float) -> dict[tuple[str, str, int, int], Old]:
         return {**same, coarsest: replace(same[coarsest], errors={**same[coarsest].errors, "angle": value})}
 
     lacking = {key: value for key, value in same.items() if key != coarsest}
-    # Of other versions a number may differ, and not be more than three times as large.
-    for cells, versions, new, told in (
+    # With other versions a number may differ, but not be more than three times as large.
+    for cells, versions, new, reported in (
         (same, "", 0, []),
         (angle(1e-12), "", 0, ["it was 1e-12"]),
         (lacking, "", 1, ["lacks steps between others"]),
         (angle(0.9e-8), "", 0, ["it was 9e-09"]),
         (angle(0.9e-8), "Python 2.7", 0, []),
     ):
-        found = run_and_check([case], Baseline(cells, versions), workers=1)[case]
-        assert found.new == new
-        assert len(found.change_complaints) == len(told)
-        assert all(words in line for words, line in zip(told, found.change_complaints, strict=True))
+        result = run_and_check([case], Baseline(cells, versions), workers=1)[case]
+        assert result.new == new
+        assert len(result.change_complaints) == len(reported)
+        assert all(text in line for text, line in zip(reported, result.change_complaints, strict=True))
     cheap = Baseline({key: replace(value, cpu=value.cpu / 1e3) for key, value in same.items()})
     dear = run_and_check([case], cheap, workers=1, dearest=1.5)[case]
     assert ["CPU time" in line for line in dear.change_complaints] == [True]
     assert any("times the CPU time of the baseline" in line for line in changes([dear], cheap))
-    assert remarks(replace(dear, before=tuple(replace(known_of(each), cpu=math.nan) for each in measured))) == ()
+    assert remarks(replace(dear, before=tuple(replace(known_of(item), cpu=math.nan) for item in measured))) == ()
 
 
 def written(path: Path, *measured: Measurement) -> Path:
@@ -218,16 +218,16 @@ def written(path: Path, *measured: Measurement) -> Path:
 def test_a_baseline_is_read_as_it_was_written_with_the_versions_and_times_beside_it(tmp_path):
     experiment = replace(row(angle=0.3), purpose="usual")  # at the step of a row of the sweep
     path = written(tmp_path / "errors.csv", row(angle=1.5e-5), row(every=3, outcome=Outcome.TORN), experiment)
-    found = read_baseline(path)
-    assert found.cells[identity(row())].errors["angle"] == 1.5e-5
-    assert found.cells[identity(row(every=3))].outcome == Outcome.TORN
-    assert math.isnan(found.cells[identity(row())].cpu)
-    assert found.same_versions
+    baseline = read_baseline(path)
+    assert baseline.cells[identity(row())].errors["angle"] == 1.5e-5
+    assert baseline.cells[identity(row(every=3))].outcome == Outcome.TORN
+    assert math.isnan(baseline.cells[identity(row())].cpu)
+    assert baseline.same_versions
     timed = as_csv([replace(row(), cpu=0.25, runs=3, build=0.5), replace(experiment, cpu=9.0)], timings=True)
     (tmp_path / "timings.csv").write_text(f"# 2026-01-01\n# Python 2.7, numpy 0.1\n{timed}")
-    found = read_baseline(path)
-    assert found.cells[identity(row())].cpu == 0.25
-    assert (found.versions, found.same_versions) == ("Python 2.7, numpy 0.1", False)
+    baseline = read_baseline(path)
+    assert baseline.cells[identity(row())].cpu == 0.25
+    assert (baseline.versions, baseline.same_versions) == ("Python 2.7, numpy 0.1", False)
 
 
 def test_a_baseline_that_was_edited_or_lies_beside_other_pages_is_told_in_one_line(tmp_path):
@@ -254,16 +254,16 @@ def test_a_baseline_that_was_edited_or_lies_beside_other_pages_is_told_in_one_li
 
 
 @pytest.mark.parametrize("text", [None, "", "a,b\n1,2\n", "\0\0", "damaged"])
-def test_a_file_that_is_no_baseline_is_one_line(tmp_path, text):
+def test_a_file_that_is_no_baseline_is_refused_in_one_line(tmp_path, text):
     path = tmp_path / "errors.csv"
     if text == "damaged":
         written(path, row())
         path.write_text(path.read_text().replace("finished", "dissolved"))
     elif text is not None:
         path.write_text(text)
-    with pytest.raises(BadBaseline, match=r"baseline .*errors\.csv") as told:
+    with pytest.raises(BadBaseline, match=r"baseline .*errors\.csv") as reported:
         read_baseline(path)
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(reported.value)
 
 
 def test_a_baseline_without_the_column_of_a_quantity_is_a_sentence_and_the_others_are_compared(tmp_path):
@@ -272,17 +272,17 @@ def test_a_baseline_without_the_column_of_a_quantity_is_a_sentence_and_the_other
     text = "\n".join(",".join(cell for i, cell in enumerate(line.split(",")) if i != column) for line in lines)
     (tmp_path / "errors.csv").write_text(text)
     baseline = read_baseline(tmp_path / "errors.csv")
-    (known,) = baseline.cells.values()
-    assert set(known.errors) == set(NAMES) - {"reaction"}
+    (stored_row,) = baseline.cells.values()
+    assert set(stored_row.errors) == set(NAMES) - {"reaction"}
     assert [line for line in changes([], baseline) if "no column 'reaction'" in line]
 
 
 def test_a_nudged_mechanism_is_another_rounding_of_all_that_enters_and_the_same_for_a_seed():
     mechanism = DrivenFourBar().mechanism()
-    found = [Nudge(seed)(mechanism) for seed in range(20)]
+    nudged = [Nudge(seed)(mechanism) for seed in range(20)]
 
     def seen(value: Callable[[Mechanism], float]) -> set[float]:
-        return {value(each) / value(mechanism) - 1 for each in found}
+        return {value(other) / value(mechanism) - 1 for other in nudged}
 
     for value in (
         lambda each: each.bodies[1].mass,

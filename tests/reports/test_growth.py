@@ -24,7 +24,7 @@ from tests.rows import row_of, table
 from tests.toys import Disc, Plain, Toy
 
 
-def test_what_the_long_chain_knows_is_what_linear_algebra_finds():
+def test_the_forces_of_the_long_chain_agree_with_linear_algebra():
     long, plain = LongPendulum(7, tip=3.0).mechanism(), LinkPendulum(7, tip=3.0).mechanism()
     assert long.degrees_of_freedom() == plain.degrees_of_freedom()
     truth = LongPendulum(7, tip=3.0)
@@ -77,14 +77,14 @@ def test_a_point_of_a_series_is_its_own_cell():
     assert [p.size for p in tuned.points] == [10, 50, 100, 1000, 2000]
     # A step is 0.02 s, or 1e-3 s, or half of that: CPU seconds of a simulated second times the step.
     assert [p.step for p in tuned.points] == pytest.approx([6e-5, math.nan, 1.4e-4, 5e-6, 5.5e-6], nan_ok=True)
-    # What only ran for its cost has no error, and what failed has none either.
+    # A row that was run for its cost alone has no error, and neither has a failed row.
     assert [p.error for p in tuned.points] == pytest.approx([1.1e-3, math.nan, 1.3e-3, math.nan, math.nan], nan_ok=True)
     assert [p.outcome for p in tuned.points] == ["finished", "torn", "finished", "finished", "saturated"]
     assert (other.points[0].step, other.points[0].error) == (pytest.approx(3.4e-4), 1.9e-3)
 
 
 class ToyClock:
-    """A process time that goes on by what it is told."""
+    """A clock of process time that advances by given amounts."""
 
     def __init__(self, monkeypatch):
         self.now = 0.0
@@ -93,7 +93,7 @@ class ToyClock:
 
 @dataclass(frozen=True)
 class SlowToy(Plain):
-    """Builds and steps in the times of two lists."""
+    """An engine whose builds and steps take the times in two lists."""
 
     clock: ToyClock
     builds: list
@@ -115,8 +115,8 @@ class SlowToy(Plain):
 def test_a_cost_is_the_least_of_several_runs_the_first_left_out_and_a_long_run_is_not_repeated(monkeypatch):
     clock = ToyClock(monkeypatch)
     engine = SlowToy(clock, [2e-3, 1e-3, 1.5e-3, 1.5e-3, 4.5e-3], [2e-3, 1e-3, 1.5e-3, 1.5e-3, 2.5e-3])
-    found = repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3)
-    assert found == (pytest.approx(1e-3), 5, pytest.approx(1e-3))
+    result = repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3)
+    assert result == (pytest.approx(1e-3), 5, pytest.approx(1e-3))
     engine = SlowToy(clock, [2.5e-3] * 3, [1e-2, 1.5e-2, 5e-3])
     assert repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3) == (
         1e-2,
@@ -145,7 +145,7 @@ def test_a_step_must_divide_the_sampling_to_ten_digits():
 
 @dataclass(frozen=True)
 class Costly(Toy):
-    """Says what a step costs [s]."""
+    """An engine with a declared cost of a step [s]."""
 
     cost: float = 3e-3
 

@@ -1,4 +1,4 @@
-"""Errors and rows by hand: a motion with a known offset in every number, and what each field makes of it."""
+"""Errors of a motion with a known offset in every number, and each field of its row, against values by hand."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Pair(Scene):
         return Mechanism((first, second), joints, (0.0, -10.0))
 
     def _motion(self, times: NDArray[np.float64]) -> Trajectory:
-        """The second disc moves along x at 6 t: not a motion of this mechanism, and no error knows that."""
+        """The second disc moves along x at 6 t: impossible for this mechanism, but no error depends on that."""
         t = times
         pose, twist = np.zeros((len(t), 2, 3)), np.zeros((len(t), 2, 3))
         pose[:, 0, 2], twist[:, 0, 2] = 5 * t, 5.0
@@ -65,11 +65,11 @@ KINETIC = 0.5 * 3 * 5**2 + 0.5 * 7 * 1.8**2  # J, the truth's largest: at 0.3 s,
 
 def moved(**offsets: list[tuple[tuple[int, ...], float]]) -> Trajectory:
     """The truth with `field=[(index, offset), ...]` added to single numbers."""
-    found = {name: getattr(TRUTH, name).copy() for name in ("pose", "twist", "reaction")}
+    fields = {name: getattr(TRUTH, name).copy() for name in ("pose", "twist", "reaction")}
     for name, changes in offsets.items():
         for index, offset in changes:
-            found[name][index] += offset
-    return replace(TRUTH, **found)
+            fields[name][index] += offset
+    return replace(TRUTH, **fields)
 
 
 def errors(trajectory: Trajectory) -> dict[str, float]:
@@ -104,7 +104,7 @@ MOTIONS: dict[str, tuple[dict[str, Any], dict[str, float]]] = {
     ),
     "a rate": ({"twist": [((2, 1, 2), 0.25)]}, {"rate": 0.25, "energy": 0.5 * 11 * 0.25**2 / KINETIC}),
     "energy of rotation": ({"twist": [((0, 0, 2), 1.0)]}, {"rate": 1.0, "energy": 0.5 * 3 * (36 - 25) / KINETIC}),
-    # A reaction is held against the largest of its kind: 20 N, 8 N m; the worse of the two counts.
+    # A reaction is divided by the largest of its kind, 20 N or 8 N m; the larger of the two quotients counts.
     "a force": ({"reaction": [((1, 0), -3.0)]}, {"reaction": 3 / 20}),
     "another force": ({"reaction": [((1, 1), -3.0)]}, {"reaction": 3 / 20}),
     "a torque": ({"reaction": [((1, 2), -3.0)]}, {"reaction": 3 / 8}),
@@ -116,13 +116,13 @@ MOTIONS: dict[str, tuple[dict[str, Any], dict[str, float]]] = {
 @pytest.mark.parametrize("name", MOTIONS)
 def test_each_offset_is_the_error_of_its_own_quantities_and_of_no_other(name):
     offsets, expected = MOTIONS[name]
-    found = {name: value for name, value in errors(moved(**offsets)).items() if value != 0}
-    assert found == pytest.approx(expected, rel=1e-12)
+    nonzero = {name: value for name, value in errors(moved(**offsets)).items() if value != 0}
+    assert nonzero == pytest.approx(expected, rel=1e-12)
 
 
-def test_what_has_no_scale_or_is_told_nowhere_is_unknown():
-    still = replace(TRUTH, twist=np.zeros_like(TRUTH.twist))
-    assert math.isnan(motion_errors(SCENE, MECHANISM, still, TRUTH)["energy"])
+def test_errors_without_a_scale_or_without_data_are_unknown():
+    at_rest = replace(TRUTH, twist=np.zeros_like(TRUTH.twist))
+    assert math.isnan(motion_errors(SCENE, MECHANISM, at_rest, TRUTH)["energy"])
     assert math.isnan(errors(replace(TRUTH, reaction=np.full_like(TRUTH.reaction, math.nan)))["reaction"])
     nothing = np.zeros((4, 3))
     assert math.isnan(reaction_error(MECHANISM, nothing, nothing + 1))
@@ -174,7 +174,7 @@ INSTANTS = np.linspace(0, 0.2, 21)
 
 @dataclass(frozen=True, eq=False)  # its arrays can't be compared or hashed
 class Given(Plain):
-    """An engine whose motion was written down beforehand, and that says so of its model."""
+    """An engine that returns a given motion, with given facts of its model."""
 
     trajectory: Trajectory
     variant: str = "given"
@@ -207,7 +207,7 @@ def shifted(column: int, offset, start: int = 0) -> Trajectory:
 
 
 def test_every_field_of_a_measured_row_is_its_own():
-    """A motion with another error in every quantity, through `measure`: each field by hand."""
+    """`measure` of a motion with a different error in every quantity; each field is computed by hand."""
     t = np.linspace(0, SCENE.duration, SCENE.samples + 1)
     truth = SCENE.motion(t)
     pose, twist, reaction = truth.pose.copy(), truth.twist.copy(), truth.reaction.copy()
@@ -223,9 +223,9 @@ def test_every_field_of_a_measured_row_is_its_own():
     reaction[:, 2] = np.nan
     estimate = np.zeros_like(pose)
     estimate[3, 1, 2], estimate[5, 0, 2], estimate[5, 0, 0] = -29e-3, 2e-3, 99.0
-    given = Given(Trajectory(t, pose, twist, reaction, 0.6, ("a warning", "a warning", "another"), None, estimate))
-    cell = Cell(SCENE, given, 1, "failure")
-    found = measure(cell, repeat=False)
+    engine = Given(Trajectory(t, pose, twist, reaction, 0.6, ("a warning", "a warning", "another"), None, estimate))
+    cell = Cell(SCENE, engine, 1, "failure")
+    result = measure(cell, repeat=False)
     count = 2 * int(np.sum(t <= SCENE.horizon * (1 + 1e-12)))
     expected = {
         "key": cell.key,
@@ -234,7 +234,7 @@ def test_every_field_of_a_measured_row_is_its_own():
         "parameters": repr(SCENE),
         "engine": "toy",
         "variant": "given",
-        "settings": repr(given),
+        "settings": repr(engine),
         "every": 1,
         "samples": 30,
         "step": 0.01,
@@ -265,24 +265,24 @@ def test_every_field_of_a_measured_row_is_its_own():
         "cpu": 0.6 / 0.3,
         "runs": 1,
     }
-    # 7 kg at v(0.07 s) = 0.42 m/s and 13 mm/s more is more than what the other offsets do to the energy.
+    # 7 kg at v(0.07 s) = 0.42 m/s, with 13 mm/s added: the largest energy error of all offsets.
     expected["energy"] = 0.5 * 7 * (0.433**2 - 0.42**2) / (0.5 * 3 * 25 + 0.5 * 7 * 1.8**2)
-    told = found.as_dict()
-    assert told.pop("build") >= 0
-    assert math.isnan(told.pop("limit"))
-    words = {name: value for name, value in expected.items() if isinstance(value, str)}
-    assert {name: told.pop(name) for name in words} == words
-    assert told == pytest.approx({name: value for name, value in expected.items() if name not in words}, rel=1e-9)
+    reported = result.as_dict()
+    assert reported.pop("build") >= 0
+    assert math.isnan(reported.pop("limit"))
+    text = {name: value for name, value in expected.items() if isinstance(value, str)}
+    assert {name: reported.pop(name) for name in text} == text
+    assert reported == pytest.approx({name: value for name, value in expected.items() if name not in text}, rel=1e-9)
 
 
 def test_the_truth_is_at_an_engine_s_own_instants():
-    late = INSTANTS * (1 + 1e-9)  # as no rounding of steps makes them
-    found = measure(Cell(DISC, Given(DISC.motion(late)), 1), repeat=False)
-    assert found.angle < 1e-14 < 1e-3 * np.abs(DISC.motion(late).pose - DISC.motion(INSTANTS).pose).max()
+    late = INSTANTS * (1 + 1e-9)  # more than the rounding of steps
+    result = measure(Cell(DISC, Given(DISC.motion(late)), 1), repeat=False)
+    assert result.angle < 1e-14 < 1e-3 * np.abs(DISC.motion(late).pose - DISC.motion(INSTANTS).pose).max()
 
 
-def test_rows_told_are_those_known_at_all_samples_after_the_first():
+def test_reaction_rows_count_the_rows_known_at_all_samples_after_the_first():
     reaction = disc().reaction.copy()
     reaction[0, 0], reaction[:, 1] = np.nan, np.nan
-    found = measure(Cell(DISC, Given(disc(reaction=reaction)), 1), repeat=False)
-    assert (found.outcome, found.reaction_rows) == ("finished", 1)
+    result = measure(Cell(DISC, Given(disc(reaction=reaction)), 1), repeat=False)
+    assert (result.outcome, result.reaction_rows) == ("finished", 1)

@@ -1,4 +1,4 @@
-"""What becomes of a run: the bound of every outcome and its sentence."""
+"""Outcomes of runs: the bound of every outcome and its sentence."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from tests.toys import ImpossibleDisc, Toy
 
 
 def outcome_of(trajectory: Trajectory, scene=DISC) -> tuple[str, str]:
-    found = measure(Cell(scene, Given(trajectory), 1), repeat=False)
-    return found.outcome, found.sentence
+    result = measure(Cell(scene, Given(trajectory), 1), repeat=False)
+    return result.outcome, result.sentence
 
 
 @pytest.mark.parametrize(
@@ -44,9 +44,9 @@ def outcome_of(trajectory: Trajectory, scene=DISC) -> tuple[str, str]:
     ],
 )
 def test_each_outcome_has_its_bound_and_its_number(trajectory, outcome, telling):
-    found = outcome_of(trajectory)
-    assert found[0] == outcome
-    assert found[1] == telling if not telling else telling in found[1]
+    result = outcome_of(trajectory)
+    assert result[0] == outcome
+    assert result[1] == telling if not telling else telling in result[1]
 
 
 def cut(count):
@@ -85,22 +85,22 @@ def test_a_drive_that_falls_behind_is_torn():
     ):
         late = replace(SCENE.motion(t), stepping=0.0)
         late.pose[:, 0, 2] -= lag * t / t[-1]
-        found = measure(Cell(Pair(horizon=0.01), Given(late), 1), repeat=False)
-        assert found.outcome == outcome
-        assert telling in found.sentence
-        assert found.drive_gap == pytest.approx(lag)
+        result = measure(Cell(Pair(horizon=0.01), Given(late), 1), repeat=False)
+        assert result.outcome == outcome
+        assert telling in result.sentence
+        assert result.drive_gap == pytest.approx(lag)
 
 
 def told(trajectory: Trajectory, count: int | None = None, **fields_of_a_row) -> str:
-    """What a row with these fields is, by the first rule that holds."""
+    """The outcome of a row with these fields, by the first rule that applies."""
     quiet = {"gap": 0.0, "drive_gap": 0.0, "flips": 0, "angle": 0.0, "angle_duration": 0.0}
-    given = row(**{**quiet, **fields_of_a_row})
+    values = row(**{**quiet, **fields_of_a_row})
     count = len(trajectory.t) if count is None else count
-    return of_motion(given, DISC.mechanism(), trajectory, count)[0]
+    return of_motion(values, DISC.mechanism(), trajectory, count)[0]
 
 
-def test_the_gravest_finding_decides():
-    """Each is taken away from a row that has them all: what is left is the next."""
+def test_the_gravest_finding_determines_the_outcome():
+    """A row with all defects has the gravest outcome; without that defect it has the next one."""
     everything = {"gap": 2 * BLOWN * LENGTH, "drive_gap": 1.0, "flips": 2, "angle": 1.0, "angle_duration": 1.0}
     assert told(disc(reset_at=0.1), 5, **everything) == "reset"
     assert told(disc(), 5, **everything) == "diverged"
@@ -129,23 +129,23 @@ def test_only_the_engines_own_words_count_as_a_warning(warnings, quiet):
 
 
 def test_where_the_textbook_refuses_there_is_no_error_and_the_sentence_says_so():
-    found = measure(Cell(ImpossibleDisc(), Given(disc(warnings=("a warning",))), 1), repeat=False)
-    assert (found.outcome, found.sentence) == ("finished", "the reference refuses: no such motion; a warning")
-    assert found.gap == 0.0
-    assert math.isnan(found.angle)
+    result = measure(Cell(ImpossibleDisc(), Given(disc(warnings=("a warning",))), 1), repeat=False)
+    assert (result.outcome, result.sentence) == ("finished", "the reference refuses: no such motion; a warning")
+    assert result.gap == 0.0
+    assert math.isnan(result.angle)
 
 
-def test_what_comes_after_the_first_sample_that_is_not_finite_is_not_compared():
+def test_samples_after_the_first_one_that_is_not_finite_are_not_compared():
     trajectory = shifted(2, 0.25, 15)
     trajectory.pose[5] = np.nan
-    found = compare(Cell(DISC, Toy(), 1), DISC.mechanism(), trajectory, row())
-    assert (found.outcome, found.angle) == ("diverged", 0.0)
+    result = compare(Cell(DISC, Toy(), 1), DISC.mechanism(), trajectory, row())
+    assert (result.outcome, result.angle) == ("diverged", 0.0)
 
 
 def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_a_colour_of_the_theme():
     assert len({outcome.meaning for outcome in Outcome}) == len(Outcome)
     assert [outcome for outcome in Outcome if outcome.comparable] == ["finished", "converged", "plateau"]
-    # The two that a map shows alike show a number there instead of a letter.
+    # The two outcomes with the same letter on a map show a number there instead.
     letters = [outcome.letter for outcome in Outcome if outcome is not Outcome.CONVERGED]
     assert len(set(letters)) == len(letters)
     assert {outcome.colour for outcome in Outcome} <= {field.name for field in fields(Theme)}
@@ -154,8 +154,8 @@ def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_a_colour_of_the_the
     assert all(wrong)
 
 
-def test_a_threshold_stands_in_no_text_by_hand():
-    """The site's how-to said a thousandth where the code has a twentieth."""
+def test_texts_take_thresholds_from_the_code():
+    """A text with a number of its own can contradict the code: once a thousandth was printed for a twentieth."""
     assert f"more than {TORN:g} of" in Outcome.TORN.meaning
     assert f"more than {SATURATED:g} rad" in Outcome.SATURATED.meaning
     folder = Path(reports.__file__).parent

@@ -101,7 +101,7 @@ def test_pictures_are_well_formed_and_every_colour_has_its_dark_counterpart(file
             for kind, colour in set(re.findall(r"(fill|stroke): (#[0-9a-f]{6})", text.replace(sheet, ""))):
                 assert f'[style*="{kind}: {colour}"]' in sheet, (name, kind, colour)
             assert DARK.paper in sheet
-            assert all("fill: " in words for words in re.findall(r"<text [^>]*>", text)), name
+            assert all("fill: " in text_value for text_value in re.findall(r"<text [^>]*>", text)), name
             assert not re.search("Date|/tmp", text)
 
 
@@ -138,15 +138,15 @@ CELLS = {
 
 
 def test_lookups_return_the_rows_of_their_scene_and_method():
-    words = lookups(Material(CELLS), (DISC, OTHER))
+    text = lookups(Material(CELLS), (DISC, OTHER))
     method = ("other_disc", "mujoco", "tuned")
-    assert words["best"](*method).angle == words["sweep"](*method).best == pytest.approx(1.3e-8)
-    assert words["sweep"](*method).verdict == Verdict.FALLS
-    at = words["at"]("disc", "mujoco", "tuned", 10)
+    assert text["best"](*method).angle == text["sweep"](*method).best == pytest.approx(1.3e-8)
+    assert text["sweep"](*method).verdict == Verdict.FALLS
+    at = text["at"]("disc", "mujoco", "tuned", 10)
     assert (at.scene, at.variant, at.every) == ("disc", "tuned", 10)
-    assert words["ended"]("disc", "mujoco", "tuned") == ["finished"]
+    assert text["ended"]("disc", "mujoco", "tuned") == ["finished"]
     only = lookups(Material(CELLS), (OTHER,))
-    assert only["best"]("disc", "mujoco", "default") is words["at"]("disc", "mujoco", "tuned", 7) is UNMEASURED
+    assert only["best"]("disc", "mujoco", "default") is text["at"]("disc", "mujoco", "tuned", 7) is UNMEASURED
 
 
 def test_tables_of_a_page_have_only_rows_of_the_recommended_scene():
@@ -161,15 +161,15 @@ def test_convergence_on_a_page_is_that_of_its_quantity():
     errors = falling("mujoco default", (1e-2, 3e-5, 3e-5, 3e-5), "position")
     errors = [replace(r, angle=1e-2 * r.step**2) for r in errors]
     rows = {Cell(DISC, Toy(), 10**i): r for i, r in enumerate(errors)}
-    for quantity, words in (("position", "plateau **3e-5**"), ("angle", "2.00 (±")):
+    for quantity, text_value in (("position", "plateau **3e-5**"), ("angle", "2.00 (±")):
         page = replace(DISCS, scenes=(DISC,), quantity=quantity)
         text = render_page(page, Material(rows), "the command")["base.md"]
-        assert words in next(line for line in text.splitlines() if line.startswith("| mujoco default"))
+        assert text_value in next(line for line in text.splitlines() if line.startswith("| mujoco default"))
 
 
 def test_the_readme_has_medians_of_fresh_mechanisms_and_does_not_depend_on_timings():
     def readme(median: float, cpu: float) -> list[str]:
-        rows = {each: row_of("mujoco tuned", angle=3.4e-7, cpu=cpu) for each in PASTED_CELLS}
+        rows = {pasted_cell: row_of("mujoco tuned", angle=3.4e-7, cpu=cpu) for pasted_cell in PASTED_CELLS}
         error = {"error": np.array([1e-9, median, 0.3])}
         answers: dict[Task, Answer] = {task: Answer(Outcome.FINISHED, values=error) for task in FRESH}
         return render_readme(README, {YOUR_LOOP: Material(rows, answers)}).split()
@@ -185,8 +185,8 @@ def test_all_files_end_with_one_end_of_line_and_have_every_row_once():
     files = render_all({DISCS: Material(keyed), replace(DISCS, title="Again"): Material(keyed)}, "the command")
     assert all(text.endswith("\n") and not text.endswith("\n\n") for text in files.values())
     for name in ("errors.csv", "timings.csv"):
-        found = csv.DictReader(line for line in files[name].splitlines() if not line.startswith("#"))
-        assert sorted((r["scene"], r["variant"], r["every"]) for r in found) == sorted(
+        result = csv.DictReader(line for line in files[name].splitlines() if not line.startswith("#"))
+        assert sorted((r["scene"], r["variant"], r["every"]) for r in result) == sorted(
             (r.scene, r.variant, str(r.every)) for r in CELLS.values()
         )
 
@@ -201,18 +201,18 @@ def test_an_experiment_has_its_own_rows_and_observations():
     second = Failure("Second", "So should this.", (sound,), columns=("energy",))
     page = replace(DISCS, scenes=(DISC,), failures=(first, second))
     text = render_page(page, Material(rows), "the command")["base.md"]
-    one, two = (text.split(f"### {name}")[1].split("\n## ")[0].split("\n### ")[0] for name in ("First", "Second"))
-    for words in ("| mujoco torn | **torn** 1.7 m |", "| by hand | a way | 0.02 rad |"):
-        assert (words in one, words in two) == (True, False)
-    assert "| mujoco sound | 100 ms | 5.3e-3 |" in two
+    first, second = (text.split(f"### {name}")[1].split("\n## ")[0].split("\n### ")[0] for name in ("First", "Second"))
+    for text_value in ("| mujoco torn | **torn** 1.7 m |", "| by hand | a way | 0.02 rad |"):
+        assert (text_value in first, text_value in second) == (True, False)
+    assert "| mujoco sound | 100 ms | 5.3e-3 |" in second
 
 
 def test_the_animation_of_the_readme_is_small_and_respects_reduced_motion():
     answers: dict[Task, Answer] = {task: Answer(Outcome.FINISHED, "", task.run()) for task in MOVING_TASKS}
     (text,) = moving_picture([Material({}), Material({}, answers)]).values()
     assert len(text.encode()) < 300_000
-    still, moves = text.split("@media (prefers-reduced-motion: no-preference) {")
-    assert ("@keyframes" in still, "(prefers-color-scheme: dark)" in still) == (False, True)
+    still_part, moving_part = text.split("@media (prefers-reduced-motion: no-preference) {")
+    assert ("@keyframes" in still_part, "(prefers-color-scheme: dark)" in still_part) == (False, True)
     # Three engines and the truth, three bars each.
-    assert len(re.findall(r"@keyframes m\d+b\d+\{", moves)) == 3 * (len(MOVING_METHODS) + 1)
+    assert len(re.findall(r"@keyframes m\d+b\d+\{", moving_part)) == 3 * (len(MOVING_METHODS) + 1)
     assert moving_picture([Material({}, dict(list(answers.items())[1:]))]) == {}

@@ -1,4 +1,4 @@
-"""The store: what is in it survives; a file that is damaged, locked or somebody else's is one sentence or put aside."""
+"""The store: its rows survive; a damaged, locked or foreign file gives one sentence or is moved aside."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def names(folder):
     return {path.name for path in folder.iterdir()}
 
 
-def test_what_is_put_is_returned_whole_and_the_last_row_of_a_cell_counts(tmp_path):
+def test_stored_rows_are_returned_unchanged_and_the_last_row_of_a_cell_is_used(tmp_path):
     path = filled(tmp_path / "new" / "folder" / "cells.sqlite", CELLS[:3])
     put = by_hand(key=CELLS[0].key, energy=math.nan, gap=math.inf)
     with Store(path) as store:
@@ -56,12 +56,12 @@ def test_what_is_put_is_returned_whole_and_the_last_row_of_a_cell_counts(tmp_pat
         store.put(put)
         store.save_references(["second", "first"])
         store.save_references(["third", "second"])
-        found = store.get(CELLS[::-1])
-        assert list(found) == CELLS[2::-1]
-        assert math.isnan(found[CELLS[0]].energy)
-        assert replace(found[CELLS[0]], energy=0.0) == replace(put, energy=0.0)
+        result = store.get(CELLS[::-1])
+        assert list(result) == CELLS[2::-1]
+        assert math.isnan(result[CELLS[0]].energy)
+        assert replace(result[CELLS[0]], energy=0.0) == replace(put, energy=0.0)
         experiment = replace(CELLS[0], purpose="failure")  # it takes the row of the sweep
-        assert [each.purpose for each in store.get([experiment]).values()] == ["failure"]
+        assert [item.purpose for item in store.get([experiment]).values()] == ["failure"]
     with Store.read(path) as store:
         assert store.load_references() == ("second", "first", "third")
 
@@ -70,11 +70,11 @@ def test_reading_leaves_no_trace_and_sees_what_a_run_that_continues_has_stored(t
     path = tmp_path / "cells.sqlite"
     with Store(path) as running:
         running.put(row(CELLS[0]))
-        before = names(tmp_path)
+        earlier = names(tmp_path)
         assert set(stored(path)) == {CELLS[0]}
         running.put(row(CELLS[1]))
         assert set(stored(path)) == set(CELLS[:2])
-        assert names(tmp_path) == before
+        assert names(tmp_path) == earlier
     assert names(tmp_path) == {"cells.sqlite"}
 
 
@@ -114,7 +114,7 @@ def test_a_damaged_store_is_put_aside_and_the_run_continues(tmp_path, kind):
         path.with_name(path.name + "-wal").write_bytes(b"rows")
     with pytest.raises(FileTrouble, match=r"damaged .*crosscheck run puts it aside"), Store.read(path):
         pass
-    assert path.read_bytes() == old  # reading mends nothing
+    assert path.read_bytes() == old  # reading repairs nothing
     with Store(path) as store:
         assert store.get(CELLS) == {}
         assert "it is now cells.sqlite.damaged-1, and all that it held runs again" in store.notice
@@ -135,7 +135,7 @@ def test_a_damaged_store_is_put_aside_and_the_run_continues(tmp_path, kind):
         ("", "file"),
     ],
 )
-def test_what_is_no_store_of_ours_is_left_alone_with_a_sentence(tmp_path, statement, telling):
+def test_a_file_that_is_no_store_is_refused_and_not_changed(tmp_path, statement, telling):
     path = tmp_path / "cells.sqlite"
     if statement.startswith("pragma"):
         filled(path, CELLS[:2])
@@ -146,9 +146,9 @@ def test_what_is_no_store_of_ours_is_left_alone_with_a_sentence(tmp_path, statem
         path.mkdir()
     old = path.read_bytes() if statement else None
     for use in (Store, Store.read):
-        with pytest.raises(FileTrouble, match=telling) as told, use(path):
+        with pytest.raises(FileTrouble, match=telling) as reported, use(path):
             pass
-        assert "--results" in str(told.value)
+        assert "--results" in str(reported.value)
     assert names(tmp_path) == {"cells.sqlite"}
     assert path.is_dir() if old is None else path.read_bytes() == old
 
@@ -178,7 +178,7 @@ from reports.run.files import write_whole
 from reports.run.store import Store
 from tests.reports.test_store import CELLS, row
 
-# No file may grow beyond this: to a program that is a full disk, for each file alone.
+# Limit of the size of each file; reaching it looks like a full disk to the program.
 resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))
 folder = Path(sys.argv[1])
 try:
@@ -198,8 +198,8 @@ def test_a_full_disk_keeps_the_rows_and_the_pages_that_are_there(tmp_path):
     pytest.importorskip("resource")
     for name in ("a.md", "b.md"):
         (tmp_path / name).write_text("old")
-    words = [sys.executable, "-c", FULL_DISK, tmp_path]
-    first, second = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+    text = [sys.executable, "-c", FULL_DISK, tmp_path]
+    first, second = subprocess.run(text, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
     count = int(first.split()[0])
     assert 0 < count < len(CELLS)
     assert "what it holds is kept" in first
@@ -214,6 +214,6 @@ def test_a_store_that_was_removed_while_it_was_written_says_so_at_the_next_row(t
     with Store(path) as store:
         store.put(row(CELLS[0]))
         shutil.rmtree(path.parent)
-        Store(path).__exit__(None, None, None)  # another one in its place
+        Store(path).__exit__(None, None, None)  # a new file with the same name
         with pytest.raises(FileTrouble, match="was removed or replaced while it was written"):
             store.put(row(CELLS[1]))

@@ -1,4 +1,4 @@
-"""Orders and plateaus of invented errors: the fit finds what was put in; and the steps that people use."""
+"""The fit returns the orders and plateaus of invented errors; and the steps that people use."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ ROUNDING = 1e-11
 
 @pytest.mark.parametrize(("order", "floor"), [(1, 1e-2), (4, 1e-8)])
 def test_a_floor_above_rounding_is_a_plateau_and_leaves_the_order_alone(order, floor):
-    found = fit(STEPS, (10 * STEPS) ** order + floor, ROUNDING)
-    assert found.verdict is Verdict.PLATEAU
+    result = fit(STEPS, (10 * STEPS) ** order + floor, ROUNDING)
+    assert result.verdict is Verdict.PLATEAU
     # The power and its factor are fitted with the limit, so that three exact points give it up to rounding.
-    assert found.plateau == pytest.approx(floor, rel=1e-6)
+    assert result.plateau == pytest.approx(floor, rel=1e-6)
     # The falling part carries up to a third of the floor.
-    assert found.order == pytest.approx(order, abs=0.35 * order)
-    assert found.points >= 2
+    assert result.order == pytest.approx(order, abs=0.35 * order)
+    assert result.points >= 2
     power = fit(STEPS, 3 * STEPS**order, ROUNDING)
     # A pure power in double precision: the slope is exact up to the rounding of logarithms.
     assert power.order == pytest.approx(order, abs=1e-9)
@@ -50,16 +50,16 @@ def test_a_floor_above_rounding_is_a_plateau_and_leaves_the_order_alone(order, f
 @pytest.mark.parametrize("factor", [2.0, -0.09])
 def test_a_plateau_is_the_limit_at_a_step_of_zero_and_no_mean_of_the_points_before_it(factor):
     errors = 1e-3 + factor * STEPS
-    found = fit(STEPS, errors, ROUNDING)
-    assert found.verdict is Verdict.PLATEAU
-    assert found.plateau == pytest.approx(1e-3, rel=1e-6)
-    # The uncertainty is what separates the finest error from the limit.
-    assert found.uncertainty == pytest.approx(abs(errors[-1] - 1e-3), rel=1e-3)
+    result = fit(STEPS, errors, ROUNDING)
+    assert result.verdict is Verdict.PLATEAU
+    assert result.plateau == pytest.approx(1e-3, rel=1e-6)
+    # The uncertainty is the difference between the finest error and the limit.
+    assert result.uncertainty == pytest.approx(abs(errors[-1] - 1e-3), rel=1e-3)
     mean = np.exp(np.mean(np.log(errors[-4:])))
-    assert abs(mean - 1e-3) > 4 * found.uncertainty  # what would have been said of the flat end's mean
+    assert abs(mean - 1e-3) > 4 * result.uncertainty  # the mean of the flat end is off by more than the uncertainty
 
 
-def test_an_error_that_went_through_zero_and_rises_to_a_limit_is_on_a_plateau_and_its_least_is_luck():
+def test_an_error_that_changes_sign_and_rises_to_a_limit_has_a_plateau_above_its_smallest_value():
     # Two errors of opposite sign: at 5e-4 s they cancel, and no smaller step is as good.
     steps = STEPS[:6]
     errors = abs(1e-3 - 2 * steps)
@@ -69,32 +69,32 @@ def test_an_error_that_went_through_zero_and_rises_to_a_limit_is_on_a_plateau_an
     assert sweep.plateau == pytest.approx(1e-3, rel=1e-6)
     assert sweep.best < 0.5e-3
     assert sweep.lucky
-    assert fit(steps[:5], errors[:5], ROUNDING).verdict is Verdict.ERRATIC  # one rise alone tells no limit
+    assert fit(steps[:5], errors[:5], ROUNDING).verdict is Verdict.ERRATIC  # a single rise is no evidence of a limit
     fallen = sweeps(falling("a x", (1e-2, 2e-3, 1.1e-3, 1.01e-3, 1e-3)))
     assert not by_method(fallen, "angle")["disc", "a", "x"].lucky
 
 
-def test_errors_that_jump_about_their_plateau_give_the_finest_with_what_they_jump():
-    found = fit(STEPS[:5], [1e-2, 1.2e-3, 1.0e-3, 1.15e-3, 1.1e-3], ROUNDING)
-    assert (found.verdict, found.plateau) == (Verdict.PLATEAU, 1.1e-3)
-    assert found.uncertainty == pytest.approx(1e-4)
+def test_scattered_errors_have_the_plateau_of_the_finest_step_with_their_scatter_as_uncertainty():
+    result = fit(STEPS[:5], [1e-2, 1.2e-3, 1.0e-3, 1.15e-3, 1.1e-3], ROUNDING)
+    assert (result.verdict, result.plateau) == (Verdict.PLATEAU, 1.1e-3)
+    assert result.uncertainty == pytest.approx(1e-4)
     faster = fit(STEPS[:5], [1e-2, 1.0e-3, 1.1e-3, 1.15e-3, 1.3e-3], ROUNDING)  # more at each step: no limit in sight
     assert (faster.verdict, faster.plateau) == (Verdict.PLATEAU, 1.3e-3)
     assert faster.uncertainty == pytest.approx(2e-4)
 
 
 def test_a_floor_of_rounding_is_not_a_plateau_even_if_it_grows_with_the_number_of_steps():
-    found = fit(STEPS, STEPS**4 + 1e-16 / STEPS, ROUNDING)
-    assert found.verdict is Verdict.ROUNDING
-    assert found.order == pytest.approx(4, abs=0.05)
-    assert math.isnan(found.plateau)
+    result = fit(STEPS, STEPS**4 + 1e-16 / STEPS, ROUNDING)
+    assert result.verdict is Verdict.ROUNDING
+    assert result.order == pytest.approx(4, abs=0.05)
+    assert math.isnan(result.plateau)
 
 
 def test_coarse_steps_before_the_asymptotic_slope_do_not_bend_the_order():
     errors = STEPS**2 + 2e9 * STEPS**6
-    found = fit(STEPS, errors, 0.0)
-    assert found.order == pytest.approx(2, abs=0.1)
-    assert 3 <= found.points < len(STEPS)
+    result = fit(STEPS, errors, 0.0)
+    assert result.order == pytest.approx(2, abs=0.1)
+    assert 3 <= result.points < len(STEPS)
 
 
 def test_of_two_falling_parts_of_one_length_the_finer_gives_the_order():
@@ -115,17 +115,17 @@ def test_of_two_falling_parts_of_one_length_the_finer_gives_the_order():
         ([1e-2, 1e-4, 1e-6, 1e-6], Verdict.LEVELS, 3),
         ([1e-6, 1e-5, 1e-4, 1e-3], Verdict.GROWS, 0),
         ([1e-2, 1e-4, 1e-6, 1e-3], Verdict.ERRATIC, 3),
-        # It meets rounding by accident, and grows to more than a hundred times rounding, or not.
+        # An error reaches rounding by chance, and then grows to more than a hundred times rounding, or does not.
         ([1e-3, 1e-13, 1e-9, 1.01e-9], Verdict.LEVELS, 2),
         ([1e-3, 1e-13, 1e-10, 0.99e-9], Verdict.ROUNDING, 0),
     ],
 )
 def test_verdicts_by_hand(errors, verdict, points):
     steps = [1e-1, 1e-2, 1e-3, 1e-4][: len(errors)]
-    found = fit(steps, errors, ROUNDING)
-    assert (found.verdict, found.points) == (verdict, points)
-    assert fit(steps[::-1], errors[::-1], ROUNDING)[:3] == pytest.approx(found[:3], nan_ok=True)
-    assert math.isnan(found.order) == (points == 0)
+    result = fit(steps, errors, ROUNDING)
+    assert (result.verdict, result.points) == (verdict, points)
+    assert fit(steps[::-1], errors[::-1], ROUNDING)[:3] == pytest.approx(result[:3], nan_ok=True)
+    assert math.isnan(result.order) == (points == 0)
 
 
 def test_the_order_is_that_of_least_squares_with_how_far_the_furthest_slope_is_from_it():
@@ -153,17 +153,17 @@ def test_a_sweep_is_of_one_method_in_one_scene_with_each_quantity_its_own():
             rows.append(row_of(method, scene=scene, step=step, **errors))
     rows.append(row_of("a x", scene="one", step=1e-4, angle=1e-30, outcome=Outcome.SATURATED))
     rows.append(row_of("a x", scene="one", step=1e-5, angle=1e-30, purpose="failure"))
-    found = sweeps(rows)
-    assert len(found) == 3 * len(QUANTITIES)
+    result = sweeps(rows)
+    assert len(result) == 3 * len(QUANTITIES)
     for i, q in enumerate(QUANTITIES):
-        own = by_method(found, q.name)
+        sweeps_of_quantity = by_method(result, q.name)
         for shift, key in enumerate((("one", "a", "x"), ("two", "a", "x"), ("one", "b", "x"))):
-            sweep = own[key]
+            sweep = sweeps_of_quantity[key]
             assert (sweep.scene, sweep.engine, sweep.variant, sweep.quantity) == (*key, q)
             assert sweep.method == " ".join(key[1:])
             assert (sweep.best, sweep.best_step) == (pytest.approx(1e-2 * 1e-3 ** (1 + shift) * (i + 2)), 1e-3)
-    assert by_method(found, "angle")["one", "a", "x"].order == pytest.approx(1.0)
-    assert by_method(found, "angle")["two", "a", "x"].order == pytest.approx(2.0)
+    assert by_method(result, "angle")["one", "a", "x"].order == pytest.approx(1.0)
+    assert by_method(result, "angle")["two", "a", "x"].order == pytest.approx(2.0)
 
 
 def judgements(*errors: float, quantity: str = "angle") -> list[str]:
@@ -182,7 +182,7 @@ def test_a_sweep_judges_its_rows():
     assert judgements(1e-2, 3.1e-5, 1e-5, 1e-5, 1e-5, quantity="position") == ["finished"] * 2 + ["plateau"] * 3
 
 
-def test_only_what_finished_in_a_sweep_is_judged():
+def test_only_finished_rows_of_a_sweep_are_judged():
     rows = falling("a x", (1e-2, 1e-4, 1e-6))
     torn, other = row_of("a x", step=1e-5, outcome=Outcome.TORN), row_of("a x", step=1e-6, purpose="failure")
     assert [r.outcome for r in judged([*rows, torn, other])] == ["converged"] * 3 + ["torn", "finished"]

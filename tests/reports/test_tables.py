@@ -144,12 +144,12 @@ def printed() -> Iterator[str]:
     yield "## Each quantity under its name"
     yield tables.markdown(tables.ERROR_HEADER, tables.error_rows([row()]))
     yield "## Sweeps, and those whose finest step is torn"
-    for each in (
+    for item in (
         *(sweep(Verdict.FALLS, 1.994, 4), sweep(Verdict.FALLS), sweep(Verdict.PLATEAU, 1.1, 3, 2.3e-5)),
         *(sweep(Verdict.ROUNDING, 3.9, 3), sweep(Verdict.LEVELS, 1.1, 3), sweep(Verdict.GROWS)),
         *(sweep(Verdict.ERRATIC), sweep(Verdict.TOO_FEW, best=NAN)),
     ):
-        yield f"- {tables.sweep_words(each)} | {tables.sweep_words(each, 'torn')}"
+        yield f"- {tables.sweep_words(item)} | {tables.sweep_words(item, 'torn')}"
     yield "## Outcomes by step"
     yield tables.outcome_grid(
         [
@@ -170,9 +170,9 @@ def printed() -> Iterator[str]:
     ]
     yield tables.markdown(tables.SUMMARY_HEADER, tables.summary_rows(rows))
     yield "## Scenes: plain, with the enforcement of joints, with what is declared (2e-5 of a, 1e-6 of b: marked)"
-    known: dict[str, Any] = {"gap": 1.7e-3, "slip": NAN, "reaction": NAN}
-    rows = [*falling("a x", POWER, **known), *falling("b y", (1e-2, 3e-5, 3e-5, 3e-5), **known)]
-    rows += [row_of("c z", step=1e-3, outcome=Outcome.TORN, **known)]
+    expected: dict[str, Any] = {"gap": 1.7e-3, "slip": NAN, "reaction": NAN}
+    rows = [*falling("a x", POWER, **expected), *falling("b y", (1e-2, 3e-5, 3e-5, 3e-5), **expected)]
+    rows += [row_of("c z", step=1e-3, outcome=Outcome.TORN, **expected)]
     yield scene_table(rows, "angle")
     yield scene_table(rows, "angle", {"a x": "engine", "b y": "our code"})
     rows = [*falling("a soft", (1e-2, 3e-5, 3e-5, 3e-5)), *falling("b wrong", (1e-2, 3e-5, 3e-5, 3e-5))]
@@ -271,10 +271,10 @@ def test_versions_are_those_of_the_named_packages(other_versions):
 def test_the_description_of_a_machine_has_no_host_name_and_no_path(monkeypatch):
     monkeypatch.setattr(os, "cpu_count", lambda: 97)
     monkeypatch.setattr(platform, "machine", lambda: "an architecture")
-    told = machine()
-    assert told.startswith("an architecture, 97 processors, ")
-    assert platform.node() not in told
-    assert "/" not in told.replace("w/", "")
+    reported = machine()
+    assert reported.startswith("an architecture, 97 processors, ")
+    assert platform.node() not in reported
+    assert "/" not in reported.replace("w/", "")
 
 
 COLUMNS: tuple[tuple[str, Enforcement, Column], ...] = (
@@ -351,8 +351,8 @@ def test_among_equal_costs_the_first_method_of_the_page_is_recommended():
         ((late, early), ("a late", "a early"), "a late"),
         ((late, replace(early, cpu=1.3)), ("a early", "a late"), "a late"),
     ):
-        (found,) = advice(rows, "angle", order)
-        assert present(found.row).method == expected
+        (result,) = advice(rows, "angle", order)
+        assert present(result.row).method == expected
     # Methods are compared at the step that is nearest by its ratio.
     assert compared_step([row_of("a x", step=step) for step in (3e-4, 2.9e-3)]) == 2.9e-3
 
@@ -369,9 +369,9 @@ def test_an_experiment_without_comparable_samples_has_no_errors():
     assert math.isnan(without_incomparable_errors(cell, row).angle)
     assert without_incomparable_errors(cell, row).gap == row.gap
     assert without_incomparable_errors(replace(cell, scene=Disc()), row) == row
-    told = render_experiment(Failure("T", "E", (cell,)), Material({cell: row}))
-    assert "- rad" in told.grid
-    assert "0 rad" not in told.grid
+    experiment = render_experiment(Failure("T", "E", (cell,)), Material({cell: row}))
+    assert "- rad" in experiment.grid
+    assert "0 rad" not in experiment.grid
 
 
 @dataclass(frozen=True)
@@ -391,11 +391,11 @@ def test_the_declared_error_is_proportional_to_the_compliance():
     scene, engine = FreeFourBar(duration=0.1), SoftToy()
     (task,) = soft_tasks(scene, (engine,))
     answers: dict[Task, Answer] = {task: answered(task)}
-    own = answers[task].number("angle")
-    assert own > 0
-    assert declared_error(answers, scene, engine, "angle", 1e-3) == pytest.approx(own)
+    angle_error = answers[task].number("angle")
+    assert angle_error > 0
+    assert declared_error(answers, scene, engine, "angle", 1e-3) == pytest.approx(angle_error)
     softer = replace(engine, share=3 * COMPLIANCE)
-    assert declared_error(answers, scene, softer, "angle", 1e-3) == pytest.approx(3 * own)
+    assert declared_error(answers, scene, softer, "angle", 1e-3) == pytest.approx(3 * angle_error)
     assert math.isnan(declared_error({}, scene, engine, "angle", 1e-3))
     assert math.isnan(declared_error({task: Answer(Outcome.ABORTED)}, scene, engine, "angle", 1e-3))
     assert declared_error({}, scene, Toy(), "angle", 1e-3) == 0
