@@ -126,7 +126,7 @@ def _quick_choice(changes: list[Change]) -> list[int]:
 def _has_plateaued(table: list[SettingRun]) -> bool:
     """Whether the last two reductions of the step each reduced the error by less than a quarter.
 
-    Of an error above SATURATED_ERROR: whether they hardly changed it.
+    For an error above SATURATED_ERROR: whether they hardly changed it.
     """
 
     def stays(before: float, after: float) -> bool:

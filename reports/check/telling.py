@@ -83,9 +83,9 @@ def _why(result: CheckResult) -> str:
     parts, model = result.parts, result.reading.model
     at_smallest, rest = f"at {parts.smallest * 1e3:.3g} ms", number(parts.rest)
     if parts.rest > SATURATED_ERROR:
-        still = "the run still gives up" if math.isinf(parts.rest) else f"the error is still {rest}"
+        outcome = "the run still gives up" if math.isinf(parts.rest) else f"the error is still {rest}"
         return (
-            f"not told: {at_smallest} {still}, and what is off by more than a radian or a length no longer tells "
+            f"not told: {at_smallest} {outcome}, and what is off by more than a radian or a length no longer tells "
             "softness from step; give a shorter --duration"
         )
     sentences = [f"the step of {model.dt * 1e3:.4g} ms makes {number(parts.step)}"]
@@ -145,8 +145,8 @@ def _assumed(result: CheckResult) -> str:
     model = result.reading.model
     step = model.assumed or f"a step of {model.dt * 1e3:.4g} ms, as in the model"
     notes = [f"{note.element}: {note.reason}" for note in result.reading.notes]
-    more = [f"{len(notes) - NOTES_LISTED} more (--all)"] if len(notes) > NOTES_LISTED else []
-    return "; ".join([step, *notes[:NOTES_LISTED], *more])
+    extra = [f"{len(notes) - NOTES_LISTED} more (--all)"] if len(notes) > NOTES_LISTED else []
+    return "; ".join([step, *notes[:NOTES_LISTED], *extra])
 
 
 def _advice(result: CheckResult) -> tuple[str, ...]:
@@ -226,8 +226,8 @@ def _read(result: CheckResult) -> Section:
     )
     if facts.dead_centres:
         centres = "; ".join(f"{name} at {t:.3g} s" for t, name in facts.dead_centres[:NAMES_LISTED])
-        more = len(facts.dead_centres) - NAMES_LISTED
-        sentences.append(f"Dead centres, where a body turns back: {centres}{f'; {more} more' if more > 0 else ''}.")
+        extra = len(facts.dead_centres) - NAMES_LISTED
+        sentences.append(f"Dead centres, where a body turns back: {centres}{f'; {extra} more' if extra > 0 else ''}.")
     fastest = max(facts.fastest_rotation, facts.stiffest_mode)
     takes = 1 / fastest if fastest > 0 else 0.0
     radian = f"; a radian of the fastest takes {takes:.2g} s, {takes / model.dt:.2g} of your steps"
@@ -271,9 +271,9 @@ def _table(result: CheckResult) -> Section:
         groups.setdefault((number(setting.error), number(setting.reaction)), []).append(setting)
 
     def row(group: list[SettingRun]) -> tuple[str, ...]:
-        shown = group[0] if group[0] is result.table[0] else min(group, key=lambda setting: setting.cost)
+        displayed = group[0] if group[0] is result.table[0] else min(group, key=lambda setting: setting.cost)
         same = f"{len(group) - 1} more alike" if len(group) > 1 else ""
-        return _row(result, shown, "none is both cheaper and better" if shown.front else "", same)
+        return _row(result, displayed, "none is both cheaper and better" if displayed.front else "", same)
 
     sentences = (
         "Your model with other settings that its engine documents; all else is as you have it. CPU time is of stepping "

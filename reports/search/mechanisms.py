@@ -77,9 +77,9 @@ def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decad
         raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(ALL_KINDS)}")
     draw = _Draw(np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, decades]))), kinds, decades)
     while True:
-        drawn = draw.recipe()
-        if drawn is not None:
-            return drawn
+        drawn_recipe = draw.recipe()
+        if drawn_recipe is not None:
+            return drawn_recipe
 
 
 class _Draw:
@@ -122,33 +122,33 @@ class _Draw:
         links = [self._link(part.parent, index, parts) for index, part in enumerate(parts, start=1)]
         for _ in range(self.whole(0, DRAWN_LOOPS)):
             links.append(self._link(*self._pair(count), parts))
-        links = [each for link in links for each in _with_pins(link)]
+        links = [part for link in links for part in _with_pins(link)]
         standing = Standing(Recipe(parts, (), pull, decades))
-        kept, held = self._independent(standing, links)
-        moved = kept and (any(pull) or standing.allowed(held).any())
-        return Recipe(parts, kept, pull, decades) if moved else None
+        kept_links, held_joints = self._independent(standing, links)
+        moved = kept_links and (any(pull) or standing.allowed(held_joints).any())
+        return Recipe(parts, kept_links, pull, decades) if moved else None
 
     def _independent(
         self, standing: Standing, links: Sequence[RecipeLink]
     ) -> tuple[tuple[RecipeLink, ...], Sequence[Held]]:
         """The links that are independent and leave a freedom, and their joints."""
-        held: list[Held] = []
-        kept: list[RecipeLink] = []
+        held_joints: list[Held] = []
+        kept_links: list[RecipeLink] = []
         freedom = 3 * len(standing.bodies)
         for link in links:
             if link.kind in FORCE_KINDS:
-                kept.append(link)
+                kept_links.append(link)
                 continue
             try:
-                more = [*held, standing.held(link, len(kept) + 1)]
+                joints = [*held_joints, standing.held(link, len(kept_links) + 1)]
             except InvalidMechanism:  # curves that don't fit
                 continue
-            left = freedom - len(more[-1].rows)
-            driven = any(each.kind == "drive" for each in (*kept, link))
-            if left >= (0 if driven else 1) and standing.independent(more):
-                held, freedom = more, left
-                kept.append(link)
-        return tuple(kept), held
+            freedom_left = freedom - len(joints[-1].rows)
+            driven = any(kept_link.kind == "drive" for kept_link in (*kept_links, link))
+            if freedom_left >= (0 if driven else 1) and standing.independent(joints):
+                held_joints, freedom = joints, freedom_left
+                kept_links.append(link)
+        return tuple(kept_links), held_joints
 
     def _pair(self, count: int) -> tuple[int, int]:
         first, second = self.whole(0, count), self.whole(1, count)

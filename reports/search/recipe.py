@@ -57,8 +57,8 @@ def build(recipe: Recipe) -> Mechanism:
     """
     standing = Standing(recipe)
     links = list(enumerate(recipe.links, start=1))
-    held = [standing.held(link, number) for number, link in links if link.kind not in FORCE_KINDS]
-    return standing.mechanism(held, [(link, number) for number, link in links if link.kind in FORCE_KINDS])
+    held_joints = [standing.held(link, number) for number, link in links if link.kind not in FORCE_KINDS]
+    return standing.mechanism(held_joints, [(link, number) for number, link in links if link.kind in FORCE_KINDS])
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,9 +236,9 @@ class Standing:
 
     def mechanism(self, held: Sequence[Held], forces: Sequence[tuple[RecipeLink, int]] = ()) -> Mechanism:
         """The mechanism with these joints and forces, moving as the joints allow."""
-        joints = tuple(each.joint for each in held)
+        joints = tuple(item.joint for item in held)
         twists = self.allowed(held).tolist()
-        bodies = tuple(_with(body, twist=tuple(own)) for body, own in zip(self.bodies, twists, strict=True))
+        bodies = tuple(_with(body, twist=tuple(twist)) for body, twist in zip(self.bodies, twists, strict=True))
         down_x, down_y = (float(pull * self._length / self._time**2) for pull in self._recipe.gravity)
         acting = tuple(self._force(link, number) for link, number in forces)
         return Mechanism(bodies, joints, (down_x, down_y), acting)
@@ -250,13 +250,13 @@ class Standing:
         scaled, norm, _ = self._scaled(held)
         if not np.all(norm > 0) or len(norm) > scaled.shape[1]:
             return False
-        least = SINGULAR_LIMIT if any(each.joint.name.startswith(SINGULAR_KINDS) for each in held) else DEPENDENCE_LIMIT
+        least = SINGULAR_LIMIT if any(item.joint.name.startswith(SINGULAR_KINDS) for item in held) else DEPENDENCE_LIMIT
         return dependence(scaled) >= least
 
     def _scaled(self, held: Sequence[Held]) -> tuple[Array, Array, Array]:
         """Rows with angles as arcs, their lengths (rows, 1), and how long the arc of a radian is, by coordinate [m]."""
-        turn = np.tile([1.0, 1.0, length_scale(self.bodies, [each.joint for each in held])], len(self.bodies))
-        scaled = np.vstack([each.rows for each in held]) / turn
+        turn = np.tile([1.0, 1.0, length_scale(self.bodies, [item.joint for item in held])], len(self.bodies))
+        scaled = np.vstack([item.rows for item in held]) / turn
         return scaled, np.linalg.norm(scaled, axis=1, keepdims=True), turn
 
     def allowed(self, held: Sequence[Held]) -> Array:
@@ -265,7 +265,7 @@ class Standing:
         wanted[:, :2] *= float(self._length)
         if not self.independent(held):
             raise InvalidMechanism("recipe: the joints' rows are nearly dependent, or one holds nothing; leave one out")
-        rate = np.array([value for each in held for value in each.joint.rate], dtype=float)
+        rate = np.array([value for item in held for value in item.joint.rate], dtype=float)
         if not held or not (np.any(wanted) or np.any(rate)):
             return wanted
         scaled, norm, turn = self._scaled(held)
@@ -286,8 +286,8 @@ def dependence(rows: Array) -> float:
 
 def _with(value: Any, **changed: Any) -> Any:
     """A copy with changed fields; unlike dataclasses.replace, it accepts classes with computed fields."""
-    own = {field.name: getattr(value, field.name) for field in fields(value)}
-    return type(value)(**(own | changed))
+    fields_of_value = {field.name: getattr(value, field.name) for field in fields(value)}
+    return type(value)(**(fields_of_value | changed))
 
 
 def _beside(place: Point, tenths: tuple[int, int], size: Decimal) -> Point:

@@ -1,4 +1,4 @@
-"""`crosscheck check` writes what it advises into a user's file, looks for settings, and checks folders of models."""
+"""`crosscheck check` writes its advice into a user's file, searches settings, and checks folders of models."""
 
 from __future__ import annotations
 
@@ -24,42 +24,43 @@ INSIDE = f"{PENDULUM}\ndef main():\n    world = make()\n    for _ in range(30):\
 
 def checked(folder, word, **terms) -> CheckReport:
     """The answer in this process, of half a second of motion."""
-    found = run_check(CheckRequest(word, str(folder), 0.5, **terms))
-    assert isinstance(found, CheckReport), found
-    return found
+    check = run_check(CheckRequest(word, str(folder), 0.5, **terms))
+    assert isinstance(check, CheckReport), check
+    return check
 
 
 def test_a_model_is_written_with_the_advised_settings_and_nothing_else_and_reaches_what_was_promised(tmp_path):
     text = FOUR_BAR.replace("<worldbody>", "<!-- mine: <option> > -->\n<worldbody>")
     (tmp_path / "model.xml").write_text(text)
-    found = checked(tmp_path, "model.xml", tolerance=1e-4, apply="new.xml")
-    advised, written = found.data["advised"], found.data["applied"]
-    assert found.fine
-    assert not found.data["met"]
+    result = checked(tmp_path, "model.xml", tolerance=1e-4, apply="new.xml")
+    advised, written = result.data["advised"], result.data["applied"]
+    assert result.fine
+    assert not result.data["met"]
     assert written["error"] == pytest.approx(advised["error"], rel=1e-6)
-    made = (tmp_path / "new.xml").read_text()
-    assert advised["lines"][0] in made
-    for tag in ("<option", "<connect"):  # all else stands as it stood
+    written = (tmp_path / "new.xml").read_text()
+    assert advised["lines"][0] in written
+    for tag in ("<option", "<connect"):  # all else is unchanged
         old, new = (
-            next(line for line in each.splitlines() if tag in line and "--" not in line) for each in (text, made)
+            next(line for line in document.splitlines() if tag in line and "--" not in line)
+            for document in (text, written)
         )
-        made = made.replace(new, old)
-    assert made == text
+        written = written.replace(new, old)
+    assert written == text
 
 
 @pytest.mark.parametrize(("text", "word"), [(LOOP, "x.py"), (LOOP, "x.py:space"), (INSIDE, "x.py:main")])
 def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_path, text, word):
     (tmp_path / "x.py").write_text(text)
-    found = checked(tmp_path, word, tolerance=3e-3, apply="y.py")
-    assert found.data["step"] == 0.01
-    assert found.data["assumed"] == ""
-    assert any("stopped before the first step" in note["reason"] for note in found.data["notes"])
-    assert found.data["applied"]["error"] == pytest.approx(found.data["advised"]["error"], rel=1e-6)
-    # A stricter tolerance, from the file that was written: its lines are written anew, not a second time.
+    result = checked(tmp_path, word, tolerance=3e-3, apply="y.py")
+    assert result.data["step"] == 0.01
+    assert result.data["assumed"] == ""
+    assert any("stopped before the first step" in note["reason"] for note in result.data["notes"])
+    assert result.data["applied"]["error"] == pytest.approx(result.data["advised"]["error"], rel=1e-6)
+    # A stricter tolerance, from the file that was written: its lines are replaced, not added a second time.
     other = checked(tmp_path, word.replace("x.py", "y.py"), tolerance=1e-3, search=True, apply="y.py")
     assert other.data["applied"]["error"] <= 1e-3
-    before, block = (tmp_path / "y.py").read_text().split(BEGIN)
-    assert f"{before.rstrip(' ')}{block.split(END)[1][1:]}" == text
+    text_before, block = (tmp_path / "y.py").read_text().split(BEGIN)
+    assert f"{text_before.rstrip(' ')}{block.split(END)[1][1:]}" == text
     if text is LOOP:  # and it runs as before, with the same times
         places = [
             [float(part) for part in subprocess.check_output([sys.executable, tmp_path / name]).split()]
@@ -72,8 +73,8 @@ def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_
 def test_a_force_that_stands_on_a_body_pushes_in_every_part_of_a_step(tmp_path):
     push = PENDULUM.replace("    return space", "    bob.force = (0, 4)\n    return space")
     (tmp_path / "x.py").write_text(push)
-    found = checked(tmp_path, "x.py:make", tolerance=1e-3, search=True, apply="y.py")
-    assert found.data["applied"]["error"] <= 1e-3
+    result = checked(tmp_path, "x.py:make", tolerance=1e-3, search=True, apply="y.py")
+    assert result.data["applied"]["error"] <= 1e-3
     space = "import y; space = y.make(); space.step(1 / 60); print(*[body.velocity.y for body in space.bodies])"
     speeds = [
         float(subprocess.check_output([sys.executable, "-c", code], cwd=tmp_path).split()[-1])
@@ -106,42 +107,42 @@ def test_options_are_set_where_they_are_or_where_they_belong(source, wanted):
 
 def test_quick_tries_four_settings_and_all_are_run_if_asked_for_with_the_same_causes(tmp_path):
     (tmp_path / "model.xml").write_text(FOUR_BAR)
-    terms = ({"quick": True}, {}, {"everything": True})
-    quick, whole, every = (checked(tmp_path, "model.xml", tolerance=1e-4, **term).data for term in terms)
+    option_sets = ({"quick": True}, {}, {"everything": True})
+    quick, total, every = (checked(tmp_path, "model.xml", tolerance=1e-4, **term).data for term in option_sets)
     assert len(quick["tried"]) == 1 + 4
     # The declared motion is known to a thousandth of itself at the rougher tolerance.
-    assert quick["parts"]["softness"] == pytest.approx(whole["parts"]["softness"], rel=1e-3)
-    assert {setting["words"] for setting in whole["tried"]} < {setting["words"] for setting in every["tried"]}
-    # Of the same errors; which of two is cheaper the clock says, but both are enough.
-    assert max(data["advised"]["error"] for data in (whole, every)) <= 1e-4
-    assert whole["next_decade"] is not None
-    assert quick["error"] == whole["error"]
-    assert (whole["error"], whole["parts"]) == (every["error"], every["parts"])
+    assert quick["parts"]["softness"] == pytest.approx(total["parts"]["softness"], rel=1e-3)
+    assert {setting["words"] for setting in total["tried"]} < {setting["words"] for setting in every["tried"]}
+    # Measured times decide which of the two is cheaper, but both are accurate enough.
+    assert max(data["advised"]["error"] for data in (total, every)) <= 1e-4
+    assert total["next_decade"] is not None
+    assert quick["error"] == total["error"]
+    assert (total["error"], total["parts"]) == (every["error"], every["parts"])
 
 
 def test_settings_are_looked_for_until_an_error_is_met_or_nothing_documented_does(tmp_path, monkeypatch):
     monkeypatch.setattr("reports.check.checked.SEARCH_BUDGET", 2.0)
     (tmp_path / "swing.py").write_text(PENDULUM)
-    for goal, found in ((1e-3, True), (1e-9, False)):  # of first order: the second takes a step of 4 ns
+    for goal, result in ((1e-3, True), (1e-9, False)):  # of first order: the second takes a step of 4 ns
         answer = checked(tmp_path, "swing.py:make", tolerance=goal, search=True)
-        assert answer.fine == found
-        assert (answer.data["advised"] is not None) == found
-        assert ("none of the" in dict(answer.answer.facts)["advice"]) != found
-        assert sum(each["error"] <= goal for each in answer.data["tried"]) == found  # it ends with the first
+        assert answer.fine == result
+        assert (answer.data["advised"] is not None) == result
+        assert ("none of the" in dict(answer.answer.facts)["advice"]) != result
+        assert sum(item["error"] <= goal for item in answer.data["tried"]) == result  # it ends with the first
 
 
 def test_only_a_tolerance_that_was_asked_for_sets_the_status(here, capfd, at_home):
     (here / "model.xml").write_text(FOUR_BAR)
-    words = ("check", "model.xml", "--duration", 0.2, "--quick")
-    for more, status in (((), 0), (("--tolerance", 1e-5), 1), (("--tolerance", 0.5), 0), (("--fix-to", 1e-3), 0)):
-        assert call(*words, *more) == status
+    text = ("check", "model.xml", "--duration", 0.2, "--quick")
+    for extra, status in (((), 0), (("--tolerance", 1e-5), 1), (("--tolerance", 0.5), 0), (("--fix-to", 1e-3), 0)):
+        assert call(*text, *extra) == status
     capfd.readouterr()
-    assert call(*words, "--tolerance", 1e-12, "--apply", "new.xml") == 2
+    assert call(*text, "--tolerance", 1e-12, "--apply", "new.xml") == 2
     assert "nothing was written" in capfd.readouterr().err
     assert not (here / "new.xml").exists()
-    assert call(*words, "--apply", "model.xml", "--force") == 0
+    assert call(*text, "--apply", "model.xml", "--force") == 0
     assert (here / "model.xml").read_text() != FOUR_BAR
-    assert call(*words, "--apply", "new.txt") == 2
+    assert call(*text, "--apply", "new.txt") == 2
     assert "it must end in .xml" in capfd.readouterr().err
     assert call("check", "--schema") == 0
     assert json.loads(capfd.readouterr().out)["title"] == "crosscheck check --json"
@@ -154,14 +155,14 @@ def test_a_folder_of_models_is_one_table_and_a_test_each(here, capfd, at_home):
         for folder in (here / ".models", here / ".models" / ".old"):  # within a folder hidden ones are left out
             folder.mkdir(exist_ok=True)
             (folder / name).write_text(text)
-    words = ("check", ".models", "--duration", 0.2, "--quick", "--tolerance", 1e-4, "--json")
-    assert call(*words, "--junit", "r.xml", "--markdown", "t.md") == 1
+    command = ("check", ".models", "--duration", 0.2, "--quick", "--tolerance", 1e-4, "--json")
+    assert call(*command, "--junit", "r.xml", "--markdown", "t.md") == 1
     out, err = capfd.readouterr()
     assert "1 of 3 models miss 0.0001: .models/a.xml" in err.splitlines()[-1]
-    told = {each["model"]: each for each in json.loads(out)}
-    assert list(told) == [".models/a.xml", ".models/b.py", ".models/c.xml"]
-    assert told[".models/a.xml"]["found"]["met"] is False
-    assert "give the name of the space, or of a function" in told[".models/b.py"]["refused"]
+    reports_by_model = {check_report["model"]: check_report for check_report in json.loads(out)}
+    assert list(reports_by_model) == [".models/a.xml", ".models/b.py", ".models/c.xml"]
+    assert reports_by_model[".models/a.xml"]["found"]["met"] is False
+    assert "give the name of the space, or of a function" in reports_by_model[".models/b.py"]["refused"]
     suite = xml.parse(here / "r.xml").getroot()[0]
     assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("3", "1", "2")
     assert [child.tag for case in suite for child in case] == ["failure", "skipped", "skipped"]

@@ -38,12 +38,12 @@ def soft(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def swing(tmp_path_factory):
-    """The check of a pendulum of pymunk whose step nobody named."""
+    """The check of a pymunk pendulum whose step is not given."""
     return found_in(tmp_path_factory.mktemp("swing"), PENDULUM, "swing.py", "swing.py:make", tolerance=1e-2)
 
 
 def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: float) -> CheckResult:
-    """The same check with settings of these errors and costs, the user's first."""
+    """A copy of the check with settings of these errors and costs, the user's first."""
     first = found.table[0]
     table = [
         replace(
@@ -78,11 +78,11 @@ def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: flo
     ],
 )
 def test_the_advice_is_the_cheapest_setting_that_is_enough(soft, rows, advised, tenth):
-    found = with_settings(soft, *rows, tolerance=1e-4)
-    assert found.met == (rows[0][0] <= 1e-4)
-    for setting, index in ((found.advised, advised), (found.decade, tenth)):
-        assert (setting is None and index is None) or setting is found.table[index]
-    assert bool(answer_section(found).code) == (advised is not None and not found.met)
+    result = with_settings(soft, *rows, tolerance=1e-4)
+    assert result.met == (rows[0][0] <= 1e-4)
+    for setting, index in ((result.advised, advised), (result.decade, tenth)):
+        assert (setting is None and index is None) or setting is result.table[index]
+    assert bool(answer_section(result).code) == (advised is not None and not result.met)
 
 
 def test_the_tolerance_is_met_by_an_error_of_its_size_and_by_no_larger_one(soft):
@@ -106,21 +106,21 @@ def test_the_text_of_the_report(soft, golden):
     errors_of_judge = replace(soft.judge_errors, of=dict.fromkeys(soft.own_errors.of, 1e-12 + 0 * soft.judge_errors.t))
     rows = [(1e-3, 1.0), (3e-5, 2.0), (3e-6, 6.0)]
     parts = replace(soft.parts, softness=8e-4, step=2e-4, rest=5e-5, smallest=1e-4, falling=True)
-    found = replace(
+    result = replace(
         with_settings(soft, *rows, tolerance=1e-4), agreement=1e-15, judge_errors=errors_of_judge, parts=parts
     )
-    wild = replace(found, judge=replace(found.judge, horizon=0.1, growth=np.linspace(1.0, 1e4, len(found.own.t))))
+    wild = replace(result, judge=replace(result.judge, horizon=0.1, growth=np.linspace(1.0, 1e4, len(result.own.t))))
     texts = {
-        "a missed tolerance": report_sections(found),
-        "a tolerance that is met": [answer_section(replace(found, tolerance=1e-2))],
-        "no tolerance": [answer_section(replace(found, has_tolerance=False))],
-        "no setting is enough": [answer_section(replace(found, tolerance=1e-9))],
+        "a missed tolerance": report_sections(result),
+        "a tolerance that is met": [answer_section(replace(result, tolerance=1e-2))],
+        "no tolerance": [answer_section(replace(result, has_tolerance=False))],
+        "no setting is enough": [answer_section(replace(result, tolerance=1e-9))],
         "exponential growth": [answer_section(wild)],
-        "neither softness nor step": [answer_section(replace(found, parts=replace(parts, falling=False)))],
-        "more than a radian": [answer_section(replace(found, parts=replace(parts, rest=1.5)))],
-        "no declared softness": [answer_section(replace(found, parts=replace(parts, divided=False)))],
+        "neither softness nor step": [answer_section(replace(result, parts=replace(parts, falling=False)))],
+        "more than a radian": [answer_section(replace(result, parts=replace(parts, rest=1.5)))],
+        "no declared softness": [answer_section(replace(result, parts=replace(parts, divided=False)))],
     }
-    golden("check.txt", "\n".join(f"==== {title}\n{plain(told)}" for title, told in texts.items()))
+    golden("check.txt", "\n".join(f"==== {title}\n{plain(reported)}" for title, reported in texts.items()))
 
 
 # ----------------------------------------------------------------------------------------------------------- parts
@@ -139,7 +139,7 @@ def off_by(found: CheckResult, size: float, step: float):
     [([4e-3, 2e-3, 1.4e-3], True), ([4e-3, 2e-3, 1.6e-3], False), ([1e-3, 2e-3], False), ([7e-3], False)],
 )
 def test_an_error_that_still_falls_is_told_from_one_that_no_longer_does(swing, sizes, falls):
-    smaller = [off_by(swing, size, 0.01 / 2**place) for place, size in enumerate(sizes)]
+    smaller = [off_by(swing, size, 0.01 / 2**halvings) for halvings, size in enumerate(sizes)]
     parts = split_error(swing.reading, swing.judge.trajectory, off_by(swing, 8e-3, 0.02).run, smaller)
     assert (parts.step, parts.rest, parts.falling) == (pytest.approx(8e-3), pytest.approx(sizes[-1]), falls)
 
@@ -167,11 +167,11 @@ def test_dead_centres_are_where_crank_and_coupler_are_in_line(drive):
     for reach, turn in ((b + a, 0.0), (b - a, np.pi)):
         line = np.arccos((reach**2 + d**2 - c**2) / (2 * reach * d))
         wanted.append(((line + turn - start) % (2 * np.pi)) / rate)
-    found = facts.dead_centres
-    assert {name for _, name in found} == {"rocker"}
+    result = facts.dead_centres
+    assert {name for _, name in result} == {"rocker"}
     # Linear between samples of 10 ms: the times are good to much less than one.
-    assert [t for t, _ in found] == pytest.approx(sorted(t for t in wanted if t <= 3.0), abs=1e-3)
-    assert len(found) >= 1
+    assert [t for t, _ in result] == pytest.approx(sorted(t for t in wanted if t <= 3.0), abs=1e-3)
+    assert len(result) >= 1
     assert facts.singular == ()
 
 
@@ -201,24 +201,24 @@ def test_what_opens_by_an_angle_is_told_in_radians():
     pose = np.zeros((3, 1, 3))
     pose[1, 0] = [1e-3, 0.0, 0.2]
     run = Trajectory(np.arange(3.0), pose, np.zeros((3, 1, 3)), np.zeros((3, 3)), 0.0)
-    found = find_opening(mechanism, run)
-    assert found is not None
-    assert (found.gap, found.unit, found.t) == (pytest.approx(0.2), "rad", 1.0)
+    opening = find_opening(mechanism, run)
+    assert opening is not None
+    assert (opening.gap, opening.unit, opening.t) == (pytest.approx(0.2), "rad", 1.0)
     # A kilometre long, 1 m of it is less than 0.2 rad.
     bodies = (replace(body, name="cabin", pose=(1e3, 0.0, 0.0)), body)
     joints = (*joints, Pin("cable", None, "cabin", (0.0, 0.0), (-1e3, 0.0)))
     pose = np.array([[[1e3, 0.0, 0.0], [0.0, 0.0, 0.0]], [[1001.0, 0.0, 0.0], [0.0, 0.0, 0.2]]])
     run = Trajectory(np.arange(2.0), pose, np.zeros_like(pose), np.zeros((2, 5)), 0.0)
-    found = find_opening(Mechanism(bodies, joints, (0.0, 0.0)), run)
-    assert found is not None
-    assert (found.gap, found.unit) == (pytest.approx(0.2), "rad")
+    opening = find_opening(Mechanism(bodies, joints, (0.0, 0.0)), run)
+    assert opening is not None
+    assert (opening.gap, opening.unit) == (pytest.approx(0.2), "rad")
 
 
 # ------------------------------------------------------------------------------------------------------- reactions
 
 
 def test_reactions_that_rigid_bodies_do_not_determine_are_not_compared():
-    """A beam between two pins: how much it is pulled along itself nobody can tell; what each bears across, one can."""
+    """A beam between two pins: its axial force is indeterminate; the transverse force on each pin is unique."""
     beam = Body("beam", 2.0, 0.2, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     other = Body("bob", 1.0, 0.1, (2.0, -1.0, 0.0), (0.0, 0.0, 0.0))
     joints = (
@@ -255,17 +255,17 @@ def test_the_error_of_the_energy_is_relative_to_the_largest_kinetic_energy(soft)
 
 def test_a_torque_that_is_zero_by_symmetry_is_no_measure_of_an_error_and_one_that_is_invented_is_wrong():
     reading = read_user_model("b04_gripper.xml", INPUTS, ReadingTerms(("actuation", "limit")))
-    found = check(reading, "gripper", 0.3, 1e-4, plan=SweepPlan(5.0, quick=True))
-    mechanism, truth = found.reading.mechanism, found.judge.trajectory
+    result = check(reading, "gripper", 0.3, 1e-4, plan=SweepPlan(5.0, quick=True))
+    mechanism, truth = result.reading.mechanism, result.judge.trajectory
     forces, torques = (np.abs(truth.reaction[:, rows]) for rows in (~mechanism.is_angular, mechanism.is_angular))
-    assert torques.max() < 1e-9 * forces.max() * found.facts.length
-    assert found.own_errors.worst["reaction"] < 0.01
-    assert found.advised is not None
-    off = np.abs(found.advised.run.reaction - truth.reaction)[:, ~mechanism.is_angular].max()
+    assert torques.max() < 1e-9 * forces.max() * result.facts.length
+    assert result.own_errors.worst["reaction"] < 0.01
+    assert result.advised is not None
+    off = np.abs(result.advised.run.reaction - truth.reaction)[:, ~mechanism.is_angular].max()
     assert off < 1e-5 * forces.max()  # the compliance that the stiffest loop keeps
     # The measure compares vectors of two components, and here single components.
-    assert off / forces.max() / 2 < found.advised.reaction < 2 * off / forces.max()
-    wrong = truth.reaction + 0.1 * mechanism.is_angular * np.abs(truth.reaction).max() * found.facts.length
+    assert off / forces.max() / 2 < result.advised.reaction < 2 * off / forces.max()
+    wrong = truth.reaction + 0.1 * mechanism.is_angular * np.abs(truth.reaction).max() * result.facts.length
     run = type(truth)(truth.t, truth.pose, truth.twist, wrong, 0.0)
     assert measure_errors(mechanism, truth, run).worst["reaction"] > 0.05
 
@@ -289,13 +289,13 @@ def test_the_impulse_that_starts_a_motor_is_no_error_of_forces_or_energy():
     crank.position, rod.position = (0.1, 0), (0.5, 0)
     space.add(crank, rod, PivotJoint(space.static_body, crank, (0, 0), (-0.1, 0)))
     space.add(PivotJoint(crank, rod, (0.1, 0), (-0.3, 0)), SimpleMotor(space.static_body, crank, -3.0))
-    found = check(read_space(space, step=1e-3), "motor", 0.2, 1e-4, plan=SweepPlan(1.0, quick=True))
-    error = found.own_errors
-    assert found.reading.jumps
+    result = check(read_space(space, step=1e-3), "motor", 0.2, 1e-4, plan=SweepPlan(1.0, quick=True))
+    error = result.own_errors
+    assert result.reading.jumps
     assert all(
         np.isnan(error.of[name][:2]).all() and np.isfinite(error.of[name][2:]).all() for name in ("energy", "reaction")
     )
-    counted = measure_errors(found.reading.mechanism, found.judge.trajectory, found.own)
+    counted = measure_errors(result.reading.mechanism, result.judge.trajectory, result.own)
     assert counted.worst["reaction"] > 10 * error.worst["reaction"]
 
 

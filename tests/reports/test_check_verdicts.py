@@ -83,9 +83,9 @@ def of_mujoco(path: Path, t: NDArray[Any]) -> tuple[float, float, int]:
             out.append(np.column_stack([data.xipos, turns @ data.qpos])[1:])
         return np.array(out)
 
-    held = independent.equalities(model)
+    stored = independent.equalities(model)
     runs = poses(np.array(run))
-    coordinates, forces = independent.motion(model, begin(), held, t)
+    coordinates, forces = independent.motion(model, begin(), stored, t)
     return *own_errors(runs, poses(coordinates)), model.nv - forces.shape[1]
 
 
@@ -101,7 +101,7 @@ def of_pymunk(path: Path, t: NDArray[Any]) -> tuple[float, float]:
 
 
 def checked(path: Path, duration: float) -> CheckResult:
-    """Of the settings as they are; nothing else is tried."""
+    """Check the settings as they are; no other settings are tried."""
     step = STEP if path.suffix == ".py" else None
     return check(
         read_user_model(path.name, path.parent, ReadingTerms(step=step)), path.name, duration, 1e-4, plan=SweepPlan(0.0)
@@ -128,14 +128,14 @@ MUJOCO_MODELS = [
 
 @pytest.mark.parametrize(("name", "duration", "freedoms", "length"), MUJOCO_MODELS)
 def test_the_error_of_a_mujoco_model_is_that_of_an_independent_integration(name, duration, freedoms, length):
-    found = checked(INPUTS / f"{name}.xml", duration)
-    angle, place, free = of_mujoco(INPUTS / f"{name}.xml", found.own_errors.t)
+    result = checked(INPUTS / f"{name}.xml", duration)
+    angle_error, position_error, free = of_mujoco(INPUTS / f"{name}.xml", result.own_errors.t)
     assert free == freedoms
-    assert found.facts.freedoms == (freedoms, freedoms)
-    assert length is None or found.facts.length == pytest.approx(length, rel=1e-3)
-    assert found.own_errors.worst["angle"] == pytest.approx(angle, rel=CLOSE, abs=1e-12)
-    assert found.own_errors.worst["position"] == pytest.approx(place, rel=CLOSE)
-    assert found.own_errors.largest == pytest.approx(max(angle, place / found.facts.length), rel=0.02)
+    assert result.facts.freedoms == (freedoms, freedoms)
+    assert length is None or result.facts.length == pytest.approx(length, rel=1e-3)
+    assert result.own_errors.worst["angle"] == pytest.approx(angle_error, rel=CLOSE, abs=1e-12)
+    assert result.own_errors.worst["position"] == pytest.approx(position_error, rel=CLOSE)
+    assert result.own_errors.largest == pytest.approx(max(angle_error, position_error / result.facts.length), rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -150,10 +150,10 @@ def test_the_error_of_a_mujoco_model_is_that_of_an_independent_integration(name,
     ],
 )
 def test_the_error_of_a_pymunk_script_is_that_of_an_independent_integration(name, duration):
-    found = checked(INPUTS / f"{name}.py", duration)
-    angle, place = of_pymunk(INPUTS / f"{name}.py", found.own_errors.t)
-    assert found.own_errors.worst["angle"] == pytest.approx(angle, rel=CLOSE)
-    assert found.own_errors.worst["position"] == pytest.approx(place, rel=CLOSE)
+    result = checked(INPUTS / f"{name}.py", duration)
+    angle_error, position_error = of_pymunk(INPUTS / f"{name}.py", result.own_errors.t)
+    assert result.own_errors.worst["angle"] == pytest.approx(angle_error, rel=CLOSE)
+    assert result.own_errors.worst["position"] == pytest.approx(position_error, rel=CLOSE)
 
 
 def test_a_plane_and_an_order_of_bodies_change_no_error(tmp_path):
@@ -179,12 +179,12 @@ def test_a_plane_and_an_order_of_bodies_change_no_error(tmp_path):
 
 
 def test_one_freedom_goes_on_through_a_dead_centre_and_is_judged_to_the_end():
-    found = check(read_user_model("b21_coupling_rod.xml", INPUTS), "rod", 1.0, 0.01, plan=QUICK)
-    assert found.duration == 1.0
-    assert not found.chaotic
-    assert found.own_errors.largest == pytest.approx(0.656, rel=1e-3)
-    assert found.advised is not None
-    assert found.advised.error == pytest.approx(5.4e-4, rel=0.02)
+    result = check(read_user_model("b21_coupling_rod.xml", INPUTS), "rod", 1.0, 0.01, plan=QUICK)
+    assert result.duration == 1.0
+    assert not result.chaotic
+    assert result.own_errors.largest == pytest.approx(0.656, rel=1e-3)
+    assert result.advised is not None
+    assert result.advised.error == pytest.approx(5.4e-4, rel=0.02)
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
@@ -200,7 +200,7 @@ def test_a_parallelogram_passes_its_dead_centres_on_the_branch_on_which_it_arriv
     poses = [(*centre, angle) for centre, angle in zip(centres, (start, 0.0, start), strict=True)]
     twists = [(*speed / 2, rate), (*speed, 0.0), (*speed / 2, rate)]
     masses = np.array([1.0, 2.0, 1.0])
-    own = Mechanism(
+    linkage = Mechanism(
         bodies_of(names, masses, 0.01 * masses * scale**2, poses, twists),
         (
             Pin("A", None, "left", (0.0, 0.0), (-crank / 2, 0.0)),
@@ -215,7 +215,7 @@ def test_a_parallelogram_passes_its_dead_centres_on_the_branch_on_which_it_arriv
     def rates(at, state):
         return [state[1], -G * scale * (crank + 2 * crank) * np.cos(state[0]) / inertia]
 
-    judge = reference_motion(own, 200, 0.01, 1e-4)
+    judge = reference_motion(linkage, 200, 0.01, 1e-4)
     t = judge.trajectory.t
     turned = solve_ivp(rates, (0, t[-1]), [start, rate], "DOP853", t_eval=t, rtol=1e-11, atol=1e-12).y[0]
     assert np.count_nonzero(np.diff(np.floor(turned / np.pi))) >= 2  # dead centres
@@ -227,12 +227,12 @@ def test_a_parallelogram_passes_its_dead_centres_on_the_branch_on_which_it_arriv
 
 
 def test_a_loop_that_a_weld_locks_is_said_to_be_locked_first_and_that_a_connect_was_perhaps_meant():
-    found = check(read_user_model("b23_weld_locks.xml", INPUTS), "b23_weld_locks", 0.5, 1e-4, plan=QUICK)
+    result = check(read_user_model("b23_weld_locks.xml", INPUTS), "b23_weld_locks", 0.5, 1e-4, plan=QUICK)
     assert re.search(
-        r"^b23_weld_locks in MuJoCo can't move, .* \(weld C holds .*; connect, .* was perhaps meant\)", found.verdict
+        r"^b23_weld_locks in MuJoCo can't move, .* \(weld C holds .*; connect, .* was perhaps meant\)", result.verdict
     )
-    assert np.isnan(found.own_errors.worst["energy"])
-    facts = dict(answer_section(found).facts)
+    assert np.isnan(result.own_errors.worst["energy"])
+    facts = dict(answer_section(result).facts)
     assert "energy" not in facts["forces"]
     assert "nothing can move" in facts["motion"]
 
@@ -243,15 +243,15 @@ def test_a_locked_space_is_said_to_be_locked(second):
     space.gravity = (0, -G)
     body = MunkBody(2, 0.2)
     body.position = (0.5, 0)
-    more = {
+    extra = {
         "pivot": PivotJoint(space.static_body, body, (1, 0), (0.5, 0)),
         "gear": GearJoint(space.static_body, body, 0, 1),
         "motor": SimpleMotor(space.static_body, body, 0),
     }
-    space.add(body, PivotJoint(space.static_body, body, (0, 0), (-0.5, 0)), more[second])
-    found = check(read_space(space, 0.01), "gate", 0.5, 1e-4, plan=QUICK)
-    assert "gate in pymunk can't move, since its joints leave no freedom" in found.verdict
-    assert found.judge.grown == 1
+    space.add(body, PivotJoint(space.static_body, body, (0, 0), (-0.5, 0)), extra[second])
+    result = check(read_space(space, 0.01), "gate", 0.5, 1e-4, plan=QUICK)
+    assert "gate in pymunk can't move, since its joints leave no freedom" in result.verdict
+    assert result.judge.grown == 1
 
 
 @pytest.mark.parametrize(("scale", "far"), [(1.0, 0.0), (1e-6, 1e3), (1e6, 1e3)])
@@ -264,19 +264,19 @@ def test_no_far_point_of_a_line_enters_the_length_or_the_time(scale, far):
     slot = Slot("groove", "bar", "block", (0.1 * scale, 0.0), 0.0, (0.0, 0.0))
     ends = ("bar", "block", (-far * scale, 0.0), (0.0, 0.0))
     spring = Spring("spring", *ends, 200.0, (far + 0.5) * scale)
-    own = Mechanism(
+    linkage = Mechanism(
         (bar, block),
         (slot, Drive("straight", "bar", "block", 0.0, 0.0)),
         (0.0, -G * scale),
         (spring, Damper("damper", *ends, 2.0)),
     )
-    assert own.length_scale == pytest.approx(0.1 * scale)
+    assert linkage.length_scale == pytest.approx(0.1 * scale)
     # At the slot's point the bar feels a force as 1 / m + r^2 / I, and the block as 1 / m.
-    assert own.time_scale == pytest.approx(1 / np.sqrt(200 * (1 + 0.1**2 / 0.1 + 2)))
+    assert linkage.time_scale == pytest.approx(1 / np.sqrt(200 * (1 + 0.1**2 / 0.1 + 2)))
     # Alone on the ground the extension is all that has a length.
     groove = Slot("groove", None, "block", (-far * scale, 0.0), 0.0, (0.0, 0.0))
-    held = Spring("spring", None, "block", (-far * scale, 0.0), (0.0, 0.0), 20.0, (far + 0.5) * scale)
-    alone = Mechanism((Body("block", 0.5, 1.0, (0.2 * scale, 0.0, 0.0)),), (groove,), (0.0, 0.0), (held,))
+    stored = Spring("spring", None, "block", (-far * scale, 0.0), (0.0, 0.0), 20.0, (far + 0.5) * scale)
+    alone = Mechanism((Body("block", 0.5, 1.0, (0.2 * scale, 0.0, 0.0)),), (groove,), (0.0, 0.0), (stored,))
     assert alone.length_scale == pytest.approx(0.3 * scale)
 
 
@@ -299,7 +299,7 @@ def limited(kind: str, both_sided: bool) -> Space:
     upper, lower = MunkBody(2, 0.2), MunkBody(1, 0.1)
     upper.position, lower.position = (0.5, 0), (1.0, -0.4)
     space.add(upper, lower)
-    if kind == "turned ground":  # the angle of a body that stands still counts as it does in pymunk
+    if kind == "turned ground":  # the angle of a body at rest counts as it does in pymunk
         lower.angle = 0.5
         lower.position = (1.0 + 0.4 * np.sin(0.5), -0.4 * np.cos(0.5))
         space.static_body.angle = 0.2
@@ -310,14 +310,14 @@ def limited(kind: str, both_sided: bool) -> Space:
 
 @pytest.mark.parametrize("kind", LIMITED)
 def test_a_limit_whose_ends_are_one_is_the_joint_that_holds_it(kind):
-    found = check(read_space(limited(kind, False), 1e-3), kind, 0.5, 1e-4, plan=QUICK)
+    result = check(read_space(limited(kind, False), 1e-3), kind, 0.5, 1e-4, plan=QUICK)
     same = read_space(limited(kind, True), 1e-3).mechanism
-    own = found.reading.mechanism
-    assert own.degrees_of_freedom() == same.degrees_of_freedom() == (1, 1)
+    mechanism = result.reading.mechanism
+    assert mechanism.degrees_of_freedom() == same.degrees_of_freedom() == (1, 1)
     truth = reference_motion(same, 20, 0.025).trajectory
-    np.testing.assert_allclose(reference_motion(own, 20, 0.025).trajectory.pose, truth.pose, rtol=0, atol=1e-10)
-    assert any("its min and max are equal" in note.reason for note in found.reading.notes)
-    assert found.own_errors.largest < 0.02  # pymunk follows the joint, to the first order of its step
+    np.testing.assert_allclose(reference_motion(mechanism, 20, 0.025).trajectory.pose, truth.pose, rtol=0, atol=1e-10)
+    assert any("its min and max are equal" in note.reason for note in result.reading.notes)
+    assert result.own_errors.largest < 0.02  # pymunk follows the joint, to the first order of its step
 
 
 CONNECT = '<connect name="C" body1="coupler" body2="rocker" anchor="0.8 0 0.3"'

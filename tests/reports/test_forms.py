@@ -67,23 +67,23 @@ def test_a_slow_engine_that_is_named_runs_its_shortest_step_and_the_others_are_t
     assert choose_cells([scene], [slow], pages, full=False) == ()
     named = choose_cells([scene], [slow], pages, full=False, named=True)
     assert [cell.every for cell in named] == [QUICK[0]]
-    left = left_out([scene], [slow], pages, False, named)
-    assert [cell.every for cell, _ in left] == list(QUICK[1:])
-    for cell, why in left:
-        assert re.fullmatch(rf"step_cost says {scene.samples * cell.every} s, and a run may take 0\.8 s", why)
+    rest = left_out([scene], [slow], pages, False, named)
+    assert [cell.every for cell, _ in rest] == list(QUICK[1:])
+    for cell, reason in rest:
+        assert re.fullmatch(rf"step_cost says {scene.samples * cell.every} s, and a run may take 0\.8 s", reason)
 
 
 def test_a_small_store_gives_the_pages_that_it_has_rows_of_and_no_link_leads_nowhere(tmp_path, capfd):
-    words = ["--results", str(tmp_path)]
-    assert invoke(["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--every", "1", *words]) == 0
-    assert invoke(["report", *words]) == 0
+    options = ["--results", str(tmp_path)]
+    assert invoke(["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--every", "1", *options]) == 0
+    assert invoke(["report", *options]) == 0
     pages = {path.name for path in tmp_path.glob("*.md")}
     assert {"index.md", "four_bar.md"} <= pages
     assert not {"pendulum.md", "skate.md", "wheels.md", "faults.md"} & pages
     for page in pages:
         text = (tmp_path / page).read_text(encoding="utf-8")
         assert set(re.findall(r"\]\((\w+\.md)", text)) <= pages, page
-    assert invoke(["show", "free_four_bar", *words, "--json"]) == 0
+    assert invoke(["show", "free_four_bar", *options, "--json"]) == 0
     out = capfd.readouterr().out
     (row,) = json.loads(out[out.index("\n{") :])["rows"]
     assert (row["method"] if "method" in row else row["engine"], row["every"]) == ("pymunk", 1)
@@ -91,5 +91,5 @@ def test_a_small_store_gives_the_pages_that_it_has_rows_of_and_no_link_leads_now
 
 def test_a_link_to_a_page_that_is_not_there_becomes_its_words():
     text = "see [the\npage](skate.md#a), [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"
-    told = without_dead_links(text, lambda name: name == "wheels.md")
-    assert told == "see the\npage, [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"
+    reported = without_dead_links(text, lambda name: name == "wheels.md")
+    assert reported == "see the\npage, [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"
