@@ -13,7 +13,7 @@
     rows = crosscheck.run("free_four_bar", "pymunk", every=[100])   # rows of errors; crosscheck.report() writes pages
 
 `reference`, `engines` and `reports` are general names, and Python takes the first package of a name that it finds:
-`clash` says when another package hides one of ours. What takes time is imported when it is called.
+`clash` reports a foreign package that hides one of this suite. Slow modules are imported when they are called.
 """
 
 from __future__ import annotations
@@ -47,10 +47,10 @@ def clash(packages: tuple[str, ...] = PACKAGES) -> str:
     """A sentence about the first package that is not the one beside this file; empty if all are. Imports none."""
     for name in packages:
         try:
-            found = find_spec(name)
+            spec = find_spec(name)
         except (ImportError, ValueError):  # a module of this name was put there by hand
-            found = None
-        folders = [] if found is None else list(found.submodule_search_locations or [found.origin])
+            spec = None
+        folders = [] if spec is None else list(spec.submodule_search_locations or [spec.origin])
         if os.path.join(HERE, name) not in map(os.path.realpath, filter(None, folders)):
             where = f"is another one, at {folders[0]}" if folders else "is missing"
             return (
@@ -77,14 +77,16 @@ def check(
 
     duration [s]: of the motion that is judged; tolerance: of angles [rad] and of places in lengths of the mechanism;
     `without`, `key`, `step` [s], `quick`, `fix_to` and `apply` are the command's options; folder: where files are
-    looked for, the current one unless it is given. Raises ValueError, in a sentence, for what can't be judged.
+    looked for, the current one unless it is given. Raises ValueError, with the reason, if the model can't be judged.
     """
     from reports.check.request import CheckRequest, Refused, run_check
 
-    word = str(model) if isinstance(model, str | Path) else type(model).__name__
+    model_name = str(model) if isinstance(model, str | Path) else type(model).__name__
     wanted = tolerance if fix_to is None else fix_to
-    terms = {"quick": quick, "search": fix_to is not None, "apply": str(apply), "pictures": True}
-    request = CheckRequest(word, str(folder or Path.cwd()), duration, wanted, tuple(without), key, step, **terms)
+    options = {"quick": quick, "search": fix_to is not None, "apply": str(apply), "pictures": True}
+    request = CheckRequest(
+        model_name, str(folder or Path.cwd()), duration, wanted, tuple(without), key, step, **options
+    )
     answer = run_check(request.refuse_bad(), None if isinstance(model, str | Path) else model)
     if isinstance(answer, Refused) or answer.trouble:
         raise ValueError(answer.sentence if isinstance(answer, Refused) else answer.trouble)
@@ -129,7 +131,7 @@ def run(
 
 
 def report(results: str | Path = "crosscheck-results") -> Path:
-    """Write pages, charts and tables of what is stored in a folder; the path of the first page. Raises ValueError."""
+    """Write pages, charts and tables of the stored results; return the first page's path. Raises ValueError."""
     from reports.cli.report import write_report
 
     return write_report(Path(results)).folder / "index.md"
@@ -213,7 +215,7 @@ def draw(mechanism: Mechanism, pose: Any = None) -> Picture:
 
 
 def conform(engine: Engine, expected_failures: Mapping[str, str] | None = None) -> Any:
-    """Ask an engine what every engine has to keep; see `engines.conformance.conform`. Raises AssertionError."""
+    """Check an engine against the rules for all engines; see `engines.conformance.conform`. Raises AssertionError."""
     from engines.conformance import conform as asked
 
     return asked(engine, expected_failures)
@@ -221,9 +223,9 @@ def conform(engine: Engine, expected_failures: Mapping[str, str] | None = None) 
 
 def main() -> None:
     """The program `crosscheck`. Always raises SystemExit."""
-    told = clash()
-    if told:
-        print(f"crosscheck: {told}", file=sys.stderr)
+    message = clash()
+    if message:
+        print(f"crosscheck: {message}", file=sys.stderr)
         sys.exit(2)
     from reports.__main__ import main as program
 

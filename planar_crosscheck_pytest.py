@@ -50,9 +50,10 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         return
     _require_ours()
     early_config.pluginmanager.import_plugin(PLUGIN)
-    own = early_config.rootpath / "reports" / "gate" / "grid_tests.py"
-    known = parser.parse_known_args(args, namespace=copy.copy(early_config.option))  # the grid's options are known now
-    if not own.exists() and not known.file_or_dir:
+    grid_tests = early_config.rootpath / "reports" / "gate" / "grid_tests.py"
+    # The parser knows the grid's options now.
+    known_args = parser.parse_known_args(args, namespace=copy.copy(early_config.option))
+    if not grid_tests.exists() and not known_args.file_or_dir:
         args += ["--pyargs", GRID]
 
 
@@ -60,8 +61,8 @@ def _require_ours() -> None:
     """Fail in a sentence where another package hides one of ours: its name is as general as `reports`."""
     from planar_crosscheck import clash
 
-    if told := clash():
-        raise pytest.UsageError(f"crosscheck: {told}")
+    if message := clash():
+        raise pytest.UsageError(f"crosscheck: {message}")
 
 
 class Crosscheck:
@@ -80,10 +81,10 @@ class Crosscheck:
         beside = self._folder / str(model).rpartition(":")[0] if ":" in str(model) else self._folder / str(model)
         inside = isinstance(model, str | Path) and beside.exists()
         folder = self._folder if inside else None
-        found = _failing(lambda: check(model, tolerance, duration, folder=folder, **terms))
-        if not found.fine:
-            pytest.fail(plain([found.answer]), pytrace=False)
-        return found
+        result = _failing(lambda: check(model, tolerance, duration, folder=folder, **terms))
+        if not result.fine:
+            pytest.fail(plain([result.answer]), pytrace=False)
+        return result
 
     def conform(self, engine: Engine, expected_failures: Mapping[str, str] | None = None) -> None:
         """Fail the test if an engine does not conform, or if a failure that was expected does not come true."""
@@ -93,13 +94,13 @@ class Crosscheck:
 
 
 def _failing(call: Callable[[], Any]) -> Any:
-    """What a call gives; what it raises fails the test by its words alone."""
-    told = ""
+    """Return the call's result; fail the test with the error's message if it raises."""
+    message = ""
     try:
         return call()
     except (ValueError, AssertionError) as reason:
-        told = str(reason) or repr(reason)
-    pytest.fail(told, pytrace=False)  # here, or pytest would tell both
+        message = str(reason) or repr(reason)
+    pytest.fail(message, pytrace=False)  # outside `except`: pytest would print both errors
 
 
 @pytest.fixture

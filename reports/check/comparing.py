@@ -68,8 +68,8 @@ class Comparison:
     def figures(self) -> dict[str, Picture]:
         """`measure_errors`: over time; `worst`: the mechanism where the run is most wrong, beside the truth there."""
         judge = measure_errors(self.mechanism, self.truth, self.judge.looser)
-        shown = picture_data(self.mechanism, self.judge, judge, self.run, self.errors, label=self.title)
-        return {name: Picture(*drawn) for name, drawn in render_pictures(shown).items()}
+        displayed = picture_data(self.mechanism, self.judge, judge, self.run, self.errors, label=self.title)
+        return {name: Picture(*drawing) for name, drawing in render_pictures(displayed).items()}
 
     def _section(self) -> Section:
         cost = f"{number(1e3 * self.run.stepping)} ms of CPU time"
@@ -84,8 +84,8 @@ class Comparison:
         return f"{self.title}\n{rendering.plain([self._section()])}"
 
     def _repr_html_(self) -> str:
-        drawn = [Section("", picture=(each.title, each.svg)) for each in self.figures().values()]
-        return rendering.body(self.title, [self._section(), *drawn])
+        drawing = [Section("", picture=(figure.title, figure.svg)) for figure in self.figures().values()]
+        return rendering.body(self.title, [self._section(), *drawing])
 
 
 def compare_with_ideal(mechanism: Mechanism, engine: Engine | str, dt: float, duration: float) -> Comparison:

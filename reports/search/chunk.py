@@ -84,9 +84,9 @@ def iter_case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
     for chunk, answer in answers.items():
         if answer.finished:
             rows = json.loads(str(answer.values["results"]))
-            for number, (kinds, pairs, skipped, words) in enumerate(rows, chunk.first):
+            for number, (kinds, pairs, skipped, text) in enumerate(rows, chunk.first):
                 errors = {check: (error, bound) for check, (error, bound) in pairs.items()}
-                yield CaseResult(chunk, number, tuple(kinds), OracleResult(errors, tuple(skipped), words))
+                yield CaseResult(chunk, number, tuple(kinds), OracleResult(errors, tuple(skipped), text))
         elif chunk.count == 1:
             fault = answer.outcome in (Outcome.ABORTED, Outcome.TIMED_OUT, Outcome.FAILED)
             errors = {str(answer.outcome): (np.inf, 0.0)} if fault else {}
@@ -167,7 +167,7 @@ def summary_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
 def count_refusals(cases: Iterable[CaseResult]) -> Mapping[str, int]:
     """Number of cases that each subject refused as unsupported."""
     return Counter(
-        case_label(case) for case in cases if any(why.startswith("unsupported") for why in case.result.skipped)
+        case_label(case) for case in cases if any(reason.startswith("unsupported") for reason in case.result.skipped)
     )
 
 
@@ -182,9 +182,9 @@ def finding_rows(cases: Iterable[CaseResult]) -> list[list[str]]:
     """Rows of a table under FINDINGS_HEADER, one for each failing check of a case."""
     out = []
     for case in cases:
-        drawn = [str(case.chunk.seed), str(case.chunk.decades), str(case.number), ",".join(case.kinds)]
+        case_columns = [str(case.chunk.seed), str(case.chunk.decades), str(case.number), ",".join(case.kinds)]
         for check in case.result.faults:
-            out.append([case.chunk.subject.name, check, *map(_short, case.result.errors[check]), *drawn])
+            out.append([case.chunk.subject.name, check, *map(_short, case.result.errors[check]), *case_columns])
     return out
 
 

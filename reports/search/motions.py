@@ -284,7 +284,7 @@ class _Case:
         )
         open_by = [self.apart(other, right) for other in others]
         bounds = {
-            name: max(least, ORDER_MARGIN * max(each[name] for each in open_by)) for name, least in ERROR_FLOORS.items()
+            name: max(least, ORDER_MARGIN * max(item[name] for item in open_by)) for name, least in ERROR_FLOORS.items()
         }
         return {name: (error, bounds[name]) for name, error in self.apart(run, right).items()}
 

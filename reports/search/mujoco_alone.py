@@ -235,7 +235,7 @@ class StartEquations:
         Without `bent` the velocity term of curved equalities is left out, as in MuJoCo up to 4.0.1.
         """
         rows: Any = np.linalg.solve(self.root.T, np.vstack([np.zeros((0, len(self.free))), *self.rows]).T).T
-        right = [each if bent else each - curve for each, curve in zip(self.right, self.bent, strict=True)]
+        right = [item if bent else item - curve for item, curve in zip(self.right, self.bent, strict=True)]
         law = constrained(rows, np.concatenate([[], *right]), np.ones(len(self.free)), self.free, give)
         return np.asarray(np.linalg.solve(self.root, law.motion), dtype=np.float64)
 
@@ -262,8 +262,8 @@ def start_equations(model: RawModel) -> StartEquations:
     change = _velocities(model, ahead, rates).imag / DERIVATIVE_STEP
     right = tuple(-slip.imag / DERIVATIVE_STEP for slip in _slips(model, ahead, rates))
     bent = tuple(
-        np.zeros_like(each) if link.kind in HINGED_KINDS else each
-        for link, each in zip(model.links, right, strict=True)
+        np.zeros_like(item) if link.kind in HINGED_KINDS else item
+        for link, item in zip(model.links, right, strict=True)
     )
     directions = np.array([_velocities(model, zeros, unit) for unit in np.eye(count)]).T.reshape(-1, count)
     weights = np.sqrt([w for p in model.parts for w in (*[float(ladder(p.mass))] * 2, float(ladder(p.inertia)))])

@@ -125,7 +125,9 @@ def case_from_json(text: str, kind: type[Case]) -> Case:
         if not isinstance(value, list):
             return value
         item: Any = get_args(hint)[0]
-        return tuple(made(each, item) if isinstance(item, type) and is_dataclass(item) else each for each in value)
+        return tuple(
+            made(member, item) if isinstance(item, type) and is_dataclass(item) else member for member in value
+        )
 
     try:
         return made(json.loads(text), kind)

@@ -23,7 +23,7 @@ from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 COMMIT_RULE, SOURCES_RULE = "the last commit's hash", "the SHA-256 of all sources, as there is no git"
 SEED_DECADES = (0, 2, 4)  # one for each of the seeds
 PLANNED_CASES, ALONE_CASES = 100, 1000  # of an engine for each seed; of MuJoCo alone
-# Of an engine that compiles each shape anew, MJX: a case of it takes three seconds, of the others 0.005 to 0.8. So its
+# For MJX, which compiles each shape: one of its cases takes three seconds, of the others 0.005 to 0.8. So its
 # two variants share a third of all time, and 100 cases would take three quarters of an hour.
 COMPILED_CASES = 20
 SINGULAR_CASES = 60  # of each engine that knows pins and rods, with rows that nearly depend on each other

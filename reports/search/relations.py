@@ -113,7 +113,7 @@ def _compare_runs(
         return engine.build(described, INSTANT_STEP * described.time_scale)(1, INSTANT_STEPS)
 
     first, second = run(mechanism), run(changed)
-    if any(each.unresolved_at is not None and np.isfinite(each.pose).all() for each in (first, second)):
+    if any(item.unresolved_at is not None and np.isfinite(item.pose).all() for item in (first, second)):
         return CheckSkipped("it says itself that it is unresolved in one of the descriptions")
     away, duration = float(np.abs(changed.pose[:, :2]).max()), INSTANT_STEPS * INSTANT_STEP * mechanism.time_scale
     floor = max(DESCRIPTION_TOLERANCE, LOW_PRECISION_ROUNDINGS * engine.precision)
@@ -154,10 +154,10 @@ def _compare_runs(
             return CheckSkipped("descriptions differ by less than what it says itself that it misses")
     noise = 0.0
     for of, plain in ((mechanism, first), (changed, second)):
-        here = plain.pose[-1], plain.twist[-1]
+        last_state = plain.pose[-1], plain.twist[-1]
         for nudged, undo in iter_nudged(of, away):
             pose, twist, _ = undo(run(nudged))
-            noise = max(noise, apart((pose[-1], twist[-1]), here, of))
+            noise = max(noise, apart((pose[-1], twist[-1]), last_state, of))
     if NOISE_MARGIN * noise > MAX_NOISE:
         return CheckSkipped("rounding, or what its solver leaves, changes the motion by more than a hundredth")
     return error, max(floor, NOISE_MARGIN * noise)

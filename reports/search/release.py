@@ -39,12 +39,12 @@ def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
     import mujoco  # of this process
 
     law = start_equations(model)
-    give, found = _give_and_found(model, law)
+    give, accelerations = _give_and_found(model, law)
 
     def error(expected: NDArray[np.float64]) -> float:
         # Sizes that the accelerations come from: gravity, and the square of the rates.
         size = max(np.abs(expected).max(), np.hypot(*model.gravity), np.abs(law.rates).max() ** 2)
-        largest = float(np.abs(found - expected).max())
+        largest = float(np.abs(accelerations - expected).max())
         if not np.isfinite(largest):
             return np.inf
         return largest / size if size > 0 else (np.inf if largest > 0 else 0.0)
@@ -55,7 +55,7 @@ def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
     errors = {CURVED: missed, BESIDE_CURVED: min(missed, error(without))} if curved else {"acceleration": missed}
     return {
         "errors": errors,
-        "found": found.tolist(),
+        "found": accelerations.tolist(),
         "expected": expected.tolist(),
         "version": mujoco.__version__,
     }
@@ -118,8 +118,8 @@ def _check_in_other_release(version: str, model: str) -> dict[str, Any]:
 
 def release_of(name: str) -> str | None:
     """The release in the name of a subject, '' for the installed one; None if it is not MuJoCo alone."""
-    words = name.split()
-    return " ".join(words[2:]) if words[:2] == ["mujoco", "alone"] else None
+    name_parts = name.split()
+    return " ".join(name_parts[2:]) if name_parts[:2] == ["mujoco", "alone"] else None
 
 
 def main() -> None:

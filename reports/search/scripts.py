@@ -93,7 +93,7 @@ def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list
     if check in (*relations.RELATIONS, "relations"):
         changed = relations.describe_otherwise(recipe, mechanism, name)
         both = [("as it is", mechanism)] + ([] if isinstance(changed, CheckSkipped) else [(name, changed[0])])
-        return [(title, each, INSTANT_STEP * each.time_scale, INSTANT_STEPS) for title, each in both]
+        return [(title, item, INSTANT_STEP * item.time_scale, INSTANT_STEPS) for title, item in both]
     steps = motions.MOTION_SAMPLES * motions.COARSE_STEPS
     dt = motions.MOTION_SPAN * mechanism.time_scale / steps
     return [("at this step", mechanism, dt, steps), ("at half of it", mechanism, dt / 2, 2 * steps)]
@@ -157,7 +157,7 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
 def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
     """One call of mj_forward, and the expected accelerations; `other`: another release, or empty."""
     rates, accelerations = mujoco_alone.start_equations(model).rates, check_accelerations(model, other)
-    names = ", ".join(f"b{body} {what}" for body, what in mujoco_alone.coordinates(model))
+    names = ", ".join(f"b{body} {coordinate}" for body, coordinate in mujoco_alone.coordinates(model))
     lines = [f"data.qvel[:] = {rates.tolist()!r}", "mujoco.mj_forward(model, data)"]
     title = f"accelerations of {names}; expected with the R of MuJoCo {accelerations['version']}"
     block = Block(title, [*_model_lines(mujoco_alone.to_mjcf(model)), *lines], "data.qacc", accelerations["expected"])

@@ -131,15 +131,15 @@ class Shrink(Task):
         subject, number = self.subject, self.chunk.first
         case = self.chunk.draw(number)
         oracles = self._oracle(case)
-        whole = subject.ask(case, number, oracles)
-        why, least = _kind_of(whole), KEPT_SHARE * whole.errors[self.check][0]
+        full_result = subject.ask(case, number, oracles)
+        reason, least = _kind_of(full_result), KEPT_SHARE * full_result.errors[self.check][0]
 
         def still(smaller: Any) -> bool:
             try:
                 result = subject.ask(smaller, number, oracles)
             except InvalidMechanism:
                 return False
-            return self.check in result.faults and result.errors[self.check][0] >= least and _kind_of(result) == why
+            return self.check in result.faults and result.errors[self.check][0] >= least and _kind_of(result) == reason
 
         small = shrink_case(case, still, self.cost)
         result = subject.ask(small, number, oracles)

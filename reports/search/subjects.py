@@ -63,9 +63,10 @@ class Adapted:
 
     def ask(self, case: Recipe, number: int, oracles: Sequence[str]) -> OracleResult:
         """Run these oracles on one case. Raises InvalidMechanism for an invalid case."""
-        asked = self.engine, _cached_mechanism(case), case, number
+        requested = self.engine, _cached_mechanism(case), case, number
         return _run_oracles(
-            {name: partial(oracle.errors, *asked) for name, oracle in ORACLES.items() if name in oracles}, self.engine
+            {name: partial(oracle.errors, *requested) for name, oracle in ORACLES.items() if name in oracles},
+            self.engine,
         )
 
 

@@ -170,8 +170,8 @@ def test_a_force_on_a_body_is_read_as_constant_with_a_note():
     assert any(note.element == "the force or torque that stands on body 2" for note in reading.notes)
     assert refuse_disagreement(reading) < ACCELERATION_ERROR
     # The push alone moves the body by half a metre in a second, so a push in the first step only would be noticed.
-    own, ideal = reading.model.run(10, 10), TRUTH.build(reading.mechanism, 0.1)(10, 1)
-    assert np.abs(own.pose - ideal.pose).max() < 0.1
+    linkage, ideal = reading.model.run(10, 10), TRUTH.build(reading.mechanism, 0.1)(10, 1)
+    assert np.abs(linkage.pose - ideal.pose).max() < 0.1
 
 
 def test_names_and_static_bodies_are_kept():
@@ -194,10 +194,10 @@ def test_names_and_static_bodies_are_kept():
 
 def test_the_users_own_space_is_run_and_never_changed():
     space = space_of(elbow)
-    before = [(tuple(body.position), body.angle, tuple(body.velocity)) for body in space.bodies]
+    earlier = [(tuple(body.position), body.angle, tuple(body.velocity)) for body in space.bodies]
     reading = read(space, 0.01)
     run = reading.model.run(10, 2)
-    assert [(tuple(body.position), body.angle, tuple(body.velocity)) for body in space.bodies] == before
+    assert [(tuple(body.position), body.angle, tuple(body.velocity)) for body in space.bodies] == earlier
     for _ in range(20):
         space.step(0.01)
     expected = [(*body.position, body.angle) for body in space.bodies]

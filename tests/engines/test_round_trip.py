@@ -58,11 +58,11 @@ def assert_equal(mechanism: Mechanism, other: Mechanism, driven: tuple[str, ...]
     is_free = np.array([body.name not in driven for body in mechanism.bodies])
     order = [other.body_index(body.name) for body in mechanism.bodies]
     changes, loads = [], []
-    for each in (mechanism, other):
-        change = accelerations(each, each.pose, each.twist, 0.0)
-        reaction = each.reaction(each.pose, change, twist=each.twist)
+    for item in (mechanism, other):
+        change = accelerations(item, item.pose, item.twist, 0.0)
+        reaction = item.reaction(item.pose, change, twist=item.twist)
         changes.append(change)
-        loads.append((each.rows(each.pose).T @ reaction).reshape(-1, 3))
+        loads.append((item.rows(item.pose).T @ reaction).reshape(-1, 3))
     changes[1], loads[1] = changes[1][order], loads[1][order]
     rates = np.abs(mechanism.twist[:, 2])
     assert (np.abs(mechanism.twist - other.twist[order])[:, 2] <= ROUND_TRIP_ROUNDING * rates.max()).all()

@@ -80,21 +80,21 @@ class Found:
 
 
 def tried(reading) -> list[str]:
-    """[bodies, switched off, reason], doing what each refusal advises; `reading`(without) gives a Reading."""
+    """[bodies, switched off, reason], with the advice of each refusal followed; `reading`(without) gives a Reading."""
     without: list[str] = []
     while True:
         try:
-            found = reading(tuple(without))
-            off = refuse_disagreement(found)
+            result = reading(tuple(without))
+            off = refuse_disagreement(result)
             assert off < 1e-6, off
-            return [str(len(found.mechanism.bodies)), " ".join(without), ""]
+            return [str(len(result.mechanism.bodies)), " ".join(without), ""]
         except (Unsupported, InvalidMechanism, ValueError) as reason:
-            words = " ".join(str(reason).split())
-            advised = re.search(r"--without (\w+)", words)
-            word = None if advised is None else advised[1]
-            if word is None or word in without:
-                return ["", " ".join(without), words]
-            without.append(word)
+            text = " ".join(str(reason).split())
+            advised = re.search(r"--without (\w+)", text)
+            switch = None if advised is None else advised[1]
+            if switch is None or switch in without:
+                return ["", " ".join(without), text]
+            without.append(switch)
 
 
 def spaces() -> Iterator[Found]:
@@ -102,15 +102,15 @@ def spaces() -> Iterator[Found]:
     for path in sorted(EXAMPLES.glob("*.py")):
         if path.name.startswith("_"):
             continue
-        told = subprocess.run(
+        reported = subprocess.run(
             [sys.executable, "-c", ASK, str(path)],
             cwd=ROOT,
             env={"PYTHONPATH": f"{ROOT}{os.pathsep}{EXAMPLES}", "PATH": ""},
             capture_output=True,
             text=True,
         )
-        lines = told.stdout.splitlines()
-        if told.returncode or not lines:
+        lines = reported.stdout.splitlines()
+        if reported.returncode or not lines:
             yield Found("pymunk", path.stem, "", "", "crashed")
         elif (answer := json.loads(lines[-1])) is not None:
             yield Found("pymunk", path.stem, *answer)
@@ -128,14 +128,14 @@ def unpacked(folder: Path) -> bool:
 
 
 def models(folder: Path) -> Iterator[Found]:
-    """Of MuJoCo's own package, and of the two that `unpacked` has put below a folder."""
+    """Models in MuJoCo's own package, and in the two that `unpacked` has put below a folder."""
     places = {
         "mujoco": Path(mujoco.__file__).parent / "testdata",
         "gymnasium": folder / "gymnasium/gymnasium/envs/mujoco/assets",
         "dm_control": folder / "dm_control/dm_control/suite",
     }
-    for source, place in places.items():
-        for path in sorted(place.glob("*.xml")):
+    for source, model_folder in places.items():
+        for path in sorted(model_folder.glob("*.xml")):
             answer = tried(lambda without, path=path: READER.read(path.name, path.parent, ReadingTerms(without)))
             yield Found(source, path.stem, *answer)
 

@@ -21,7 +21,7 @@ from tests.toys import Toy
 
 
 class NeedsTwo(Exception):
-    """Can be raised and pickled, and not unpickled: its arguments are not those of its constructor."""
+    """An error that can be pickled but not unpickled: its arguments are not those of its constructor."""
 
     def __init__(self, first: int, second: int) -> None:
         super().__init__(f"{first} and {second}")
@@ -33,7 +33,7 @@ class Unprintable(Exception):
 
 
 class Unreadable:
-    """Can be pickled, and not unpickled."""
+    """A value that can be pickled but not unpickled."""
 
     def __reduce__(self) -> tuple[object, ...]:
         return NeedsTwo, (1,)
@@ -41,7 +41,7 @@ class Unreadable:
 
 @dataclass(frozen=True)
 class RoughToy(Toy):
-    """Does what its variant says while it steps; `folder` is where it leaves a mark, if it does."""
+    """An engine whose steps do the action named by its variant; some actions write a file into `folder`."""
 
     folder: str = ""
 
@@ -118,7 +118,7 @@ def act(name: str) -> object:
 
 
 def dies(*_: object) -> None:
-    """Instead of a worker's work: killed before it says that it is ready."""
+    """A worker that is killed before it reports that it is ready."""
     os.kill(os.getpid(), signal.SIGKILL)
 
 
@@ -134,7 +134,7 @@ def is_free(file: Any) -> bool:
 
 
 def wait_until(is_true: Callable[[], bool]) -> None:
-    """Raises AssertionError after far longer than a loaded machine takes for what is waited for."""
+    """Wait for a condition; AssertionError after far more time than a loaded machine needs for it."""
     end = time.monotonic() + 300.0
     while not is_true():
         assert time.monotonic() < end, "it did not come true"

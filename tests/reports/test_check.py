@@ -1,4 +1,4 @@
-"""`crosscheck check`: what it finds in models whose answers are known, and advice that can be copied."""
+"""`crosscheck check`: its verdicts on models whose answers are known, and advice that can be copied."""
 
 from __future__ import annotations
 
@@ -42,7 +42,9 @@ FOUR_BAR = """<mujoco model="four bar"><option timestep="0.002"/>
 </worldbody>
 <equality><connect name="C" body1="coupler" body2="rocker" anchor="0.8 0 0.3"/></equality>
 </mujoco>"""
-PENDULUM_1, PENDULUM_2 = (next(each for each in SCENES if each.name == name) for name in ("pendulum_1", "pendulum_2"))
+PENDULUM_1, PENDULUM_2 = (
+    next(scene for scene in SCENES if scene.name == name) for name in ("pendulum_1", "pendulum_2")
+)
 PENDULUM = """
 import pymunk
 
@@ -63,44 +65,44 @@ def found_in(folder, text, name="model.xml", word="model.xml", duration=0.4, tol
 
 @pytest.fixture(scope="module")
 def shipped(tmp_path_factory):
-    """What is found in the four-bar as MuJoCo is shipped: several tests read it."""
+    """The check of the four-bar with MuJoCo's default settings: several tests read it."""
     return found_in(tmp_path_factory.mktemp("shipped"), FOUR_BAR)
 
 
 def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copied(tmp_path, shipped):
-    found = shipped
-    assert not found.met
-    # The soft loop's share is told by a law that knows no step: it explains most of the error, the step the rest.
-    parts = found.parts
-    assert parts.softness > found.tolerance
+    result = shipped
+    assert not result.met
+    # The soft loop's share follows from a law without a step: it explains most of the error, the step the rest.
+    parts = result.parts
+    assert parts.softness > result.tolerance
     assert parts.rest < 0.3 * parts.step
     assert parts.falling
-    assert found.opens is not None
-    assert found.opens.row.startswith("C ")
-    assert found.advised is not None
-    assert found.advised.error <= found.tolerance
-    told = answer_section(found)
-    assert told.sentences[0].endswith("the tolerance of 1e-4 is missed.")
-    option, default = told.code
+    assert result.opens is not None
+    assert result.opens.row.startswith("C ")
+    assert result.advised is not None
+    assert result.advised.error <= result.tolerance
+    reported = answer_section(result)
+    assert reported.sentences[0].endswith("the tolerance of 1e-4 is missed.")
+    option, default = reported.code
     mended = re.sub(r"<option [^/]*/>", option, FOUR_BAR).replace("<worldbody>", f"{default}<worldbody>", 1)
     again = found_in(tmp_path, mended)
     assert again.met
-    assert again.own_errors.largest == pytest.approx(found.advised.error, rel=1e-6)
+    assert again.own_errors.largest == pytest.approx(result.advised.error, rel=1e-6)
     assert again.verdict.endswith("the tolerance of 1e-4 is met.")
 
 
 def test_dampers_that_are_much_faster_than_the_motion_keep_their_declared_motion(tmp_path):
     """A rate of d / I, 1e6 / s here: an explicit method once overflowed in a step of the motion's own length."""
     damped = FOUR_BAR.replace('axis="0 1 0"', 'axis="0 1 0" damping="5"').replace('size="0.02"', 'size="0.002"')
-    found = found_in(tmp_path, damped)
-    assert 0 < found.parts.softness < 1e-3
-    assert found.parts.step < 1e-2
+    result = found_in(tmp_path, damped)
+    assert 0 < result.parts.softness < 1e-3
+    assert result.parts.step < 1e-2
 
 
 def test_lines_for_a_urdf_file_stand_in_mujocos_own_element_and_can_be_pasted(tmp_path):
     text = re.sub(r"<mujoco>.*?</mujoco>", "", urdf(PENDULUM_2.mechanism()), flags=re.DOTALL)
-    found = found_in(tmp_path, text, "chain.urdf", "chain.urdf", tolerance=1e-6)
-    (line,) = answer_section(found).code
+    result = found_in(tmp_path, text, "chain.urdf", "chain.urdf", tolerance=1e-6)
+    (line,) = answer_section(result).code
     assert line.startswith("<mujoco><option ")
     again = found_in(tmp_path, text.replace("</robot>", f"{line}</robot>"), "chain.urdf", "chain.urdf", tolerance=1e-6)
     assert again.met
@@ -116,45 +118,45 @@ CLASSES = '<default><default class="own"><joint damping="0"/></default></default
 )
 def test_an_equality_that_a_default_does_not_reach_is_named_in_the_advice(tmp_path, place, words):
     """A class has copied its parent's values before the lines come, so the model would stay soft without a word."""
-    own = FOUR_BAR.replace("<worldbody>", place or "<worldbody>", 1).replace("<connect", f"<connect {words}")
-    lines = answer_section(found_in(tmp_path, own)).code
+    model_text = FOUR_BAR.replace("<worldbody>", place or "<worldbody>", 1).replace("<connect", f"<connect {words}")
+    lines = answer_section(found_in(tmp_path, model_text)).code
     assert "an equality of a class, or with its own values, needs these values there" in lines[-1]
     if place:
-        assert not found_in(tmp_path, own.replace("</mujoco>", f"{''.join(lines[:2])}</mujoco>")).met
+        assert not found_in(tmp_path, model_text.replace("</mujoco>", f"{''.join(lines[:2])}</mujoco>")).met
         return
     values = re.search(r"(solref=.*)/></default>", lines[1])[1]  # type: ignore[index]
-    assert found_in(tmp_path, own.replace(words, values).replace("</mujoco>", f"{lines[0]}</mujoco>")).met
+    assert found_in(tmp_path, model_text.replace(words, values).replace("</mujoco>", f"{lines[0]}</mujoco>")).met
 
 
 def test_a_driven_linkage_of_pymunk_is_judged_with_all_forces_but_the_cranks(tmp_path):
     scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
-    found = found_in(tmp_path, script(PYMUNK, scene.mechanism(), 1e-3), "made.py", "made.py:make", step=1e-3)
-    # Of first order, so of the size of a step times a rate of 10 rad/s; the crank's own forces nobody knows.
-    assert 0 < found.own_errors.worst["reaction"] < 0.1
+    result = found_in(tmp_path, script(PYMUNK, scene.mechanism(), 1e-3), "made.py", "made.py:make", step=1e-3)
+    # First order: about a step times a rate of 10 rad/s; the crank's own forces are unknown.
+    assert 0 < result.own_errors.worst["reaction"] < 0.1
     assert (
         "motion",
         "all of it is prescribed, so a small error of the start has nothing to grow in",
-    ) in answer_section(found).facts
-    assert "0 freedoms by the rank" in report_sections(found)[1].sentences[0]
+    ) in answer_section(result).facts
+    assert "0 freedoms by the rank" in report_sections(result)[1].sentences[0]
 
 
 def test_a_crank_driven_by_armature_in_mujoco_is_judged_as_driven(tmp_path):
     scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
-    found = found_in(tmp_path, TUNED.text(scene.mechanism(), 1e-3))
-    # The file's bodies stand parallel to the world at the start, so angles are counted from there.
-    truth, judge = scene.motion(found.own.t).pose, found.judge.trajectory.pose
+    result = found_in(tmp_path, TUNED.text(scene.mechanism(), 1e-3))
+    # The file's bodies are parallel to the world at the start, so angles are measured from there.
+    truth, judge = scene.motion(result.own.t).pose, result.judge.trajectory.pose
     assert np.abs((judge - judge[0]) - (truth - truth[0])).max() < 1e-10
-    assert found.met
-    assert any("taken as driven at 10 rad/s" in note.reason for note in found.reading.notes)
+    assert result.met
+    assert any("taken as driven at 10 rad/s" in note.reason for note in result.reading.notes)
 
 
 def test_a_pymunk_pendulum_as_shipped_misses_by_its_step_and_the_advice_can_be_copied(tmp_path):
-    found = found_in(tmp_path, PENDULUM, "swing.py", "swing.py:make", tolerance=3e-3, step=0.01)
-    assert not found.met
-    assert not found.parts.divided
-    assert found.parts.falling
-    assert found.advised is not None
-    lines = answer_section(found).code
+    result = found_in(tmp_path, PENDULUM, "swing.py", "swing.py:make", tolerance=3e-3, step=0.01)
+    assert not result.met
+    assert not result.parts.divided
+    assert result.parts.falling
+    assert result.advised is not None
+    lines = answer_section(result).code
     step = float(re.search(r"--step (.*)$", lines[-1])[1])  # type: ignore[index]
     body = "\n".join(f"    {line}" for line in lines)
     mended = PENDULUM.replace("    return space", f"{body}\n    return space")
@@ -166,10 +168,10 @@ def test_the_judge_of_a_check_is_the_truth_of_a_scene():
     scene = FreeFourBar()
     judge = reference_motion(scene.mechanism(), 40, 0.01)
     truth = scene.motion(judge.trajectory.t)
-    own = measure_errors(scene.mechanism(), truth, judge.trajectory)
-    assert own.largest < 1e-10
-    assert own.worst["reaction"] < 1e-9
-    # What the judge says of its own error is no less than a hundredth of what it is, and no more than a lot above.
+    judge_errors = measure_errors(scene.mechanism(), truth, judge.trajectory)
+    assert judge_errors.largest < 1e-10
+    assert judge_errors.worst["reaction"] < 1e-9
+    # The judge's estimate of its own error is at least a hundredth of the true error.
     assert measure_errors(scene.mechanism(), judge.trajectory, judge.looser).largest < 1e-7
 
 
@@ -180,9 +182,9 @@ def test_a_drive_that_gives_way_is_damped_against_its_own_rate():
     give = RowRegularisation(none, np.full(3, 10.0), np.diag(none), np.full(3, np.nan))
     for rate in (3.0, 2.0):
         twist = np.array([[0.0, 0.0, rate]])
-        found = accelerations(at_rate, at_rate.pose, twist, 0.0, give)
+        result = accelerations(at_rate, at_rate.pose, twist, 0.0, give)
         # Rows without compliance: the rate's own row is -damping times the slip, exactly.
-        assert found[0] == pytest.approx([0.0, 0.0, 10.0 * (3.0 - rate)], abs=1e-12)
+        assert result[0] == pytest.approx([0.0, 0.0, 10.0 * (3.0 - rate)], abs=1e-12)
 
 
 def test_freedoms_modes_and_singular_positions_are_told():
@@ -191,7 +193,7 @@ def test_freedoms_modes_and_singular_positions_are_told():
     assert facts.freedoms == (1, 1)
     assert facts.redundant == 0
     assert facts.singular == ()
-    # A parallelogram stands in line at the start: its rows are dependent there, once more than elsewhere.
+    # A parallelogram is in line at the start: its rows have one more dependence there than elsewhere.
     line = FOUR_BAR.replace("0 0 0 0 0 0.3", "0 0 0 .3 0 0").replace('pos="0 0 0.3"', 'pos=".3 0 0"')
     line = line.replace("0 0 0 0.8 0 0.3", "0 0 0 .7 0 0").replace("0 0 0 0.1 0 0.6", "0 0 0 .3 0 0")
     line = line.replace('anchor="0.8 0 0.3"', 'anchor=".7 0 0"')
@@ -218,42 +220,42 @@ def test_the_stiffest_mode_is_that_of_a_spring_and_a_damper(damping, rate):
 def test_chaos_ends_the_horizon_and_a_disturbance_that_grows_as_the_time_does_not():
     regular = reference_motion(PENDULUM_1.mechanism(), 200, 0.01)
     assert regular.horizon == regular.trajectory.t[-1]
-    # 3,000 radians: what the rate is off by at the start grows as many times, and so does what is allowed.
+    # 3,000 radians: an initial error of the rate grows by this factor, and so does the allowed error.
     spinning = reference_motion(Disc(rate=1000.0).mechanism(), 300, 0.01)
     assert spinning.growth[-1] > 500
     assert spinning.horizon == pytest.approx(3.0, rel=1e-12)
     links = PENDULUM_2.mechanism()
     wild = replace(links, bodies=tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in links.bodies))
-    chaotic, known = reference_motion(wild, 1000, 0.015), reference_motion(wild, 1000, 0.015, tolerance=1e-10)
+    chaotic, expected = reference_motion(wild, 1000, 0.015), reference_motion(wild, 1000, 0.015, tolerance=1e-10)
     # A few times of the mechanism, which is 0.3 s: it is no sooner wild.
     t = chaotic.trajectory.t
     assert 1.0 < chaotic.horizon < t[-1]
-    before = t < chaotic.horizon
-    assert np.all(chaotic.growth[before] <= 100 * (1 + t[before] / wild.time_scale))
+    is_before_horizon = t < chaotic.horizon
+    assert np.all(chaotic.growth[is_before_horizon] <= 100 * (1 + t[is_before_horizon] / wild.time_scale))
     # The motion ends where the judge's own error exceeds a tenth of the tolerance.
-    assert known.cut
+    assert expected.cut
     assert not chaotic.cut
-    assert 0 < known.trajectory.t[-1] < t[-1]
-    assert np.max(present(known.trajectory.estimate)) < 1e-11 * max(1.0, wild.length_scale)
+    assert 0 < expected.trajectory.t[-1] < t[-1]
+    assert np.max(present(expected.trajectory.estimate)) < 1e-11 * max(1.0, wild.length_scale)
     with pytest.raises(InvalidMechanism, match="does not know the ideal motion to a tenth of the tolerance"):
         reference_motion(wild, 10, 0.1, tolerance=1e-20)
 
 
 def test_the_report_can_be_read_by_people_and_programs(shipped):
-    shown = picture_data_from_text(picture_data_of(shipped).as_text())
-    drawn = render_pictures(shown)
-    without_error = replace(shown, found=replace(shown.found, bars=shown.ideal.bars))
-    assert render_pictures(without_error)["worst"] != drawn["worst"]
-    told = report_sections(shipped, drawn)
+    displayed = picture_data_from_text(picture_data_of(shipped).as_text())
+    pictures = render_pictures(displayed)
+    without_error = replace(displayed, found=replace(displayed.found, bars=displayed.ideal.bars))
+    assert render_pictures(without_error)["worst"] != pictures["worst"]
+    reported = report_sections(shipped, pictures)
     screen = rendering.plain([answer_section(shipped)]).splitlines()
     assert len(screen) <= 30
     assert max(map(len, screen)) <= 120
-    page = rendering.html("four bar", told)
-    # As elements of one page the second drawing would be clipped by the first's frame.
+    page = rendering.html("four bar", reported)
+    # As elements of one page the second pictures would be clipped by the first's frame.
     assert page.count("data:image/svg+xml;base64,") == page.count("<img ") == 2
     assert "<svg" not in page
-    files = {title: f"{key}.svg" for key, (title, _) in drawn.items()}
-    assert "](errors.svg)" in rendering.markdown("four bar", told, files)
+    files = {title: f"{key}.svg" for key, (title, _) in pictures.items()}
+    assert "](errors.svg)" in rendering.markdown("four bar", reported, files)
     foreign = rendering.Section("", ("<i>",), (("why", "<i>"),), ("<i>",), header=("<i>",), rows=(("<i>",),))
     assert "<i>" not in rendering.html("<i>", [foreign])
     assert rendering.markdown("four bar", [foreign], {}).count("<i>") == 1  # in the lines to copy

@@ -31,8 +31,8 @@ WRITTEN = ("html", "junit", "markdown")  # options that name a report
 
 def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, capfd):
     (here / "four_bar.xml").write_text(FOUR_BAR)
-    words = ("check", "four_bar.xml", "--duration", 0.2, "--html", "out.html", "--markdown", "sub/out.md", "--json")
-    assert call(*words, "--tolerance", 1e-4) == 1
+    text = ("check", "four_bar.xml", "--duration", 0.2, "--html", "out.html", "--markdown", "sub/out.md", "--json")
+    assert call(*text, "--tolerance", 1e-4) == 1
     out, err = capfd.readouterr()
     assert json.loads(out)["met"] is False
     assert err.splitlines()[-1].endswith("the tolerance of 1e-4 is missed.")
@@ -98,8 +98,8 @@ def test_an_exported_script_runs_without_us_and_moves_as_the_truth_in_its_commen
     assert call("export", "free_four_bar", "--to", "pymunk", "--step", 1e-4, "--out", "alone.py") == 0
     text = (here / "alone.py").read_text()
     assert "crosscheck" not in text
-    told = subprocess.run([sys.executable, "-I", "alone.py"], cwd=here, capture_output=True, text=True, check=True)
-    last = told.stdout.splitlines()[-1]
+    reported = subprocess.run([sys.executable, "-I", "alone.py"], cwd=here, capture_output=True, text=True, check=True)
+    last = reported.stdout.splitlines()[-1]
     assert last.startswith("1.0000 s")
     poses = eval(last.split("s ", 1)[1])
     truth = {}
@@ -107,10 +107,10 @@ def test_an_exported_script_runs_without_us_and_moves_as_the_truth_in_its_commen
         name, numbers = line.lstrip("# ").split(": ")
         truth[name] = [float(part.split()[1]) for part in numbers.split(", ")]
     # As shipped, at a tenth of a millisecond: the motion is 2e-2 rad off after a second, and starts right.
-    for (x, y, angle), own in zip(poses, truth.values(), strict=True):
-        assert abs(x - own[0]) < 0.05
-        assert abs(y - own[1]) < 0.05
-        assert abs(angle - own[2]) < 0.1
+    for (x, y, angle), true_pose in zip(poses, truth.values(), strict=True):
+        assert abs(x - true_pose[0]) < 0.05
+        assert abs(y - true_pose[1]) < 0.05
+        assert abs(angle - true_pose[2]) < 0.1
 
 
 def test_a_view_without_a_display_is_an_animation_in_a_file(here, capfd, monkeypatch):
@@ -126,7 +126,7 @@ def test_a_view_without_a_display_is_an_animation_in_a_file(here, capfd, monkeyp
 
 
 class Window:
-    """What stands for the viewer's window: it stays open for three looks."""
+    """A substitute for the viewer's window: it is open for three queries."""
 
     last: ClassVar[Window]
 
@@ -226,7 +226,7 @@ def test_a_bad_model_is_one_sentence(tmp_path, word):
 def test_a_script_runs_in_its_own_folder_with_its_own_files_and_modules(tmp_path):
     home, paths = Path.cwd(), list(sys.path)
     (tmp_path / "length.txt").write_text("0.5")
-    for name in ("csv", "reference", "local"):  # Python's, ours and nobody's
+    for name in ("csv", "reference", "local"):  # modules of Python, of this suite, and of no package
         (tmp_path / f"{name}.py").write_text("MINE = True")
     (tmp_path / "swing.py").write_text(
         "import csv, local, pymunk, reference, sys\nassert csv.MINE and local.MINE and reference.MINE\n"
@@ -260,7 +260,7 @@ def test_what_is_left_out_is_known_by_its_word(tmp_path, element, sentence):
     ("switch_off", "model"), [(of_mujoco, lambda: mujoco.MjModel.from_xml_string("<mujoco/>")), (of_pymunk, Space)]
 )
 def test_the_help_names_all_that_can_be_switched_off(switch_off, model):
-    with pytest.raises(ValueError, match="--without is 'rain'") as told:
+    with pytest.raises(ValueError, match="--without is 'rain'") as reported:
         switch_off(model(), "rain")
-    words = str(told.value).split("must be one of ")[1].split(", ")
-    assert [word for word in words if word not in re.findall(r"\w+", SWITCHED_OFF)] == []
+    text = str(reported.value).split("must be one of ")[1].split(", ")
+    assert [label for label in text if label not in re.findall(r"\w+", SWITCHED_OFF)] == []

@@ -1,4 +1,4 @@
-"""Cells on a cluster: the same rows as the pool's, each once, whatever becomes of workers; none of other versions."""
+"""A cluster gives the same rows as the pool, each once, even if workers die; other versions are refused."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tests.toys import Disc, FailingToy, SlowToy, Toy
 distributed = pytest.importorskip(
     "distributed", reason="Dask comes with the extra `cluster`: pip install -e '.[cluster]'"
 )
-# Dask leaves sockets to the garbage collector.
+# Dask leaves sockets open until garbage collection.
 pytestmark = [
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
@@ -36,10 +36,10 @@ pytestmark = [
 
 @pytest.fixture
 def workers():
-    """A scheduler with two workers, which come back when they are killed."""
+    """A scheduler with two workers, which are restarted when they are killed."""
     start: Any = distributed.LocalCluster
-    terms = {"threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "memory_limit": None, "silence_logs": 50}
-    with start(n_workers=2, **terms) as cluster:
+    options = {"threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "memory_limit": None, "silence_logs": 50}
+    with start(n_workers=2, **options) as cluster:
         yield cluster
     gc.collect()
 
@@ -55,9 +55,9 @@ def test_a_local_cluster_gives_the_same_rows_and_answers_as_the_pool(tmp_path):
         assert cluster is not None
         assert run_into(store, items, supervised=cluster.supervise) == 5
         assert run_into(store, items, supervised=cluster.supervise) == 0
-        there = {row.key: untimed(row) for row in store.get(cells).values()}
+        on_cluster = {row.key: untimed(row) for row in store.get(cells).values()}
         assert store.answers(items[4:])
-    assert there == {row.key: untimed(row) for row in run_cells(cells)}
+    assert on_cluster == {row.key: untimed(row) for row in run_cells(cells)}
 
 
 def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(workers, monkeypatch):
@@ -66,15 +66,15 @@ def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(workers, 
     cells = [Cell(Disc(), Toy(), every) for every in (1, 2, 901)]
     with connect_cluster(workers.scheduler_address) as cluster:
         assert cluster is not None
-        found = {cell.every: result for cell, result, _ in cluster.supervise(end_the_supervisor, cells, 60.0)}
-    lost = found.pop(901)
-    assert isinstance(lost, Loss)
-    assert lost.outcome == Outcome.LOST
-    assert lost.sentence.startswith("every worker ended that ran it: KilledWorker")
-    assert found == {1: "fine", 2: "fine"}
+        results = {cell.every: result for cell, result, _ in cluster.supervise(end_the_supervisor, cells, 60.0)}
+    missing = results.pop(901)
+    assert isinstance(missing, Loss)
+    assert missing.outcome == Outcome.LOST
+    assert missing.sentence.startswith("every worker ended that ran it: KilledWorker")
+    assert results == {1: "fine", 2: "fine"}
 
 
-def test_without_workers_a_run_ends_after_a_while_in_a_sentence(workers, monkeypatch):
+def test_without_workers_a_run_ends_after_a_timeout_with_a_reason(workers, monkeypatch):
     monkeypatch.setattr(clusters, "WORKERS_WITHIN", 5.0)
     with connect_cluster(workers.scheduler_address) as cluster:
         assert cluster is not None

@@ -1,4 +1,4 @@
-"""The program's ends: each status, one line and no traceback, whatever becomes of its files, its pipes or Ctrl-C."""
+"""The program's ends: its exit status and one line without traceback, for failing files, closed pipes and Ctrl-C."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ ONE_CELL = ("free_four_bar", "--engine", "lagrange", "--variant", "euler baumgar
 def call(*words):
     """The exit status of the command line, in this process."""
     with pytest.raises(SystemExit) as ending:
-        program.main([str(word) for word in words])
+        program.main([str(label) for label in words])
     return ending.value.code
 
 
@@ -65,16 +65,16 @@ def test_a_second_run_has_nothing_to_run_unless_its_store_was_damaged(here, capf
     assert call("run", *ONE_CELL) == FINE
     assert "0 of 1 cells run" in capfd.readouterr().out
     (here / "crosscheck-results" / "cells.sqlite").write_text("no results\n" * 1000)
-    for words in (("report",), ("show", ONE_CELL[0])):
-        assert call(*words) == REFUSED
+    for text in (("report",), ("show", ONE_CELL[0])):
+        assert call(*text) == REFUSED
         assert "is damaged" in one_line(capfd.readouterr().err)
     assert call("run", *ONE_CELL) == FINE
     out, err = capfd.readouterr()
     assert "cells.sqlite.damaged-1" in one_line(err)
     assert "1 of 1 cells run" in out
     assert call("show", ONE_CELL[0]) == FINE
-    kept = {"cells.sqlite", "cells.sqlite.damaged-1", "truths"}
-    assert {path.name for path in (here / "crosscheck-results").iterdir()} == kept
+    remaining = {"cells.sqlite", "cells.sqlite.damaged-1", "truths"}
+    assert {path.name for path in (here / "crosscheck-results").iterdir()} == remaining
     assert {path.name for path in here.iterdir()} == {"crosscheck-results"}
 
 
@@ -88,7 +88,7 @@ def test_reading_commands_make_no_store(words, here, capfd):
 
 
 def one_stored(folder):
-    """As after a run of ONE_CELL."""
+    """A store with the row of ONE_CELL, as after its run."""
     with Store(folder / "crosscheck-results" / "cells.sqlite") as store:
         store.put(blank(Cell(FreeFourBar(), Lagrange("euler", "baumgarte"), 1), Outcome.FINISHED))
 
@@ -107,16 +107,16 @@ def test_an_incomplete_grid_is_not_published(here, monkeypatch, capfd):
     texts = checkout(here / "checkout", monkeypatch)
     one_stored(here)
     assert call("report", "--publish") == REFUSED
-    said = one_line(capfd.readouterr().err)
-    left, total = (int(said.split()[place]) for place in (4, 6))
-    assert 0 < total - left <= 1
-    assert said.endswith("crosscheck run --full\n")
+    message = one_line(capfd.readouterr().err)
+    stored, total = (int(message.split()[position]) for position in (4, 6))
+    assert 0 < total - stored <= 1
+    assert message.endswith("crosscheck run --full\n")
     assert {name: (here / "checkout" / name).read_text() for name in texts} == texts
     assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite"}
 
 
 def test_nothing_is_published_without_an_engine_whose_rows_are_published(here, monkeypatch, capfd):
-    """Its cells are not missing, since nobody can run them: they would be taken out without a word."""
+    """Its cells do not count as missing, since they can't be run: their rows would be removed without notice."""
     texts = checkout(here / "checkout", monkeypatch)
     texts["reports/results/errors.csv"] = as_csv(
         [row(engine=name) for name in ("bullet", "pymunk", "mjx")], timings=False
@@ -126,14 +126,14 @@ def test_nothing_is_published_without_an_engine_whose_rows_are_published(here, m
     monkeypatch.setattr(registry, "ABSENT", absent)
     one_stored(here)
     assert call("report", "--publish") == REFUSED
-    said = one_line(capfd.readouterr().err)
-    assert "bullet needs pybullet; mjx needs jax" in said
-    assert "exudyn" not in said
+    message = one_line(capfd.readouterr().err)
+    assert "bullet needs pybullet; mjx needs jax" in message
+    assert "exudyn" not in message
     assert {name: (here / "checkout" / name).read_text() for name in texts} == texts
 
 
 def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkeypatch):
-    """With a grid of one cell and one page of one line, since rendering is not the subject."""
+    """The grid has one cell and one page of one line, since rendering is not tested here."""
     checkout(here / "checkout", monkeypatch)
     cell = Cell(Disc(), Toy(), 1)
     monkeypatch.setattr(catalogue, "PAGES", (PAGE,))
@@ -165,11 +165,11 @@ def test_files_are_replaced_whole_or_not_at_all(tmp_path, monkeypatch):
     def texts():
         return {path: path.read_text() for path in tmp_path.iterdir()}
 
-    for ends, told in (
+    for ends, reported in (
         ([None, None, full], pytest.raises(files.FileTrouble, match=r"c\.md can't be written \(No space.*make room")),
         ([KeyboardInterrupt], pytest.raises(KeyboardInterrupt)),
     ):
-        with monkeypatch.context() as patched, told:
+        with monkeypatch.context() as patched, reported:
             patched.setattr(files.os, "fsync", Mock(side_effect=ends))
             write_whole(new, "make room")
         assert texts() == old
@@ -182,8 +182,8 @@ def test_files_are_replaced_whole_or_not_at_all(tmp_path, monkeypatch):
     assert texts() == new
 
 
-def test_a_pipe_is_written_into_and_stays_one(tmp_path, capfd):
-    """As root, a file would otherwise take the place of /dev/null."""
+def test_output_into_a_pipe_does_not_replace_the_pipe(tmp_path, capfd):
+    """Otherwise a run as root would replace /dev/null by a file."""
     pipe = tmp_path / "a.gif"
     os.mkfifo(pipe)
     reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
@@ -209,7 +209,7 @@ def test_a_pipe_is_written_into_and_stays_one(tmp_path, capfd):
         (KeyboardInterrupt(), INTERRUPTED, ""),
     ],
 )
-def test_each_ending_has_its_status_and_its_line(error, status, line, monkeypatch, capfd):
+def test_each_exception_has_its_exit_status_and_its_message(error, status, line, monkeypatch, capfd):
     monkeypatch.setattr(commands, "invoke", Mock(side_effect=error))
     assert call("list") == status
     assert capfd.readouterr() == ("", line)
@@ -232,7 +232,7 @@ def test_without_a_command_there_is_help_and_nothing_on_stderr(capfd):
     ],
 )
 def test_an_option_of_one_value_is_not_taken_twice(words, option, capfd):
-    """The last one alone would be run without a word."""
+    """Otherwise only the last value would be used, without notice."""
     assert call(*words) == REFUSED
     assert f"{option} is given 2 times" in one_line(capfd.readouterr().err)
 
@@ -263,9 +263,9 @@ def test_a_reader_that_goes_away_ends_the_program_without_a_word():
 
 
 def test_closed_streams_are_no_reason_to_fail(tmp_path):
-    """And no file takes the number of a closed stream, to be written into."""
-    words = [sys.executable, "-m", "reports", "run", *ONE_CELL, "--results", str(tmp_path)]
-    process = subprocess.run(["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh", *words], env=environment())
+    """No file may get the number of a closed stream, since output would be written into it."""
+    text = [sys.executable, "-m", "reports", "run", *ONE_CELL, "--results", str(tmp_path)]
+    process = subprocess.run(["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh", *text], env=environment())
     assert process.returncode == FINE
     with closing(Store(tmp_path / "cells.sqlite")._connection) as connection:
         assert connection.execute("select count(*) from results").fetchone() == (1,)

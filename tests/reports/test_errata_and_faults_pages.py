@@ -1,4 +1,4 @@
-"""Faults of engines and slips of the book: scripts print what documents say, and engines rule as derivatives do."""
+"""Faults of engines and slips of the book: scripts print the documented output; derivatives confirm the verdicts."""
 
 from __future__ import annotations
 
@@ -55,10 +55,10 @@ def documented(name: str) -> list[str]:
     """The outputs that the document of a script shows, each with its release on top."""
     (text,) = (text for path in UPSTREAM.iterdir() if f"{name}.py" in (text := path.read_text(encoding="utf-8")))
     if "_cost" not in name:
-        after = text.partition(f"`{name}.py`")[2]
-        return [after.partition("```text\n")[2].partition("\n```")[0]]
-    before = text.partition(f"<summary>{name}.py")[0].partition("## What it costs over time")[2]
-    return re.findall(r"```text\n(.*?)\n```", before.rpartition("</details>")[2], re.DOTALL)
+        later = text.partition(f"`{name}.py`")[2]
+        return [later.partition("```text\n")[2].partition("\n```")[0]]
+    earlier = text.partition(f"<summary>{name}.py")[0].partition("## What it costs over time")[2]
+    return re.findall(r"```text\n(.*?)\n```", earlier.rpartition("</details>")[2], re.DOTALL)
 
 
 @pytest.mark.parametrize("name", sorted(scripts()))
@@ -69,22 +69,22 @@ def test_the_output_of_a_script_agrees_with_its_document(name):
     package = "mujoco-core" if name.startswith("mujoco") else "pymunk"
     printed = printed_apart(name)
     if name in MENDED:
-        assert all(is_right(float(expected), float(found)) for expected, found in RESULT.findall(printed))
+        assert all(is_right(float(expected), float(result)) for expected, result in RESULT.findall(printed))
     same = [output for output in documented(name) if re.search(rf" {metadata.version(package)}\b(?! with)", output)]
     for output in same:  # none for a fault of earlier releases, or where a newer release is installed
-        numbers, before = (np.array(RESULT.findall(text), dtype=float) for text in (printed, output))
-        assert numbers == pytest.approx(before, rel=1e-12)
+        numbers, earlier = (np.array(RESULT.findall(text), dtype=float) for text in (printed, output))
+        assert numbers == pytest.approx(earlier, rel=1e-12)
         now = {row[:2]: list(map(float, row[2].split())) for row in TABLE.findall(printed)}
-        shown = {row[:2]: list(map(float, row[2].split())) for row in TABLE.findall(output)}
-        assert now.keys() == shown.keys()
-        for key, values in shown.items():  # two digits are printed
+        displayed = {row[:2]: list(map(float, row[2].split())) for row in TABLE.findall(output)}
+        assert now.keys() == displayed.keys()
+        for key, values in displayed.items():  # two digits are printed
             assert now[key] == pytest.approx(values, rel=0.1)
     if not same:
         assert name.removesuffix("_cost") in MENDED or metadata.version(package) not in ("7.3.1", "4.0.1")
 
 
 def test_a_groove_drives_the_wrong_velocity_to_zero():
-    """Rounding of some twenty operations, and of the velocity's own size."""
+    """Bound of the rounding errors of about twenty operations and of the velocity itself."""
     for offset in OFFSETS.offsets:
         assert measured_across(offset) == pytest.approx(predicted_across(offset), rel=1e-12)
 
@@ -145,23 +145,23 @@ def test_several_engines_confirm_each_right_formula_and_contradict_the_printed_o
 
 
 def test_the_motion_of_a_wrong_mechanism_contradicts_the_right_formula():
-    """A referee that could not fail would be none: with a bar a hundredth too long, no formula fits the bars' ends."""
+    """The referee must be able to fail: with a bar that is 1 % too long, no formula fits the ends of the bars."""
     mechanism = referees.double_pendulum()
     length = next(mistake for mistake in mistakes(mechanism) if mistake.kind == "length")
     motion = mistaken(REFEREES[-1], length, 1e-2).build(mechanism, referees.WINDOW_SPACING)(referees.RUN_SAMPLES, 1)
-    found = referees._pendulum(SampleWindow(motion.pose[-referees.POINTS :], motion.twist[-referees.POINTS :]))
-    assert max(found[number].agreement for number in (23, 25)) > 1e-3
+    result = referees._pendulum(SampleWindow(motion.pose[-referees.POINTS :], motion.twist[-referees.POINTS :]))
+    assert max(result[number].agreement for number in (23, 25)) > 1e-3
 
 
 def test_an_engine_that_fails_is_reported_and_the_others_decide():
     first, other = TASKS[0], TASKS[-1]
     aborted = Answer(Outcome.ABORTED, "no such thing")
-    ruled, lost = rulings([(first, aborted), (other, answer_to(other)), (other, Answer(Outcome.UNSUPPORTED))])
-    assert lost == ["pymunk extended where a disc rolls off a round hill: **aborted**: no such thing"]
+    ruled, missing = rulings([(first, aborted), (other, answer_to(other)), (other, Answer(Outcome.UNSUPPORTED))])
+    assert missing == ["pymunk extended where a disc rolls off a round hill: **aborted**: no such thing"]
     assert {ruling.about for ruling in ruled} == {other.question}
     poses = np.full_like(answer_to(first).array("pose"), np.nan)
-    _, lost = rulings([(first, replace(answer_to(first), values={"pose": poses, "twist": poses}))])
-    assert lost == ["pymunk extended where a disc rolls off a round hill: its motion is not finite"]
+    _, missing = rulings([(first, replace(answer_to(first), values={"pose": poses, "twist": poses}))])
+    assert missing == ["pymunk extended where a disc rolls off a round hill: its motion is not finite"]
 
 
 def test_a_verdict_has_the_errors_of_both_formulas_against_derivative_and_engines():
@@ -176,7 +176,7 @@ def test_a_verdict_has_the_errors_of_both_formulas_against_derivative_and_engine
 def test_the_command_prints_every_slip_once_and_refuses_an_unknown_one(capfd):
     assert call("errata") == FINE
     out = capfd.readouterr().out
-    numbers = [int(found) for found in re.findall(r"^(\d+)\s", out, re.MULTILINE)]
+    numbers = [int(result) for result in re.findall(r"^(\d+)\s", out, re.MULTILINE)]
     assert numbers == sorted(slip.number for slip in (*ERRATA, *WORD_SLIPS))
     assert digits(ERRATA[2].values.printed) in out
     assert call("errata", "3") == REFUSED

@@ -63,9 +63,9 @@ def test_what_a_scene_s_own_code_does_is_one_line(here, monkeypatch, capfd, head
         monkeypatch.setattr(known, "SLEEPING", 10.0)
     (here / "odd_scene.py").write_text(f"{SCENE}    __hash__ = Disc.__hash__\n    def {head}\n        {deed}\n")
     assert call("run", "odd_scene.py") == REFUSED
-    told = one_line(capfd.readouterr().err)
-    assert told.startswith("crosscheck: odd_scene.py: ")
-    assert sentence in told
+    reported = one_line(capfd.readouterr().err)
+    assert reported.startswith("crosscheck: odd_scene.py: ")
+    assert sentence in reported
     assert not (here / "crosscheck-results").exists()
 
 
@@ -81,9 +81,9 @@ def test_what_a_scene_s_own_code_does_is_one_line(here, monkeypatch, capfd, head
 def test_a_scene_of_no_duration_or_samples_is_refused(here, text, telling):
     path = here / f"odd_{abs(hash(text))}.py"  # a name of its own: modules stay
     path.write_text(f"{SCENE}    {text}\n")
-    with pytest.raises(ValueError, match=r"\w") as told:
+    with pytest.raises(ValueError, match=r"\w") as reported:
         load(str(path), catalogue.SCENE)
-    assert telling in str(told.value)
+    assert telling in str(reported.value)
 
 
 @pytest.mark.parametrize("deed", ["raise RuntimeError('no')", "return float('nan')", "return 'long'"])
@@ -103,10 +103,10 @@ def forks(file):
     """In the child too it returns its file, as an engine does that forks and forgets; the child's is a lock on it."""
     import fcntl
 
-    held = os.open(file, os.O_CREAT | os.O_WRONLY)
-    fcntl.flock(held, fcntl.LOCK_EX)
+    stored = os.open(file, os.O_CREAT | os.O_WRONLY)
+    fcntl.flock(stored, fcntl.LOCK_EX)
     if os.fork():
-        os.close(held)
+        os.close(stored)
     elif file.name == "1":
         time.sleep(1e4)
     return file
@@ -115,8 +115,8 @@ def forks(file):
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
 def test_a_job_that_forks_is_answered_once_and_its_child_is_ended(tmp_path):
     files = [tmp_path / str(number) for number in range(3)]
-    told = list(supervise(forks, files, 20.0, workers=2))
-    assert sorted((item, result) for item, result, _ in told) == [(file, file) for file in files]
+    reported = list(supervise(forks, files, 20.0, workers=2))
+    assert sorted((item, result) for item, result, _ in reported) == [(file, file) for file in files]
     for path in files:
         with path.open("w") as file:
             wait_until(lambda file=file: is_free(file))
@@ -153,7 +153,7 @@ def test_a_page_of_a_scene_with_tags_in_its_name_has_none():
 
 
 COMMANDS = {
-    name: [option for each in commands.command(name).params for option in each.opts if option.startswith("--")]
+    name: [option for param in commands.command(name).params for option in param.opts if option.startswith("--")]
     for name in sorted(commands.COMMANDS)
 }
 FREE = ("", " ", "\x1b[31m", "\udcff", "file\nname", "x" * 5000, "é" * 300)  # and what a shell would split
@@ -167,26 +167,26 @@ WORDS = (*FREE, *SEVERAL.split(), "9" * 30, "mujoco tuned")
 
 def wrong_line(chance: random.Random) -> list[str]:
     name = chance.choice([*COMMANDS])
-    words = [name]
+    text = [name]
     for _ in range(chance.randint(0, 3)):
-        words += [chance.choice(COMMANDS[name]), chance.choice(WORDS)] if chance.random() < 0.7 else []
-        words += [chance.choice(WORDS)] if chance.random() < 0.3 else []
-    words.insert(1 if chance.random() < 0.5 else len(words), "nope_nope" if chance.random() < 0.75 else "--nonsense")
-    return words  # each has something that no command takes: a right one would do its work
+        text += [chance.choice(COMMANDS[name]), chance.choice(WORDS)] if chance.random() < 0.7 else []
+        text += [chance.choice(WORDS)] if chance.random() < 0.3 else []
+    text.insert(1 if chance.random() < 0.5 else len(text), "nope_nope" if chance.random() < 0.75 else "--nonsense")
+    return text  # each has something that no command takes: a right one would do its work
 
 
 def test_a_wrong_command_line_is_one_line(here, capfd):
     chance = random.Random(22)
     for _ in range(40):
-        words = wrong_line(chance)
-        status = call(*words)
+        text = wrong_line(chance)
+        status = call(*text)
         out, err = capfd.readouterr()
-        assert status in (FINE, BROKEN, REFUSED), words
-        assert "Traceback" not in out + err, words
-        assert (out + err).replace("\n", "").isprintable(), words
+        assert status in (FINE, BROKEN, REFUSED), text
+        assert "Traceback" not in out + err, text
+        assert (out + err).replace("\n", "").isprintable(), text
         if status == REFUSED:  # above the line there may be one of progress
-            told = [line.startswith("crosscheck: ") for line in err.splitlines()]
-            assert (sum(told), told[-1]) == (1, True), (words, err)
+            reports = [line.startswith("crosscheck: ") for line in err.splitlines()]
+            assert (sum(reports), reports[-1]) == (1, True), (text, err)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What a notebook, a script and somebody's own tests use: the module planar_crosscheck, importers and fixtures."""
+"""The module planar_crosscheck, importers and fixtures, as notebooks, scripts and users' tests use them."""
 
 from __future__ import annotations
 
@@ -39,27 +39,28 @@ def test_the_lines_of_the_modules_first_words_run_as_they_stand(tmp_path, monkey
     assert {row.outcome for row in values["rows"]} == {"finished"}
     assert planar_crosscheck.run("free_four_bar", "pymunk", every=[100]) == values["rows"]  # stored
     assert planar_crosscheck.report().is_file()
-    shown = values["beside"]._repr_html_()
-    for words in ("mujoco default at 2 ms", "<th>largest</th>", "data:image/svg+xml"):
-        assert words in shown
+    displayed = values["beside"]._repr_html_()
+    for text in ("mujoco default at 2 ms", "<th>largest</th>", "data:image/svg+xml"):
+        assert text in displayed
 
 
 def test_a_linkage_is_bars_between_points_that_stand_where_they_are_said_to():
-    found = linkage(POINTS, BARS, "AD")
-    for body, (first, second) in zip(found.bodies, BARS.values(), strict=True):
+    result = linkage(POINTS, BARS, "AD")
+    for body, (first, second) in zip(result.bodies, BARS.values(), strict=True):
         x, y, angle = body.pose
         length = math.dist(POINTS[first], POINTS[second])
         assert body.mass == pytest.approx(length)
         assert body.inertia == pytest.approx(length**3 / 12)
         ends = np.array([x, y]) + np.outer([-length / 2, length / 2], [math.cos(angle), math.sin(angle)])
         np.testing.assert_allclose(ends, [POINTS[first], POINTS[second]], atol=1e-15)
-    assert found.degrees_of_freedom() == (1, 1)
+    assert result.degrees_of_freedom() == (1, 1)
     # A third bar at a point, and one that hangs freely.
-    more = linkage({**POINTS, "E": (1.5, 0.6)}, {**BARS, "arm": "CE"}, "AD")
-    assert [joint.name for joint in more.joints] == ["A", "B", "D", "C", "C 2"]
-    assert more.degrees_of_freedom() == (2, 2)
+    extra = linkage({**POINTS, "E": (1.5, 0.6)}, {**BARS, "arm": "CE"}, "AD")
+    assert [joint.name for joint in extra.joints] == ["A", "B", "D", "C", "C 2"]
+    assert extra.degrees_of_freedom() == (2, 2)
     drawings = [
-        planar_crosscheck.draw(more, pose)._repr_svg_() for pose in (None, more.pose, more.pose + np.array([0.3, 0, 1]))
+        planar_crosscheck.draw(extra, pose)._repr_svg_()
+        for pose in (None, extra.pose, extra.pose + np.array([0.3, 0, 1]))
     ]
     xml.fromstring(drawings[0])
     assert drawings[0] == drawings[1] != drawings[2]
@@ -81,13 +82,13 @@ def test_what_is_no_linkage_is_refused_in_a_sentence(points, bars, ground, sente
 
 def test_a_comparison_is_the_engines_run_beside_the_scenes_own_truth(monkeypatch):
     scene = FreeFourBar()
-    found = planar_crosscheck.compare(scene.mechanism(), "pymunk tuned", dt=1e-3, duration=0.5)
-    assert len(found.run.t) == 251  # about SAMPLES, and whole numbers of steps apart
+    result = planar_crosscheck.compare(scene.mechanism(), "pymunk tuned", dt=1e-3, duration=0.5)
+    assert len(result.run.t) == 251  # about SAMPLES, and whole numbers of steps apart
     assert planar_crosscheck.compare(scene.mechanism(), "pymunk", 0.1, 0.1).title == "pymunk default at 100 ms"
-    truth = scene.motion(found.run.t)
-    assert np.abs(found.truth.pose - truth.pose).max() < 1e-9
-    off = np.abs(found.run.pose - truth.pose)[..., 2].max()
-    assert found.errors.worst["angle"] == pytest.approx(off, rel=1e-6)
+    truth = scene.motion(result.run.t)
+    assert np.abs(result.truth.pose - truth.pose).max() < 1e-9
+    off = np.abs(result.run.pose - truth.pose)[..., 2].max()
+    assert result.errors.worst["angle"] == pytest.approx(off, rel=1e-6)
     with pytest.raises(ValueError, match="no engine is called 'pymunky'; there are pymunk default"):
         planar_crosscheck.compare(scene.mechanism(), "pymunky", 1e-3)
     with pytest.raises(ValueError, match="dt is 3 s and duration"):
@@ -95,11 +96,11 @@ def test_a_comparison_is_the_engines_run_beside_the_scenes_own_truth(monkeypatch
     # pandas is not needed, and where it is there it is given columns of equal length.
     pandas = SimpleNamespace(DataFrame=lambda data, index: (data, index), Index=lambda values, name: tuple(values))
     monkeypatch.setitem(sys.modules, "pandas", pandas)
-    columns, index = found.frame()
+    columns, index = result.frame()
     assert {len(column) for column in columns.values()} == {len(index)}
-    assert {len(column) for column in found.run.table().values()} == {len(found.run.t)}
-    np.testing.assert_array_equal(found.run.table()["angle 2"], found.run.pose[:, 2, 2])
-    assert found.run._repr_html_().count("<tr>") == 7
+    assert {len(column) for column in result.run.table().values()} == {len(result.run.t)}
+    np.testing.assert_array_equal(result.run.table()["angle 2"], result.run.pose[:, 2, 2])
+    assert result.run._repr_html_().count("<tr>") == 7
 
 
 def test_models_are_read_as_files_and_as_objects(tmp_path):
@@ -112,10 +113,10 @@ def test_models_are_read_as_files_and_as_objects(tmp_path):
     space = values["make"]()
     assert isinstance(space, pymunk.Space)
     assert importers.pymunk.read(space) == importers.pymunk.read(f"{tmp_path / 'swing.py'}:make")
-    found = planar_crosscheck.check(space, duration=0.2, step=0.01, quick=True)
-    assert found.data["step"] == 0.01
-    assert "<svg" not in found._repr_html_()  # pictures are images of their own
-    assert "data:image/svg+xml" in found._repr_html_()
+    result = planar_crosscheck.check(space, duration=0.2, step=0.01, quick=True)
+    assert result.data["step"] == 0.01
+    assert "<svg" not in result._repr_html_()  # pictures are images of their own
+    assert "data:image/svg+xml" in result._repr_html_()
     with pytest.raises(ValueError, match=r"it is dict; give a file, a mujoco\.MjModel or a pymunk\.Space"):
         planar_crosscheck.check({})
 
@@ -146,7 +147,7 @@ def test_engine(crosscheck):
 
 
 def test_a_test_of_anybodys_passes_fails_with_the_lines_to_paste_and_says_what_is_missing(pytester, monkeypatch):
-    monkeypatch.setattr(engines.conformance, "CHECKS", tuple(each for each in CHECKS if each.name in FEW))
+    monkeypatch.setattr(engines.conformance, "CHECKS", tuple(check for check in CHECKS if check.name in FEW))
     pytester.makeconftest('pytest_plugins = ["planar_crosscheck_pytest"]')
     folder = pytester.mkdir("sub")
     (folder / "test_mine.py").write_text(THEIRS)

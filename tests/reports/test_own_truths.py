@@ -1,4 +1,4 @@
-"""Users' models with a motion of their own, known in closed form, which is what the judge has to find in them."""
+"""The judge finds the motion of users' models whose motion is known in closed form."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -76,8 +76,8 @@ TURNS: dict[str, tuple[str, str, float, float, Any]] = {
 
 @pytest.mark.parametrize("case", TURNS)
 def test_an_actuator_turns_a_wheel_as_mujoco_documents(case):
-    more, flags, control, rate, angle = TURNS[case]
-    reading = mjcf(WHEEL, f"<actuator>{more}</actuator>", flags, rate, control)
+    extra, flags, control, rate, angle = TURNS[case]
+    reading = mjcf(WHEEL, f"<actuator>{extra}</actuator>", flags, rate, control)
     t, turn = judged_turn(reading)
     wanted = np.array(angle(t) if callable(angle) else angle / INERTIA * t**2 / 2, dtype=float)
     np.testing.assert_allclose(np.abs(turn), np.abs(wanted), rtol=0, atol=CLOSE)
@@ -92,12 +92,12 @@ def test_a_limit_that_the_velocity_reaches_is_seen():
 
 @pytest.mark.parametrize(("active", "flags"), [("false", ""), ("true", 'constraint="disable"')])
 def test_an_equality_that_is_switched_off_holds_nothing(active, flags):
-    more = f'<equality><weld name="glue" body1="l" active="{active}"/></equality>'
-    reading = mjcf(LIFT, more, flags)
+    text = f'<equality><weld name="glue" body1="l" active="{active}"/></equality>'
+    reading = mjcf(LIFT, text, flags)
     assert any(note.element == "equality 'glue'" for note in reading.notes)
     t, fallen = judged_turn(reading, coordinate=1)
     np.testing.assert_allclose(fallen, -9.81 * t**2 / 2, rtol=0, atol=CLOSE)
-    t, fallen = judged_turn(mjcf(LIFT, more.replace(active, "true")), coordinate=1)
+    t, fallen = judged_turn(mjcf(LIFT, text.replace(active, "true")), coordinate=1)
     np.testing.assert_allclose(fallen, 0, rtol=0, atol=CLOSE)
 
 
@@ -111,19 +111,19 @@ LIMITS = {
 def test_a_limit_of_a_servos_force_is_named_with_the_time_at_which_it_is_reached(name):
     """q = q'0 / W sin(W t) with W^2 = g^2 k / I; the actuator's force k g q grows to 0.6 and the joint's to 1.2."""
     k, gear, rate = 3.0, 2.0, 1.0
-    _, own, joint, element = LIMITS[name]
-    more = f'<actuator><position name="servo" joint="a" kp="{k}" gear="{gear}" {own}/></actuator>'
-    reading = mjcf(WHEEL, more, rate=rate, joint=joint)
+    _, linkage, joint, element = LIMITS[name]
+    text = f'<actuator><position name="servo" joint="a" kp="{k}" gear="{gear}" {linkage}/></actuator>'
+    reading = mjcf(WHEEL, text, rate=rate, joint=joint)
     fast = sqrt(gear**2 * k / INERTIA)
     at = math.asin(0.6 / (k * gear) * fast / rate) / fast
     with pytest.raises(Unsupported, match=rf"^{element} reaches the limit of its force at") as refused:
         check(reading, "servo", 1.0, 1e-3)
-    words = str(refused.value)
-    time = float(words.split(" at ")[1].split(" s")[0])
+    message = str(refused.value)
+    time = float(message.split(" at ")[1].split(" s")[0])
     assert at <= time <= at + 0.005  # motions are looked at every 1 ms, and three digits are printed
-    assert words.endswith(left_out("forcelimit"))
+    assert message.endswith(left_out("forcelimit"))
     # In the advised duration, and with the limit switched off, the same model is checked.
-    duration = float(words.split("--duration ")[1].split(";")[0])
+    duration = float(message.split("--duration ")[1].split(";")[0])
     assert check(reading, "servo", duration, 1e-3, plan=NOTHING).met
     without = read_mjcf(reading.model.planar.model, reading.model.planar.data, ("forcelimit",))  # type: ignore[attr-defined]
     assert check(without, "servo", 0.5, 1e-2, plan=NOTHING).met
@@ -143,7 +143,7 @@ def test_a_limit_is_seen_that_is_passed_between_two_samples():
 
 @pytest.mark.parametrize("flag", ["", 'gravity="disable"'])
 def test_what_is_applied_to_joints_and_bodies_acts_in_its_direction(flag):
-    """Forces and torques that stand in the data: on a free body off its frame, and on a hinge."""
+    """Forces and torques that are given in the data: on a free body off its frame, and on a hinge."""
     box = '<body name="f" pos="2 0 0"><freejoint/><inertial pos=".3 0 .1" mass="2" diaginertia=".5 .5 .5"/></body>'
     world = f"<worldbody>{WHEEL.format('')}{box}</worldbody>"
     model = mujoco.MjModel.from_xml_string(f'<mujoco><option><flag contact="disable" {flag}/></option>{world}</mujoco>')
@@ -222,14 +222,14 @@ def test_both_ends_of_a_groove_are_ends(speed):
     space.add(GrooveJoint(space.static_body, body, (-0.6, 0.0), (0.6, 0.0), (0.0, 0.0)))
     with pytest.raises(
         Unsupported, match=r"GrooveJoint 1 reaches its end at 0.[57]0?[0-9]? s.*give a longer groove"
-    ) as found:
+    ) as result:
         check(read_space(space, 0.01), "groove", 2.0, 1e-3)
-    assert f"at {0.5 if speed > 0 else 0.7:.3g}" in str(found.value)
+    assert f"at {0.5 if speed > 0 else 0.7:.3g}" in str(result.value)
 
 
 @pytest.mark.parametrize("masks", [(1, 1), (2, 2), (2, 1)], ids=["the first's", "the second's", "neither"])
 def test_shapes_meet_only_if_the_filters_of_both_allow_it(masks):
-    """pymunk itself tells: its own bodies fly through each other, or do not."""
+    """pymunk is the oracle: its own bodies fly through each other, or do not."""
     bodies = disc((-1.0, 0.0)), disc((1.0, 0.0))
     space = space_of(*bodies)
     for body, mine, mask, speed in zip(bodies, (1, 2), masks, (1.0, -1.0), strict=True):
@@ -241,7 +241,7 @@ def test_shapes_meet_only_if_the_filters_of_both_allow_it(masks):
     t = np.arange(101) / 50
     poses = np.zeros((101, 2, 3))
     poses[:, 0, 0], poses[:, 1, 0] = t - 1, 1 - t
-    seen = [each.t for each in model.obstacles(t, poses, np.zeros_like(poses))]
+    seen = [obstacle.t for obstacle in model.obstacles(t, poses, np.zeros_like(poses))]
     for _ in range(200):
         space.step(0.01)
     flew_through = bodies[0].position.x > 0.9
@@ -287,7 +287,7 @@ def test_a_body_that_may_fall_asleep_is_named_with_the_time():
     with pytest.raises(Unsupported, match=r"^body 1: it is asleep at the start"):
         read_space(space, 0.01)
     bob.activate()  # pymunk (7.3.1) ends the process where a space with a sleeping body is freed
-    # Awake it is checked: told to leave sleep out, or too fast for it.
+    # It is checked if it is awake: with sleep left out, or too fast to sleep.
     assert check(read_space(swinging(0.3, 0.02), 0.001, ["sleep"]), "awake", 1.0, 1e-1, plan=NOTHING).met
     assert check(read_space(swinging(0.3, 1e-5), 0.001), "fast", 1.0, 1e-1, plan=NOTHING).met
 
@@ -298,9 +298,9 @@ def test_without_a_threshold_of_its_own_a_space_counts_what_gravity_adds_in_a_st
         check(read_space(swinging(0.3, 0.0), 0.01), "asleep", 0.5, 1e-1)
     spinning = disc()
     spinning.angular_velocity = 1.0
-    still = space_of(spinning)
-    still.sleep_time_threshold, still.idle_speed_threshold = 0.1, 0.2
-    assert check(read_space(still, 0.01), "spinning", 0.5, 1e-1, plan=NOTHING).met
+    spinning_space = space_of(spinning)
+    spinning_space.sleep_time_threshold, spinning_space.idle_speed_threshold = 0.1, 0.2
+    assert check(read_space(spinning_space, 0.01), "spinning", 0.5, 1e-1, plan=NOTHING).met
 
 
 def test_limits_have_two_ends_that_count_from_the_first_body_to_the_second():
@@ -312,8 +312,8 @@ def test_limits_have_two_ends_that_count_from_the_first_body_to_the_second():
     poses[1, 1, 2], poses[2, 1, 0] = 1.5, 0.6  # both within
     assert model.obstacles(np.arange(3.0), poses, np.zeros_like(poses)) == []
     poses[1, 1, 2], poses[2, 1, 0] = -0.6, 0.4
-    found = model.obstacles(np.arange(3.0), poses, np.zeros_like(poses))
-    assert [(each.t, each.words.split()[0]) for each in found] == [(1.0, "RotaryLimitJoint"), (2.0, "SlideJoint")]
+    result = model.obstacles(np.arange(3.0), poses, np.zeros_like(poses))
+    assert [(item.t, item.words.split()[0]) for item in result] == [(1.0, "RotaryLimitJoint"), (2.0, "SlideJoint")]
 
 
 def test_a_space_that_was_stepped_and_opened_says_so():

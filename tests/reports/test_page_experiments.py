@@ -48,7 +48,7 @@ def row(scene, engine, every: int, samples: int | None = None) -> Measurement:
 
 def test_an_impossible_scene_is_refused():
     two = ((0.5, 0.0), (-0.5, 0.0))
-    for why, build in (
+    for reason, build in (
         ("links is 2", lambda: SpinningRing(links=2)),
         ("skate_on_slope", lambda: SkateOnSlope().motion([-1.0])),
         ("2 points and 3 angles", lambda: HeldBySkates(points=two)),
@@ -56,7 +56,7 @@ def test_an_impossible_scene_is_refused():
         ("leave 1 freedom", lambda: HeldBySkates(points=two, angles=(0.5, -0.5))),
         ("leave 1 freedom", lambda: HeldBySkates(points=(*two, (0.0, 0.4)), angles=(math.pi / 2, math.pi / 2, 0.0))),
     ):
-        with pytest.raises(InvalidMechanism, match=why):
+        with pytest.raises(InvalidMechanism, match=reason):
             build()
 
 
@@ -70,10 +70,10 @@ def test_a_square_reaches_its_corner_at_the_time_of_energy_conservation_and_meth
     with pytest.raises(ValueError, match="can't turn to"):
         scene.motion([scene.corner * 1.01])
     for engine in (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED, Lagrange("rk4", "projection")):
-        found = row(scene, engine, 1)
-        assert not Outcome(found.outcome).comparable
-        assert found.sentence
-        assert math.isnan(found.angle) or found.angle < 1e-3
+        result = row(scene, engine, 1)
+        assert not Outcome(result.outcome).comparable
+        assert result.sentence
+        assert math.isnan(result.angle) or result.angle < 1e-3
 
 
 def test_errors_of_the_gears_leave_out_undetermined_forces():
@@ -110,15 +110,15 @@ def test_programs_of_the_skate_have_the_accuracy_that_the_page_states(program, b
 
 def test_a_comparison_ends_with_ideal_rolling_and_ignores_a_later_reset():
     scene, flat = RollingOnCircle(), RollingEllipse()
-    found = row(scene, mujoco.TUNED, 100)
-    assert Outcome(found.outcome).comparable
-    assert f"compared until {scene.comparable_until:.4g} s only" in found.sentence
-    whole, other = (trajectory_of(answer_to(Motion(Cell(each, mujoco.EXTENDED, 1)))) for each in (scene, flat))
-    shortened, note = stopped_where_it_ends(scene, whole)
-    assert shortened.t[-1] <= scene.comparable_until < whole.t[len(shortened.t)]
+    result = row(scene, mujoco.TUNED, 100)
+    assert Outcome(result.outcome).comparable
+    assert f"compared until {scene.comparable_until:.4g} s only" in result.sentence
+    total, other = (trajectory_of(answer_to(Motion(Cell(item, mujoco.EXTENDED, 1)))) for item in (scene, flat))
+    shortened, note = stopped_where_it_ends(scene, total)
+    assert shortened.t[-1] <= scene.comparable_until < total.t[len(shortened.t)]
     assert note
     for reset, expected in ((1.1, None), (0.5, 0.5)):
-        assert stopped_where_it_ends(scene, replace(whole, reset_at=reset))[0].reset_at == expected
+        assert stopped_where_it_ends(scene, replace(total, reset_at=reset))[0].reset_at == expected
     assert stopped_where_it_ends(flat, other) == (other, "")
 
 
@@ -192,11 +192,11 @@ def test_a_claim_that_rows_contradict_or_lack_is_reported():
 
 
 def test_a_known_deviation_of_rounding_is_read_as_such():
-    known = common.deviations("n_four_bar")
-    assert known["n_four_bar_2", "lagrange rk4 projection", "error"].rounding
-    assert not known["n_four_bar_2", "mujoco tuned", "reaction"].rounding
-    assert known["n_four_bar_2", "mujoco tuned", "reaction"].factor == 14
-    assert known["n_four_bar_40", "mujoco tuned", "outcome"].outcome is Outcome.RESET
+    expected = common.deviations("n_four_bar")
+    assert expected["n_four_bar_2", "lagrange rk4 projection", "error"].rounding
+    assert not expected["n_four_bar_2", "mujoco tuned", "reaction"].rounding
+    assert expected["n_four_bar_2", "mujoco tuned", "reaction"].factor == 14
+    assert expected["n_four_bar_40", "mujoco tuned", "outcome"].outcome is Outcome.RESET
 
 
 def test_each_claim_of_our_pages_is_evaluated_and_fails_without_rows():
@@ -208,9 +208,9 @@ def test_each_claim_of_our_pages_is_evaluated_and_fails_without_rows():
 def test_an_experiment_without_its_section_of_text_is_refused(tmp_path):
     text = "## One\n\nIt turns\n{{ times }} times.\n\nIt does.\n\n- times == 3\n- times > 2\n"
     (tmp_path / "experiments.md").write_text(text)
-    (one,) = common.described(str(tmp_path / "page.py"), Failure("One"), times=3)
-    assert (one.expected, one.remark) == ("It turns {{ times }} times.", "It does.")
-    assert (one.claims, one.context(Material({}))) == (("times == 3", "times > 2"), {"times": 3})
+    (experiment,) = common.described(str(tmp_path / "page.py"), Failure("One"), times=3)
+    assert (experiment.expected, experiment.remark) == ("It turns {{ times }} times.", "It does.")
+    assert (experiment.claims, experiment.context(Material({}))) == (("times == 3", "times > 2"), {"times": 3})
     with pytest.raises(ValueError, match=r"experiments\.md has the sections"):
         common.described(str(tmp_path / "page.py"), Failure("Two"))
 

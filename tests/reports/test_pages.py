@@ -1,4 +1,4 @@
-"""Every page can be read whatever was run, its links lead somewhere, and its programs run as they are printed."""
+"""Every page is readable for any set of rows, its links are valid, and its programs run as printed."""
 
 from __future__ import annotations
 
@@ -61,15 +61,15 @@ NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name !
 FROM_ROWS = tuple(page for page in PAGES if shown_cells(page))  # the others have none, or compute when written
 
 
-# Some errors stay and others fall: only of those that stay can a sentence say where.
+# Some errors have a plateau and others fall; only for a plateau can a sentence give its value.
 PLATEAU = ("however small the step", "at every step", "(plateau ")
 
 Rows = Mapping[Cell, Measurement]
 
 
 def some(rows: Rows, chance: random.Random) -> Rows:
-    """A part of the rows: single ones, engines, variants, scenes, steps and purposes taken away, others failed."""
-    kept = dict(rows)
+    """A part of the rows: rows, engines, variants, scenes, steps and purposes are removed, other rows have failed."""
+    remaining = dict(rows)
     for of in (
         lambda cell: cell.engine.name,
         lambda cell: cell.engine.variant,
@@ -77,22 +77,22 @@ def some(rows: Rows, chance: random.Random) -> Rows:
         lambda cell: cell.every,
         lambda cell: cell.purpose,
     ):
-        if kept and chance.random() < 0.3:
-            gone = of(chance.choice(list(kept)))
-            kept = {cell: row for cell, row in kept.items() if of(cell) != gone}
+        if remaining and chance.random() < 0.3:
+            gone = of(chance.choice(list(remaining)))
+            remaining = {cell: row for cell, row in remaining.items() if of(cell) != gone}
     share = chance.choice([0.0, 0.1, 0.5, 0.9, 0.99])
-    kept = {cell: row for cell, row in kept.items() if chance.random() >= share}
+    remaining = {cell: row for cell, row in remaining.items() if chance.random() >= share}
     failing, unknown = chance.choice([0.0, 0.1, 0.7, 1.0]), chance.choice([0.0, 0.0, 0.3])
-    for cell, row in kept.items():
+    for cell, row in remaining.items():
         if chance.random() < failing:
-            kept[cell] = blank(cell, chance.choice(FAILED), chance.choice(["", "a reason"]))
+            remaining[cell] = blank(cell, chance.choice(FAILED), chance.choice(["", "a reason"]))
         elif chance.random() < unknown:
-            kept[cell] = replace(row, **dict.fromkeys(chance.sample(NUMBERS, 4), math.nan))
-    return kept
+            remaining[cell] = replace(row, **dict.fromkeys(chance.sample(NUMBERS, 4), math.nan))
+    return remaining
 
 
 def prose(text: str) -> str:
-    """A page with a word for its lines of code, and for code among words."""
+    """The text of a page in which a placeholder stands for each block and span of code."""
     return re.sub(r"`[^`\n]+`", "CODE", re.sub(r"^```.*?^```$", "CODE", text, flags=re.DOTALL | re.MULTILINE))
 
 
@@ -100,32 +100,32 @@ def complaints(page: str, files: Mapping[str, str]) -> list[str]:
     """Defects of a page that a reader would notice."""
     text = prose(files[f"{page}.md"])
     sentences = re.sub(r"^\|.*$", "TABLE", text, flags=re.MULTILINE)
-    found = [f"{word} in the text" for word in ("{{", "{%", UNKNOWN_MARK, NOT_MEASURED) if word in text]
-    found += [line for line in text.splitlines() if re.search(r"\b(nan|None(?! of)|Undefined|Unmeasured)\b", line)]
+    results = [f"{label} in the text" for label in ("{{", "{%", UNKNOWN_MARK, NOT_MEASURED) if label in text]
+    results += [line for line in text.splitlines() if re.search(r"\b(nan|None(?! of)|Undefined|Unmeasured)\b", line)]
     for line in sentences.splitlines():
         if re.search(r"(^|[\s(])[,.;:)](\s|$)", line):
-            found.append(f"torn sentence: {line}")
+            results.append(f"torn sentence: {line}")
         if re.search(r"(?<!\|) - (rad|m|s|ms|N|off)\b", line):
-            found.append(f"no number: {line}")
-    found += [f"nothing follows: {match[0]}" for match in re.finditer(r":\n\n+(#.*|\Z)", sentences)]
-    shown = set(re.findall(r"\]\((\w+\.svg)\)", text))
-    drawn = {name for name in files if name.endswith(".svg")}
-    found += [f"picture without file: {name}" for name in shown - drawn]
-    found += [f"file without picture: {name}" for name in drawn - shown]
-    known = {page.document for page in PAGES} | {"index.md", "errors.csv", "timings.csv", "descriptions.csv"}
-    found += [f"dead link: {name}" for name in set(re.findall(r"\]\((\w+\.(?:md|csv))[)#]", text)) - known]
-    return found
+            results.append(f"no number: {line}")
+    results += [f"nothing follows: {match[0]}" for match in re.finditer(r":\n\n+(#.*|\Z)", sentences)]
+    displayed = set(re.findall(r"\]\((\w+\.svg)\)", text))
+    drawing = {name for name in files if name.endswith(".svg")}
+    results += [f"picture without file: {name}" for name in displayed - drawing]
+    results += [f"file without picture: {name}" for name in drawing - displayed]
+    expected = {page.document for page in PAGES} | {"index.md", "errors.csv", "timings.csv", "descriptions.csv"}
+    results += [f"dead link: {name}" for name in set(re.findall(r"\]\((\w+\.(?:md|csv))[)#]", text)) - expected]
+    return results
 
 
 @pytest.fixture
 def undrawn(monkeypatch):
-    """Pictures are made of nothing, since drawing them is what costs; which there are is decided as always."""
-    drawn = theme.svg
+    """Pictures are empty, since drawing is slow; the set of pictures is that of a real report."""
+    drawn_picture = theme.svg
     for module in [module for name, module in sys.modules.items() if name.startswith("reports")]:
         for name, value in list(vars(module).items()):
             if inspect.isfunction(value) and value.__annotations__.get("return") == "Figure":
                 monkeypatch.setattr(module, name, lambda *arguments, **settings: None)
-            elif value is drawn:
+            elif value is drawn_picture:
                 monkeypatch.setattr(module, name, lambda figure, title: "<svg/>")
     monkeypatch.setattr(rolling_drawings, "roulettes", lambda: None)
 
@@ -150,10 +150,10 @@ def test_a_page_is_readable_with_any_rows_and_answers(page, undrawn):
 def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
     """Charts of few rows are drawn, because these break axes and legends, and are cheap."""
     chance, rows = random.Random(page.name), page_rows(page)
-    few = {cell: rows[cell] for cell in chance.sample(list(rows), 12)}
-    for cell in list(few)[::2]:
-        few[cell] = replace(few[cell], **dict.fromkeys(chance.sample(NUMBERS, 6), math.nan))
-    for name, text in written(replace(page, failures=(), figures=lambda material: {}), few).items():
+    chosen_rows = {cell: rows[cell] for cell in chance.sample(list(rows), 12)}
+    for cell in list(chosen_rows)[::2]:
+        chosen_rows[cell] = replace(chosen_rows[cell], **dict.fromkeys(chance.sample(NUMBERS, 6), math.nan))
+    for name, text in written(replace(page, failures=(), figures=lambda material: {}), chosen_rows).items():
         assert not name.endswith(".svg") or text.startswith("<?xml")
 
 
@@ -161,8 +161,8 @@ def test_the_index_is_readable_with_any_rows():
     for seed in range(4):
         materials = {page: Material(some(page_rows(page), random.Random(f"{page.name} {seed}"))) for page in FROM_ROWS}
         text = render_index(materials, "the command")
-        drawn = {found.picture: "<svg/>" for found in findings(materials)}
-        assert complaints("index", {"index.md": text, **drawn}) == [], seed
+        drawing = {finding.picture: "<svg/>" for finding in findings(materials)}
+        assert complaints("index", {"index.md": text, **drawing}) == [], seed
         readme = render_readme((ROOT / "README.md").read_text(encoding="utf-8"), materials)
         assert "nan" not in readme
 
@@ -171,22 +171,22 @@ def test_the_index_is_readable_with_any_rows():
 def test_no_clause_is_left_out_if_all_rows_are_there(page, undrawn, monkeypatch):
     vanished: list[str] = []
 
-    def kept(clause: str) -> str:
-        if UNKNOWN_MARK in clause and not any(words in clause for words in PLATEAU):
+    def record_clause(clause: str) -> str:
+        if UNKNOWN_MARK in clause and not any(text in clause for text in PLATEAU):
             vanished.append(clause)
         return "" if UNKNOWN_MARK in clause else clause
 
-    monkeypatch.setitem(FILTERS, "if_measured", kept)
+    monkeypatch.setitem(FILTERS, "if_measured", record_clause)
     answers = {task: still(task) for task in all_tasks(page)}
-    # A body that stays where it is does not slip: what remarks say of motions needs the motions themselves.
-    said = (
+    # A body at rest does not slip, so remarks about motions need the real motions.
+    observed = (
         task
         for failure in page.failures
         if failure.context is not no_context
         for task in failure.tasks
         if not isinstance(task, NeighbourGrowth)  # takes seconds, and any growth makes a sentence
     )
-    material = Material(page_rows(page), answers | {task: answer_to(task) for task in said})
+    material = Material(page_rows(page), answers | {task: answer_to(task) for task in observed})
     assert complaints(page.name, render_page(page, material, "the command")) == []
     assert vanished == []
 
@@ -208,14 +208,14 @@ def test_no_clause_is_left_out_if_all_rows_are_there(page, undrawn, monkeypatch)
     ],
 )
 def test_a_missing_number_is_marked_and_removes_its_clause(template, said):
-    given = {
+    options = {
         "row": UNMEASURED,
         "rows": MissingAsNaN(),
         "unknown": math.nan,
         "nothing": None,
         "pictures": MissingAsNaN(drawn="drawn.svg"),
     }
-    assert without_marks(environment().from_string(template).render(given)) == said
+    assert without_marks(environment().from_string(template).render(options)) == said
 
 
 # The check of a user's model for which no setting is accurate enough and one run failed.
@@ -235,7 +235,7 @@ WALKED = {
 
 
 def still(task: Task, lost: bool = False) -> Answer:
-    """An invented answer: a body that stays where it started, or whose numbers are lost half-way."""
+    """An invented answer: a body at rest, or one whose numbers are NaN from the middle on."""
     values: dict[str, Any]
     match task:
         case Motion(cell=cell):
@@ -275,15 +275,15 @@ def still(task: Task, lost: bool = False) -> Answer:
 
 
 def some_answers(tasks: Iterable[Task], chance: random.Random) -> dict[Task, Answer]:
-    """To a part of the tasks, some of them failed."""
-    found = {}
+    """Answers to a part of the tasks; some of them have failed."""
+    results = {}
     for task in tasks:
         match chance.choice(["missing", "failed", "lost", "still", "still"]):
             case "failed":
-                found[task] = Answer(chance.choice(FAILED), chance.choice(["", "a reason"]))
+                results[task] = Answer(chance.choice(FAILED), chance.choice(["", "a reason"]))
             case "lost" | "still" as kind:
-                found[task] = still(task, kind == "lost")
-    return found
+                results[task] = still(task, kind == "lost")
+    return results
 
 
 def test_a_motion_that_is_not_finite_is_reported_in_its_line():
@@ -291,8 +291,8 @@ def test_a_motion_that_is_not_finite_is_reported_in_its_line():
     material = Material({}, {Motion(cell): still(Motion(cell))})
     with pytest.raises(ZeroDivisionError):  # an error of our code must not become an observation
         observe(material, cell, "a step", lambda run: f"{1 / 0}")
-    lost = Material({}, {Motion(cell): still(Motion(cell), lost=True)})
-    [line] = observe(lost, cell, "a step", lambda run: "all is well")
+    missing = Material({}, {Motion(cell): still(Motion(cell), lost=True)})
+    [line] = observe(missing, cell, "a step", lambda run: "all is well")
     assert line.outcome == "**diverged**: not finite from 5 s"
 
 
@@ -315,7 +315,7 @@ def anchors(file: str) -> frozenset[str]:
     Raises FileNotFoundError for a file of no page.
     """
     page = next((page for page in PAGES if file == page.document), None)
-    # The index is of all pages.
+    # The index contains all pages.
     text = (RESULTS / file).read_text(encoding="utf-8") if page is None else texts(page)[file]
     return frozenset(anchor(title) for title in headings(text))
 
@@ -348,8 +348,8 @@ def test_no_two_pages_have_the_same_file_name_and_none_has_that_of_the_index():
     assert generic_page(called("index"), (Toy(),)).document == "index_2.md"
     first = Page("x", "X", "One.", (called("one"),), (Toy(),))
     second = replace(first, scenes=(called("two"),))
-    kept, troubles = _without_doubles([first, second, replace(second, name="index")])
-    assert kept == (first,)
+    remaining, troubles = _without_doubles([first, second, replace(second, name="index")])
+    assert remaining == (first,)
     assert [trouble.partition(" is left out")[0] for trouble in troubles] == [
         "crosscheck.pages: the page 'x'",
         "crosscheck.pages: the page 'index'",
@@ -360,9 +360,9 @@ def test_engines_of_the_gate_are_names_or_references(tmp_path, monkeypatch):
     monkeypatch.setattr("sys.path", [*__import__("sys").path])
     assert _engines(["pymunk", "mujoco tuned"]) == ((), ("pymunk", "mujoco tuned"))
     (tmp_path / "own_toy.py").write_text("from tests.toys import Toy\nOWN = (Toy('a'), Toy('b'))\n")
-    found = _engines([f"{tmp_path}/own_toy.py:OWN", "engines.pymunk:TUNED"])
-    assert [engine.variant for engine in found[0]] == ["a", "b", "tuned"]
-    assert found[1] == ("toy a", "toy b", "pymunk tuned")
+    result = _engines([f"{tmp_path}/own_toy.py:OWN", "engines.pymunk:TUNED"])
+    assert [engine.variant for engine in result[0]] == ["a", "b", "tuned"]
+    assert result[1] == ("toy a", "toy b", "pymunk tuned")
     (tmp_path / "another.py").write_text("from tests.toys import Toy\nOTHER = Toy('tuned', name='pymunk')\n")
     with pytest.raises(pytest.UsageError, match="another engine is called 'pymunk tuned'; give it another name"):
         _engines([f"{tmp_path}/another.py"])
@@ -377,7 +377,7 @@ def test_pages_rendered_by_workers_equal_pages_of_one_process(tmp_path: Path) ->
         store.put(measure(next(c for c in shown_cells(pages[-1]) if c.engine.name == "pymunk"), repeat=False))
     with Store.read(path) as store:
         material = {page: material_of(page, store) for page in pages}
-    made = drawn(material, (), "make report", tmp_path)
-    alone = {page.name: render_page(page, given, "make report") for page, given in material.items()}
-    assert set(made) == {page.name for page in pages}
-    assert made == alone
+    built = drawn(material, (), "make report", tmp_path)
+    alone = {page.name: render_page(page, values, "make report") for page, values in material.items()}
+    assert set(built) == {page.name for page in pages}
+    assert built == alone

@@ -44,7 +44,7 @@ ENDS = {
     FailingToy("exit"): ("aborted", "exit status 3"),
     FailingToy("abort"): ("aborted", "Aborting due to Toy error: no such thing"),
 }
-# What ends well and leaves its process changed.
+# Jobs that succeed but change their process.
 LEAVES = (
     *("blocks signals", "changes environment", "changes folder"),
     *("closes streams", "installs handlers", "leaves threads"),
@@ -52,15 +52,15 @@ LEAVES = (
 
 
 def test_each_way_to_fail_is_an_outcome_of_its_own_and_sound_cells_keep_their_numbers():
-    sound = {Toy(factor=float(place)): place for place in range(1, 6)}
+    sound = {Toy(factor=float(index)): index for index in range(1, 6)}
     cells = [Cell(Disc(), toy, 1) for toy in (*ENDS, *sound)]
     rows = {row.settings: row for row in run_cells(cells, limit=0.5, workers=2)}
     for toy, (outcome, sentence) in ENDS.items():
         assert rows[repr(toy)].outcome == outcome, toy
         assert sentence in rows[repr(toy)].sentence
-    for toy, place in sound.items():
-        assert rows[repr(toy)].angle == pytest.approx(float(place) * cells[0].step ** 2, rel=1e-9)
-    # Apart: a busy machine needs more wall time for all others.
+    for toy, index in sound.items():
+        assert rows[repr(toy)].angle == pytest.approx(float(index) * cells[0].step ** 2, rel=1e-9)
+    # Run separately, since a busy machine needs more wall time for the others.
     (row,) = run_cells([Cell(Disc(), RoughToy("native sleep"), 1)], wall=1.0)
     assert (row.outcome, row.sentence) == ("timed out", "did not end within 1 s, and used less than 60 s of CPU time")
 
@@ -75,7 +75,7 @@ def test_no_change_of_a_process_by_a_job_reaches_the_next_one(capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_what_cannot_travel_is_a_failure_with_a_sentence():
+def test_a_value_that_can_not_be_pickled_is_a_failure_with_a_reason():
     items = ["process", threading.Lock(), "unreadable", "process"]
     results = [result for _, result, _ in supervise(act, items, limit=60.0, workers=1)]
     assert isinstance(results[0], int)
@@ -93,10 +93,10 @@ def test_a_cell_whose_worker_was_killed_is_tried_once_more_in_a_new_worker(tmp_p
         for row in run_cells(Cell(Disc(), RoughToy(name, folder=str(tmp_path / name)), 1) for name in names)
     }
     assert {row.outcome for row in rows.values()} == {Outcome.FINISHED}
-    # A crash that does not come back is a finding about the engine; that somebody kills processes is none.
+    # A crash that does not repeat is still a finding about the engine; a kill from outside is not.
     crash = "the first try aborted with signal 11 (SIGSEGV), the second went through"
     assert [rows[name].sentence for name in names] == ["", crash]
-    # The damage that one item leaves in native memory is not the next one's crash.
+    # Native memory that one item has damaged must not make the next item crash.
     answers = supervise(act, ["damage", "damage", "crash where damaged"], limit=60.0, workers=2)
     assert {item: result for item, result, _ in answers} == {"damage": None, "crash where damaged": "sound"}
 
@@ -124,14 +124,14 @@ def test_workers_that_end_while_they_start_are_replaced_or_reported_in_one_line(
 
 
 def test_exit_codes_are_distinguished():
-    for code, outside, words in (
+    for code, outside, text in (
         (-signal.SIGKILL, True, "killed from outside with signal 9 (SIGKILL)"),
         (-signal.SIGFPE, False, "aborted with signal 8 (SIGFPE)"),
         (-200, False, "aborted with signal 200 (unknown)"),
         (0xC0000005, False, "aborted with status 0xC0000005"),
         (None, True, "the process ended, nobody knows how"),
     ):
-        assert (from_outside(code), describe_exit(code)) == (outside, words)
+        assert (from_outside(code), describe_exit(code)) == (outside, text)
 
 
 class Killer:
@@ -147,8 +147,8 @@ class Killer:
     def arm(self) -> None:
         """One kill, after a tenth of a second at most."""
         if len(self._timers) < self._planned:
-            how = self._random.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV, None])
-            timer = threading.Timer(self._random.uniform(0.0, 0.1), self._kill, (how, self._random.random()))
+            way = self._random.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV, None])
+            timer = threading.Timer(self._random.uniform(0.0, 0.1), self._kill, (way, self._random.random()))
             timer.start()
             self._timers.append(timer)
 
@@ -165,9 +165,9 @@ class Killer:
             timer.join()
 
 
-def test_among_kills_every_row_is_there_once_and_right(monkeypatch):
+def test_with_killed_workers_every_row_is_returned_once_and_correct(monkeypatch):
     killer = Killer(8, monkeypatch)
-    cells = [Cell(Disc(), RoughToy("short sleep", factor=float(place)), 1) for place in range(16)]
+    cells = [Cell(Disc(), RoughToy("short sleep", factor=float(index)), 1) for index in range(16)]
     rows = []
     for row in run_cells(cells, workers=2, timed=False):
         rows.append(row)
@@ -178,7 +178,7 @@ def test_among_kills_every_row_is_there_once_and_right(monkeypatch):
     done = [row for row in rows if row.outcome == Outcome.FINISHED]
     for row in done:
         assert row.angle == pytest.approx(factors[row.settings] * row.step**2, rel=1e-9)
-    # Without an answer is only what was hit twice, and it says so.
+    # Only a cell that was killed twice has no answer, and its sentence states that.
     assert all(row.outcome in (Outcome.LOST, Outcome.ABORTED) for row in rows if row not in done)
     assert len(rows) - len(done) <= killer.kills // 2
     assert killer.kills > 3
@@ -209,7 +209,7 @@ if __name__ == "__main__":
 
 
 def test_workers_end_when_their_parent_is_gone(tmp_path):
-    """Also one whose native code holds the interpreter."""
+    """Workers end even if their native code holds the interpreter lock."""
     process = start_script(tmp_path, ORPHANS)
     kinds = ("sleep", "native spin")
     try:
@@ -244,7 +244,7 @@ def test_after_a_kill_the_next_run_continues_where_it_stopped(tmp_path):
         for _ in range(4):
             assert process.stdout.readline().strip()
     process.kill()
-    # A hang in a worker must not hold up the end: its wall limit alone would take eleven minutes.
+    # A hanging worker must not delay the end: its wall limit alone is eleven minutes.
     assert process.wait(timeout=60) != 0
     with Store(tmp_path / "cells.sqlite") as store:
         assert missing([Cell(Disc(), Toy(), every) for every in (1, 2, 3, 4)], store) == ()
@@ -276,7 +276,7 @@ def test_cells_of_a_scene_are_run_together_and_the_longest_first():
     ]
 
 
-def test_what_is_killed_from_outside_twice_is_reported_and_not_stored(tmp_path):
+def test_a_cell_whose_worker_is_killed_twice_from_outside_is_reported_and_not_stored(tmp_path):
     cells = [Cell(Disc(), RoughToy("kill"), 1), Cell(Disc(), Toy(), 1)]
     with Store(tmp_path / "cells.sqlite") as store:
         with pytest.raises(WorkersLost, match=r"1 of 2 cells are lost, the others are stored.*SIGKILL"):
@@ -285,7 +285,7 @@ def test_what_is_killed_from_outside_twice_is_reported_and_not_stored(tmp_path):
 
 
 class Aborting(Wrong):
-    """As native code does for a step that it can't divide by."""
+    """Native code aborts like this for a step that it can't divide by."""
 
     def build(self, mechanism, dt):
         if dt == 0:

@@ -37,33 +37,33 @@ def advised(page: Page) -> tuple[list[Program], list]:
     assert scene is not None
     rows = [row for row in judged(Material(page_rows(page)).sweep([scene]), page.quantity) if row.scene == scene.name]
     methods = tuple(method_name(engine) for engine in page.engines_of(scene))
-    found = advice(rows, page.quantity, methods)
-    made = advised_programs(scene, found, methods)
-    assert {each.method for each in made} == {each.row.method for each in found if each.row is not None}
-    return made, rows
+    result = advice(rows, page.quantity, methods)
+    built = advised_programs(scene, result, methods)
+    assert {item.method for item in built} == {item.row.method for item in result if item.row is not None}
+    return built, rows
 
 
 @named
 def test_a_program_has_the_motion_of_its_method_and_at_most_the_error_of_its_row(page):
     scene = page.advised_scene
     engines = {method_name(engine): engine for engine in page.engines_of(scene)}
-    made, rows = advised(page)
-    for each in made:
-        if not each.text:
+    built, rows = advised(page)
+    for item in built:
+        if not item.text:
             continue
-        names, said = run(each.text)
+        names, message = run(item.text)
         steps, duration = names["steps"], names["duration"]
         assert duration <= min(scene.duration, scene.horizon)
-        trajectory = engines[each.method].build(scene.mechanism(), duration / steps)(1, steps)
-        body, *end = re.findall(r"^(.*): x = (\S+) m, y = (\S+) m, angle = (\S+) rad$", said)[0]
-        told = re.findall(rf"^# Exact: {body}: x = (\S+) m, y = (\S+) m, angle = (\S+) rad$", each.text, re.M)[0]
+        trajectory = engines[item.method].build(scene.mechanism(), duration / steps)(1, steps)
+        body, *end = re.findall(r"^(.*): x = (\S+) m, y = (\S+) m, angle = (\S+) rad$", message)[0]
+        reported = re.findall(rf"^# Exact: {body}: x = (\S+) m, y = (\S+) m, angle = (\S+) rad$", item.text, re.M)[0]
         index = scene.mechanism().body_index(body)
         # Programs have twelve digits of the scene's numbers; a motion of some seconds makes that a few 1e-11.
-        assert np.asarray(names["end"]) == pytest.approx(trajectory.pose[-1, index], abs=1e-9), each.file
+        assert np.asarray(names["end"]) == pytest.approx(trajectory.pose[-1, index], abs=1e-9), item.file
         assert [float(value) for value in end] == pytest.approx(names["end"], abs=1e-10)
         exact = scene.motion([duration]).pose[0, index]
-        assert [float(value) for value in told] == pytest.approx(exact, abs=1e-10), each.file
-        (row,) = [row for row in rows if row.method == each.method and row.step == pytest.approx(duration / steps)]
+        assert [float(value) for value in reported] == pytest.approx(exact, abs=1e-10), item.file
+        (row,) = [row for row in rows if row.method == item.method and row.step == pytest.approx(duration / steps)]
         far = np.abs(exact - names["end"])
         assert np.hypot(*far[:2]) <= 1.01 * row.position + 1e-9
         assert far[2] <= 1.01 * row.angle + 1e-9
@@ -71,23 +71,23 @@ def test_a_program_has_the_motion_of_its_method_and_at_most_the_error_of_its_row
 
 @named
 def test_a_pages_block_gives_the_error_of_the_row_of_each_method_without_a_program(page, undrawn):
-    made, rows = advised(page)
+    built, rows = advised(page)
     blocks = [source for _, source in FENCED.findall(texts(page)[page.document])]
     (block,) = [source for source in blocks if "for method, every in {" in source]
-    said = {line.rpartition(": ")[0]: line.rpartition(": ")[2] for line in run(block)[1].splitlines()}
-    asked = {each.method: each.every for each in made if not each.text}
-    assert said.keys() == asked.keys()
-    for method, every in asked.items():
+    message = {line.rpartition(": ")[0]: line.rpartition(": ")[2] for line in run(block)[1].splitlines()}
+    requested = {item.method: item.every for item in built if not item.text}
+    assert message.keys() == requested.keys()
+    for method, every in requested.items():
         (row,) = [row for row in rows if row.method == method and row.every == every]
-        error, unit = said[method].split()
+        error, unit = message[method].split()
         assert unit == quantity(page.quantity).unit
         assert float(error) == pytest.approx(getattr(row, page.quantity), rel=0.01, abs=1e-12), method
 
 
 def test_each_program_belongs_to_a_method_of_its_scene():
     scenes = [(page.advised_scene, page.engines) for page in MECHANISMS if page.advised_scene is not None]
-    known = {file_of(scene.name, method_name(engine)) for scene, engines in scenes for engine in engines}
-    assert {f"{PROGRAM_FOLDER}/{path.name}" for path in (RESULTS / PROGRAM_FOLDER).glob("*.*")} <= known
+    expected = {file_of(scene.name, method_name(engine)) for scene, engines in scenes for engine in engines}
+    assert {f"{PROGRAM_FOLDER}/{path.name}" for path in (RESULTS / PROGRAM_FOLDER).glob("*.*")} <= expected
 
 
 def test_a_wrong_mass_changes_the_result_of_a_program():

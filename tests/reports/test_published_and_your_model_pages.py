@@ -70,10 +70,10 @@ def test_the_rocker_by_freudensteins_equation_agrees_with_the_scene():
 
 
 def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none():
-    told = answered(Newton(TRUTH))
-    assert all(largest_step(told, name) == max(NEWTON_STEPS) for name in NEWTON_BOUNDS)
+    reported = answered(Newton(TRUTH))
+    assert all(largest_step(reported, name) == max(NEWTON_STEPS) for name in NEWTON_BOUNDS)
     # The cosine alone causes this error of the period: a swing by 0.05 rad is slower by 0.05^2/16 than a small one.
-    assert told.array("period") == pytest.approx(1.1e-3, rel=0.05)
+    assert reported.array("period") == pytest.approx(1.1e-3, rel=0.05)
     wrong = np.degrees(freudenstein(np.zeros(1)) - NEWTON_FOUR_BAR.motion([0.0]).pose[0, 2, 2] + 0.01)
     assert np.abs(wrong) > NEWTON_BOUNDS["angle"]
 
@@ -86,8 +86,8 @@ def test_the_bounds_distinguish_default_and_tuned(answers):
 
 
 def test_the_page_has_a_line_for_each_method_and_leaves_out_what_was_not_run(answers):
-    lost = {Acrobot(PYMUNK): replace(answers[Acrobot(PYMUNK)], values={"drift": np.full(3, np.inf)})}
-    text = render_page(PAGE, Material({}, {**answers, **lost}), "the command")["published.md"]
+    missing = {Acrobot(PYMUNK): replace(answers[Acrobot(PYMUNK)], values={"drift": np.full(3, np.inf)})}
+    text = render_page(PAGE, Material({}, {**answers, **missing}), "the command")["published.md"]
     assert "| published | 3.55e-3 | 4.19e-6 | 1.52e-8 |" in text
     assert "| RK4 in the two angles | 3.55e-3 | 3.91e-6 | 1.28e-9 |" in text
     assert "| pymunk tuned | gave up | gave up | gave up |" in text
@@ -97,7 +97,7 @@ def test_the_page_has_a_line_for_each_method_and_leaves_out_what_was_not_run(ans
 
 @pytest.fixture(scope="module")
 def checks():
-    """The checks of shorter motions, which take a moment each, under the names of the page's own."""
+    """Checks of shorter motions, which are quick, under the names of the page's checks."""
     return {walk: answered(replace(walk, duration=0.3)) for walk in MODEL_CHECKS}
 
 
@@ -110,7 +110,7 @@ def test_the_page_has_the_results_of_the_checks(checks):
     text = render_page(YOUR_MODEL, Material({}, checks), "the command")["your_model.md"]
     for walk, answer in checks.items():
         advised = found(answer)["advised"]
-        assert all(words in text for words in (walk.text.strip(), advised["words"], *advised["lines"]))
+        assert all(text_value in text for text_value in (walk.text.strip(), advised["words"], *advised["lines"]))
     assert text.count(".svg)") == 6
     soft, hard, swing = (found(checks[walk])["parts"] for walk in MODEL_CHECKS)  # as their titles claim
     assert soft["softness"] > 1e-4
@@ -120,7 +120,7 @@ def test_the_page_has_the_results_of_the_checks(checks):
 
 @pytest.mark.slow
 def test_the_table_of_the_page_has_every_space_of_pymunks_examples_and_every_model_of_the_packages(tmp_path):
-    assert [asdict(found) for found in spaces()] == [row for row in others.rows() if row["source"] == "pymunk"]
+    assert [asdict(space) for space in spaces()] == [row for row in others.rows() if row["source"] == "pymunk"]
     if not unpacked(tmp_path):
         pytest.skip("pip finds no registry here")
-    assert [asdict(found) for found in models(tmp_path)] == [row for row in others.rows() if row["source"] != "pymunk"]
+    assert [asdict(space) for space in models(tmp_path)] == [row for row in others.rows() if row["source"] != "pymunk"]

@@ -51,9 +51,9 @@ def test_the_numbers_that_two_processors_give_agree_whichever_is_the_baseline():
     assert {line["quantity"] for line in told()} == {*NAMES}
     for line in told():
         name, carried = line["quantity"], amplified()[line["scene"], line["method"]]
-        one, other = float(line["one"]), float(line["other"])
-        assert agrees(name, one, other, carried), line
-        assert agrees(name, other, one, carried), line
+        first, second = float(line["one"]), float(line["other"])
+        assert agrees(name, first, second, carried), line
+        assert agrees(name, second, first, carried), line
 
 
 @pytest.fixture
@@ -61,9 +61,9 @@ def before(tmp_path: Path) -> dict[str, str]:
     """The published texts of a row."""
     (tmp_path / "errors.csv").write_text(as_csv([ROW], timings=False))
     (tmp_path / "timings.csv").write_text(as_csv([ROW], timings=True, header=f"a date\n{machine()}"))
-    found = read_published(tmp_path)
-    assert (found.machine, found.engines) == (machine(), ("toy",))
-    (texts,) = found.rows.values()
+    published = read_published(tmp_path)
+    assert (published.machine, published.engines) == (machine(), ("toy",))
+    (texts,) = published.rows.values()
     return dict(texts)
 
 

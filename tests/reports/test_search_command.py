@@ -1,5 +1,5 @@
-"""`crosscheck search` from beginning to end: stored as it arrives, asked once, printed, made small, and written as
-scripts, which run in a process that can't import this suite."""
+"""`crosscheck search` from beginning to end: results are stored as they arrive, computed once, printed, reduced,
+and written as scripts, which run in a process that can't import this suite."""
 
 from __future__ import annotations
 
@@ -47,11 +47,11 @@ def test_findings_are_told_made_small_and_written_and_the_page_shows_them(
     here: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     assert call(*FEW, "--seed", "1") == FINE
-    said = capfd.readouterr().out
-    assert "mujoco alone" in said
-    assert re.search(r"4 cases were asked in \d+ s\. The first finding came after [\d.]+ s, within 4 cases\.", said)
+    message = capfd.readouterr().out
+    assert "mujoco alone" in message
+    assert re.search(r"4 cases were asked in \d+ s\. The first finding came after [\d.]+ s, within 4 cases\.", message)
     assert re.search(
-        r"mujoco alone │ acceleration, a known fault │ .* │ +1 │ +0 │ +[0-3] │ +joint", said
+        r"mujoco alone │ acceleration, a known fault │ .* │ +1 │ +0 │ +[0-3] │ +joint", message
     )  # what draws a finding again
     folder = here / "crosscheck-results" / SEARCH
     findings = sorted(folder.glob("*.json"))
@@ -61,7 +61,7 @@ def test_findings_are_told_made_small_and_written_and_the_page_shows_them(
         assert finding["error"] > finding["bound"]
         assert "mujoco.mj_forward" in path.with_suffix(".py").read_text()
     stored = (folder / STORE).stat().st_mtime_ns
-    assert call(*FEW, "--seed", "1") == FINE  # everything is stored: nothing is asked again
+    assert call(*FEW, "--seed", "1") == FINE  # everything is stored: nothing is run again
     assert (folder / STORE).stat().st_mtime_ns == stored
     assert call("report") == FINE
     page = (here / "crosscheck-results" / "search.md").read_text()
@@ -75,12 +75,12 @@ def test_a_case_that_ends_its_process_is_found_and_the_others_are_kept(
     here: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     (here / "fatal.py").write_text(FATAL)
-    words = ("search", "--engine", "fatal.py", "--kinds", "pin", "--cases", "4", "--oracles", "relations")
-    assert call(*words, "--workers", "1") == FINE
-    told = capfd.readouterr().out
-    assert re.search(r"aborted +│ +[1-4] ", told), told
-    assert "4 cases were asked" in told
-    assert "4 cases are stored" in told
+    text = ("search", "--engine", "fatal.py", "--kinds", "pin", "--cases", "4", "--oracles", "relations")
+    assert call(*text, "--workers", "1") == FINE
+    reported = capfd.readouterr().out
+    assert re.search(r"aborted +│ +[1-4] ", reported), reported
+    assert "4 cases were asked" in reported
+    assert "4 cases are stored" in reported
 
 
 @pytest.mark.parametrize(
@@ -105,11 +105,11 @@ def test_wrong_values_are_refused_in_a_line(
 
 
 def test_fresh_seeds_are_drawn_until_the_time_is_over_and_told(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    words = ("--engine", "mujoco", "--variant", "alone", "--cases", "3", "--seconds", "0.1", "--workers", "1")
-    assert call("search", "--fresh", *words) == FINE
+    command = ("--engine", "mujoco", "--variant", "alone", "--cases", "3", "--seconds", "0.1", "--workers", "1")
+    assert call("search", "--fresh", *command) == FINE
     assert "cases were asked" in capfd.readouterr().out
     with Store.read(here / "crosscheck-results" / SEARCH / STORE) as store:
-        seeds = {json.loads(words)[1] for words in store.load_references()}
+        seeds = {json.loads(reference)[1] for reference in store.load_references()}
     assert seeds
     assert not seeds & {*plan.published_seeds()}
 
@@ -119,20 +119,20 @@ def test_seeds_are_those_of_the_last_commit_and_without_git_of_the_sources(
 ) -> None:
     (tmp_path / "reports").mkdir()
     monkeypatch.setattr(plan, "ROOT", tmp_path)
-    found = []
+    results = []
     for text in ("a", "b"):
         (tmp_path / "reports" / "source.py").write_text(text)
         plan.seed_origin.cache_clear()
-        found.append((plan.seed_origin()[0], plan.published_seeds()))
+        results.append((plan.seed_origin()[0], plan.published_seeds()))
     (tmp_path / ".git").mkdir()
     git = subprocess.CompletedProcess([], 0, "0123abcd\n")
     monkeypatch.setattr(plan.subprocess, "run", lambda *_, **__: git)
     plan.seed_origin.cache_clear()
-    found.append((plan.seed_origin()[0], plan.published_seeds()))
+    results.append((plan.seed_origin()[0], plan.published_seeds()))
     plan.seed_origin.cache_clear()
-    assert [rule for rule, _ in found] == [plan.SOURCES_RULE, plan.SOURCES_RULE, plan.COMMIT_RULE]
-    assert len({seeds for _, seeds in found}) == 3
-    assert found[2][1][0] == int(hashlib.sha256(b"0123abcd 1").hexdigest()[:8], 16) // 2
+    assert [rule for rule, _ in results] == [plan.SOURCES_RULE, plan.SOURCES_RULE, plan.COMMIT_RULE]
+    assert len({seeds for _, seeds in results}) == 3
+    assert results[2][1][0] == int(hashlib.sha256(b"0123abcd 1").hexdigest()[:8], 16) // 2
 
 
 def test_what_is_published_is_drawn_from_seeds_that_nobody_chose() -> None:
@@ -156,7 +156,7 @@ runpy.run_path(sys.argv[1], run_name="__main__")
 
 
 def differences(text: str, folder: Path) -> list[float]:
-    """What a script prints of itself, in order."""
+    """The numbers that a script prints, in order."""
     path = folder / "finding.py"
     path.write_text(text, encoding="utf-8")
     run = subprocess.run([sys.executable, "-c", ALONE, path], capture_output=True, text=True, check=False, cwd=folder)
@@ -170,7 +170,7 @@ def script_of(engine: Engine, kinds: tuple[str, ...], check: str, number: int) -
     if engine.missing:
         pytest.skip(engine.missing)
     subject = Adapted(engine)
-    cases = (subject.draw(SEED, each, kinds, 0) for each in range(number, number + 20))
+    cases = (subject.draw(SEED, item, kinds, 0) for item in range(number, number + 20))
     return next(
         text for case in cases if set(kinds) <= set(case.kinds) and (text := write_script(subject, case, check, number))
     )
@@ -188,7 +188,7 @@ def script_of(engine: Engine, kinds: tuple[str, ...], check: str, number: int) -
 def test_a_script_shows_an_engines_error_without_the_suite(
     engine: Engine, kinds: tuple[str, ...], falls: float, tmp_path: Path
 ) -> None:
-    """At two steps; with smaller ones a right engine comes nearer to what an independent calculation gives."""
+    """With a smaller step a right engine comes nearer to an independent calculation."""
     coarse, fine = differences(script_of(engine, kinds, "motion", 0), tmp_path)
     assert fine < max(coarse / falls, 1e-9)
     assert coarse < 0.1

@@ -1,4 +1,4 @@
-"""What the search asks: right adapters pass, and every mistake that is put into one is found."""
+"""The oracles of the search: right adapters pass, and every mistake that is put into one is found."""
 
 # pyright: reportAttributeAccessIssue=false
 # MuJoCo's module has no list of its names.
@@ -81,9 +81,9 @@ LINKED = ("pin", "rod", "gear", "weld")
     ids=lambda value: getattr(value, "variant", None),
 )
 def test_adapters_obey_the_law_that_they_declare(engine: Any, kinds: tuple[str, ...]) -> None:
-    found = results(engine, kinds, 16)
-    assert sum(bool(result.errors) for result in found) >= 5, "nearly nothing was asked"
-    assert {check for result in found for check in result.faults} == set()
+    result_value = results(engine, kinds, 16)
+    assert sum(bool(result.errors) for result in result_value) >= 5, "nearly nothing was asked"
+    assert {check for result in result_value for check in result.faults} == set()
 
 
 @pytest.mark.parametrize("part", [0, *(pytest.param(part, marks=pytest.mark.slow) for part in range(1, 8))])
@@ -109,21 +109,25 @@ def test_a_finding_is_as_it_was_written_down(path: Path) -> None:
     """An open one is still there, one that is repaired does not come back; `reason` says whose it is."""
     finding: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     assert finding["reason"].startswith(("upstream: ", "ours: "))
-    subject = next(each for each in known_subjects(['["mujoco alone"]']) if each.name == finding["subject"])
+    subject = next(
+        known_subject
+        for known_subject in known_subjects(['["mujoco alone"]'])
+        if known_subject.name == finding["subject"]
+    )
     result = replay_finding(finding, subject)
     assert (finding["check"] in result.faults) == finding["open"], result
 
 
 def test_a_light_bodys_equations_are_solved_to_its_own_digits_beside_heavy_ones() -> None:
-    """From masses of 1e-13 to 1e9 kg: what is left of M (a - free) = J^T f, beside the terms of each of its lines."""
+    """From masses of 1e-13 to 1e9 kg: the residual of M (a - free) = J^T f, relative to the terms of each line."""
     mechanism = build(Adapted(TUNED).draw(1199539626, 8, ALL_KINDS, 4))
     rows, inertias = mechanism.rows(mechanism.pose), mechanism.inertias.reshape(-1)
     free = mechanism.unconstrained(mechanism.pose, mechanism.twist)
     solved = constrained(rows, mechanism.bias(mechanism.pose, mechanism.twist), mechanism.inertias, free)
-    left = inertias * (solved.motion - free).reshape(-1) - rows.T @ solved.force
-    terms = inertias * np.abs(solved.motion).reshape(-1) + np.abs(rows.T) @ np.abs(solved.force)
+    rest = inertias * (solved.motion - free).reshape(-1) - rows.T @ solved.force
+    term_sizes = inertias * np.abs(solved.motion).reshape(-1) + np.abs(rows.T) @ np.abs(solved.force)
     assert np.max(inertias) > 1e15 * np.min(inertias)
-    assert np.abs(left[terms > 0] / terms[terms > 0]).max() < 1e-14
+    assert np.abs(rest[term_sizes > 0] / term_sizes[term_sizes > 0]).max() < 1e-14
 
 
 # ------------------------------------------------------------------------------------- mistakes put into adapters
@@ -249,9 +253,9 @@ def test_in_cases_with_much_noise_a_change_of_mujocos_model_is_found(
 def test_a_groove_off_the_centre_of_mass_misses_its_velocities_and_obeys_the_law_on_the_page_of_faults() -> None:
     """The wrong one of Chipmunk's own formula: K^-1 in two directions, of which the part along the normal is kept."""
     cases = [plan.GROOVE_SUBJECT.draw(SEED, number, ("pin", "slot"), 0) for number in range(9)]
-    found = [plan.GROOVE_SUBJECT.ask(case, 0, ("instant",)).errors for case in cases if "slot" in case.kinds]
-    assert sum(errors["velocity"][0] > 1e-3 for errors in found) >= 5
-    assert max(errors[GROOVE_LAW][0] for errors in found) < 1e-10
+    result = [plan.GROOVE_SUBJECT.ask(case, 0, ("instant",)).errors for case in cases if "slot" in case.kinds]
+    assert sum(errors["velocity"][0] > 1e-3 for errors in result) >= 5
+    assert max(errors[GROOVE_LAW][0] for errors in result) < 1e-10
 
 
 # -------------------------------------------------------------------------------------------------- other descriptions
@@ -307,8 +311,8 @@ class Boasting(Lagrange):
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
         rough = motions.MOTION_SPAN * mechanism.time_scale / motions.MOTION_SAMPLES / motions.COARSE_STEPS
-        words = ("it is wrong",) if self.warns == ("fine" if dt < 0.75 * rough else "coarse") else ()
-        return Spoiled(super().build(mechanism, dt), lambda run: replace(run, warnings=words))
+        text = ("it is wrong",) if self.warns == ("fine" if dt < 0.75 * rough else "coarse") else ()
+        return Spoiled(super().build(mechanism, dt), lambda run: replace(run, warnings=text))
 
 
 def test_a_motion_that_does_not_fall_with_the_promised_order_is_found_unless_a_run_warns() -> None:
@@ -344,7 +348,7 @@ def test_an_exception_is_a_fault_of_whoever_raised_it(monkeypatch: pytest.Monkey
 
 # ------------------------------------------------------------------------------------------------------ planted faults
 
-# Single precision hides more: 1e4 roundings of 1.2e-7 of what moves between two descriptions.
+# Single precision hides more: 1e4 roundings of 1.2e-7 between two descriptions.
 SINGLE: dict[str, float] = dict.fromkeys(RELATIONS, 1e-2) | {"in other masses": 1e-1}
 PARTS = 6  # of the faults; each adapter has another part of them every day, and all of them in the slow tests
 ADAPTERS = [name for name in CONTROL_ENGINES if name != "mjx"]
@@ -353,23 +357,23 @@ ADAPTERS = [name for name in CONTROL_ENGINES if name != "mjx"]
 @pytest.mark.parametrize(
     ("name", "part"),
     [
-        pytest.param(name, part, marks=() if part == place % PARTS else pytest.mark.slow)
-        for place, name in enumerate(ADAPTERS)
+        pytest.param(name, part, marks=() if part == index % PARTS else pytest.mark.slow)
+        for index, name in enumerate(ADAPTERS)
         for part in range(PARTS)
     ],
 )
 def test_a_fault_of_a_millionth_is_found_in_every_adapter(name: str, part: int) -> None:
-    """Of each kind that it builds, and of each relation; and the same cases without the fault show none."""
+    """A fault in each kind and relation is found; the same cases without the fault have no finding."""
     if missing := next((engine.missing for engine in CONTROL_ENGINES[name] if engine.missing), ""):
         pytest.skip(missing)
     for fault in PLANTED_FAULTS[part::PARTS]:
-        found = PlantedControl(
+        result = PlantedControl(
             name, fault, (SINGLE.get(fault, FAULT_SIZES[0]) if name == "box2d" else FAULT_SIZES[0],)
         ).run()
-        if found["asked"]:
-            assert found["check"], fault
+        if result["asked"]:
+            assert result["check"], fault
         else:  # Box2D declares no law and promises no order: descriptions alone are compared
-            assert not found["built"] or name == "box2d", fault
+            assert not result["built"] or name == "box2d", fault
 
 
 # --------------------------------------------------------------------------------------------------------- MuJoCo alone
@@ -383,8 +387,8 @@ def test_mujoco_alone_obeys_the_law_with_connects_welds_and_gears() -> None:
 
 
 def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve() -> None:
-    """Of first = slope second + bend second^2 with second zero: the rates of a sum are squared, not summed squares."""
-    asked = 0
+    """For first = slope second + bend second^2 at second = 0, the rates of a sum are squared, not summed squares."""
+    requested = 0
     for number in range(12):
         model = mujoco_alone.draw_model(SEED, number, ("tendon",))
         law = mujoco_alone.start_equations(model)
@@ -392,10 +396,10 @@ def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve() -> N
         for link in model.links:
             first, second = mujoco_alone.coupled_coordinates(model, link)
             turning = link.curve[1] * law.rates[second].sum() ** 2
-            left = accelerations[first].sum() - link.curve[0] / 2 * accelerations[second].sum() - turning
-            assert abs(left) < 1e-9 * max(1.0, np.abs(accelerations).max())
-            asked += abs(turning) > 0.1 and len(second) == 2
-    assert asked >= 3
+            rest = accelerations[first].sum() - link.curve[0] / 2 * accelerations[second].sum() - turning
+            assert abs(rest) < 1e-9 * max(1.0, np.abs(accelerations).max())
+            requested += abs(turning) > 0.1 and len(second) == 2
+    assert requested >= 3
 
 
 def test_the_known_fault_of_curved_equalities_hides_no_other(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""`crosscheck shapes`: what it writes for a known motion, the page's own example, and its answers to bad input."""
+"""`crosscheck shapes`: its files for a known motion, the example of the page, and its refusals of bad input."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def test_files_that_are_there_stay_unless_forced_and_links_are_not_followed(tmp_
     assert mine.read_text() == "mine"
 
 
-def test_a_coarse_table_is_said_to_be_coarse_and_a_fine_one_is_not(tmp_path, capfd):
+def test_a_coarse_table_gives_a_warning_and_a_fine_one_does_not(tmp_path, capfd):
     for count, coarse in ((101, False), (17, True)):
         t = np.linspace(0, 1.2, count)
         # A wobble of 8 rad/s: two periods, which 17 poses can't show.
@@ -108,7 +108,7 @@ def altered(row, column, value):
 
 
 def reversing():
-    """It turns back at t = 0.7531 s, between two samples."""
+    """A motion that reverses at t = 0.7531 s, between two samples."""
     t = np.linspace(0, 1.5, 151)
     return as_text(np.column_stack([t, np.cos(t), np.sin(t), (t - 0.7531) ** 2]))
 
@@ -141,14 +141,14 @@ def test_files_that_can_not_be_read_or_written_and_wrong_options_are_one_line(tm
     (tmp_path / "picture.csv").write_bytes(b"\x89PNG\r\n\xff\xfe\x00")
     good = tmp_path / "ladder.csv"
     good.write_text(as_text(ladder()))
-    for words, telling in (
+    for text, telling in (
         ([tmp_path / "nowhere.csv"], "can't be read"),
         ([tmp_path / "picture.csv"], "no text"),
         ([good, "--folder", good], "can't be a folder"),
         ([good, "--points", "1"], "--points is 1"),
         ([good, "--kind", "png"], "csv, svg, dxf"),
     ):
-        assert call("shapes", *words) == 2
+        assert call("shapes", *text) == 2
         out, err = capfd.readouterr()
         assert out == ""
         assert len(err.strip().splitlines()) == 1
@@ -163,7 +163,7 @@ def test_the_pages_example_runs_as_it_stands(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "argv", ["coupler.py"])
     runpy.run_path("coupler.py")
-    words = shlex.split(next(line for line in shell.splitlines() if line.startswith("crosscheck ")))[1:]
-    assert call(*words) == 0
+    text = shlex.split(next(line for line in shell.splitlines() if line.startswith("crosscheck ")))[1:]
+    assert call(*text) == 0
     assert {"coupler_shapes.svg", "coupler_shapes.dxf"} <= {p.name for p in Path().iterdir()}
     assert "gives the motion back" in capfd.readouterr().out

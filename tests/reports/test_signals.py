@@ -1,4 +1,4 @@
-"""Signals and Ctrl-C: no temporary folder, no process and no traceback is left, and what is done is stored."""
+"""After a signal or Ctrl-C no temporary folder, process or traceback remains, and finished rows are stored."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ with ending_at_once(), temporary_folder(Path(sys.argv[1])) as folder:
 
 
 def listening():
-    """Whatever the tests' own parent did with it."""
+    """Restore the default, whatever the parent of the tests set."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
@@ -58,8 +58,8 @@ def test_a_folder_is_gone_afterwards_also_with_an_error_and_sockets_have_a_short
 
 
 def test_a_signal_leaves_no_folder_and_is_the_status(tmp_path):
-    words = [sys.executable, "-c", HOLDS, tmp_path]
-    process = subprocess.Popen(words, env=environment(), stdout=subprocess.PIPE, text=True, preexec_fn=listening)
+    text = [sys.executable, "-c", HOLDS, tmp_path]
+    process = subprocess.Popen(text, env=environment(), stdout=subprocess.PIPE, text=True, preexec_fn=listening)
     assert process.stdout is not None
     assert process.stdout.readline().strip().startswith(str(tmp_path))
     process.send_signal(signal.SIGTERM)
@@ -101,10 +101,10 @@ def test_ctrl_c_at_an_import_is_status_130_without_a_word(moment):
 
 
 def test_ctrl_c_in_a_run_says_what_is_stored(tmp_path):
-    """To the whole group of processes, as a terminal does: workers must not complain either."""
-    words = ["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--results", str(tmp_path)]
+    """The signal goes to the whole process group, as from a terminal: workers must not print anything either."""
+    text = ["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--results", str(tmp_path)]
     process = subprocess.Popen(
-        [sys.executable, "-m", "reports", *words, "--every", "1", "--every", "2", "--every", "30000"],
+        [sys.executable, "-m", "reports", *text, "--every", "1", "--every", "2", "--every", "30000"],
         env=environment(),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -114,7 +114,7 @@ def test_ctrl_c_in_a_run_says_what_is_stored(tmp_path):
     )
     store = tmp_path / "cells.sqlite"
     wait_until(lambda: process.poll() is not None or count_of_rows(store) > 0)
-    assert process.poll() is None, process.communicate()  # it had ended before anything was stored
+    assert process.poll() is None, process.communicate()  # the process must not have ended before a row was stored
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate()
     assert (process.returncode, err) == (INTERRUPTED, "")
@@ -124,16 +124,16 @@ def test_ctrl_c_in_a_run_says_what_is_stored(tmp_path):
 
 
 def count_of_rows(path):
-    with suppress(FileTrouble), Store.read(path) as store:  # it is not there, or just being made
+    with suppress(FileTrouble), Store.read(path) as store:  # the file may be missing or incomplete
         return store._connection.execute("select count(*) from results").fetchone()[0]
     return 0
 
 
 def test_a_delayed_ctrl_c_raises_when_checked_at_the_second_and_when_the_context_is_left():
-    before = signal.getsignal(signal.SIGINT)
+    earlier = signal.getsignal(signal.SIGINT)
     assert call("--help") == FINE
     assert call("nonsense") == REFUSED
-    assert signal.getsignal(signal.SIGINT) is before
+    assert signal.getsignal(signal.SIGINT) is earlier
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with ExitStack() as leaving:
@@ -151,4 +151,4 @@ def test_a_delayed_ctrl_c_raises_when_checked_at_the_second_and_when_the_context
             signal.raise_signal(signal.SIGINT)  # ignored, as for a job in the background
             check()
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, earlier)

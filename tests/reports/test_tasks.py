@@ -1,4 +1,4 @@
-"""Tasks: what pages tell of beside their rows is run by the pool, kept, and read; a report itself steps nothing."""
+"""Tasks give pages further results: the pool runs and stores them, and a report reads them without running anything."""
 
 from __future__ import annotations
 
@@ -60,23 +60,23 @@ def test_a_task_is_kept_to_the_last_bit_and_run_once_beside_cells(tmp_path):
         assert run_into(store, [*tasks, cell], done=results.append, supervised=in_process) == len(results) == 4
         assert run_into(store, [*tasks, cell]) == 0
         assert store.get([cell])[cell].outcome == Outcome.FINISHED
-        found = store.answers([*tasks, Sum((5.0,))])
-    assert set(found) == set(tasks)
+        result = store.answers([*tasks, Sum((5.0,))])
+    assert set(result) == set(tasks)
     for task in tasks:
         exact = answered(task)
-        assert found[task].finished
-        assert found[task].values.keys() == exact.values.keys()
+        assert result[task].finished
+        assert result[task].values.keys() == exact.values.keys()
         for name, value in exact.values.items():
             if isinstance(value, str):
-                assert found[task].values[name] == value
+                assert result[task].values[name] == value
             else:
-                assert found[task].array(name).shape == value.shape
-                assert found[task].array(name).tobytes() == value.tobytes()
-    assert found[tasks[1]].number("sum") == 1 / 3
+                assert result[task].array(name).shape == value.shape
+                assert result[task].array(name).tobytes() == value.tobytes()
+    assert result[tasks[1]].number("sum") == 1 / 3
     run = cell.engine.build(cell.scene.mechanism(), cell.step)(cell.sample_count, cell.every)
-    kept = trajectory_of(found[tasks[2]])
+    remaining = trajectory_of(result[tasks[2]])
     for name in ("t", "pose", "twist", "reaction"):
-        assert np.array_equal(getattr(kept, name), getattr(run, name)), name
+        assert np.array_equal(getattr(remaining, name), getattr(run, name)), name
 
 
 ENDS = {
@@ -115,7 +115,7 @@ def test_a_quick_run_leaves_out_dear_tasks_and_an_engine_alone_runs_its_own():
 
 
 def test_a_full_run_of_all_scenes_has_every_task_of_every_page():
-    """But those of engines whose package is not here."""
+    """Tasks of engines whose package is not installed are left out."""
     every = {task for page in PAGES for task in all_tasks(page) if task.engine is None or not task.engine.missing}
     assert set(choose_tasks(SCENES, choose_engines(None, None, known_engines(PAGES)), PAGES, full=True)) == every
     assert not any(isinstance(cell, Task) for cell in choose_cells(SCENES[:1], (), PAGES, full=True))
@@ -132,7 +132,7 @@ def test_a_page_is_written_without_engines(name, monkeypatch):
     material = Material({}, answers(page))
     for kind in {type(engine) for engine in known_engines(PAGES)}:
         monkeypatch.setattr(kind, "build", None)
-    # A figure or a table that was kept in memory would hide an engine.
+    # A figure or a table in a cache in memory would hide the use of an engine.
     for value in list(vars(__import__(page.context.__module__, fromlist=["context"])).values()):
         if isinstance(value, functools._lru_cache_wrapper):
             value.cache_clear()
@@ -145,7 +145,7 @@ def test_an_exact_motion_is_stored_to_the_last_bit_and_a_damaged_file_costs_time
     motion = measuring._motion.__wrapped__
     first = motion(scene, t, "name", tmp_path)
     (file,) = tmp_path.iterdir()
-    whole = file.read_bytes()
+    total = file.read_bytes()
     with monkeypatch.context() as patch:
         patch.setattr(LinkPendulum, "_motion", None)
         for part in measuring.PARTS:
@@ -153,10 +153,10 @@ def test_an_exact_motion_is_stored_to_the_last_bit_and_a_damaged_file_costs_time
         for instants, name in ((t[:-8], "name"), (t, "other")):
             with pytest.raises(TypeError):
                 motion(scene, instants, name, tmp_path)
-    for content in (b"", b"no archive at all", whole[: len(whole) // 2]):
+    for content in (b"", b"no archive at all", total[: len(total) // 2]):
         file.write_bytes(content)
         np.testing.assert_array_equal(motion(scene, t, "name", tmp_path).pose, first.pose)
-        assert file.read_bytes() == whole
+        assert file.read_bytes() == total
     assert motion(scene, t, "name", tmp_path / "none").pose.shape == (6, 2, 3)
 
 

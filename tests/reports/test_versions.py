@@ -65,14 +65,14 @@ def test_changes_are_found_in_the_errors_alone():
     entries = [entry(v, e, outcome="unsupported" if e != e else "finished") for v, e in line]
     entries += [entry("3.9.0", 1e-14, "exact"), entry("4.0.0", 9e-12, "exact")]  # both are rounding
     entries += [entry("3.9.0", 1e-3, "breaks"), entry("4.0.0", NAN, "breaks", "torn")]
-    assert [(before.version, after.version, after.scene, word) for before, after, word in changes(entries)] == [
+    assert [(earlier.version, later.version, later.scene, label) for earlier, later, label in changes(entries)] == [
         ("3.9.0", "4.0.0", "breaks", "WORSE"),
         ("3.10.0", "4.0.0", "disc", "WORSE"),
         ("4.0.0", "4.0.1", "disc", "better"),
     ]
-    assert [each.version for each in changes_between("mujoco", "3.6.0", "4.0.1")] == ["3.7.0", "4.0.0", "4.0.1"]
+    assert [release.version for release in changes_between("mujoco", "3.6.0", "4.0.1")] == ["3.7.0", "4.0.0", "4.0.1"]
     assert changes_between("mujoco", "3.7.0", "3.17.0") == changes_between("pymunk", "3.6.0", "4.0.0") == ()
-    assert all(each.source.startswith("https://") == bool(each.changed) for each in RELEASES)
+    assert all(release.source.startswith("https://") == bool(release.changed) for release in RELEASES)
 
 
 def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):
@@ -84,7 +84,7 @@ def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):
     again = read(path)
     assert (as_csv(again), again.marks) == (as_csv(table), table.marks)
     newer = merged(again, ReleaseTable((entry("3.6.0", 0.5),), {}))
-    assert [(each.version, each.error) for each in newer.entries if each.comparable] == [("3.6.0", 0.5)]
+    assert [(item.version, item.error) for item in newer.entries if item.comparable] == [("3.6.0", 0.5)]
     assert newer.marks == {}
     path.write_text("scene\nx\n")
     with pytest.raises(ValueError, match="it is no table of versions"):
@@ -92,14 +92,14 @@ def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):
 
 
 def test_a_published_number_keeps_its_text_within_rounding_and_a_time_within_a_tenth():
-    known = [entry for entry in released().entries if entry.comparable and entry.quantity == "angle"][:20]
-    before = ReleaseTable(tuple(known), {})
-    moved = tuple(replace(entry, error=entry.error + 1e-12, cpu=1.09 * entry.cpu) for entry in known)
-    assert as_csv(as_published(ReleaseTable(moved, {}), before)) == as_csv(before)
-    changed = tuple(replace(entry, error=1.01 * entry.error + 1e-10, cpu=1.11 * entry.cpu) for entry in known)
-    assert as_published(ReleaseTable(changed, {}), before).entries == changed
+    expected = [entry for entry in released().entries if entry.comparable and entry.quantity == "angle"][:20]
+    earlier = ReleaseTable(tuple(expected), {})
+    moved = tuple(replace(entry, error=entry.error + 1e-12, cpu=1.09 * entry.cpu) for entry in expected)
+    assert as_csv(as_published(ReleaseTable(moved, {}), earlier)) == as_csv(earlier)
+    changed = tuple(replace(entry, error=1.01 * entry.error + 1e-10, cpu=1.11 * entry.cpu) for entry in expected)
+    assert as_published(ReleaseTable(changed, {}), earlier).entries == changed
     torn = tuple(replace(entry, outcome=Outcome.TORN) for entry in moved)
-    assert as_published(ReleaseTable(torn, {}), before).entries == torn
+    assert as_published(ReleaseTable(torn, {}), earlier).entries == torn
 
 
 def row(angle, outcome=Outcome.FINISHED, every=1, cpu=1.0):
@@ -107,13 +107,17 @@ def row(angle, outcome=Outcome.FINISHED, every=1, cpu=1.0):
 
 
 def test_worse_is_more_than_three_times_as_large_and_cost_and_orders_are_compared():
-    before = [row(1e-3), row(1e-4, every=10)]
-    assert not compared(before, [row(2.9e-3, cpu=2.0), row(1e-4, every=10, cpu=2.0)]).differences
-    comparison = compared(before, [row(3.1e-3, cpu=2.0), row(1e-5, every=10, cpu=2.0)])
-    assert [(each.quantity, each.worse) for each in comparison.differences] == [("angle", True), ("angle", False)]
+    earlier = [row(1e-3), row(1e-4, every=10)]
+    assert not compared(earlier, [row(2.9e-3, cpu=2.0), row(1e-4, every=10, cpu=2.0)]).differences
+    comparison = compared(earlier, [row(3.1e-3, cpu=2.0), row(1e-5, every=10, cpu=2.0)])
+    differences = comparison.differences
+    assert [(difference.quantity, difference.worse) for difference in differences] == [
+        ("angle", True),
+        ("angle", False),
+    ]
     assert (len(comparison.pairs), comparison.cost) == (2, 2.0)
     orders = compared([row(1e-2), row(1e-4, every=10)], [row(1e-2), row(1e-3, every=10)]).orders
-    assert [(round(each.before), round(each.after)) for each in orders] == [(2, 1)]
+    assert [(round(difference.before), round(difference.after)) for difference in orders] == [(2, 1)]
 
 
 def printed(before, after, form="text"):
@@ -144,15 +148,15 @@ def test_the_verdict_on_a_method_follows_its_outcome_before_its_error(capsys, be
 
 
 def test_random_trees_tell_ideal_constraints_from_wrong_ones():
-    drawn = trees(6, 2, 3)
-    assert len({tree.pose.tobytes() for tree in drawn}) == 3
-    # Two formulations of the same law, apart by what a step of 1e-5 of the time scale costs.
-    assert max(miss(Lagrange("rk4"), tree) for tree in drawn) < 1e-3
-    # As shipped a joint gives way by a tenth of what would hold it.
-    assert min(miss(DEFAULT, tree) for tree in drawn) > 1e-2
+    three_trees = trees(6, 2, 3)
+    assert len({tree.pose.tobytes() for tree in three_trees}) == 3
+    # Two formulations of the same law differ by the error of a step of 1e-5 of the time scale.
+    assert max(miss(Lagrange("rk4"), tree) for tree in three_trees) < 1e-3
+    # As shipped, the acceleration of a constraint is wrong by about a tenth of the ideal one.
+    assert min(miss(DEFAULT, tree) for tree in three_trees) > 1e-2
 
 
-def test_the_page_counts_changes_and_names_those_that_are_known(monkeypatch):
+def test_the_page_counts_changes_and_names_the_documented_ones(monkeypatch):
     entries = (entry("3.6.0", 1e-2), entry("3.7.0", 1e-6), entry("4.0.1", 1e-2))
     table = ReleaseTable((*entries, entry("7.0.0", 1e-2, engine="pymunk")), {("mujoco", "3.6.0"): "it is old"})
     monkeypatch.setattr(page, "released", lambda: table)
@@ -171,13 +175,13 @@ def test_the_page_counts_changes_and_names_those_that_are_known(monkeypatch):
 
 def toy(folder: Path, version: str, source: str) -> Path:
     """A folder as pip makes it, with a version of an engine whose error is `error()` times the step squared."""
-    place = folder / version
-    (place / "toyengine").mkdir(parents=True)
-    (place / "toyengine" / "__init__.py").write_text(source)
-    (place / f"toyengine-{version}.dist-info").mkdir()
+    index = folder / version
+    (index / "toyengine").mkdir(parents=True)
+    (index / "toyengine" / "__init__.py").write_text(source)
+    (index / f"toyengine-{version}.dist-info").mkdir()
     metadata = f"Metadata-Version: 2.1\nName: toyengine\nVersion: {version}\n"
-    (place / f"toyengine-{version}.dist-info" / "METADATA").write_text(metadata)
-    return place
+    (index / f"toyengine-{version}.dist-info" / "METADATA").write_text(metadata)
+    return index
 
 
 @pytest.fixture
@@ -198,12 +202,12 @@ def here(tmp_path, monkeypatch):
 @pytest.fixture
 def once(monkeypatch):
     """Each build is run once in a test, however often it is compared."""
-    run, known = builds.column, {}
+    run, expected = builds.column, {}
 
     def column(label, request, *others):
-        if request.location not in known:
-            known[request.location] = run(label, request, *others)
-        return known[request.location]
+        if request.location not in expected:
+            expected[request.location] = run(label, request, *others)
+        return expected[request.location]
 
     monkeypatch.setattr(builds, "column", column)
 
@@ -222,8 +226,8 @@ def test_a_worse_build_is_reported_and_a_dearer_one_above_a_limit_and_its_output
         invoke(["compare", "1.0", "2.0", *WITH_ADAPTER, "--json"])
     document = json.loads(capfd.readouterr().out)
     (line,) = document["tables"][0]["rows"]
-    before, after = (next(line[key] for key in line if key.startswith(f"toyengine {version}")) for version in "12")
-    assert after == pytest.approx(50 * before)
+    earlier, later = (next(line[key] for key in line if key.startswith(f"toyengine {version}")) for version in "12")
+    assert later == pytest.approx(50 * earlier)
     assert (line["verdict"], document["status"]) == ("WORSE", 1)
     assert "is worse than" in document["message"]
     assert not list(here.rglob("left.txt"))
@@ -238,18 +242,18 @@ def test_a_worse_build_is_reported_and_a_dearer_one_above_a_limit_and_its_output
 
 
 def test_a_version_that_crashes_while_it_is_imported_gives_rows(here):
-    place = toy(here, "3.0", "import os\nos.abort()\n")
-    request = VersionRequest((Disc(),), "adapter.py:ENGINE", modules_in(place), place, here / "s.sqlite", folder=here)
+    index = toy(here, "3.0", "import os\nos.abort()\n")
+    request = VersionRequest((Disc(),), "adapter.py:ENGINE", modules_in(index), index, here / "s.sqlite", folder=here)
     result = column("3.0", request, [DEFAULT])
     assert [row.outcome for row in result.rows] == [Outcome.ABORTED]
     assert "aborted with signal" in result.trouble
 
 
-def test_a_folder_is_known_by_its_metadata_and_not_by_its_own_word(tmp_path):
-    place = toy(tmp_path, "7.0.0", "version = '2.0.0'\n")
-    assert distributions_in(place) == {"toyengine": "7.0.0"}
-    assert modules_in(place) == ("toyengine",)
-    assert built(place) == place
+def test_a_build_has_the_version_of_its_metadata_and_not_of_its_module(tmp_path):
+    index = toy(tmp_path, "7.0.0", "version = '2.0.0'\n")
+    assert distributions_in(index) == {"toyengine": "7.0.0"}
+    assert modules_in(index) == ("toyengine",)
+    assert built(index) == index
 
 
 class Pip:
@@ -259,10 +263,10 @@ class Pip:
         self.answers, self.calls = answers, []
 
     def __call__(self, command, **_):
-        what = command[-1]
-        self.calls.append(what)
-        if what in self.answers:
-            return subprocess.CompletedProcess(command, 1, "", self.answers[what])
+        requirement = command[-1]
+        self.calls.append(requirement)
+        if requirement in self.answers:
+            return subprocess.CompletedProcess(command, 1, "", self.answers[requirement])
         Path(command[command.index("--target") + 1]).mkdir()
         return subprocess.CompletedProcess(command, 0, "", "")
 
@@ -294,7 +298,7 @@ def test_a_version_is_installed_once_under_the_first_name_that_has_it(here, monk
         ("ERROR: No space left on device\n", "No space left"),
     ],
 )
-def test_a_version_that_can_not_be_had_is_one_line(printed, reason, here, monkeypatch, capfd):
+def test_a_version_that_can_not_be_installed_is_refused_in_one_line(printed, reason, here, monkeypatch, capfd):
     monkeypatch.setattr(subprocess, "run", Pip({"pymunk==7.2.5": printed}))
     with pytest.raises(BadInput, match=reason) as refused:
         invoke(["versions", "pymunk", "7.2.5", "--scenes", "free_four_bar"])
@@ -316,7 +320,7 @@ def test_a_version_that_can_not_be_had_is_one_line(printed, reason, here, monkey
         (["compare", "broken.whl", "broken.whl", *WITH_ADAPTER], r"broken\.whl can't be installed: .*broken\.whl"),
     ],
 )
-def test_words_that_mean_nothing_are_one_line(words, reason, here, monkeypatch):
+def test_invalid_arguments_are_refused_in_one_line(words, reason, here, monkeypatch):
     (here / "broken.whl").write_text("no archive")
     monkeypatch.setattr(subprocess, "run", Pip({str(here / "broken.whl"): "ERROR: broken.whl is no wheel"}))
     with pytest.raises(BadInput, match=reason) as refused:
@@ -331,11 +335,11 @@ def wheel(folder: Path, version: str, error: float) -> Path:
     (info / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: by hand\nRoot-Is-Purelib: true\nTag: py3-none-any\n")
     files = [path for path in sorted(built.rglob("*")) if path.is_file()]
     (info / "RECORD").write_text("".join(f"{path.relative_to(built).as_posix()},,\n" for path in files))
-    place = folder / f"toyengine-{version}-py3-none-any.whl"
-    with zipfile.ZipFile(place, "w") as archive:
+    index = folder / f"toyengine-{version}-py3-none-any.whl"
+    with zipfile.ZipFile(index, "w") as archive:
         for path in [*files, info / "RECORD"]:
             archive.write(path, path.relative_to(built).as_posix())
-    return place
+    return index
 
 
 @pytest.mark.slow

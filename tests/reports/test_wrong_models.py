@@ -20,7 +20,7 @@ from reports.run.running import worker_count
 from reports.run.supervisor import supervise
 from tests.wrong.mistakes import NUMBER_KINDS, Mistake, MistakeTrial, Sighting, mistakes, noticed
 
-# What has to be noticed: a ten-thousandth by methods that reach rounding, a hundredth by what documented settings give.
+# Relative mistakes that have to be noticed: 1e-4 by methods that reach rounding, 1e-2 with documented settings.
 EXTENDED: dict[Engine, float] = {pymunk.EXTENDED: 1e-4, mujoco.EXTENDED: 1e-4}
 OTHERS: dict[Engine, float] = {Lagrange("rk4", "projection"): 1e-4, pymunk.TUNED: 1e-2, mujoco.TUNED: 1e-2}
 # No run of a wrong model is estimated to step longer than this [s]; the coarsest step is always tried. The control,
@@ -77,7 +77,7 @@ UNNOTICEABLE: dict[tuple[str, str], str] = {
     ("cart", "point axle second_point y"): ALONG_THE_AXLE,
     **{("cart", f"point {side} caster's wheel second_point y"): ALONG_THE_AXLE for side in ("left", "right")},
 }
-# The same of one engine alone: (scene, engine, mistake).
+# Mistakes that one engine alone does not show: (scene, engine, mistake).
 UNNOTICEABLE_IN: dict[tuple[str, str, str], str] = {
     ("driven_four_bar", "pymunk", "mass crank"): PRESCRIBED,
     ("driven_slider_crank", "pymunk", "mass crank"): PRESCRIBED,
@@ -96,7 +96,7 @@ FORCES = "the mistake shows in forces alone, and in a part of them that is small
 COARSE = "of first order: at the finest step that is run its own error is as large as what the mistake makes"
 POLYGON = "a body that is not round is a polygon here, and its blows are larger than what the mistake makes"
 PRESSED = "pins already hold the gears apart: how hard they press is a matter of softness, of which nothing is promised"
-# Of these some don't even show in the digits that are compared.
+# Some of them don't change the digits that are compared.
 SWEPT = "its sweeps do not converge on so many joints, so that its own error is larger than what the mistake makes"
 
 LARGER: dict[tuple[str, str], str] = {
@@ -106,7 +106,7 @@ LARGER: dict[tuple[str, str], str] = {
     **{(scene, f"{name} tuned"): COARSE for scene in ("car_and_trailer", "cart") for name in ("pymunk", "mujoco")},
     ("free_slider_crank", "pymunk tuned"): COARSE,
     **{("elliptic_gears", f"{name} tuned"): PRESSED for name in ("pymunk", "mujoco")},
-    **{(f"rolling_{what}", "pymunk tuned"): POLYGON for what in ("ellipse", "cam", "incline")},
+    **{(f"rolling_{curve}", "pymunk tuned"): POLYGON for curve in ("ellipse", "cam", "incline")},
     **{(scene, "pymunk tuned"): SWEPT for scene in ("pendulum_100", "n_four_bar_10", "n_four_bar_40")},
 }
 
@@ -126,14 +126,14 @@ def short(scene: Scene) -> Scene:
     if isinstance(scene, PointPendulum):
         scene = SampledPointPendulum()
     # A rolling body's horizon is worked out, that of others is a number.
-    own = {"horizon": min(duration, scene.horizon)} if "horizon" in scene.__dataclass_fields__ else {}  # pyright: ignore[reportAttributeAccessIssue]
-    return replace(cast(Any, scene), duration=duration, **own)
+    horizon_field = {"horizon": min(duration, scene.horizon)} if "horizon" in scene.__dataclass_fields__ else {}  # pyright: ignore[reportAttributeAccessIssue]
+    return replace(cast(Any, scene), duration=duration, **horizon_field)
 
 
 def excuse(scene: Scene, engine: Engine, mistake: Mistake) -> str:
     """Why a mistake changes nothing; "" where it has to be noticed."""
-    known = UNNOTICEABLE.get((scene.name, str(mistake)), "")
-    return known or UNNOTICEABLE_IN.get((scene.name, engine.name, str(mistake)), "")
+    expected = UNNOTICEABLE.get((scene.name, str(mistake)), "")
+    return expected or UNNOTICEABLE_IN.get((scene.name, engine.name, str(mistake)), "")
 
 
 @cache
@@ -142,7 +142,7 @@ def all_mistakes(scene: Scene) -> tuple[Mistake, ...]:
 
 
 def limit(scene: Scene) -> float:
-    """Andrews' spring is so stiff that at its two coarsest steps a method's own error hides what a mistake makes."""
+    """Andrews' spring is so stiff that at its two coarsest steps a method's own error hides the effect of a mistake."""
     return 2 * LIMIT if scene.name == "andrews" else LIMIT
 
 
@@ -186,16 +186,16 @@ Findings = Mapping[tuple[str, str], Mapping[Mistake, Sighting] | Loss]
 
 
 def found(trials: Iterable[MistakeTrial]) -> Findings:
-    """What was noticed, by scene and method, in supervised processes."""
+    """The noticed mistakes by scene and method, from supervised processes."""
     by_scene: dict[str, list[MistakeTrial]] = {}
     for trial in trials:
         by_scene.setdefault(trial.scene.name, []).append(trial)
     # s: two engines' hundred bodies in some forty runs each, on a loaded machine.
-    told = supervise(noticed, map(tuple, by_scene.values()), limit=600.0, workers=worker_count())
+    reported = supervise(noticed, map(tuple, by_scene.values()), limit=600.0, workers=worker_count())
     return {
         (trial.scene.name, trial.method): result if isinstance(result, Loss) else result[index]
-        for own, result, _ in told
-        for index, trial in enumerate(own)
+        for trials_of_method, result, _ in reported
+        for index, trial in enumerate(trials_of_method)
     }
 
 
@@ -241,11 +241,11 @@ def test_a_number_that_is_wrong_in_an_engine_alone_is_noticed(findings: Findings
 @pytest.mark.slow
 @pytest.mark.parametrize("trial", named(EVERYTHING))
 def test_every_number_that_is_wrong_in_an_engine_alone_is_noticed(all_findings: Findings, trial: MistakeTrial) -> None:
-    left = unseen(trial, all_findings)
+    rest = unseen(trial, all_findings)
     if (trial.scene.name, trial.method) in LARGER:
-        assert left, "every mistake is noticed: take it out of LARGER"
+        assert rest, "every mistake is noticed: take it out of LARGER"
     else:
-        assert not left
+        assert not rest
 
 
 def test_every_reason_names_a_real_mistake_and_method() -> None:

@@ -1,4 +1,4 @@
-"""The lines to paste, pasted into models as shipped: they err as the page says."""
+"""The lines to paste, pasted into models as shipped: the errors are those on the page."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -47,8 +47,8 @@ def error_of(scene: Scene, poses: Callable[[], list[tuple[float, float, float]]]
     worst = 0.0
     for exact in truth[1:]:
         advance()
-        apart = np.array(poses())[:, 2] - exact[:, 2]
-        worst = max(worst, float(np.abs((apart + math.pi) % (2 * math.pi) - math.pi).max()))
+        difference = np.array(poses())[:, 2] - exact[:, 2]
+        worst = max(worst, float(np.abs((difference + math.pi) % (2 * math.pi) - math.pi).max()))
     return worst
 
 
@@ -61,12 +61,12 @@ def in_mujoco(scene: Scene, text: str, pasted: str = "") -> float:
 
     def poses() -> list[tuple[float, float, float]]:
         mujoco.mj_forward(model, data)
-        found = []
+        results = []
         for body in mechanism.bodies:
-            here = data.body(body.name)
-            w, _, _, z = here.xquat
-            found.append((*here.xpos[:2], body.pose[2] + 2 * math.atan2(z, w)))
-        return found
+            first = data.body(body.name)
+            w, _, _, z = first.xquat
+            results.append((*first.xpos[:2], body.pose[2] + 2 * math.atan2(z, w)))
+        return results
 
     assert model.opt.timestep == pytest.approx(STEP)
     return error_of(scene, poses, lambda: mujoco.mj_step(model, data, nstep=MILLISECONDS_PER_SAMPLE))
@@ -88,8 +88,8 @@ def in_pymunk(scene: Scene, pasted: str) -> float:
 
 
 def row(case, engine) -> float:
-    (found,) = committed_rows([cell(case, engine)]).values()
-    return found.angle
+    (result,) = committed_rows([cell(case, engine)]).values()
+    return result.angle
 
 
 CASES = {case.scene.name: (case, other) for case, other in zip(MUJOCO_CASES, PYMUNK_CASES, strict=True)}
@@ -124,7 +124,7 @@ def test_the_pair_of_a_rolling_disc_gives_the_error_of_the_page():
 def test_the_lines_for_pymunk_give_the_error_of_the_page(scene):
     _, case = CASES[scene.name]
     shipped, closed = in_pymunk(scene, ""), in_pymunk(scene, PYMUNK_LINES)
-    # The row counts iterations by contraction, `choose` by trial: what either leaves is a part of the error.
+    # The row finds iterations from the contraction, `choose` by trial; each residual is a part of the error.
     assert closed == pytest.approx(row(case, case.after), rel=0.2)
     assert closed < shipped / 8
 
@@ -151,7 +151,7 @@ def test_with_the_lines_no_linkage_opens_more_than_as_shipped(linkage, step):
     if names["choose"](make(), step) is None:
         assert state(space) == state(make())
     else:
-        # Longer than the lines have looked ahead. The ratio of as shipped is below a quarter where they have looked.
+        # A longer motion than `choose` has tried; within the tried motion the ratio to as shipped is below a quarter.
         assert worst_gap(space, names["gaps"], step) < worst_gap(make(), names["gaps"], step)
 
 
@@ -175,11 +175,11 @@ def test_a_linkage_that_starts_open_or_can_not_be_copied_is_left_as_it_is():
     opened, pictured = LINKAGES["four-bar"](), LINKAGES["four-bar"]()
     next(iter(opened.bodies)).position += (0.05, 0)
     next(iter(pictured.bodies)).picture = Picture()
-    before = state(opened), state(pictured)
+    earlier = state(opened), state(pictured)
     assert run_lines(opened, PYMUNK_LINES)["choose"](opened, 1e-3) is None
     with pytest.raises(TypeError, match="picture"):
         run_lines(pictured, PYMUNK_LINES)
-    assert (state(opened), state(pictured)) == before
+    assert (state(opened), state(pictured)) == earlier
 
 
 def test_limits_and_bodies_with_another_centre_of_gravity_are_not_changed():
@@ -199,8 +199,8 @@ def test_limits_and_bodies_with_another_centre_of_gravity_are_not_changed():
 def test_fresh_mechanisms_are_the_same_each_time_and_differ():
     first, again, other = draw(LOOP, 0), draw(LOOP, 0), draw(LOOP, 1)
     assert first == again != other
-    before, after = PYMUNK_CASES[0].engines
-    assert Fresh(after, LOOP).error(0) < Fresh(before, LOOP).error(0)
+    earlier, later = PYMUNK_CASES[0].engines
+    assert Fresh(later, LOOP).error(0) < Fresh(earlier, LOOP).error(0)
 
 
 def test_before_and_after_compares_gaps_and_angles_of_a_linkage_without_contact():

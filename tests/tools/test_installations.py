@@ -1,8 +1,8 @@
 """The wheel of this checkout and a third party's wheel in an environment of their own run, report and test.
 
 The third party's distribution is the code of our how-to pages: an engine, of which it registers two variants, and a
-scene with a page. It needs no change of ours. Nothing comes from the network, and the environment is made once for this
-file.
+scene with a page. The suite needs no change for it. Nothing comes from the network, and the environment is made once
+for this file.
 """
 
 from __future__ import annotations
@@ -131,8 +131,10 @@ def create_environment(folder: Path, *wheels: Path) -> Path:
         pytest.skip("pip is not installed")
     assert installed.returncode == 0, installed.stderr
     (site,) = {path.parent for path in folder.rglob("reports") if path.parent.name == "site-packages"}
-    here = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
-    (site / "below.pth").write_text("\n".join([*here, 'import sys; sys.modules["numba"] = None', ""]), encoding="utf-8")
+    first = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
+    (site / "below.pth").write_text(
+        "\n".join([*first, 'import sys; sys.modules["numba"] = None', ""]), encoding="utf-8"
+    )
     return programs
 
 
@@ -221,10 +223,10 @@ def test_their_engine_and_scenes_are_listed_conform_are_run_and_have_rows_on_pag
     assert (status, err) == (0, "")
     parts = re.split(r"^status (\d+) of (\w+)\n", out, flags=re.MULTILINE)
     assert parts[1::3] == ["0"] * len(commands), out
-    listed, conformed, shown = (parts[3 * index] for index in (0, 1, 5))
+    listed, conformed, displayed = (parts[3 * index] for index in (0, 1, 5))
     assert "Multipliers(variant='closed')" in listed
     assert conformed.splitlines()[-1].strip() == "every check holds", conformed
-    assert shown.count("multipliers") > 3
+    assert displayed.count("multipliers") > 3
     assert {path.name for path in tmp_path.iterdir()} == {"crosscheck-results"}
     files = (tmp_path / "crosscheck-results").iterdir()
     texts = {path.name: path.read_text(encoding="utf-8") for path in files if path.suffix in (".md", ".csv")}

@@ -94,9 +94,9 @@ def test_a_closed_form_in_an_adapter_and_a_report_in_the_reference_break_the_con
     for file, line in FORBIDDEN.items():
         (tmp_path / file).write_text(f"{line}\n{(ROOT / file).read_text(encoding='utf-8')}", encoding="utf-8")
     command = "import sys; from importlinter.cli import lint_imports_command; sys.exit(lint_imports_command())"
-    words = [sys.executable, "-c", command, "--no-cache"]
+    text = [sys.executable, "-c", command, "--no-cache"]
     environment = {"PYTHONPATH": str(tmp_path), "PATH": ""}
-    linted = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300, env=environment)
+    linted = subprocess.run(text, cwd=tmp_path, capture_output=True, text=True, timeout=300, env=environment)
     assert linted.returncode == 1
     for line in FORBIDDEN.values():
         assert line.split()[1] in linted.stdout

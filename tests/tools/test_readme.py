@@ -77,9 +77,9 @@ def test_contributing_is_short_and_names_files_groups_and_targets_that_exist():
 
 def test_commands_in_both_texts_exist():
     pairs = re.findall(r"^crosscheck ([a-z]+)\b|`crosscheck ([a-z]+)\b", README_TEXT + CONTRIBUTING_TEXT, re.MULTILINE)
-    words = {word for pair in pairs for word in pair if word}
-    assert {"run", "report", "conform", "list", "show"} <= words
-    assert words <= COMMANDS.keys()
+    commands_named = {command for pair in pairs for command in pair if command}
+    assert {"run", "report", "conform", "list", "show"} <= commands_named
+    assert commands_named <= COMMANDS.keys()
 
 
 NOTEBOOK_CELLS = json.loads((ROOT / "lecture.ipynb").read_text(encoding="utf-8"))["cells"]
@@ -120,8 +120,8 @@ def test_every_cell_runs_and_its_claims_about_engines_are_right(lecture):
     assert errors[100] * 10 < errors[1000] < module.lucky["RK4"][-1] < 1.2 * errors[1000]
     assert module.astray > 1
     assert module.wrong > 0.01
-    (few, rough), (many, good) = module.told[20], module.told[100]
-    assert few == pytest.approx(many, rel=0.02)
+    (some, rough), (many, good) = module.told[20], module.told[100]
+    assert some == pytest.approx(many, rel=0.02)
     assert rough > 10 * good
 
 

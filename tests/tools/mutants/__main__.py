@@ -77,9 +77,9 @@ def main() -> int:
                 continue
             if mistake.survives or (options.only and not any(n.startswith(w) for n in names for w in options.only)):
                 continue
-            noticed, test = run_mistake(tree, mistake, mistake.noticed_by)
-            alive += not noticed
-            print(f"{'noticed' if noticed else 'ALIVE  '} {mistake.mistake} ({names[0]}): {test}", flush=True)
+            detected, test = run_mistake(tree, mistake, mistake.noticed_by)
+            alive += not detected
+            print(f"{'noticed' if detected else 'ALIVE  '} {mistake.mistake} ({names[0]}): {test}", flush=True)
     print(f"{alive} not noticed")
     return 1 if alive else 0
 
