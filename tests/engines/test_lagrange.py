@@ -48,6 +48,12 @@ def test_a_swinging_bar_agrees_with_elliptic_functions():
     np.testing.assert_allclose(run.reaction, pendulum().bodies[0].mass * pull, rtol=0, atol=1e-10)
 
 
+def test_samples_within_a_step_are_as_exact_as_those_at_its_ends():
+    run = Lagrange(tolerance=1e-13).build(pendulum(angle=-np.pi / 2 + 1.0), 1e-3)(300, 1)
+    # Steps of this tolerance are some hundredths of a second: most samples come from dense output.
+    np.testing.assert_allclose(run.pose[:, 0, 2] + np.pi / 2, swinging_angle(run.t, 1.0), rtol=0, atol=2e-12)
+
+
 @in_both_codes
 @pytest.mark.parametrize(("tolerance", "resolved"), [(1e-13, True), (1e-6, False)])
 def test_a_judge_estimates_its_error_and_reports_when_it_exceeds_its_claim(tolerance, resolved):
