@@ -90,15 +90,15 @@ def check(
     if tolerance is not None and fix_to is not None:
         raise BadInput("--tolerance and --fix-to both name an error; give one of them")
     files = {"html": html, "markdown": markdown, "junit": junit, "apply": apply}
-    drawn = not Path(model).is_dir() and (html is not None or markdown is not None)
+    drawing = not Path(model).is_dir() and (html is not None or markdown is not None)
     goal, elements = tolerance if fix_to is None else fix_to, tuple(without or ())
-    request = CheckRequest(model, os.getcwd(), duration, goal, elements, key, step, drawn, quick)
-    all_settings = everything or as_json or drawn
+    request = CheckRequest(model, os.getcwd(), duration, goal, elements, key, step, drawing, quick)
+    all_settings = everything or as_json or drawing
     request = replace(request, everything=all_settings, search=fix_to is not None, apply=str(apply or ""))
     _refuse_bad(request, files, everything, force)
     worker.start_early(*EARLY)
     begin, is_folder = monotonic(), Path(model).is_dir()
-    answers = _answers([replace(request, word=word) for word in _models(model)], limit)
+    answers = _answers([replace(request, word=label) for label in _models(model)], limit)
     if is_folder and as_json:
         _say(json.dumps(many.document(answers), indent=1, allow_nan=False))
     elif is_folder:
@@ -134,7 +134,7 @@ def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everyth
         raise BadInput("no model was given; give model.xml, model.urdf, script.py or a folder of them")
     request.refuse_bad()
     paths = {f"--{name}": path for name, path in files.items() if path is not None}
-    sources = {Path(word).resolve() for word in (model, model.rpartition(":")[0])}
+    sources = {Path(label).resolve() for label in (model, model.rpartition(":")[0])}
     for name, path in paths.items():
         if path == STDOUT:
             raise BadInput(f"{name} is '-', and standard output has the answer already; give a file")
@@ -169,9 +169,9 @@ def _answers(requests: list[CheckRequest], limit: float) -> Answers:
         items = (
             [replace(request, notes=str(progress.notes)) for request in requests] if len(requests) == 1 else requests
         )
-        terms: Any = {"watch": progress, "wall": limit + 60}
+        options: Any = {"watch": progress, "wall": limit + 60}
         try:
-            for item, result, _ in supervisor.supervise(run_check, items, limit, worker_count(), **terms):
+            for item, result, _ in supervisor.supervise(run_check, items, limit, worker_count(), **options):
                 if isinstance(result, Loss):
                     result = Refused(f"{item.word}: {LOSSES.get(result.outcome, LOST).format(result.sentence)}")
                 answers[item.word] = result
@@ -190,8 +190,8 @@ class _Progress:
 
     def __call__(self, running: list[Any]) -> None:
         with suppress(OSError):
-            words = self.notes.read_text(encoding="utf-8")
-            self.show(words if sys.stderr.isatty() else words.partition(",")[0])
+            text = self.notes.read_text(encoding="utf-8")
+            self.show(text if sys.stderr.isatty() else text.partition(",")[0])
 
     def show(self, words: str) -> None:
         if words and words != self._last:
@@ -220,9 +220,9 @@ def _write(model: str, answers: Answers, files: Mapping[str, Path | None], secon
         if html is not None:
             texts[html] = rendering.html(name, answer.sections)
         if markdown is not None:
-            drawn = [section.picture for section in answer.sections if section.picture is not None]
-            paths = {title: f"{markdown.stem}_{number}.svg" for number, (title, _) in enumerate(drawn, start=1)}
-            texts |= {markdown.with_name(paths[title]): drawing for title, drawing in drawn}
+            pictures = [section.picture for section in answer.sections if section.picture is not None]
+            paths = {title: f"{markdown.stem}_{number}.svg" for number, (title, _) in enumerate(pictures, start=1)}
+            texts |= {markdown.with_name(paths[title]): drawing for title, drawing in pictures}
             texts[markdown] = rendering.markdown(name, answer.sections, paths)
     if junit is not None:
         texts[junit] = many.junit_xml(answers, seconds)

@@ -45,30 +45,30 @@ def compare(
     with telling(WIDTH, as_json, as_markdown) as console:
         with delayed_signals() as check:
             progress = progress_of(console, check)
-            found = compare_builds(
+            result = compare_builds(
                 first, second, engine, variant or (), chosen, results, progress, announce=announce_pip
             )
-        for side, column in zip(found.sides, found.columns, strict=True):
+        for side, column in zip(result.sides, result.columns, strict=True):
             if reason := column.trouble or column.mark:
                 console.tell(f"{side.label}: {reason}")
-        print_comparison(console, found)
-        if found.complaint:
-            raise Broken(found.complaint)
+        print_comparison(console, result)
+        if result.complaint:
+            raise Broken(result.complaint)
         dear = [
             f"{method} takes {ratio:.2f} times the CPU time"
-            for method, ratio in found.comparison.costs.items()
+            for method, ratio in result.comparison.costs.items()
             if cost is not None and ratio > cost
         ]
         if dear:
-            first, second = (side.label for side in found.sides)
+            first, second = (side.label for side in result.sides)
             raise Broken(f"{second} is dearer than {first}: {', '.join(dear)}, and --cost is {cost:g}")
 
 
 def print_comparison(console: Terminal, builds: BuildComparison) -> None:
     """A line for each method of each scene, what became worse in full, then orders, cost, and one sentence."""
-    found, (first, second) = builds.comparison, (side.label for side in builds.sides)
-    lines = sorted(found.lines(), key=lambda line: (line.scene, line.method))
-    other = tuple(each for each in found.differences if not each.worse)
+    comparison, (first, second) = builds.comparison, (side.label for side in builds.sides)
+    lines = sorted(comparison.lines(), key=lambda line: (line.scene, line.method))
+    other = tuple(difference for difference in comparison.differences if not difference.worse)
     step = ("step [s]", first, second)
     tables = [
         (
@@ -78,39 +78,39 @@ def print_comparison(console: Terminal, builds: BuildComparison) -> None:
         ),
         *(
             (
-                f"Numbers and outcomes that are {word}",
+                f"Numbers and outcomes that are {kind}",
                 ("scene", "method", "what", *step),
-                [[each.after.scene, each.after.method, *_cells(each)] for each in differences],
+                [[difference.after.scene, difference.after.method, *_cells(difference)] for difference in differences],
             )
-            for word, differences in (
-                ("worse", found.worse),
+            for kind, differences in (
+                ("worse", comparison.worse),
                 ("better, or other", other if console.form == "json" else ()),
             )
         ),
         (
             "Order of the angle's error",
             ("scene", "method", first, second),
-            [[turn.scene, turn.method, turn.before, turn.after] for turn in found.orders],
+            [[turn.scene, turn.method, turn.before, turn.after] for turn in comparison.orders],
         ),
     ]
     for title, header, body in tables:
         if body:
             print_table(console, title, header, body, 3 if "step [s]" in header else 2)
             console.print()
-    for label, reasons in zip((first, second), _reasons(found), strict=True):
+    for label, reasons in zip((first, second), _reasons(comparison), strict=True):
         for reason, count in reasons.items():
             console.tell(f"{label}: {reason}{f' ({count} cells)' if count > 1 else ''}")
-    for check in found.grown:
+    for check in comparison.grown:
         console.tell(f"{second}: {check}")
-    for method, ratio in found.costs.items():
+    for method, ratio in comparison.costs.items():
         if ratio > DEAR:
             console.tell(f"{second}: {method} takes {ratio:.3g} times the CPU time")
-    cost = f"CPU time is {found.cost:.2f} times as much, by the median"
-    still = sum(line.verdict == "nothing changed" for line in lines)
+    cost = f"CPU time is {comparison.cost:.2f} times as much, by the median"
+    unchanged = sum(line.verdict == "nothing changed" for line in lines)
     console.tell(
-        f"From {first} to {second}, {len(found.pairs)} cells of both: {len(found.worse)} numbers are worse, "
-        f"{len(other)} better or other; nothing changed in {still} of {len(lines)} methods of scenes; "
-        f"{cost if math.isfinite(found.cost) else 'nothing was timed'}"
+        f"From {first} to {second}, {len(comparison.pairs)} cells of both: {len(comparison.worse)} numbers are worse, "
+        f"{len(other)} better or other; nothing changed in {unchanged} of {len(lines)} methods of scenes; "
+        f"{cost if math.isfinite(comparison.cost) else 'nothing was timed'}"
     )
 
 
@@ -129,8 +129,11 @@ def _reasons(found: RowComparison) -> tuple[Counter[str], Counter[str]]:
         sentence = " ".join(row.sentence.partition("; ours: ")[0].split())[:LONGEST]
         return "" if Outcome(row.outcome).comparable else ": ".join(filter(None, (row.outcome, sentence)))
 
-    ended = [each for each in found.differences if each.quantity == "outcome"]
-    before, after = Counter(reason(each.before) for each in ended), Counter(reason(each.after) for each in ended)
-    for counted in (before, after):
+    ended = [difference for difference in found.differences if difference.quantity == "outcome"]
+    earlier, later = (
+        Counter(reason(difference.before) for difference in ended),
+        Counter(reason(difference.after) for difference in ended),
+    )
+    for counted in (earlier, later):
         del counted[""]
-    return before, after
+    return earlier, later

@@ -66,18 +66,18 @@ def verdicts(results: Iterator[tuple[Case, Result]]) -> Iterator[tuple[Status, s
     printed: set[str] = set()
     for check, group in groupby(results, key=lambda pair: pair[0].check):
         answers = list(group)
-        failed, held = _with_status(answers, "fails"), _with_status(answers, "holds")
+        failed, holding = _with_status(answers, "fails"), _with_status(answers, "holds")
         if failed:
             yield "fails", f"{_places(failed)}{failed[0][1].sentence}"
-        elif held:
-            share = "" if not check.worlds else f" ({len(held)} of {len(answers)} mechanisms)"
+        elif holding:
+            share = "" if not check.worlds else f" ({len(holding)} of {len(answers)} mechanisms)"
             yield "holds", f"{check.name}{share}"
         for status in ("not supported", "not asked"):
             for case, result in _with_status(answers, status):
-                words = f"{_places([(case, result)])}{result.sentence}"
-                if words not in printed:
-                    yield status, words if held or failed or case.world is None else f"{check.name}: {words}"
-                printed.add(words)
+                line = f"{_places([(case, result)])}{result.sentence}"
+                if line not in printed:
+                    yield status, line if holding or failed or case.world is None else f"{check.name}: {line}"
+                printed.add(line)
 
 
 def _with_status(answers: Answers, status: str) -> list[tuple[Case, Result]]:
@@ -141,8 +141,8 @@ def asked(named: Named, limit: float = TIME_LIMIT) -> Iterator[tuple[Engine, Ite
 
     One worker, so that later checks reuse the runs of earlier ones. Raises BadInput, and WorkersLost (`supervise`).
     """
-    for place, engine in enumerate(named.engines()):
-        yield engine, _answers(named, place, engine, limit + MODELS * engine.build_time)
+    for number, engine in enumerate(named.engines()):
+        yield engine, _answers(named, number, engine, limit + MODELS * engine.build_time)
 
 
 def _answers(named: Named, place: int, engine: Engine, limit: float) -> Iterator[tuple[Case, Result]]:
@@ -159,8 +159,8 @@ def _answers(named: Named, place: int, engine: Engine, limit: float) -> Iterator
                 start = "It" if results.outcome == Outcome.TIMED_OUT else "Its process was lost:"
                 answers[question.check] = [_failed(case, f"{start} {results.sentence}")]
             elif earlier:
-                words = f"It ended its process at the first try: {earlier}; the second went through"
-                answers[question.check] = [_failed(members[0], words)]
+                sentence = f"It ended its process at the first try: {earlier}; the second went through"
+                answers[question.check] = [_failed(members[0], sentence)]
             else:
                 answers[question.check] = list(zip(members, results, strict=True))
             while names and names[0] in answers:  # a check that is tried again is answered late

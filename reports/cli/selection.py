@@ -26,10 +26,12 @@ def choose_scenes(words: Sequence[str], scenes: Sequence[Scene], pages: Sequence
     if not words:
         return tuple(scenes)
     taught = {scene: [page.name for page in pages if page.teaches(scene)] for scene in scenes}
-    known = dict.fromkeys([*(scene.name for scene in scenes), *(name for names in taught.values() for name in names)])
-    for word in words:
-        if word not in known:
-            raise nearest("scene", word, known)
+    possible = dict.fromkeys(
+        [*(scene.name for scene in scenes), *(name for names in taught.values() for name in names)]
+    )
+    for name in words:
+        if name not in possible:
+            raise nearest("scene", name, possible)
     return tuple(scene for scene in scenes if {scene.name, *taught[scene]} & set(words))
 
 
@@ -39,13 +41,13 @@ def choose_engines(engine: str | None, variant: str | None, engines: Sequence[En
 
     if engine in ABSENT:
         raise BadInput(ABSENT[engine])
-    named = tuple(each for each in engines if engine in (None, each.name))
+    named = tuple(candidate for candidate in engines if engine in (None, candidate.name))
     if engine is not None and not named:
-        raise nearest("engine", engine, (each.name for each in engines), ABSENT)
-    chosen = tuple(each for each in named if variant in (None, each.variant))
+        raise nearest("engine", engine, (candidate.name for candidate in engines), ABSENT)
+    chosen = tuple(candidate for candidate in named if variant in (None, candidate.variant))
     if variant is not None and not chosen:
         kind = "variant" if engine is None else f"variant of {engine}"
-        raise nearest(kind, variant, (each.variant for each in named))
+        raise nearest(kind, variant, (candidate.variant for candidate in named))
     return chosen
 
 
@@ -71,8 +73,8 @@ def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
     from engines.registry import ENGINES, INSTALLED
 
     compared = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
-    kept = (task.engine for page in pages for task in all_tasks(page) if task.engine is not None)
-    named = dict.fromkeys([*ENGINES, *INSTALLED, *compared, *kept])
+    of_tasks = (task.engine for page in pages for task in all_tasks(page) if task.engine is not None)
+    named = dict.fromkeys([*ENGINES, *INSTALLED, *compared, *of_tasks])
     return tuple(engine for engine in named if not engine.missing)
 
 
@@ -136,13 +138,13 @@ def left_out(
     scenes: Sequence[Scene], engines: Sequence[Engine], pages: Sequence[Page], full: bool, chosen: Sequence[Cell]
 ) -> list[tuple[Cell, str]]:
     """The cells of the grid that are not among those chosen by `choose_cells`, each with the reason."""
-    kept, quick = set(chosen), f"and a quick run has {QUICK_SECONDS:g} s for a run"
+    remaining, quick = set(chosen), f"and a quick run has {QUICK_SECONDS:g} s for a run"
     return [
         (cell, too_much(cell) or f"step_cost says {estimated_seconds(cell):.4g} s, {quick}")
         for scene in scenes
         for engine in grid_engines(scene, engines, pages)
         for cell in (Cell(scene, engine, every) for every in (FULL if full else QUICK))
-        if cell not in kept
+        if cell not in remaining
     ]
 
 
@@ -153,14 +155,14 @@ def choose_tasks(
 
     A quick run leaves out what would take longer than QUICK_CELL.
     """
-    found = (
+    tasks = (
         task
         for page in pages
         if any(page.is_run_with(scene) for scene in scenes)
         for task in all_tasks(page)
         if (task.engine is None or task.engine in engines) and (full or task.cost <= QUICK_CELL)
     )
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(tasks))
 
 
 def _quick(cells: Sequence[Cell], most: float) -> tuple[Cell, ...]:
@@ -168,11 +170,11 @@ def _quick(cells: Sequence[Cell], most: float) -> tuple[Cell, ...]:
 
     Seconds are those of the engines' own formulas, so that the choice is the same everywhere, whatever was measured.
     """
-    alike: dict[tuple[Scene, Engine, str], list[Cell]] = {}
+    groups: dict[tuple[Scene, Engine, str], list[Cell]] = {}
     for cell in cells:
-        alike.setdefault((cell.scene, cell.engine, cell.purpose), []).append(cell)
+        groups.setdefault((cell.scene, cell.engine, cell.purpose), []).append(cell)
     chosen: set[Cell] = set()
-    for (_, _, purpose), members in alike.items():
+    for (_, _, purpose), members in groups.items():
         ordered = sorted(members, key=estimated_seconds)
         short = [cell for cell in ordered if estimated_seconds(cell) <= QUICK_SECONDS]
         least = [cell for cell in ordered[:1] if estimated_seconds(cell) <= most]
@@ -201,5 +203,5 @@ def shown_cells(page: Page) -> tuple[Cell, ...]:
     """All cells whose rows a page can print: its own, those of engines that are not installed, and borrowed ones."""
     from engines.registry import OTHERS
 
-    further = (*beside_cells(page.scenes, OTHERS), *page.extra_cells())
-    return tuple(dict.fromkeys([*page_cells(page), *further, *page.borrowed]))
+    other_cells = (*beside_cells(page.scenes, OTHERS), *page.extra_cells())
+    return tuple(dict.fromkeys([*page_cells(page), *other_cells, *page.borrowed]))

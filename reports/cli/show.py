@@ -44,16 +44,16 @@ def list_command(scene: Scenes = None, engine: EngineName = None, variant: Varia
     choice = choose(scene or (), engine, variant)
     engines = choice.engines if engine is not None else choose_engines(None, variant, (*ENGINES, *INSTALLED))
     terminal, scenes = Terminal(140), choice.scenes
-    pages = {one: page.name if (page := page_of(one, choice.known.pages)) else "" for one in scenes}
-    rows = [(one.name, pages[one], one.source, f"{one.duration:.4g}") for one in scenes]
+    pages = {listed: page.name if (page := page_of(listed, choice.known.pages)) else "" for listed in scenes}
+    rows = [(listed.name, pages[listed], listed.source, f"{listed.duration:.4g}") for listed in scenes]
     print_table(terminal, "Scenes", ["scene", "page", "source", "duration [s]"], rows, 3)
     terminal.print()
     rows = [(method.name, method.variant, repr(method)) for method in engines]
     print_table(terminal, "Engines", ["engine", "variant", "settings"], rows, 3)
     terminal.print()
-    reasons = support([Cell(one, method, 1) for one in scenes for method in engines])
+    reasons = support([Cell(listed, method, 1) for listed in scenes for method in engines])
     # Sorted: workers answer in any order.
-    rows = sorted((cell.scene.name, method_name(cell.engine), why) for cell, why in reasons.items() if why)
+    rows = sorted((cell.scene.name, method_name(cell.engine), reason) for cell, reason in reasons.items() if reason)
     if rows:
         print_table(terminal, "Unsupported", ["scene", "method", "why"], rows, 3)
     else:
@@ -70,27 +70,27 @@ def show(
     results: Folder = FOLDER,
 ) -> None:
     """Print a scene's stored numbers: every run, order and plateau, which setting is enough, and its experiments."""
-    known, is_there = registered(), (results / STORE).exists()
+    available, is_there = registered(), (results / STORE).exists()
     if is_there:
         with Store.read(results / STORE) as store:
-            known = with_stored(known, store.load_references())
-    choice = choose([scene], engine, variant, settings or (), known)
+            available = with_stored(available, store.load_references())
+    choice = choose([scene], engine, variant, settings or (), available)
     refuse_file(results)
     stored: Mapping[Cell, Measurement] = {}
     if is_there:
         with Store.read(results / STORE) as store:
             stored = store.get(choose_cells(choice.scenes, choice.engines, choice.known.pages, full=True))
     if not stored:
-        words = shlex.join([scene, *(f"--set={word}" for word in settings or ())])
-        command = with_folder(f"crosscheck run {words}", results)
+        text = shlex.join([scene, *(f"--set={setting}" for setting in settings or ())])
+        command = with_folder(f"crosscheck run {text}", results)
         raise BadInput(f"{results} holds nothing for {scene!r} and the present sources: {command}")
     with telling(140, as_json, as_markdown) as terminal:
         terminal.keep(stored.values())
-        for one in choice.scenes:
-            page = next((page for page in choice.known.pages if page.teaches(one)), None)
-            _print_scene(terminal, one, stored, page.quantity if page else "angle")
+        for single in choice.scenes:
+            page = next((page for page in choice.known.pages if page.teaches(single)), None)
+            _print_scene(terminal, single, stored, page.quantity if page else "angle")
         for page in choice.known.pages:
-            for failure in page.failures if any(page.is_run_with(one) for one in choice.scenes) else ():
+            for failure in page.failures if any(page.is_run_with(single) for single in choice.scenes) else ():
                 if runs := [stored[cell] for cell in failure.cells if cell in stored]:
                     _print_runs(terminal, failure.title, runs)
 
@@ -104,12 +104,12 @@ def _print_scene(terminal: Terminal, scene: Scene, rows: Mapping[Cell, Measureme
     orders = order_rows(sweeps(judged_rows), [entry.name for entry in QUANTITIES])
     header = ["method", *(f"{entry.label}: order, plateau [{entry.unit}]" for entry in QUANTITIES)]
     advice_header, advice = page_tables.advice_lines(page_tables.advice(judged_rows, quantity), quantity)
-    for title, head, lines, left in (
+    for title, head, lines, left_aligned in (
         ("order and plateau", header, orders, 9),
         ("which setting for which accuracy", advice_header, advice, 3),
     ):
         plain = [[cell.replace("**", "") for cell in line] for line in lines]
-        print_table(terminal, f"{scene.name}: {title}", head, plain, left)
+        print_table(terminal, f"{scene.name}: {title}", head, plain, left_aligned)
         terminal.print()
 
 

@@ -55,7 +55,7 @@ def versions(
     if publish and (not everything or scenes):
         raise BadInput("--publish renews all of the page's data: give it with --all, and without --scenes")
     chosen, data = named_scenes(scenes or (() if everything else SCENES)), Path(results) / DATA.name
-    terms: dict[str, Any] = {"most": QUICK_CELL, "trees": True} if everything and not scenes else {}
+    options: dict[str, Any] = {"most": QUICK_CELL, "trees": True} if everything and not scenes else {}
     table = released(data) if everything else None
     wrong: list[str] = []
     rows: list[Measurement] = []
@@ -64,7 +64,7 @@ def versions(
             columns = []
             for number in numbers:
                 try:
-                    column = _run(console, check, name, number, chosen, results / STORE, fresh=fresh, **terms)
+                    column = _run(console, check, name, number, chosen, results / STORE, fresh=fresh, **options)
                 except BadInput as reason:
                     if not everything and len(numbers) == 1:
                         raise
@@ -110,7 +110,7 @@ def progress_of(console: Terminal, check: Callable[[], None]) -> Progress:
     @contextmanager
     def shown(label: str, count: int) -> Iterator[tuple[Callable[..., None], Callable[[Sequence[str]], None]]]:
         with progress(console, count, check, f"cells of {label}") as (done, watch):
-            yield done, lambda labels: watch([SimpleNamespace(label=each) for each in labels])
+            yield done, lambda labels: watch([SimpleNamespace(label=name) for name in labels])
 
     return shown
 
@@ -127,14 +127,14 @@ def _versions_by_engine(
         raise BadInput("name an engine and versions, such as: crosscheck versions mujoco 3.6.0 4.0.1; or give --all")
     engines_named(engine)
     if not numbers:
-        known = " ".join(compared_versions().get(engine, ()))
-        raise BadInput(f"name versions of {engine}" + (f", such as {known}" if known else ""))
+        text = " ".join(compared_versions().get(engine, ()))
+        raise BadInput(f"name versions of {engine}" + (f", such as {text}" if text else ""))
     return {engine: tuple(dict.fromkeys(numbers))}
 
 
 def named_scenes(words: list[str] | tuple[str, ...]) -> tuple[Scene, ...]:
     """The scenes named; else those whose run at a usual step is short. Raises BadInput."""
-    names = [name.strip() for word in words for name in word.split(",") if name.strip()]
+    names = [name.strip() for argument in words for name in argument.split(",") if name.strip()]
     return choose(names).scenes
 
 
@@ -145,8 +145,10 @@ def announce_pip(word: str) -> None:
 
 def _table(name: str, columns: list[VersionColumn]) -> ReleaseTable:
     quantities = {scene.name: page.quantity for page in PAGES for scene in page.scenes}
-    marks = {(name, each.version): each.trouble or each.mark for each in columns if each.trouble or each.mark}
-    return ReleaseTable(tuple(entry for each in columns for entry in entries(name, each, quantities)), marks)
+    marks = {
+        (name, column.version): column.trouble or column.mark for column in columns if column.trouble or column.mark
+    }
+    return ReleaseTable(tuple(entry for column in columns for entry in entries(name, column, quantities)), marks)
 
 
 def _print(console: Terminal, table: ReleaseTable, name: str) -> None:
@@ -156,14 +158,18 @@ def _print(console: Terminal, table: ReleaseTable, name: str) -> None:
     for entry in table.entries:
         key = entry.scene, entry.variant, f"{entry.quantity} [{entry.unit}]"
         lines.setdefault(key, {})[entry.version] = entry.error if entry.comparable else entry.outcome
-    words: dict[tuple[str, str], list[str]] = {}
-    for _, after, word in changes(table.entries):
-        words.setdefault((after.scene, after.variant), []).append(f"{after.version} {word}")
+    changes_by_method: dict[tuple[str, str], list[str]] = {}
+    for _, entry, change_text in changes(table.entries):
+        changes_by_method.setdefault((entry.scene, entry.variant), []).append(f"{entry.version} {change_text}")
     rows = [
-        [*key, *(found.get(each, "-") for each in numbers), "; ".join(words.get(key[:2], ["nothing changed"]))]
-        for key, found in sorted(lines.items())
+        [
+            *key,
+            *(values.get(number, "-") for number in numbers),
+            "; ".join(changes_by_method.get(key[:2], ["nothing changed"])),
+        ]
+        for key, values in sorted(lines.items())
     ]
     if rows:
         console.print()
-        header = ("scene", "method", "largest error", *(f"{name} {each}" for each in numbers), "change")
+        header = ("scene", "method", "largest error", *(f"{name} {number}" for number in numbers), "change")
         print_table(console, f"{name}: largest errors; a change is one by more than three times", header, rows, 3)

@@ -77,8 +77,8 @@ def mixed(baseline: Baseline) -> str:
     others = not_as_written(baseline.folder)
     if others is None:
         return f"{baseline.folder} has no {DIGESTS}, so its files may be of several reports; write the report again."
-    more = f" and {len(others) - MOST_FILES_NAMED} more" if len(others) > MOST_FILES_NAMED else ""
-    names = ", ".join(others[:MOST_FILES_NAMED]) + more
+    remainder = f" and {len(others) - MOST_FILES_NAMED} more" if len(others) > MOST_FILES_NAMED else ""
+    names = ", ".join(others[:MOST_FILES_NAMED]) + remainder
     return (
         f"Changed since the report in {baseline.folder} was written: {names}; write the report again." if others else ""
     )
@@ -237,15 +237,15 @@ def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), ampli
         return (_outcome(row, old, same),)
     others = [other for other in nudged if _has_numbers(other.outcome, old.outcome)]
     out = []
-    for name, before in old.errors.items():
+    for name, earlier in old.errors.items():
         now = getattr(row, name)
-        if not (math.isnan(now) and math.isnan(before)):
+        if not (math.isnan(now) and math.isnan(earlier)):
             finite = [value for other in others if math.isfinite(value := getattr(other, name))]
             spread = max((abs(value - now) for value in finite), default=0.0)
-            digits, rounding = rounding_tolerance(name, before, amplified)
-            terms = (("printed digits", digits), ("rounding", rounding), ("nudged runs", NUDGE_ROOM * spread))
-            bound = sum(value for _, value in terms)
-            out.append(Check(CHANGE, name, abs(now - before), bound, terms, f", {now:.4g}; it was {before:.4g}"))
+            digits, rounding = rounding_tolerance(name, earlier, amplified)
+            parts = (("printed digits", digits), ("rounding", rounding), ("nudged runs", NUDGE_ROOM * spread))
+            bound = sum(value for _, value in parts)
+            out.append(Check(CHANGE, name, abs(now - earlier), bound, parts, f", {now:.4g}; it was {earlier:.4g}"))
     return (*out, *_reactions(row, old))
 
 
@@ -268,13 +268,13 @@ def drift(row: Measurement, old: Old) -> tuple[Check, ...]:
     if not (Outcome(row.outcome).comparable and old.outcome.comparable):
         return (_outcome(row, old, row.outcome == old.outcome or Outcome(row.outcome).comparable),)
     out = []
-    for name, before in old.errors.items():
+    for name, earlier in old.errors.items():
         now = getattr(row, name)
-        if not math.isnan(before):
-            rounding = rounding_tolerance(name, before)[1]
-            terms = (("baseline", before), ("rounding", rounding))
-            sentence = f", {now:.4g}; it was {before:.4g}"
-            out.append(Check(CHANGE, name, now, WORSE * (before + rounding), terms, sentence))
+        if not math.isnan(earlier):
+            rounding = rounding_tolerance(name, earlier)[1]
+            parts = (("baseline", earlier), ("rounding", rounding))
+            sentence = f", {now:.4g}; it was {earlier:.4g}"
+            out.append(Check(CHANGE, name, now, WORSE * (earlier + rounding), parts, sentence))
     return (*out, *_reactions(row, old))
 
 
@@ -295,7 +295,7 @@ def describe_improvements(row: Measurement, old: Old) -> tuple[str, ...]:
         return ()
     if not old.outcome.comparable:
         return (f"outcome: {row.outcome}; it was {old.outcome}",)
-    errors = ((name, getattr(row, name)) for name, before in old.errors.items() if math.isnan(before))
+    errors = ((name, getattr(row, name)) for name, earlier in old.errors.items() if math.isnan(earlier))
     return tuple(f"{name}: {now:.4g}; it was not known" for name, now in errors if not math.isnan(now))
 
 
@@ -311,11 +311,11 @@ def growth(pairs: Iterable[tuple[Measurement, Old]]) -> tuple[Check, ...]:
     for row, old in pairs:
         if not (Outcome(row.outcome).comparable and old.outcome.comparable):
             continue
-        for name, before in old.errors.items():
-            now, rounding = getattr(row, name), rounding_tolerance(name, before)[1]
-            if math.isfinite(now) and math.isfinite(before):
+        for name, earlier in old.errors.items():
+            now, rounding = getattr(row, name), rounding_tolerance(name, earlier)[1]
+            if math.isfinite(now) and math.isfinite(earlier):
                 of_scenes = factors.setdefault((row.method, name), {})
-                of_scenes.setdefault(row.scene, []).append((now + rounding) / (before + rounding))
+                of_scenes.setdefault(row.scene, []).append((now + rounding) / (earlier + rounding))
     out = []
     for (method, name), of_scenes in factors.items():
         measured = median(median(cells) for cells in of_scenes.values())
@@ -335,7 +335,7 @@ def cost(pairs: Iterable[tuple[Measurement, Old]]) -> float:
         for row, old in pairs
         if Outcome(row.outcome).comparable and old.outcome.comparable and row.cpu > 0 and old.cpu > 0
     ]
-    return sum(now for now, _ in timed) / sum(before for _, before in timed) if timed else math.nan
+    return sum(now for now, _ in timed) / sum(earlier for _, earlier in timed) if timed else math.nan
 
 
 def moved(row: Measurement, old: Old, amplified: float = 1.0) -> bool:

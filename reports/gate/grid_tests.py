@@ -25,9 +25,9 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         test_a_method_is_as_exact_as_theory_promises,
         test_a_method_gives_the_numbers_of_the_baseline,
     ):
-        given = metafunc.config.stash.get(GIVEN, ())
-        found = cases(with_engines(PAGES, given)) if given else GRID
-        metafunc.parametrize("case", [pytest.param(case, id=case.label) for case in found])
+        engines = metafunc.config.stash.get(GIVEN, ())
+        grid = cases(with_engines(PAGES, engines)) if engines else GRID
+        metafunc.parametrize("case", [pytest.param(case, id=case.label) for case in grid])
 
 
 def verdict_of(verdicts: dict[Case, CaseVerdict], case: Case) -> CaseVerdict:
@@ -58,15 +58,15 @@ def test_a_method_gives_the_numbers_of_the_baseline(verdicts: dict[Case, CaseVer
 def test_with_other_versions_no_method_is_worse_over_all_its_scenes(
     request: pytest.FixtureRequest, verdicts: dict[Case, CaseVerdict]
 ) -> None:
-    found = [str(check) for check in grown(verdicts.values(), request.config.stash[KNOWN]) if not check.passed]
-    assert not found, "\n".join(found)
+    results = [str(check) for check in grown(verdicts.values(), request.config.stash[KNOWN]) if not check.passed]
+    assert not results, "\n".join(results)
 
 
 @pytest.mark.crosscheck
 def test_the_grid_has_every_scene_and_method_of_the_baseline(request: pytest.FixtureRequest) -> None:
-    left = lost(request.config.stash[KNOWN], GRID)
-    absent = {sentence for _, method in left if (sentence := absence(method))}
-    gone = [f"{scene}-{method}" for scene, method in left if not absence(method)]
+    absent_pairs = lost(request.config.stash[KNOWN], GRID)
+    absent = {sentence for _, method in absent_pairs if (sentence := absence(method))}
+    gone = [f"{scene}-{method}" for scene, method in absent_pairs if not absence(method)]
     assert not gone, f"the grid has lost what the baseline has: {', '.join(gone)}"
     if absent:
         pytest.skip("; ".join(sorted(absent)))

@@ -40,8 +40,8 @@ def lines(verdicts: Iterable[CaseVerdict]) -> list[list[str]]:
         near = f"{worst.name} ({worst.quantity})" if worst.quantity != worst.name else worst.name
         gates = {"theory": verdict.theory_complaints, "change": verdict.change_complaints}
         failed = ", ".join(name for name, sentences in gates.items() if sentences)
-        word = f"FAILED: {failed}" if failed else "known" if verdict.case.known else "passed"
-        out.append([*first, *angle, near, number(worst.nearness), word])
+        verdict_text = f"FAILED: {failed}" if failed else "known" if verdict.case.known else "passed"
+        out.append([*first, *angle, near, number(worst.nearness), verdict_text])
     return out
 
 
@@ -57,8 +57,8 @@ def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
         )
         for verdict in verdicts:
             for check in verdict.change:
-                before = dict(check.terms).get("baseline", math.nan)
-                if abs(check.measured - before) > 1e-3 * check.measured:
+                earlier = dict(check.terms).get("baseline", math.nan)
+                if abs(check.measured - earlier) > 1e-3 * check.measured:
                     out.append(f"{verdict.case.label}: {check}")
         out += [str(check) for check in grown(verdicts, baseline) if not check.passed]
     out += [f"{verdict.case.label}: {sentence}." for verdict in verdicts for sentence in remarks(verdict)]
@@ -82,10 +82,11 @@ def report(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> str:
     """The whole of it as Markdown: a summary, failures with their sentences, known deviations, and the table."""
     verdicts = tuple(verdicts)
     failed = [v for v in verdicts if v.theory_complaints or v.change_complaints]
-    known = [v for v in verdicts if v.case.known and v not in failed]
+    deviating = [v for v in verdicts if v.case.known and v not in failed]
     parts = [
         "# Crosscheck",
-        f"{len(verdicts)} scenes and methods, {len(failed)} failed, {len(known)} with known deviations. {versions()}.",
+        f"{len(verdicts)} scenes and methods, {len(failed)} failed, {len(deviating)} with known deviations. "
+        f"{versions()}.",
     ]
     if failed:
         parts.append("## Failed")
@@ -93,9 +94,11 @@ def report(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> str:
             f"{v.case.label}: {sentence}" for v in failed for sentence in (*v.theory_complaints, *v.change_complaints)
         ]
         parts.append("\n".join(f"* {sentence}" for sentence in sentences))
-    if known:
+    if deviating:
         parts.append("## Known deviations")
-        body = [[v.case.scene.name, v.case.method, name, d.told, d.reason] for v in known for name, d in v.case.known]
+        body = [
+            [v.case.scene.name, v.case.method, name, d.told, d.reason] for v in deviating for name, d in v.case.known
+        ]
         parts.append(markdown(["scene", "method", "check", "times its bound", "why"], body, left=5))
     parts += ["## Checks that can't fail", "\n".join(f"* {sentence}" for sentence in vacuous_checks(verdicts))]
     changed = changes(verdicts, baseline)
@@ -146,24 +149,26 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def _engines(words: Sequence[str]) -> tuple[tuple[Engine, ...], tuple[str, ...]]:
     """(the engines that references name, the names and methods that are wanted). Raises UsageError."""
-    given: dict[Engine, None] = {}
+    loaded: dict[Engine, None] = {}
     wanted: list[str] = []
-    known = {method_name(engine): engine for engine in registry.ENGINES}
-    for word in words:
-        if not is_reference(word):
-            wanted.append(word)
+    by_method = {method_name(engine): engine for engine in registry.ENGINES}
+    for argument in words:
+        if not is_reference(argument):
+            wanted.append(argument)
             continue
         try:
-            found = registry.load(word)
+            engines = registry.load(argument)
         except ValueError as reason:
             raise pytest.UsageError(f"--engine {reason}") from None
-        for engine in found:
+        for engine in engines:
             method = method_name(engine)
-            if known.setdefault(method, engine) != engine:
-                raise pytest.UsageError(f"--engine {word}: another engine is called {method!r}; give it another name")
-            given[engine] = None
+            if by_method.setdefault(method, engine) != engine:
+                raise pytest.UsageError(
+                    f"--engine {argument}: another engine is called {method!r}; give it another name"
+                )
+            loaded[engine] = None
             wanted.append(method)
-    return tuple(given), tuple(wanted)
+    return tuple(loaded), tuple(wanted)
 
 
 def pytest_report_header() -> list[str]:
@@ -175,8 +180,8 @@ def pytest_report_header() -> list[str]:
 
 def case_of(item: pytest.Item) -> Case | None:
     """The case that a test is about; None for any other test."""
-    found = getattr(item, "callspec", None)
-    value = found.params.get("case") if found is not None else None
+    callspec = getattr(item, "callspec", None)
+    value = callspec.params.get("case") if callspec is not None else None
     return value if isinstance(value, Case) else None
 
 
@@ -188,8 +193,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         return
     selected = [item for item in items if _wanted(item, scenes, engines)]
     if not any(map(case_of, selected)):
-        known = sorted({case.scene.name for case in map(case_of, items) if case is not None})
-        raise pytest.UsageError(f"no case of --scene {scenes} --engine {list(engines)}; scenes are {', '.join(known)}")
+        scene_names = sorted({case.scene.name for case in map(case_of, items) if case is not None})
+        raise pytest.UsageError(
+            f"no case of --scene {scenes} --engine {list(engines)}; scenes are {', '.join(scene_names)}"
+        )
     config.hook.pytest_deselected(items=[item for item in items if item not in selected])
     items[:] = selected
 
@@ -213,16 +220,16 @@ def verdicts(request: pytest.FixtureRequest) -> dict[Case, CaseVerdict]:
     if hasattr(request.config, "workerinput"):
         pytest.skip("the grid has workers of its own: pytest -m crosscheck, without -n")
     chosen = dict.fromkeys(case for case in map(case_of, request.session.items) if case is not None)
-    found = run_and_check(chosen, request.config.stash[KNOWN], dearest=request.config.getoption("--cost"))
-    request.config.stash[VERDICTS] = found
-    return found
+    by_case = run_and_check(chosen, request.config.stash[KNOWN], dearest=request.config.getoption("--cost"))
+    request.config.stash[VERDICTS] = by_case
+    return by_case
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
-    found = config.stash.get(VERDICTS, None)
-    if not found:
+    by_case = config.stash.get(VERDICTS, None)
+    if not by_case:
         return
-    baseline, verdicts = config.stash[KNOWN], found.values()
+    baseline, verdicts = config.stash[KNOWN], by_case.values()
     terminalreporter.section("crosscheck")
     for line in (*text_table(HEADER, lines(verdicts)), *vacuous_checks(verdicts), *changes(verdicts, baseline)):
         terminalreporter.line(line)

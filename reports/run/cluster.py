@@ -93,7 +93,7 @@ def run_chunk(data: bytes) -> bytes:
     job, items, limit, wall = pickle.loads(data)
     # Dask starts its workers as processes that may have no children, unless its settings say so (`worker.daemon`).
     vars(multiprocessing.current_process())["_config"]["daemon"] = False
-    places = {item: place for place, item in enumerate(items)}
+    places = {item: index for index, item in enumerate(items)}
     answers = supervise(job, items, limit, 1, watch=end_when_closing, wall=wall)
     return pickle.dumps([(places[item], result, note) for item, result, note in answers])
 
@@ -104,8 +104,8 @@ def connect_cluster(scheduler: str | None) -> Iterator[Workforce | None]:
     if scheduler is None:
         yield None
         return
-    words = WORDS.fullmatch(scheduler)
-    if not words:
+    local_cluster = WORDS.fullmatch(scheduler)
+    if not local_cluster:
         raise BadInput(f"--scheduler is {scheduler!r}; it must be {FORMS}")
     try:
         import distributed
@@ -119,11 +119,11 @@ def connect_cluster(scheduler: str | None) -> Iterator[Workforce | None]:
         try:
             with process_start():  # Ctrl-C reaches every process of a terminal; what starts here leaves it to this one
                 where: Any = scheduler
-                if words[1]:  # threads: cells have processes of their own, all by one fork server
+                if local_cluster[1]:  # threads: cells have processes of their own, all by one fork server
                     folder = str(stack.enter_context(temporary_folder()))
-                    terms: dict[str, Any] = {"processes": False, "threads_per_worker": 1, "memory_limit": None}
-                    terms |= {"local_directory": folder, "dashboard_address": "127.0.0.1:0"}
-                    where = stack.enter_context(distributed.LocalCluster(n_workers=int(words[1]), **terms))
+                    options: dict[str, Any] = {"processes": False, "threads_per_worker": 1, "memory_limit": None}
+                    options |= {"local_directory": folder, "dashboard_address": "127.0.0.1:0"}
+                    where = stack.enter_context(distributed.LocalCluster(n_workers=int(local_cluster[1]), **options))
                     _closing.clear()
                     stack.callback(_closing.set)
                 client = stack.enter_context(distributed.Client(where, timeout=ANSWERS_WITHIN, set_as_default=False))
@@ -161,10 +161,10 @@ def _supervise(
             done = [future for future in remaining if future.done()]
             for future in done:
                 part = remaining.pop(future)
-                for place, result, note in _answers(future, len(part), scheduler):
+                for index, result, note in _answers(future, len(part), scheduler):
                     if isinstance(result, Refusal):
-                        raise _refused(result, part[place], scheduler)
-                    yield part[place], result, note
+                        raise _refused(result, part[index], scheduler)
+                    yield part[index], result, note
             threads = _threads(client)
             seen = time.monotonic() if threads else seen
             if time.monotonic() - seen > WORKERS_WITHIN:
@@ -194,13 +194,17 @@ def _answers(future: Any, count: int, scheduler: str) -> list[tuple[int, Any, st
             f"a worker at {scheduler} can't run cells ({describe(error)}): install this program there"
         ) from None
     except Exception as error:
-        lost = Loss(Outcome.LOST, f"every worker ended that ran it: {describe(error)}")
-        return [(place, lost, "") for place in range(count)]
+        loss = Loss(Outcome.LOST, f"every worker ended that ran it: {describe(error)}")
+        return [(index, loss, "") for index in range(count)]
 
 
 def _refused(refusal: Refusal, item: Any, scheduler: str) -> BadInput:
     """The line about a worker that would run something else."""
-    here, there = versions_of(item), refusal.versions
-    names = sorted(name for name in {*here, *there} if here.get(name) != there.get(name))
-    words = "; ".join(f"{name} {there.get(name, 'missing')} there, {here.get(name, 'missing')} here" for name in names)
-    return BadInput(f"a worker at {scheduler} would give other rows ({words}): nothing was run there; install the same")
+    local, remote = versions_of(item), refusal.versions
+    names = sorted(name for name in {*local, *remote} if local.get(name) != remote.get(name))
+    differences = "; ".join(
+        f"{name} {remote.get(name, 'missing')} there, {local.get(name, 'missing')} here" for name in names
+    )
+    return BadInput(
+        f"a worker at {scheduler} would give other rows ({differences}): nothing was run there; install the same"
+    )

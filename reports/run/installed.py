@@ -95,10 +95,10 @@ def sources(name: str, version: str, folder: Path, *options: str) -> Path:
     command = [sys.executable, "-P", "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
     command += ["--no-binary", name, f"{name}=={version}", "--dest", str(folder), *options]
     ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", check=False)
-    found = list(folder.glob(f"{name}-*.tar.gz"))
-    if ended.returncode or not found:
+    archives = list(folder.glob(f"{name}-*.tar.gz"))
+    if ended.returncode or not archives:
         raise BadInput(f"pip could not fetch the source package of {name} {version}: {_reason(ended.stderr)}")
-    with tarfile.open(found[0], encoding="utf-8") as archive:
+    with tarfile.open(archives[0], encoding="utf-8") as archive:
         archive.extraction_filter = getattr(tarfile, "data_filter", None)  # Python before 3.11.4 has none
         archive.extractall(folder)
     return folder / f"{name}-{version}"
@@ -150,7 +150,7 @@ def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
 
 def _reason(text: str) -> str:
     """The last error that pip printed, else its last line; OFFLINE without a connection."""
-    if any(word in text for word in UNCONNECTED):
+    if any(mark in text for mark in UNCONNECTED):
         return OFFLINE
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     errors = [line for line in lines if line.startswith("ERROR")]
@@ -164,18 +164,18 @@ def _refusal(version: str, texts: Mapping[str, str]) -> BadInput:
         return BadInput(f"{names} {version} can't be fetched: {OFFLINE}")
     about = f"no wheel of {names} {version} for this Python ({sys.version_info[0]}.{sys.version_info[1]})"
     lists = [match[1] for text in texts.values() for match in OFFERED.finditer(text)]
-    offered = dict.fromkeys(word for words in lists for word in words.split(", ") if VERSION.match(word))
+    offered = dict.fromkeys(version for listing in lists for version in listing.split(", ") if VERSION.match(version))
     if offered:
         return BadInput(f"{about}; there are {', '.join(nearest_versions(version, list(offered)))}")
-    told = "; ".join(f"{name}: {reason}" for name, reason in reasons.items() if not OFFERED.search(texts[name]))
-    return BadInput(f"{about}: {told or 'the package index knows none'}")
+    reasons_text = "; ".join(f"{name}: {reason}" for name, reason in reasons.items() if not OFFERED.search(texts[name]))
+    return BadInput(f"{about}: {reasons_text or 'the package index knows none'}")
 
 
 def nearest_versions(version: str, offered: Sequence[str]) -> list[str]:
     """Some of those offered, around where this one would stand, in their order."""
     ordered = sorted(offered, key=numbers)
-    place = sum(numbers(each) < numbers(version) for each in ordered)
-    low = max(0, min(place - SHOWN // 2, len(ordered) - SHOWN))
+    index = sum(numbers(other) < numbers(version) for other in ordered)
+    low = max(0, min(index - SHOWN // 2, len(ordered) - SHOWN))
     return ordered[low : low + SHOWN]
 
 
@@ -189,9 +189,9 @@ def distributions_in(folder: Path) -> Mapping[str, str]:
 
     A module's own word is not asked: pymunk 7.0.0 says of itself that it is 2.0.0.
     """
-    found = {}
-    for each in metadata.distributions(path=[str(folder)]):
-        name = each.metadata["Name"]
+    versions = {}
+    for distribution in metadata.distributions(path=[str(folder)]):
+        name = distribution.metadata["Name"]
         if name:
-            found[name] = each.version
-    return found
+            versions[name] = distribution.version
+    return versions

@@ -63,8 +63,8 @@ class BuildComparison:
         if not (worse or grown):
             return ""
         also = f", and {len(grown)} errors over all scenes" if grown else ""
-        before, after = (side.label for side in self.sides)
-        return f"{after} is worse than {before} in {len(worse)} numbers or outcomes{also}"
+        earlier, later = (side.label for side in self.sides)
+        return f"{later} is worse than {earlier} in {len(worse)} numbers or outcomes{also}"
 
 
 def scenes_named(names: Sequence[str] = SCENES) -> tuple[Scene, ...]:
@@ -94,17 +94,17 @@ def compare_builds(
     if a.label == b.label:
         a, b = replace(a, label=f"A: {a.label}"), replace(b, label=f"B: {b.label}")
     methods = [method for method in engines if engine is not None or method.name == a.engine]
-    known = dict.fromkeys(method.variant for method in methods)
+    known_variants = dict.fromkeys(method.variant for method in methods)
     for word in variants:
-        if word not in known:
-            raise nearest("variant", word, known)
+        if word not in known_variants:
+            raise nearest("variant", word, known_variants)
     methods = [method for method in methods if not variants or method.variant in variants]
-    terms: dict[str, Any] = {"every": QUICK, "variants": tuple(dict.fromkeys(method.variant for method in methods))}
+    options: dict[str, Any] = {"every": QUICK, "variants": tuple(dict.fromkeys(method.variant for method in methods))}
     with temporary_folder() as folder:
 
         def run(side: Build, number: str) -> VersionColumn:
             store = (results if side.stored else folder / number) / STORE
-            request = _request(engine or side.engine, side.location, scenes, store, most=LONGEST_CELL, **terms)
+            request = _request(engine or side.engine, side.location, scenes, store, most=LONGEST_CELL, **options)
             return run_column(side.label, side.label, request, methods, progress)
 
         columns = run(a, "1"), run(b, "2")

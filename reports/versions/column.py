@@ -131,8 +131,8 @@ def _unsupported_if_lacking(row: Measurement, version: str) -> Measurement:
 def _messages(request: VersionRequest) -> Iterator[Any]:
     """The messages of the process, see `answer`; a Loss at the end if it ended too early."""
     with temporary_folder() as folder:  # what an engine leaves behind goes with it, and what lies there hides no module
-        words = folder / "said.txt"
-        with words.open("wb") as errors:
+        error_file = folder / "said.txt"
+        with error_file.open("wb") as errors:
             process = subprocess.Popen(
                 [sys.executable, "-m", "reports.versions.child"],
                 stdin=subprocess.PIPE,
@@ -151,7 +151,7 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
                 yield message
         except (EOFError, OSError, pickle.UnpicklingError):
             code = process.wait()
-            lines = words.read_text(encoding="utf-8", errors="replace").split("\n")
+            lines = error_file.read_text(encoding="utf-8", errors="replace").split("\n")
             last = next((line.strip()[:LONGEST] for line in reversed(lines) if line.strip()), "")
             yield Loss(Outcome.ABORTED, ": ".join(filter(None, (describe_exit(code), last))))
         finally:
@@ -182,13 +182,13 @@ def answer(request: VersionRequest, send: Callable[[Any], None]) -> Loss | None:
 def _usable_engines(request: VersionRequest) -> list[Engine]:
     """The requested engines. Raises ValueError where they can't be used with this version."""
     cant = "our adapter can't use it"
-    known = (*registry.VARIANTS, *registry.OTHERS)
+    engines = (*registry.VARIANTS, *registry.OTHERS)
     try:
         if is_reference(request.engine):
-            known = registry.load(request.engine, request.folder)
+            engines = registry.load(request.engine, request.folder)
     except ValueError as error:
         raise ValueError(f"{cant}: {error}") from None
-    engines = [engine for engine in known if is_reference(request.engine) or engine.name == request.engine]
+    engines = [engine for engine in engines if is_reference(request.engine) or engine.name == request.engine]
     if not engines:
         reasons = [line for line in registry.TROUBLES if request.engine in line]
         raise ValueError(f"{cant}: {(reasons or ['it registers no engine'])[0]}")
@@ -220,11 +220,11 @@ def _run(request: VersionRequest, engines: Sequence[Engine], send: Callable[[Any
             waiting = set(missing(cells, store, request.limit))
             for row in store.get(cell for cell in cells if cell not in waiting).values():
                 send(row)
-        terms: dict[str, Any] = {"watch": lambda items: send([item.label for item in items])}
-        terms["done"] = lambda result: send(result) if isinstance(result, Measurement) else None
-        run_into(store, [*cells, *tasks], request.fresh, request.limit, **terms)
-        for task, found in store.answers(tasks).items():
-            send((task, found))
+        options: dict[str, Any] = {"watch": lambda items: send([item.label for item in items])}
+        options["done"] = lambda result: send(result) if isinstance(result, Measurement) else None
+        run_into(store, [*cells, *tasks], request.fresh, request.limit, **options)
+        for task, answer in store.answers(tasks).items():
+            send((task, answer))
 
 
 def modules_in(folder: Path) -> tuple[str, ...]:

@@ -67,7 +67,7 @@ class RowComparison:
     def grown(self) -> tuple[Check, ...]:
         """Failed checks of a method's errors over all scenes."""
         return tuple(
-            check for check in growth((after, _old(before)) for before, after in self.pairs) if not check.passed
+            check for check in growth((later, _old(earlier)) for earlier, later in self.pairs) if not check.passed
         )
 
     @cached_property
@@ -83,7 +83,7 @@ class RowComparison:
     def cost(self) -> float:
         """The median of the ratios of CPU times; NaN where nothing was timed."""
         timed = [pair for pair in self.pairs if all(Outcome(row.outcome).comparable and row.cpu > 0 for row in pair)]
-        return median(after.cpu / before.cpu for before, after in timed) if timed else math.nan
+        return median(later.cpu / earlier.cpu for earlier, later in timed) if timed else math.nan
 
     @property
     def costs(self) -> dict[str, float]:
@@ -96,8 +96,8 @@ class RowComparison:
 
     def _by(self, *names: str) -> list[RowComparison]:
         groups: dict[tuple[str, ...], list[tuple[Measurement, Measurement]]] = {}
-        for before, after in self.pairs:
-            groups.setdefault(tuple(getattr(after, name) for name in names), []).append((before, after))
+        for earlier, later in self.pairs:
+            groups.setdefault(tuple(getattr(later, name) for name in names), []).append((earlier, later))
         return [RowComparison(tuple(pairs)) for pairs in groups.values()]
 
     @property

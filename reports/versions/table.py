@@ -147,19 +147,19 @@ def read(path: Path) -> ReleaseTable:
     rows = csv.DictReader(line for line in lines if not line.startswith("#"))
     types: dict[str, Any] = {field.name: float if field.type == "float" else str for field in fields(Entry)}
     try:
-        found = tuple(Entry(**{name: kind(row[name]) for name, kind in types.items()}) for row in rows)
+        rows_read = tuple(Entry(**{name: kind(row[name]) for name, kind in types.items()}) for row in rows)
     except (KeyError, TypeError, ValueError):
         raise ValueError(f"{path}: it is no table of versions; `crosscheck versions --all` writes one") from None
-    return ReleaseTable(found, marks)
+    return ReleaseTable(rows_read, marks)
 
 
 @cache
 def released(path: Path = DATA) -> ReleaseTable:
     """The published table, without releases that the catalogue does not list any more."""
-    known, table = compared_versions(), read(path)
+    compared, table = compared_versions(), read(path)
 
     def is_listed(engine: str, version: str) -> bool:
-        return version in known.get(engine, (version,))
+        return version in compared.get(engine, (version,))
 
     listed = tuple(entry for entry in table.entries if is_listed(entry.engine, entry.version))
     return ReleaseTable(listed, {key: mark for key, mark in table.marks.items() if is_listed(*key)})
@@ -208,7 +208,7 @@ def changes(entries: Iterable[Entry]) -> list[tuple[Entry, Entry, str]]:
         if entry.is_supported:
             lines.setdefault(entry.identity[:3], []).append(entry)
     pairs = [pair for line in lines.values() for pair in pairwise(line)]
-    return [(before, after, word) for before, after in pairs if (word := change(before, after))]
+    return [(earlier, later, text) for earlier, later in pairs if (text := change(earlier, later))]
 
 
 def relative_cost(entries: Iterable[Entry], versions: Sequence[str], variant: str) -> dict[str, float]:

@@ -45,7 +45,7 @@ def roulettes() -> tuple[Roulette, ...]:
     inside = Rolling.at_arcs(Circle(0.45), ring)
     # The material of a parabola is above it; turned over, it rolls on the line along its outside.
     parabola = Rolling.at_arcs(Parabola(0.3), Line())
-    low, high, few = parabola.theta - 1.1, parabola.theta + 1.1, parabola.theta + np.array([-0.8, 0.0, 0.8])
+    low, high, angles_shown = parabola.theta - 1.1, parabola.theta + 1.1, parabola.theta + np.array([-0.8, 0.0, 0.8])
     square, eighth = Rolling.at_arcs(Side(1.0), Placed(Catenary(0.5), turn=math.pi)), math.pi / 4
     around = (0.0, 2 * turn), (math.pi, math.pi + 2.2, math.pi + 4.3), (0.0, ellipse.length)
     hypocycloid = "a point of a rim in a ring of 4/3 its radius: hypocycloid"
@@ -57,7 +57,7 @@ def roulettes() -> tuple[Roulette, ...]:
         Roulette(hypocycloid, inside, (0.45, 0.0), (-turn, 0.0), (-1.4, -0.7, 0.0), (0.0, ring.length)),
         Roulette(
             *("focus of a parabola on a line: catenary", parabola, (0.0, 0.3)),
-            *((low, high), tuple(few.tolist()), (-1.4, 1.4), (-0.9, 0.9)),
+            *((low, high), tuple(angles_shown.tolist()), (-1.4, 1.4), (-0.9, 0.9)),
         ),
         Roulette(level, square, (0.0, 0.0), (-eighth, eighth), (-eighth, 0.0, eighth), (-0.5, 0.5)),
     )
@@ -178,19 +178,24 @@ COEFFICIENTS = (0.2, 0.5, 1.0)  # of friction, in the diagram
 def draw_acceleration() -> Figure:
     """The rolling term and the term of a body pinned at C, over a turn of an ellipse and over the fit of the curves."""
     with drawing(3.6) as figure:
-        left, right = figure.subplots(1, 2)
+        left_panel, right = figure.subplots(1, 2)
         rolling = Rolling.at_angle(Ellipse(0.5, 0.3), Line())
         theta = np.linspace(0, math.pi, 400)
         pinned = np.linalg.norm(rolling.pinned_acceleration(theta, 1.0, 0.0), axis=-1)
         term = np.linalg.norm(rolling.rolling_acceleration(theta, 1.0), axis=-1)
-        for values, name, colour, place in (
+        for values, name, colour, index in (
             (pinned, "pinned at C: $\\omega^2 r$", LIGHT.second, 200),
             (term, "rolling: $\\omega^2/(\\kappa_A+\\kappa_B)$", LIGHT.first, 30),
         ):
-            left.plot(np.degrees(theta), values, color=colour, linewidth=2)
-            note(left, name, (np.degrees(theta[place]), values[place]), (4, 6), colour)
-        _axes(left, "an ellipse on flat ground, its centre", "rotation [degrees]", "acceleration at 1 rad/s [m/s$^2$]")
-        left.set_xticks([0, 45, 90, 135, 180])
+            left_panel.plot(np.degrees(theta), values, color=colour, linewidth=2)
+            note(left_panel, name, (np.degrees(theta[index]), values[index]), (4, 6), colour)
+        _axes(
+            left_panel,
+            "an ellipse on flat ground, its centre",
+            "rotation [degrees]",
+            "acceleration at 1 rad/s [m/s$^2$]",
+        )
+        left_panel.set_xticks([0, 45, 90, 135, 180])
         fit = np.geomspace(1e-3, 30, 200)  # (kappa_A + kappa_B) / kappa_B of a disc
         right.plot(fit, 1 / fit, color=LIGHT.first, linewidth=2)
         right.axhline(1.0, color=LIGHT.second, linewidth=2)

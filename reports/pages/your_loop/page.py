@@ -75,7 +75,7 @@ def cell(case: PastedCase, engine: Engine) -> Cell:
 
 
 PASTED_CELLS = tuple(cell(case, engine) for case in (*MUJOCO_CASES, *PYMUNK_CASES) for engine in case.engines)
-CELLS_BESIDE_GRID = tuple(each for each in PASTED_CELLS if each.purpose == "beside")
+CELLS_BESIDE_GRID = tuple(cell for cell in PASTED_CELLS if cell.purpose == "beside")
 FRESH = tuple(dict.fromkeys(task for case in (*MUJOCO_CASES, *PYMUNK_CASES) for task in case.fresh))
 PYMUNK_LINES = "\n\n".join((LINE_FILES / f"{name}.txt").read_text(encoding="utf-8") for name in ("close", "choose"))
 BUILT = tuple(BeforeAndAfter(name, PYMUNK_LINES.replace("(space, 1e-3)", "(space, 1 / 240)")) for name in LINKAGES)
@@ -164,7 +164,7 @@ PAGE = Page(
     title="Your loop in MuJoCo, your loop in pymunk",
     lesson="Lines to paste, errors and costs before and after, the release that they need, and their limits.",
     companions=(LOOP,),
-    borrowed=tuple(each for each in PASTED_CELLS if each not in CELLS_BESIDE_GRID),
+    borrowed=tuple(cell for cell in PASTED_CELLS if cell not in CELLS_BESIDE_GRID),
     cells=CELLS_BESIDE_GRID,
     context=context,
     tasks=(*FRESH, *BUILT),
