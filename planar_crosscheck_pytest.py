@@ -6,8 +6,8 @@
     def test_my_engine(crosscheck):
         crosscheck.conform(MyEngine(), expected_failures={"orders_are_kept": "a known bug, number 12"})
 
-An installation registers this module under pytest11, so it is imported whenever somebody's tests are run: what takes
-time is imported when it is used. `pytest -m crosscheck --scene ... --engine ... --baseline ... --crosscheck-report ...`
+An installation registers this module under pytest11, so every run of pytest imports it: slow imports are
+in functions. `pytest -m crosscheck --scene ... --engine ... --baseline ... --crosscheck-report ...`
 runs the grid from any folder; these options are there only then, since other plugins have such words too.
 """
 
@@ -58,7 +58,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
 
 
 def _require_ours() -> None:
-    """Fail in a sentence where another package hides one of ours: its name is as general as `reports`."""
+    """Fail with a sentence if another package hides `reference`, `engines` or `reports`, whose names are general."""
     from planar_crosscheck import clash
 
     if message := clash():

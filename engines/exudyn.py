@@ -35,7 +35,7 @@ from typing import ClassVar, Literal
 from engines.capability import Capability
 from engines.contract import EXACT, ConvergenceOrder, NotDeclared
 from engines.extrapolated import Extrapolated
-from engines.exudyn_model import EXUDYN_FORCES, EXUDYN_JOINTS, System, holds_velocities
+from engines.exudyn_model import EXUDYN_FORCES, EXUDYN_JOINTS, ExudynSystem, holds_velocities
 from engines.motions import is_prescribed, over_three
 from engines.single_run import ExtraEngine
 from reference.checks import Name, Positive, validated
@@ -103,8 +103,8 @@ class Exudyn(ExtraEngine):
             return None
         return replace(self, relative=1e-3 * self.relative, absolute=1e-3 * self.absolute)
 
-    def model(self, mechanism: Mechanism, dt: float) -> System:
-        return System(self, mechanism, dt)
+    def model(self, mechanism: Mechanism, dt: float) -> ExudynSystem:
+        return ExudynSystem(self, mechanism, dt)
 
 
 DEFAULT = Exudyn("default")

@@ -47,7 +47,7 @@ def holds_velocities(mechanism: Mechanism) -> bool:
     return any(isinstance(joint, Skate | Roll | Drive) for joint in mechanism.joints)
 
 
-class System:
+class ExudynSystem:
     """The engine's objects for one mechanism; `length` [m] and `seconds` [s] are their units."""
 
     def __init__(self, engine: Exudyn, mechanism: Mechanism, dt: float) -> None:
@@ -266,21 +266,21 @@ class System:
 
 
 # The construction of each kind of joint, which returns its number of equations, and of each kind of force element.
-EXUDYN_JOINTS: Mapping[type, Callable[[System, Any], int]] = {
-    Pin: System.add_pin,
-    Weld: System.add_weld,
-    Gear: System.add_gear,
-    Rod: System.add_rod,
-    Slot: System.add_slot,
-    Drive: System.add_drive,
-    Skate: System.add_skate,
-    Roll: System.add_roll,
+EXUDYN_JOINTS: Mapping[type, Callable[[ExudynSystem, Any], int]] = {
+    Pin: ExudynSystem.add_pin,
+    Weld: ExudynSystem.add_weld,
+    Gear: ExudynSystem.add_gear,
+    Rod: ExudynSystem.add_rod,
+    Slot: ExudynSystem.add_slot,
+    Drive: ExudynSystem.add_drive,
+    Skate: ExudynSystem.add_skate,
+    Roll: ExudynSystem.add_roll,
 }
-EXUDYN_FORCES: Mapping[type, Callable[[System, Any], None]] = {
-    Spring: System.add_spring,
-    Damper: System.add_damper,
-    TorsionSpring: System.add_torsion_spring,
-    TorsionDamper: System.add_torsion_damper,
-    Torque: System.add_torque,
-    Force: System.add_force,
+EXUDYN_FORCES: Mapping[type, Callable[[ExudynSystem, Any], None]] = {
+    Spring: ExudynSystem.add_spring,
+    Damper: ExudynSystem.add_damper,
+    TorsionSpring: ExudynSystem.add_torsion_spring,
+    TorsionDamper: ExudynSystem.add_torsion_damper,
+    Torque: ExudynSystem.add_torque,
+    Force: ExudynSystem.add_force,
 }

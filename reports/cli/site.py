@@ -19,7 +19,7 @@ from reports.run.files import folder_for
 from reports.site.build import build, tasks
 from reports.site.folder import REMEDY, refuse_strangers, serve_folder, server, write_site
 from reports.site.generator import require_packages
-from reports.site.lesson import Source
+from reports.site.lesson import SiteSource
 from reports.site.packages import npm_trouble
 from reports.write.provenance import versions
 
@@ -49,7 +49,7 @@ def site(
     if serve:
         server(Path(), port).server_close()
     terminal = Terminal(140)
-    source = Source(
+    source = SiteSource(
         **texts_of(folder),
         answers={},
         cache=results / CACHE,
@@ -75,7 +75,7 @@ def site(
 
 
 def texts_of(folder: Path) -> dict[str, Any]:
-    """The texts of a folder of results, as fields of `Source`."""
+    """The texts of a folder of results, as fields of `SiteSource`."""
 
     def texts(*patterns: str) -> dict[str, str]:
         paths = [path for pattern in patterns for path in sorted(folder.glob(pattern))]

@@ -21,7 +21,7 @@ from reports.model.tasks import Motion
 from reports.plots.looks import family_of, role
 from reports.site.animated import animation, shown
 from reports.site.generator import Documents, Extra, build_html, colours, lighten, quote_section, reference_sources
-from reports.site.lesson import Lesson, Source
+from reports.site.lesson import Lesson, SiteSource
 from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import data, first_picture
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED
@@ -51,7 +51,7 @@ def tasks(lessons: Iterable[Lesson] = LESSONS) -> tuple[Motion, ...]:
     return tuple(dict.fromkeys(task for lesson in lessons for live in lesson.scenes for task in live.stored().values()))
 
 
-def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
+def build(source: SiteSource, lessons: Iterable[Lesson] = LESSONS) -> Files:
     """Return every file of the site by its path. Raises BadInput where packages of the extra `site` are missing."""
     lessons = tuple(lessons)
     extra = _extra_files(source, lessons)
@@ -74,7 +74,7 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     return files
 
 
-def _extra_files(source: Source, lessons: tuple[Lesson, ...]) -> Files:
+def _extra_files(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
     """Return scripts, packages, data of the lessons, tables; a missing part adds a sentence to `source.troubles`."""
     files: Files = {path.name: path.read_bytes() for path in sorted((HERE / "assets").iterdir())}
     files |= {"colours.css": colours().encode(), "front.svg": _front_picture(source).encode()}
@@ -126,7 +126,7 @@ def _json(value: object) -> bytes:
     return json.dumps(value, separators=(",", ":"), allow_nan=False).encode()
 
 
-def _documents(source: Source, lessons: tuple[Lesson, ...]) -> Files:
+def _documents(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
     """Return the documents for Sphinx: results, how-to pages, the lecture, the reference, the page on the site."""
     texts = {f"results/{name}": inert_page(text) for name, text in source.pages.items()}
     guides = {path.stem: path.read_text(encoding="utf-8") for path in sorted((HERE / "howto").glob("*.md"))}
@@ -188,7 +188,7 @@ def _front_page(lessons: tuple[Lesson, ...], results: list[tuple[str, str]], tre
     return jinja2.Template(text).render(first=lessons[0].name, lessons=taught, results=measured) + f"\n\n{tree}\n"
 
 
-def _about(source: Source) -> str:
+def _about(source: SiteSource) -> str:
     missing = "\n".join(f"- {sentence}" for sentence in source.troubles) or "Nothing."
     rows = "\n".join(f"| {p.name} | {p.version} | {p.licence} | {p.use} |" for p in PACKAGES)
     text = (HERE / "about.md").read_text(encoding="utf-8")
@@ -234,7 +234,7 @@ def _with_drags(text: str, values: Mapping[str, str]) -> Markup:
     return Markup(DRAGGED.sub(lambda match: number.format(match[1], escape(values[match[1]])), render_html(text)))
 
 
-def _front_picture(source: Source) -> str:
+def _front_picture(source: SiteSource) -> str:
     """Return an animated motion of the first lesson, without a script."""
     live = LESSONS[0].scene("let go")
     stored = live.stored()

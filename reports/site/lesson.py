@@ -103,7 +103,7 @@ def part_of(text: str) -> Part:
 
 
 @dataclass
-class Source:
+class SiteSource:
     """The input of a site: Markdown pages and pictures by file name, and the answers to the lessons' tasks."""
 
     pages: Mapping[str, str]

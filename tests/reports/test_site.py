@@ -29,7 +29,7 @@ from reports.site.animated import PAUSE, Shown, animation, film, shown
 from reports.site.build import MARKER, build, explored
 from reports.site.folder import compressed_size, refuse_strangers, write_site
 from reports.site.generator import NEEDED, Documents, build_html, reference_sources
-from reports.site.lesson import Part, Source, part_of
+from reports.site.lesson import Part, SiteSource, part_of
 from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import forces
 from reports.site.markdown import render_html, render_lecture, section
@@ -65,7 +65,7 @@ def source(tmp_path_factory):
     """The published pages without motions and without packages, so that npm is not called."""
     cache = tmp_path_factory.mktemp("cache")
     options = {"answers": {}, "cache": cache, "foot": "Made by a test.", "contributing": CONTRIBUTING, "api": False}
-    return Source(**texts_of(RESULTS), **options)
+    return SiteSource(**texts_of(RESULTS), **options)
 
 
 @pytest.fixture(scope="module")

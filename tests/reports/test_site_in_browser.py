@@ -25,7 +25,7 @@ from reports.cli.site import texts_of
 from reports.model.tasks import answered
 from reports.site.build import build, tasks
 from reports.site.folder import compressed_size, server, write_site
-from reports.site.lesson import Source
+from reports.site.lesson import SiteSource
 from reports.site.lessons import LESSONS
 from reports.site.lessons.skates import NAIVE
 from reports.site.live.sliders import DOCUMENTED, ENGINES, INTEGRATORS, Live
@@ -53,7 +53,7 @@ def files(request):
     wanted = {*QUICK, *(call.params.get("lesson") for call in parameters if call is not None)}
     answers = {motion: answered(motion) for motion in tasks(LESSONS[:1])}
     cache = Path(request.config.cache.mkdir("site"))
-    source = Source(**texts_of(RESULTS), answers=answers, cache=cache, foot="Made by a test.", api=False)
+    source = SiteSource(**texts_of(RESULTS), answers=answers, cache=cache, foot="Made by a test.", api=False)
     return build(source, [lesson for lesson in LESSONS if lesson.name in wanted])
 
 
