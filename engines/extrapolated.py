@@ -68,8 +68,8 @@ class Extrapolated(EngineWrapper, Valid):
     where the last difference is far smaller than the ones before predict, one more run decides.
 
     The estimate is computed at every step of dt, independent of the sampling. Where it exceeds the claim, the motion is
-    unresolved from the time `unresolved_at` at which it exceeds EARLY of the claim, with a warning. It is unresolved
-    from the start where a damper ends a motion within a step of the coarsest run, which all runs may miss. Reactions
+    unresolved from the time `unresolved_at` at which it exceeds EARLY of the claim, with a warning. If a damper stops a
+    motion within one step of the coarsest run, all runs may miss it, and the motion is unresolved from t = 0. Reactions
     with a large estimate of their own get a warning.
 
     Where the estimate exceeds the apparent error of the finest run (the distance to the extrapolation of the two

@@ -269,7 +269,7 @@ def reactions_have_sign_and_size(subject: Subject, world: World) -> None:
         raise NotAsked("the engine tells no reactions here")
     for row in np.flatnonzero(known):
         largest = np.max(np.abs(exact[:, turning == turning[row]]))
-        # Of all samples the middle one: a contact that has just been made may take some steps to carry the weight.
+        # The median over the samples: a new contact may need some steps until it carries the weight.
         off = np.nanmedian((run.reaction[:, row] - exact[:, row]) / largest)
         require(
             abs(off) <= SIZE,

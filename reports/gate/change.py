@@ -168,7 +168,7 @@ class Altered(EngineWrapper):
         return self.engine.stepped(mechanism).instants(mechanism, dt, steps, self.change(mechanism))
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:
-        """Build the changed mechanism. Raises what the change and the engine raise."""
+        """Build the changed mechanism. Errors of the change and of the engine are raised unchanged."""
         return self.engine.build(self.change(mechanism), dt)
 
 

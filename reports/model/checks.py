@@ -74,7 +74,7 @@ class Deviation:
 
     @property
     def told(self) -> str:
-        """How much is known, for a table: '2.5', or 'torn'."""
+        """The known deviation as text for a table: its factor, such as '2.5', or its outcome, such as 'torn'."""
         return f"{self.factor:.4g}" if self.outcome is None else self.outcome
 
 

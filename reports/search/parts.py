@@ -62,8 +62,8 @@ class RecipeLink:
     first body's material on its left. `more`: how far the slot's own point lies from there along it (tenths of the
     size), or the rate of a drive in steps of 0.5 rad/s. `rims`: the curves of the first and the second body of a roll.
 
-    Rods, springs and dampers: `more` and `turn` are the distance and direction of the first body's point. Gears: `more`
-    is the ratio in halves. Forces (in the direction `turn`) and torques: `more` is the strength in halves. All others:
+    Rods, springs and dampers: `more` and `turn` are the distance and direction of the first body's point. Gears: half
+    of `more` is the ratio. Forces (in the direction `turn`) and torques: half of `more` is the strength. All others:
     `strength` is a step on the ladder, and `rest` the deflection of a spring at the start: tenths, or steps of 0.3 rad.
 
     A toggle is a rod between points on both sides of `at`, where a pin holds the same bodies: `more` tenths and half of
