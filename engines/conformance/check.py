@@ -98,7 +98,7 @@ def stepped(run: Run, samples: int, every: int) -> Trajectory:
 
 
 def finite(run: Trajectory) -> Trajectory:
-    """The same trajectory; raises Fails if a pose or a twist in it is no number."""
+    """Return the trajectory unchanged. Raises Fails if a pose or a twist is not finite."""
     for name, values in (("pose", run.pose), ("twist", run.twist)):
         sound = np.isfinite(values).all(axis=(1, 2))
         where = int(np.argmin(sound))
@@ -126,7 +126,7 @@ class World:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of its joints, in the order in which they first stand in it."""
+        """The kinds of its joints, each once, in the order of the mechanism."""
         return tuple(dict.fromkeys(type(joint).__name__.lower() for joint in self.mechanism.joints))
 
 

@@ -20,7 +20,7 @@ from reports.site.lessons import take_like
 from reports.write.tables import number
 
 KINDS = ("svg", "gif", "mp4")
-MOST_SHOWN = 4  # methods in one picture: more can't be told apart
+MOST_SHOWN = 4  # methods in one picture: more cannot be distinguished
 
 
 def animate(

@@ -28,9 +28,9 @@ from reports.run.running import worker_count
 
 MAX_WIDTH = 120  # columns at most
 OVERWRITE = "\r\x1b[K"  # on a terminal
-# What a check imports: the process from which workers are forked does so while this one gets ready.
+# Modules that a check imports. The fork server imports them while this process reads the options and the model.
 EARLY = ("reports.check.document", "reports.check.telling", "numba")
-# The words of `switch_off` in engines/mujoco/reading and engines/pymunk/reading, which are not imported for a help.
+# Names that `switch_off` of engines/mujoco/reading and engines/pymunk/reading accepts; --help imports neither.
 SWITCHED_OFF = (
     "contact, limit or sleep, in pymunk damping too, in MuJoCo frictionloss, forcelimit, armature, fluid, actuation, "
     "spring, damper, gravity or equality"

@@ -43,7 +43,7 @@ def command(name: str) -> Any:
 
 
 def program() -> Any:
-    """What prints the help, and refuses a word that names no command."""
+    """The parser that prints the help and refuses an unknown command."""
     about = "How far a physics engine's constraints are from ideal ones, on planar mechanisms with an analytic truth."
     app = typer.Typer(help=about, epilog=STATUSES, **LOOK)
     for name, (_, words) in COMMANDS.items():
@@ -52,12 +52,12 @@ def program() -> Any:
 
 
 def invoke(arguments: Sequence[str]) -> int:
-    """Run a command; its exit status. Raises what it raises, and the usage errors of typer."""
+    """Run a command and return its exit status. Raises the exceptions of the command and typer's usage errors."""
     words = list(arguments) or ["--help"]
     status = FINE
     try:
         # Not its own `main`: that turns a closed pipe and Ctrl-C into statuses of its own.
-        with written():  # the help, if it is asked for
+        with written():  # for --help
             if words[0] in COMMANDS:
                 parser, called, words = command(words[0]), f"crosscheck {words[0]}", words[1:]
             else:

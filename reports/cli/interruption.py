@@ -18,7 +18,7 @@ SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP"
 
 
 class Interrupted(KeyboardInterrupt):
-    """By this signal."""
+    """The program is interrupted by the signal with this number."""
 
     def __init__(self, number: int = signal.SIGINT) -> None:
         super().__init__()
@@ -44,8 +44,8 @@ def _handled(handler: Callable[[int, FrameType | None], Any]) -> Iterator[None]:
 
 
 def _end(number: int, frame: FrameType | None) -> None:
-    # An exception would not do: while compiled modules are imported it comes out as another one, or is lost. What is
-    # not imported, or not yet whole, has nothing to be taken away.
+    # Not by an exception: one that is raised while a compiled module is imported is replaced by another, or is lost.
+    # A module that is not imported yet, or only in part, has nothing to clean up.
     for module, name in (("reports.run.worker", "stop_all"), ("reports.run.files", "remove_all")):
         getattr(sys.modules.get(module), name, lambda: None)()
     os._exit(128 + number)
@@ -60,7 +60,7 @@ def ending_at_once() -> Any:
 def delayed_signals() -> Iterator[Callable[[], None]]:
     """A context that delays signals until its function is called or it ends: either raises Interrupted.
 
-    So work is left only where it can be left. The second signal does not wait: it raises at once.
+    So work stops only where it can be continued later. The second signal does not wait: it raises at once.
     """
     pressed: list[int] = []
 
@@ -81,6 +81,6 @@ def delayed_signals() -> Iterator[Callable[[], None]]:
 
 
 def from_now_on_ignored() -> None:
-    """For a program that has said all it has to say: Ctrl-C while it is taken down changes nothing."""
+    """Ignore Ctrl-C while the interpreter shuts down, after all output has been written."""
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -32,8 +32,8 @@ PULSE = 10.0  # s between two lines about a run whose output is a file or a pipe
 class Terminal(Console):
     """Standard output: as wide as the terminal; a table into a file or a pipe keeps its width, whatever the terminal's.
 
-    `form`: "text"; "markdown", for a comment; or "json", one document at the end (`telling`). In the last two only what
-    `tell` and `print_table` are given goes to standard output, and all else, such as progress, to standard error.
+    `form`: "text"; "markdown", for a comment; or "json", one document at the end (`telling`). In the last two only
+    the output of `tell` and `print_table` goes to standard output; other output, such as progress, to standard error.
     `print` raises BrokenPipeError if its reader has ended, and FileTrouble where it can't be written.
     """
 
@@ -47,11 +47,11 @@ class Terminal(Console):
             super().print(*objects, **options)
 
     def say(self, sentence: str) -> None:
-        """A sentence as it is, on the way to the results: names of files may have brackets in them."""
+        """Print a sentence that is no part of the results, without markup: names of files may contain brackets."""
         self.print(visible(sentence), markup=False, highlight=False, soft_wrap=True)
 
     def tell(self, sentence: str) -> None:
-        """A sentence that is a part of the results."""
+        """Add a sentence to the results."""
         if self.form == "json":
             self.document["sentences"].append(sentence)
         elif self.form == "markdown":
@@ -89,7 +89,7 @@ def opened(path: Path) -> Iterator[Store]:
 def telling(width: int, as_json: bool, as_markdown: bool) -> Iterator[Terminal]:
     """A terminal with the format of these options. In JSON the document is printed at the end: `tables`, each with
     `title` and `rows` (an object a row, by column; null for a number that is not known), `sentences`, and `status`, the
-    exit status, with `message`. Raises BadInput for both options at once; what is wrong with input has no document.
+    exit status, with `message`. Raises BadInput for both options at once; errors of input print no document.
     """
     if as_json and as_markdown:
         raise BadInput("--json and --markdown are two forms of one output; give one of them")
@@ -152,10 +152,10 @@ def interruptible(
     fresh: bool = False,
     size: Callable[[Any], int] | None = None,
 ) -> Iterator[tuple[Sequence[Any], Callable[..., None], Callable[[list[Any]], None]]]:
-    """(the items that are to be run, done, watch): a run into a store that Ctrl-C leaves where it can be left.
+    """(the items to run, done, watch) for a run into a store; what Ctrl-C interrupts can be continued later.
 
-    `words`: what the items are called; `fresh`: those that are stored too; `size`: how many cases are in one, which are
-    then counted; done and watch: see `progress`. Raises KeyboardInterrupt after a line about the stored rows.
+    `words`: the plural noun for the items. `fresh`: run stored items again. `size`: the number of cases in an item, if
+    cases are counted. done and watch: see `progress`. Raises KeyboardInterrupt after a line about the stored rows.
     """
     if sentence := mislabelled():
         raise BadInput(sentence)
@@ -176,7 +176,7 @@ def interruptible(
 def progress(
     console: Console, total: int, check: Callable[[], None], unit: str = "cells"
 ) -> Iterator[tuple[Callable[..., None], Callable[[list[Any]], None]]]:
-    """(done, watch): done(result, count=1) counts results, watch(items) shows what runs; both `check` for Ctrl-C.
+    """(done, watch): done(result, count=1) counts results, watch(items) shows the running items; both call `check`.
 
     A bar on a terminal; a line every PULSE seconds into a file or a pipe, where a bar would not be seen.
     """

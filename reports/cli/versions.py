@@ -139,7 +139,7 @@ def named_scenes(words: list[str] | tuple[str, ...]) -> tuple[Scene, ...]:
 
 
 def announce_pip(word: str) -> None:
-    """Before a wait. It is progress, and does not begin as a refusal does."""
+    """Print a line of progress on stderr before pip runs; it does not begin like a refusal."""
     print(f"{word}: installed by pip, unless it is there already", file=sys.stderr, flush=True)
 
 

@@ -1,1 +1,1 @@
-"""What is asserted of every cell: theory's bounds, the judge, the committed rows, and known deviations."""
+"""The assertions about every cell: theory's bounds, the judge, the committed rows, and known deviations."""

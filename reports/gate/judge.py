@@ -38,7 +38,7 @@ from reports.model.quantities import QUANTITIES
 Array = NDArray[np.float64]
 QUANTITY_NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
-# Of `refined`.
+# Constants of `refined`.
 PARTS = 10  # of the time between two samples
 SAME = 1e-6  # largest change by a third of the step; a tenth of it changes no error of the N-four-bars by a tenth
 MOST_TRIED = 200_000  # steps until it gives up: half a minute for 60 rows
@@ -175,7 +175,7 @@ def in_numpy(
 ) -> Trajectory:
     """A mechanism's motion from its start, samples `spacing` [s] apart, by steps in numpy alone.
 
-    Order 1, which compiled steps have not, is the semi-implicit Euler method: poses move with the velocities after.
+    Order 1, which has no compiled steps, is the semi-implicit Euler method: poses change with the new velocities.
     """
     dt, dynamics = spacing / every, dynamics_of(mechanism, soft, least)
     step = semi_implicit_euler(dynamics) if order == 1 else runge_kutta(dynamics, TABLEAUS[order])
@@ -197,7 +197,7 @@ def in_numpy(
 
 @lru_cache(maxsize=1)
 def _truth(scene: Scene, instants: bytes) -> Trajectory:
-    """The scene's motion at instants [s], as bytes: a dozen runs of a prediction are held against the same one."""
+    """The scene's motion at instants [s], as bytes; cached, since a prediction compares a dozen runs with it."""
     return freeze(scene.motion(np.frombuffer(instants)))
 
 

@@ -79,7 +79,7 @@ def vacuous_checks(verdicts: Iterable[CaseVerdict]) -> list[str]:
 
 
 def report(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> str:
-    """The whole of it as Markdown: a summary, failures with their sentences, known deviations, and the table."""
+    """The report as Markdown: a summary, failures with their sentences, known deviations, and the table."""
     verdicts = tuple(verdicts)
     failed = [v for v in verdicts if v.theory_complaints or v.change_complaints]
     deviating = [v for v in verdicts if v.case.known and v not in failed]
@@ -111,7 +111,7 @@ def report(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> str:
 BASELINE = Path(__file__).parents[1] / "results" / "errors.csv"
 VERDICTS = pytest.StashKey[dict[Case, CaseVerdict]]()
 KNOWN = pytest.StashKey[Baseline]()
-GIVEN = pytest.StashKey[tuple[Engine, ...]]()  # what `--engine` names by a reference
+GIVEN = pytest.StashKey[tuple[Engine, ...]]()  # engines that `--engine` names by a reference
 WANTED = pytest.StashKey[tuple[str, ...]]()  # names and methods
 
 
@@ -130,7 +130,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Bad files are one line, before anything is run."""
+    """Read the baseline and check the options. Raises UsageError, one line, before anything is run."""
     if sentence := registry.mislabelled():
         raise pytest.UsageError(sentence)
     try:
@@ -172,7 +172,7 @@ def _engines(words: Sequence[str]) -> tuple[tuple[Engine, ...], tuple[str, ...]]
 
 
 def pytest_report_header() -> list[str]:
-    """What distributions register and can't be used."""
+    """Lines about registered scenes, engines and pages that can't be used."""
     from reports.model.catalogue import TROUBLES
 
     return [f"crosscheck: {line}" for line in TROUBLES]
@@ -213,7 +213,7 @@ def _wanted(item: pytest.Item, scenes: Sequence[str], engines: Sequence[str]) ->
 
 @pytest.fixture(scope="session")
 def verdicts(request: pytest.FixtureRequest) -> dict[Case, CaseVerdict]:
-    """What came of every case that is selected in this session; theirs alone are run.
+    """The verdict on every case that is selected in this session; only their cells are run.
 
     The grid has a pool on all processors. Below `pytest -n` every worker would run the whole grid, so it is skipped.
     """

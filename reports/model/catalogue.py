@@ -1,8 +1,9 @@
-"""Pages and scenes that distributions register, ours among them; and a generic page for a scene that has none.
+"""Registered pages and scenes, those of this suite among them, and a generic page for a scene without one.
 
 A distribution registers under `crosscheck.scenes` a scene, or a tuple or list of scenes; under `crosscheck.pages` a
 page (`reports.model.page.Page`), or a tuple or list of pages. A page shows the scenes that it names, whether they are
-registered or not. Those of this suite are in pyproject.toml, which has the order of the pages.
+registered or not. This suite's entry points are in pyproject.toml, which also
+defines the order of its pages.
 """
 
 from __future__ import annotations
@@ -19,10 +20,9 @@ from reference.checks import InvalidMechanism, validate
 from reference.scene import TIME_ANNOTATIONS, Scene
 from reports.model.page import Page
 
-# Letters of a page's name, which becomes the name of files; what can stand in a file's name and in a link.
-LONGEST_NAME = 100
+LONGEST_NAME = 100  # characters of a page's name, which is also the name of files
 INDEX = "index.md"
-NO_FILE_NAME = re.compile(r"[^A-Za-z0-9.+-]+")
+NO_FILE_NAME = re.compile(r"[^A-Za-z0-9.+-]+")  # characters that names of files and links must not contain
 
 
 def _no_scene(value: Any) -> str:
@@ -37,9 +37,9 @@ def _no_scene(value: Any) -> str:
         word = getattr(value, name, None)
         if not (isinstance(word, str) and word.strip() and word.isprintable()):
             return f"its {name} is {word!r}; it must be a string that is not empty and can be printed"
-    if type(value).__module__.startswith("reference."):  # held by tests; some integrate a motion for their horizon
+    if type(value).__module__.startswith("reference."):  # checked by tests; some integrate a motion for their horizon
         return ""
-    try:  # a scene has looked at these when it was made, but not at those that a property works out
+    try:  # its constructor has checked fields, but not values that properties compute
         for name, annotation in TIME_ANNOTATIONS:
             validate(f"scene {value.name!r}", name, getattr(value, name, None), annotation)
     except InvalidMechanism as reason:
@@ -69,7 +69,7 @@ def page_of(scene: Scene, pages: Sequence[Page] | None = None) -> Page | None:
 
 
 def generic_page(scene: Scene, engines: Sequence[Engine], taken: Iterable[str] = ()) -> Page:
-    """A page with all that rows tell of a scene, under a name by which its document is none of those taken."""
+    """A page that shows all rows of a scene; its name is chosen so that its document is not in `taken`."""
     stem = NO_FILE_NAME.sub("_", scene.name)[:LONGEST_NAME].strip("_.") or "scene"
     summary = " ".join((type(scene).__doc__ or "").split("\n\n")[0].split())
     page = Page(stem, scene.name, summary or f"From {scene.source}.", (scene,), tuple(engines))
@@ -90,7 +90,7 @@ def with_scenes(pages: Sequence[Page], scenes: Iterable[Scene], engines: Sequenc
 
 
 def with_engines(pages: Iterable[Page], engines: Sequence[Engine]) -> tuple[Page, ...]:
-    """The pages, each of which that compares engines at all compares these too, and shows them in its charts."""
+    """The pages; those that compare engines also compare these engines and show them in their charts."""
     added = {method_name(engine) for engine in engines}
 
     def extended(page: Page) -> Page:
@@ -105,7 +105,7 @@ def with_engines(pages: Iterable[Page], engines: Sequence[Engine]) -> tuple[Page
 
 
 def _without_doubles(pages: Iterable[Page]) -> tuple[tuple[Page, ...], tuple[str, ...]]:
-    """(pages of which no two teach the same scene or are the same document, a line about each that is left out)."""
+    """(pages without duplicate scenes or documents, a line about each page that is left out)."""
     accepted: list[Page] = []
     troubles: list[str] = []
     for page in pages:

@@ -20,7 +20,7 @@ from reports.model.fingerprint import LONG, digest, fingerprint
 Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 
 # Steps per sampling interval, half a decade apart: the one rule by which steps are chosen. With samples 1e-2 s apart
-# they are about 1e-2, 3e-3, 1e-3 ... 3e-5 s. Three points are the fewest that can tell a slope from a plateau.
+# they are about 1e-2, 3e-3, 1e-3 ... 3e-5 s. At least three points are needed to distinguish a slope from a plateau.
 QUICK = (1, 3, 10)
 FULL = (1, 3, 10, 30, 100, 300)
 
@@ -31,9 +31,9 @@ COST_LIMIT = 0.8
 # rounding, or no error of the step. So methods of order 4 get five steps, those of order 6 and more three.
 DIVIDED = 1e8
 BESIDE_LIMIT = 0.5  # s, building included: longest cell of an engine that is an extra
-SLOW_TO_BUILD = 1.0  # s: a model that takes as long to build is run where a page asks for it, and in no grid
+SLOW_TO_BUILD = 1.0  # s: a model that takes longer to build is run only in experiments of pages, and in no grid
 
-# Seconds by how they are printed: a picture of a screen, as in pymunk's examples; MuJoCo's own; half of that.
+# Steps [s] by their printed form: a frame of a screen, as in pymunk's examples; MuJoCo's default; half of it.
 USUAL_STEPS = {"1/60 s": 1 / 60, "2 ms": 2e-3, "1 ms": 1e-3}
 # Steps that differ by less than this share are one: a scene's time is a whole number of steps, so that 1/60 s may be a
 # little less there. At order 4 an error differs by four times as much, which two printed digits show just so.
@@ -44,15 +44,19 @@ FEATURED = ("default", "tuned", "extended", "euler projection", "rk4 projection"
 SHOWN = 3  # variants of an engine that has none of these: more columns than others have would be unreadable
 # A step that is the habit of one engine's users: other engines that have such a step of their own are not run at it.
 HABITS = {"1/60 s": "pymunk", "2 ms": "mujoco"}
-OURS = ("extended", "euler projection", "rk4 projection")  # need code of ours, and so are nobody's habit
+OURS = (
+    "extended",
+    "euler projection",
+    "rk4 projection",
+)  # variants with code of this suite, so that users have no habit
 
 
 @dataclass(frozen=True)
 class Cell(Valid):
     """A scene in an engine with `every` steps between samples; `samples` replaces the scene's own number if given.
 
-    Scenes and engines are frozen dataclasses, so a cell is data: it travels to a worker process as it is. What it is
-    run for makes no other cell of it: an experiment at a step of the sweep takes the sweep's row.
+    Scenes and engines are frozen dataclasses, so a cell can be pickled for a worker process. Cells that differ only
+    in `purpose` are equal: an experiment at a step of the sweep uses the sweep's row.
     Raises ValueError unless both counts are whole numbers above zero.
     """
 
@@ -109,7 +113,7 @@ def estimated_cost(cell: Cell) -> float:
 
 
 def estimated_seconds(cell: Cell) -> float:
-    """The same with the making of a model that takes long, as its engine says."""
+    """`estimated_cost` and the time to build a model [s], as the engine declares it."""
     return estimated_cost(cell) + cell.engine.build_time
 
 
@@ -124,7 +128,7 @@ def _step_cost(scene: Scene, engine: Engine) -> float:
 def _call(engine: Engine, method: str, scene: Scene, convert: Callable[[Any], Any] = lambda value: value) -> Any:
     try:
         return convert(getattr(engine, method)(mechanism_of(scene)))
-    except Exception as error:  # whatever somebody else's engine does
+    except Exception as error:  # any exception of a third party's engine
         raise BadInput(f"{method_name(engine)}: {method} of {scene.name}: {describe(error)}") from error
 
 
@@ -152,8 +156,8 @@ def sweep_cells(
 
 
 def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool = False) -> tuple[Cell, ...]:
-    """Engines that are no part of a scene's grid and stand beside it on its page, each at the finest of the QUICK steps
-    that is cheap enough; at all of these with `sweep`.
+    """Cells of engines outside a scene's grid, which its page shows beside it: each at the finest of the QUICK steps
+    that is cheap enough; with `sweep` at all that are.
     """
     engines = tuple(engine for engine in engines if engine.build_time < SLOW_TO_BUILD)
     out: list[Cell] = []
@@ -178,7 +182,7 @@ def too_much(cell: Cell, cost_limit: float = COST_LIMIT, divided: float = DIVIDE
 
 @lru_cache(maxsize=4096)
 def _promised_order(scene: Scene, engine: Engine) -> float:
-    """Of poses; 0 where none is promised."""
+    """The declared order of the poses; 0 without one."""
     promise = _call(engine, "order", scene)
     return promise.order if isinstance(promise, ConvergenceOrder) else 0.0
 

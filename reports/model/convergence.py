@@ -38,7 +38,7 @@ class Verdict(StrEnum):
 
 
 class Fit(NamedTuple):
-    """What errors at several steps do as the step goes to zero."""
+    """The behaviour of errors at several steps as the step goes to zero."""
 
     verdict: Verdict
     order: float = NAN  # slope of log error over log step on the falling part
@@ -81,7 +81,7 @@ def local_slopes(steps: np.ndarray, errors: np.ndarray) -> np.ndarray:
 
 
 def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit:
-    """What these errors do as the step [s] goes to zero. Not finite or zero steps are left out.
+    """The behaviour of these errors as the step [s] goes to zero. Errors that are not finite are left out.
 
     An error at or below `rounding` is rounding, whatever it does there.
     """
@@ -90,9 +90,9 @@ def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit
     )
 
 
-@lru_cache(maxsize=32768)  # a report asks for the same sweep on a page, in the index, in the readme
+@lru_cache(maxsize=32768)  # a page, the index and the readme need the same sweep
 def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
-    """As `fit`, of (step, error) from coarse to fine."""
+    """`fit` for (step, error) pairs, from coarse to fine."""
     if not pairs:
         return Fit(Verdict.TOO_FEW)
     first = next((index for index, (_, e) in enumerate(pairs) if e <= rounding), len(pairs))

@@ -11,8 +11,8 @@ LONGEST = 500  # characters of a sentence
 FINE = 0
 BROKEN = 1
 REFUSED = 2
-INTERRUPTED = 130  # what a shell expects of a program ended by Ctrl-C
-UNREAD = 141  # what a shell shows of a program that writes into a pipe which nobody reads any more
+INTERRUPTED = 130  # the status that shells expect after Ctrl-C
+UNREAD = 141  # 128 + SIGPIPE: the reader of the pipe has ended
 
 STATUSES = (
     f"Exit status: {FINE} fine; {BROKEN} something ran but is broken; {REFUSED} bad input or trouble with a file, and "
@@ -28,13 +28,13 @@ class Ending(Exception):
 
 
 class Broken(Ending):
-    """What ran, and why it is broken."""
+    """Something ran but is broken; the message names it and the reason."""
 
     status = BROKEN
 
 
 class BadInput(Ending, ValueError):
-    """Which value, why, and what would be valid."""
+    """Input that is refused; the message names the value, the reason and valid values."""
 
     status = REFUSED
 
@@ -77,7 +77,7 @@ def visible(text: str) -> str:
 
 
 def describe(error: BaseException) -> str:
-    """'Type: message', whatever the exception does when it is asked for its message."""
+    """'Type: message', also for an exception whose message can't be computed."""
     try:
         message = str(error)
     except Exception:

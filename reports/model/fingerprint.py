@@ -1,8 +1,8 @@
 """The cache key of results: a digest of the source files and installed versions that they depend on.
 
-Stored results are used only while these are unchanged. Ours count together: `reference`, `engines`, and of `reports`
-what measures and runs; answers to tasks depend on all of `reports`. A module of somebody else counts by its version if
-it is installed, else by the files of its package or folder.
+Stored results are used only while these are unchanged. All sources in MEASURING count together; answers
+to tasks depend on all of OURS. A third party's module counts by its version if it is installed, else by the files of
+its package or folder.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ ROOT = Path(__file__).resolve().parents[2]
 OURS = ("reference", "engines", "reports")
 MEASURING = ("reference", "engines", "reports/model", "reports/run")  # the folders that a row depends on
 SUFFIXES = {f".{suffix.rpartition('.')[2]}" for suffix in (*SOURCE_SUFFIXES, *EXTENSION_SUFFIXES)}
-INSTALLED = {"site-packages", "dist-packages"}  # names of the folders in which a version stands for the files
-SCIENTIFIC = ("numpy", "scipy")  # what every result depends on
-SHORT, USUAL, LONG = 8, 16, 32  # hexadecimal digits: for a table, for the name of a file, for a cache key
+INSTALLED = {"site-packages", "dist-packages"}  # names of folders whose modules count by their versions
+SCIENTIFIC = ("numpy", "scipy")  # packages on which every result depends
+SHORT, USUAL, LONG = 8, 16, 32  # hexadecimal digits for a table, the name of a file, a cache key
 
 
 def digest(content: str | bytes, digits: int = USUAL) -> str:
@@ -36,7 +36,7 @@ def digest(content: str | bytes, digits: int = USUAL) -> str:
 
 
 def fingerprint(*values: Any, folders: tuple[str, ...] = MEASURING) -> str:
-    """The digest for results of these scenes, engines or tasks; `folders`: of ours."""
+    """The digest for results of these scenes, engines or tasks; `folders`: those of this suite that count."""
     return digest(repr(versions_of(*values, folders=folders)), LONG)
 
 
@@ -118,8 +118,8 @@ def _distributions() -> Mapping[str, list[str]]:
 def with_required(distributions: Iterable[str]) -> set[str]:
     """The distributions and all that they require, directly or not, as far as it is installed; normalised names.
 
-    pymunk calls its engine through cffi, which no file of ours imports. What only an extra requires is left out, since
-    whether it is installed says nothing about whether it is used.
+    pymunk calls its engine through cffi, which no file of this suite imports. A package that only an extra requires is
+    left out, since it may be installed without being used.
     """
     names: set[str] = set()
     waiting = list(distributions)

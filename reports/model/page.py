@@ -45,7 +45,7 @@ class Failure:
     expected: str = ""
     cells: tuple[Cell, ...] = ()
     observations: Callable[[Material], Sequence[Observation]] | None = None
-    remark: str = ""  # what the outcomes teach
+    remark: str = ""  # the remark on the outcomes
     columns: tuple[str, ...] = ()
     tasks: tuple[Task, ...] = ()
     context: Callable[[Material], Mapping[str, Any]] = no_context
@@ -54,7 +54,7 @@ class Failure:
 
 @dataclass(frozen=True)
 class Material:
-    """What there is to write a page from: the stored rows of its cells, and the stored answers to its tasks."""
+    """The data of a page: the stored rows of its cells, and the stored answers to its tasks."""
 
     rows: Mapping[Cell, Measurement]
     answers: Mapping[Task, Answer] = field(default_factory=dict)
@@ -65,7 +65,7 @@ class Material:
         return answer if answer is not None and answer.finished else None
 
     def unfinished(self, task: Task) -> str:
-        """Why a task has no numbers here, as a sentence: what its run said, or what is to be installed or run."""
+        """The reason why a task has no numbers: the sentence of its run, or the command to install or run it."""
         if answer := self.answers.get(task):
             return f"Not finished, {answer.told}."
         if task.engine is not None and task.engine.missing:
@@ -73,7 +73,7 @@ class Material:
         return "Not run yet: `crosscheck run --full`, then `crosscheck report`."
 
     def motions(self, cells: Iterable[Cell]) -> dict[Cell, Trajectory]:
-        """The kept motions of these cells, those that were run and finished."""
+        """The stored motions of these cells, without those not run or not finished."""
         answers = ((cell, self.finished(Motion(cell))) for cell in cells)
         return {cell: trajectory_of(answer) for cell, answer in answers if answer is not None}
 
@@ -95,7 +95,7 @@ class Material:
 
 
 def usual_series(row: Measurement) -> bool:
-    """The methods that charts show as series: what is run in every scene, and any engine's three usual variants."""
+    """Whether charts show the row's method as a series: one run in every scene, or a usual variant of an engine."""
     from engines.registry import VARIANTS, method_name
 
     return row.variant in FEATURED or row.method in map(method_name, VARIANTS)
@@ -125,10 +125,10 @@ class Page:
     further: Callable[[Material], Mapping[str, str]] = no_context  # Markdown files beside the page, by name
     # (scene, method) -> the promise where the motion, not the mechanism alone, makes it another than the engine's.
     orders: Mapping[tuple[str, str], ConvergenceOrder] = field(default_factory=dict, compare=False)
-    # (scene, method, check) -> by how much that check (`reports.model.checks`) is missed, and why.
+    # (scene, method, check) -> the known deviation of this check (`reports.model.checks`).
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
-    tasks: tuple[Task, ...] = ()  # of its pictures and words; those of an experiment stand there
-    cells: tuple[Cell, ...] = ()  # beyond the grid and the experiments
+    tasks: tuple[Task, ...] = ()  # for its pictures and text, without those of `failures`
+    cells: tuple[Cell, ...] = ()  # besides the grid and the experiments
 
     def teaches(self, scene: Scene) -> bool:
         """Whether the scene has its place here: by its name, so that it may have other numbers."""

@@ -1,6 +1,6 @@
 """CPU time of a process by parts, each without the time of the parts inside it.
 
-Always counted, since a look at the clock takes a microsecond; asked by `crosscheck bench suite` alone.
+It is always counted, since reading the clock takes a microsecond; only `crosscheck bench suite` prints it.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 _spent: defaultdict[str, float] = defaultdict(float)
-_inside: list[float] = []  # of each part that is open, the time of the parts in it
+_inside: list[float] = []  # CPU time [s] of the inner parts, for each open part
 
 
 @contextmanager
 def spending(part: str) -> Iterator[None]:
-    """Count the CPU time [s] of what is inside, but for the parts in it that are counted apart."""
+    """Count the CPU time [s] of the block, without the parts inside it that are counted separately."""
     begin = time.process_time()
     _inside.append(0.0)
     try:

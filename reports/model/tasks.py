@@ -1,4 +1,4 @@
-"""A task gives a page data beside its rows: a motion, or a number by integration. It is run once, and kept.
+"""A task computes data of a page besides its rows: a motion, or a number by integration. Its answer is stored.
 
 Nothing is stepped or integrated while a page is written: it reads the answers to its tasks, as it reads rows.
 """
@@ -54,9 +54,9 @@ class Answer:
 
 
 class Task(ABC):
-    """Subclasses are frozen dataclasses: a task is data, which travels to a worker, and its fields name it.
+    """Subclasses are frozen dataclasses: a task can be pickled for a worker, and its fields identify it.
 
-    An answer is stale when a file of ours changes.
+    An answer is stale when a source file of this suite changes.
     """
 
     seconds: ClassVar[float] = 1.0  # about how long it takes, where that does not depend on the fields
@@ -115,7 +115,7 @@ class Motion(Task):
 
 
 def trajectory_of(answer: Answer) -> Trajectory:
-    """The trajectory that a Motion has kept. Raises KeyError if it kept none."""
+    """The trajectory in the answer to a Motion. Raises KeyError for another answer."""
     return Trajectory(answer.array("t"), answer.array("pose"), answer.array("twist"), answer.array("reaction"))
 
 

@@ -3,7 +3,7 @@
     folder = installed(("mujoco-core", "mujoco"), "3.6.0")
     subprocess.run([sys.executable, "program.py"], env=environment(folder))
 
-pip installs it without what it requires, once, below the user's cache folder: never into this environment or checkout.
+pip installs it without its dependencies, once, below the user's cache folder: never into this environment or checkout.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from reports.model.ending import BadInput
 from reports.model.fingerprint import digest
 from reports.run.files import folder_for, temporary_folder
 
-# The name of the folder itself: what lies in one of this name counts by its version (`reports.model.fingerprint`).
+# The name of the folder itself: modules in such a folder count by their version (`reports.model.fingerprint`).
 PACKAGES = "site-packages"
 VERSION = re.compile(r"[0-9][0-9A-Za-z.!+_-]*")
 OFFERED = re.compile(r"from versions: ([^)]*)\)")
 UNCONNECTED = ("NewConnectionError", "Name or service not known", "Failed to establish a new connection")
 OFFLINE = "no connection to a package index; with network it is installed once and kept"
-MOST_INSTALLED = 60  # versions and builds that are kept; more than any command uses in one go
-SHOWN = 6  # versions that are named when another was asked for
-# Older MuJoCo imports its windows together with itself, and so packages that nobody needs here.
+MOST_INSTALLED = 60  # installed versions and builds; more than any command uses at once
+SHOWN = 6  # versions that a refusal lists
+# Older MuJoCo imports its viewer at once, and so packages that are not needed here.
 WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
 
 
 def environment(folder: Path, further: Sequence[Path] = ()) -> dict[str, str]:
-    """The environment of a process that imports what is in the folder first, then from the further ones; nothing that
-    lies where it is started.
+    """The environment variables of a process that imports from `folder` first, then from the further folders, and not
+    from its working folder.
     """
     paths = os.pathsep.join(str(path) for path in (folder, *further))
     switches = {"PYTHONPATH": paths, "PYTHONSAFEPATH": "1", "PYTHONDONTWRITEBYTECODE": "1"}
@@ -68,8 +68,8 @@ def installed(names: Sequence[str], version: str) -> Path:
 def built(path: Path) -> Path:
     """The folder with a build: of a wheel, of a folder of sources (pip builds them), or that folder itself.
 
-    A folder without pyproject.toml and setup.py is taken as it is: what `pip install --target` makes. Sources and
-    wheels are installed anew whenever they have changed, sources every time. Raises BadInput, in one line.
+    A folder without pyproject.toml and setup.py is used directly, like one that `pip install --target` wrote. A wheel
+    is installed again when its content has changed, a folder of sources every time. Raises BadInput, in one line.
     """
     path = path.absolute()
     if path.is_dir():
@@ -143,7 +143,7 @@ def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
     except OSError as error:
         raise BadInput(f"{folder} can't be written ({error.strerror or error}): {remedy}") from None
     finally:
-        with suppress(OSError):  # it has something in it: what was installed, or another process's part
+        with suppress(OSError):  # it is not empty: it has the installed folder, or that of another process
             folder.parent.rmdir()
     return ""
 
@@ -172,7 +172,7 @@ def _refusal(version: str, texts: Mapping[str, str]) -> BadInput:
 
 
 def nearest_versions(version: str, offered: Sequence[str]) -> list[str]:
-    """Some of those offered, around where this one would stand, in their order."""
+    """SHOWN of the offered versions, or fewer, with numbers around this one, in ascending order."""
     ordered = sorted(offered, key=numbers)
     index = sum(numbers(other) < numbers(version) for other in ordered)
     low = max(0, min(index - SHOWN // 2, len(ordered) - SHOWN))
@@ -180,14 +180,14 @@ def nearest_versions(version: str, offered: Sequence[str]) -> list[str]:
 
 
 def numbers(version: str) -> tuple[int, ...]:
-    """What versions are ordered by: 3.10.0 comes after 3.9.0."""
+    """The sort key of a version: 3.10.0 comes after 3.9.0."""
     return tuple(int(part) for part in re.findall(r"\d+", version))
 
 
 def distributions_in(folder: Path) -> Mapping[str, str]:
     """Name -> version of the distributions that lie in a folder, by their metadata.
 
-    A module's own word is not asked: pymunk 7.0.0 says of itself that it is 2.0.0.
+    The version in a module is not used: pymunk 7.0.0 has 2.0.0 there.
     """
     versions = {}
     for distribution in metadata.distributions(path=[str(folder)]):

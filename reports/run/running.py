@@ -68,7 +68,9 @@ def run_items(
     Raises WorkersLost (`supervise`).
     """
     items = tuple(items)
-    for item in items:  # these travel with it: each new worker would read all sources for them, half a second long
+    for (
+        item
+    ) in items:  # cached in the item and pickled with it: each new worker would need half a second to read all sources
         _ = item.key, isinstance(item, Cell) and item.truth
     function, count = partial(work, timed, truths), workers or worker_count()
     for item, result, note in supervised(function, longest_first(items), limit, count, watch, wall):
@@ -124,7 +126,7 @@ def run_into(
     """
     waiting = tuple(items) if fresh else missing(items, store, limit)  # an old row stays until the new one replaces it
     lost: list[str] = []
-    # Its whole path: workers have folders of their own.
+    # An absolute path, since workers run in other folders.
     truths = folder_for(store.path.parent.resolve() / TRUTHS, ELSEWHERE) if waiting else None
     for item, result in run_items(waiting, limit, workers, watch, timed, None, supervised, truths):
         if result.outcome == Outcome.LOST:

@@ -26,7 +26,7 @@ from reports.run.files import folder_for, temporary_folder
 
 SCHEMA = 2  # the file's `user_version`
 TABLES = {"results": "(key text primary key, row text not null)", "given": "(words text primary key)"}
-SQLITE_SUFFIXES = ("-wal", "-shm")  # what SQLite keeps beside a file: the first holds rows until they move into it
+SQLITE_SUFFIXES = ("-wal", "-shm")  # of SQLite's files beside the store: the first holds rows until they move into it
 WAIT = 30.0  # s for another process that is writing
 COPIES = 100  # tries to copy a store while another process writes it
 ELSEWHERE = "give another folder with --results"
@@ -75,7 +75,7 @@ class Store:
     def read(cls, path: Path) -> Iterator[Store]:
         """A store that is only read: from a copy, so that nothing is written beside it.
 
-        Raises FileTrouble where there is none or it can't be read.
+        Raises FileTrouble if the file does not exist or can't be read.
         """
         with temporary_folder() as folder:
             copy = folder / "copy.sqlite"
@@ -165,7 +165,7 @@ def _connected(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(path, timeout=WAIT)
     connection.text_factory = lambda raw: raw.decode(errors="replace")
     try:
-        # To wait for the disk at every row took 5 to 10 ms of each, in which no worker is given anything.
+        # Waiting for the disk at every row took 5 to 10 ms, during which no worker got a job.
         connection.execute("pragma synchronous=normal")
         wrong = connection.execute("pragma integrity_check(1)").fetchone()[0]
         if wrong != "ok":
@@ -220,7 +220,7 @@ def _put_aside(path: Path) -> Path:
     return aside
 
 
-@lru_cache(maxsize=8192)  # a command reads a row more than once: for what is missing, a table, several pages
+@lru_cache(maxsize=8192)  # a command reads a row several times: for missing cells, tables and pages
 def row_of(text: str) -> Measurement | None:
     """A stored row, None if it can't be read."""
     try:

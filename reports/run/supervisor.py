@@ -8,8 +8,8 @@ connection of its own, and a job counts as run only once its answer is whole.
 * An item whose worker ended is tried once more, in a worker that has run nothing else before, and the outcome of this
   second try is its answer. So damage that another item left in a process does not count.
 * An item that uses up its CPU time is ended by this process, which reads the worker's clock, or, where the system does
-  not have it, by a thread in the worker. One that sleeps is ended after much more wall time, of which only what this
-  process was awake for is counted: neither a loaded machine nor a stopped terminal decides about a result.
+  not have it, by a thread in the worker. An item that sleeps is ended after a much longer wall time, counted
+  only while this process is awake: neither a loaded machine nor a stopped terminal changes a result.
 """
 
 from __future__ import annotations

@@ -38,11 +38,13 @@ PATIENCE = 30.0  # s for a process that has ended to be gone: its memory may hav
 READY = b"ready"
 SPENT = 152  # exit code of a worker whose job has used up its CPU time, where the parent can't see that: 128 + SIGXCPU
 SAFE_PATH = "PYTHONSAFEPATH"  # any value keeps the current folder off the path of a Python that starts
-OURS = "crosscheck"  # its value where the user has set none: it does not hold for processes that a job starts
+OURS = (
+    "crosscheck"  # the value that is set here; workers remove it, so that processes started by a job do not inherit it
+)
 PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
-CHECK_INTERVAL = 0.2  # s between two looks at its own CPU time
-# Starting a process looks at all others, and takes away the exit code of one that has ended: with several threads, each
-# of which supervises workers of its own, that may be another's.
+CHECK_INTERVAL = 0.2  # s between two readings of its own CPU time
+# Starting a process polls all child processes and consumes the exit code of one that has ended. If several threads
+# supervise workers, it may be a worker of another thread.
 _reading = threading.Lock()
 
 
@@ -65,7 +67,7 @@ def stop_all() -> None:
 
 
 def _kill(process: BaseProcess) -> None:
-    """With what its jobs have forked."""
+    """Kill a worker and the processes that its jobs have forked."""
     with suppress(OSError):
         if hasattr(os, "killpg") and process.pid is not None:
             os.killpg(process.pid, signal.SIGKILL)
@@ -117,7 +119,7 @@ def start_method(*modules: str) -> Any:
 def start_early(*modules: str) -> None:
     """Have the fork server import these modules too, while the caller does something else.
 
-    Where there is none, or it can't be started now, workers import for themselves: only time is lost.
+    Without a fork server, or if it can't be started now, each worker imports them: only time is lost.
     """
     if start_method(*modules).get_start_method() == "forkserver":
         from multiprocessing import forkserver
@@ -134,7 +136,7 @@ def one_thread_each() -> None:
 
 
 def start_worker(context: Any, folder: str, limit: float, wall: float) -> Worker:
-    """Start a process that runs `work` on these terms. Raises OSError or EOFError if none can be started."""
+    """Start a process that runs `work` with these limits. Raises OSError or EOFError if none can be started."""
     ours, theirs = context.Pipe()
     process = context.Process(target=work, args=(theirs, folder, limit, wall), daemon=True)
     with theirs, warnings.catch_warnings():
@@ -154,7 +156,7 @@ def process_start() -> Iterator[None]:
 
     Processes started meanwhile inherit this: a worker ignores Ctrl-C from then on, the fork server as long as it lives.
     They are started by `python -c`, which would import files of the current folder in place of any module, so that
-    folder is kept off their path.
+    this folder is removed from their path.
     """
     is_set = SAFE_PATH in os.environ
     os.environ.setdefault(SAFE_PATH, OURS)
@@ -180,7 +182,7 @@ def last_words(folder: Path, pid: int | None) -> str:
         text = (folder / f"{pid}.log").read_text(encoding="utf-8", errors="replace")
         lines = [line.strip() for line in text.splitlines() if line.strip()]
         first = next((at for at, line in enumerate(lines) if "abort" in line.lower() or "error" in line.lower()), 0)
-        # Chipmunk's reason and the condition that failed stand below a line that ends with a colon.
+        # Chipmunk prints its reason and the failed condition below a line that ends with a colon.
         count = 3 if lines and lines[first].endswith(":") else 1
         return " ".join(lines[first : first + count])[:300]
     return ""
@@ -203,7 +205,7 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
     result or Loss). `limit`: CPU seconds of one job, `wall`: seconds after which the parent ends it; after twice as
     many it ends itself, should the parent be gone.
     """
-    # Ctrl-C reaches every process of a terminal; the parent alone decides what it means.
+    # Ctrl-C reaches every process of a terminal; only the parent handles it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_SETMASK, ())
@@ -241,7 +243,7 @@ def _end_with_the_parent() -> None:
     """Ask Linux to end this process with the one that started it, the fork server.
 
     Native code that holds the interpreter keeps the thread that looks after the parent from running. The fork server
-    ends with the command, once its workers have closed the pipe that tells it that somebody still needs it.
+    ends with the command, once its workers have closed the pipe that keeps it running.
     """
     with suppress(ImportError, AttributeError, KeyError, OSError, TypeError):
         ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)
@@ -256,7 +258,7 @@ def _redirect(folder: Path) -> None:
     """Engines write logs into the working folder and to the standard streams; both go where the parent can look."""
     os.chdir(folder)
     log = os.open(f"{os.getpid()}.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
-    tempfile.tempdir = os.environ["TMPDIR"] = str(folder)  # what an engine makes goes with this folder too
+    tempfile.tempdir = os.environ["TMPDIR"] = str(folder)  # temporary files of engines are deleted with this folder
     os.dup2(log, 1)
     os.dup2(log, 2)
     os.close(log)
@@ -291,8 +293,8 @@ def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[
         if sentence := import_module(REGISTRY).mislabelled(elsewhere=False):
             result = Loss(Outcome.LOST, sentence)
         return _process_state() == before, pickle.dumps(result)
-    except BaseException as error:  # what an engine raises is a result, SystemExit and KeyboardInterrupt too
-        # It may have stopped half-way through a change of its own library, so this process gets no other job.
+    except BaseException as error:  # any exception of an engine is a result, also SystemExit and KeyboardInterrupt
+        # The engine may have left its library in an inconsistent state, so this process gets no other job.
         return False, pickle.dumps(failure(error))
 
 

@@ -167,7 +167,7 @@ def side_of(word: str, engine: str | None, engines: Sequence[Engine], announce: 
         if not contents:
             raise BadInput(f"{word} holds no package; give NAME==VERSION, a wheel or a folder with one")
         raise BadInput(f"{word} holds {', '.join(contents[:5])}, which no engine needs; name the engine with --engine")
-    # A wheel's name repeats what is in it, with forty letters of platforms.
+    # The name of a wheel repeats its contents, with forty characters about platforms.
     label = "wheel" if Path(word).suffix == ".whl" else Path(word).absolute().name
     if versions:
         label = f"{', '.join(f'{package} {number}' for package, number in versions.items())} ({label})"

@@ -1,8 +1,8 @@
 """The process of one version, whose folder is first on its path: it runs cells and sends their rows.
 
 `reports.versions.column` starts it and writes two pickles to its standard input: folders of further modules, and a
-VersionRequest. It ends, with its workers, when that pipe is closed. Nothing that may import an engine is imported here
-before the standard output is free of what engines print.
+VersionRequest. It ends, with its workers, when that pipe is closed. A module that may import an engine is imported
+only after output of engines has been redirected from the standard output.
 """
 
 from __future__ import annotations

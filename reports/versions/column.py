@@ -29,7 +29,7 @@ from reports.run.supervisor import WorkersLost
 from reports.versions.trees import Trees, engines_for_trees
 
 MARK = "known to be wrong"  # adapters put it into the sentence of every row of such a release
-# Exceptions of Python for a missing name: what our adapter calls is newer than the version.
+# Python's exceptions for a missing name: our adapter uses one that this version lacks.
 LACKING = ("AttributeError:", "ImportError:", "ModuleNotFoundError:")
 LONGEST = 300  # characters of the last line that a process printed
 
@@ -130,7 +130,7 @@ def _unsupported_if_lacking(row: Measurement, version: str) -> Measurement:
 
 def _messages(request: VersionRequest) -> Iterator[Any]:
     """The messages of the process, see `answer`; a Loss at the end if it ended too early."""
-    with temporary_folder() as folder:  # what an engine leaves behind goes with it, and what lies there hides no module
+    with temporary_folder() as folder:  # files of engines are deleted with it; none of its files hides a module
         error_file = folder / "said.txt"
         with error_file.open("wb") as errors:
             process = subprocess.Popen(
@@ -163,7 +163,7 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
 
 def answer(request: VersionRequest, send: Callable[[Any], None]) -> Loss | None:
     """In the process of a version: run the request and send each row, each (Trees, Answer) and, a few times a second,
-    the labels of what is running; at the end why it can't be used, or None."""
+    the labels of running cells. Returns the reason if the version can't be used, else None."""
     try:
         engines = _usable_engines(request)
     except ValueError as error:

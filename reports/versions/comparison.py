@@ -102,7 +102,7 @@ class RowComparison:
 
     @property
     def scene(self) -> str:
-        """Of the first pair, as `method`."""
+        """The scene of the first pair."""
         return self.pairs[0][1].scene
 
     @property

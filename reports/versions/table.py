@@ -114,7 +114,7 @@ def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> 
         wrong = sum(not miss <= WRONG_TREE for miss in misses)
         error = max((math.inf if math.isnan(miss) else float(miss) for miss in misses), default=math.nan)
         sentence = f"{wrong} of {len(misses)} by more than {WRONG_TREE:g}"
-    elif "Error: " in answer.sentence:  # an exception of Python: the version lacks what the adapter calls
+    elif "Error: " in answer.sentence:  # an exception of Python: the version lacks a name that the adapter uses
         outcome = Outcome.UNSUPPORTED
     scene = f"random trees ({trees.bodies} bodies, {trees.loops} loops)"
     method = (scene, trees.method.variant, math.nan, ACCELERATION)
