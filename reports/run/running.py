@@ -39,13 +39,14 @@ def expected_seconds(item: Any) -> float:
 
 
 def longest_first(items: Iterable[Item]) -> list[Item]:
-    """Cells of one scene together, since they share its exact motion; the scene that takes longest first, and so in it.
+    """Sort the scenes by their expected time, and the items of each scene likewise, the longest first.
 
-    What begins last is then short, and no worker runs long after the others have ended.
+    The items of one scene stay together, since a worker caches exact motions. The last items are short, so the workers
+    end at about the same time.
     """
     groups: dict[Any, list[Item]] = {}
     for item in items:
-        groups.setdefault(item.scene if isinstance(item, Cell) else item, []).append(item)
+        groups.setdefault(getattr(item, "scene", item), []).append(item)
     ordered = sorted(groups.values(), key=lambda group: -sum(map(expected_seconds, group)))
     return [item for group in ordered for item in sorted(group, key=expected_seconds, reverse=True)]
 
