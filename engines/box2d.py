@@ -226,6 +226,7 @@ class Box2D(ExtraEngine):
     packages = ("pyb2d3",)
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     forces_by: ClassVar[Enforcement] = "ours"
+    absent_elements: ClassVar[frozenset[type]] = frozenset({Gear, Skate})
     precision: ClassVar[float] = 2.0**-23
     angle_error: ClassVar[float] = 2.8e-5  # of the polynomial b2Atan2 (math_functions.h), for the angle of a weld
     capability: ClassVar[Capability] = Capability(

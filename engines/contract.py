@@ -194,6 +194,7 @@ class Engine(ABC):
     precision: relative rounding of the engine's numbers; 0 for double precision
     angle_error: error of angles that the engine measures between bodies, besides rounding [rad]
     forces_by: who evaluates the force elements
+    absent_elements: classes of joints and force elements that the engine, by its documentation, does not have
     """
 
     name: str
@@ -204,6 +205,7 @@ class Engine(ABC):
     precision: ClassVar[float] = 0.0
     angle_error: ClassVar[float] = 0.0
     forces_by: ClassVar[Enforcement] = "engine"
+    absent_elements: ClassVar[frozenset[type]] = frozenset()
 
     @property
     def family(self) -> str:

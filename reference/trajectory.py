@@ -16,6 +16,8 @@ from reference.validators import NOT_FINITE, of_shape
 Array = NDArray[np.float64]
 # Instants in a notebook's table.
 TABLE_ROWS = 6
+# A warning of our adapter begins with this. Stored rows keep the text of warnings alone.
+ADAPTER_PREFIX = "ours:"
 
 WarningKind = Literal[
     "contact",  # a contact is lost, or turns too far in a step
@@ -69,7 +71,7 @@ class RunWarning(str):
         """The warning itself; a plain string as one of the kind "other"."""
         if isinstance(warning, RunWarning):
             return warning
-        return cls(warning, origin="adapter" if warning.startswith("ours:") else "engine")
+        return cls(warning, origin="adapter" if warning.startswith(ADAPTER_PREFIX) else "engine")
 
 
 @dataclass(frozen=True)

@@ -125,8 +125,7 @@ def _reasons(found: RowComparison) -> tuple[Counter[str], Counter[str]]:
     """For each side the number of cells by the reason of an outcome that the other side does not have."""
 
     def reason(row: Measurement) -> str:
-        # The engine's words alone, without the sentence that our adapter adds.
-        sentence = " ".join(row.sentence.partition("; ours: ")[0].split())[:LONGEST]
+        sentence = " ".join(row.engine_sentence.split())[:LONGEST]
         return "" if Outcome(row.outcome).comparable else ": ".join(filter(None, (row.outcome, sentence)))
 
     ended = [difference for difference in found.differences if difference.quantity == "outcome"]

@@ -23,7 +23,7 @@ from engines.trajectory_check import flaw
 from reference.checks import freeze
 from reference.mechanism import Mechanism
 from reference.scene import NoMotion, Scene
-from reference.trajectory import Trajectory
+from reference.trajectory import ADAPTER_PREFIX, Trajectory
 from reference.validators import Floats
 from reports.model.cells import Cell, mechanism_of
 from reports.model.errors import branch_flips, constraint_errors, motion_errors, usable_samples
@@ -95,6 +95,11 @@ class Measurement:
     def method(self) -> str:
         """The engine and its variant, as they are printed."""
         return f"{self.engine} {self.variant}"
+
+    @property
+    def engine_sentence(self) -> str:
+        """The sentence up to the first warning of our adapter."""
+        return self.sentence.partition(f"; {ADAPTER_PREFIX}")[0]
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)

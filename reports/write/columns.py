@@ -183,8 +183,8 @@ def absence_reason(line: EngineLine, column: Column) -> str:
     rows = [row for _, of_method in line.columns[column] for row in of_method]
     if not rows or any(row.outcome != Outcome.UNSUPPORTED for row in rows):
         return ""
-    # A sentence with a link names the place in the engine's documentation that says what it lacks.
-    return NO_JOINT if any("https://" in row.sentence for row in rows) else NOT_BUILT
+    absent = {kind for engine, _ in line.columns[column] for kind in engine.absent_elements}
+    return NO_JOINT if absent.intersection(map(type, mechanism_of(line.scene).joints)) else NOT_BUILT
 
 
 def _format_cell(line: EngineLine, column: Column, format_rows: FormatCell) -> str:

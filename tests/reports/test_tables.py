@@ -19,7 +19,7 @@ import pytest
 from engines import Enforcement, Regularisation, mujoco, pymunk
 from engines.lagrange import loading
 from engines.pymunk.methods import SKATE_POINT
-from reference.joints import Joint
+from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
@@ -70,6 +70,10 @@ class HeldBy(Toy):
 
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         return self.by
+
+
+class WithoutPin(Toy):
+    absent_elements = frozenset({Pin})
 
 
 class OtherDisc(Disc):
@@ -205,12 +209,10 @@ def printed() -> Iterator[str]:
     beside = [*rows, *falling("other default", POWER)]
     yield equal_cost([(page_of(*naive, Toy("default", name="other")), beside)])
     yield equal_cost([(page_of(*naive), rows), (page_of(*map(Toy, VARIANTS), scenes=(OtherDisc(),)), other)])
-    yield "## Not built, and no such joint where the sentence names a place in the documentation"
-    for sentence in ("it has none: https://its.documentation", "not tried"):
-        unbuilt = [
-            replace(row, outcome=Outcome.UNSUPPORTED, sentence=sentence) for row in falling("toy default", POWER)
-        ]
-        yield equal_cost([(page_of(Toy("default")), unbuilt)])
+    yield "## No such joint in the engine, and not built by the adapter"
+    unbuilt = [replace(row, outcome=Outcome.UNSUPPORTED) for row in falling("toy default", POWER)]
+    for engine in (WithoutPin("default"), Toy("default")):
+        yield equal_cost([(page_of(engine), unbuilt)])
     yield "## Cost at equal error: of the cheapest method of a column"
     rows = [*falling("toy default", (1.0, 0.5)), *falling("toy tuned", (1e-3, 1e-5))]
     rows += [replace(row, cpu=0.05) for row in falling("toy extended", (1e-10,))]

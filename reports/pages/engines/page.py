@@ -83,21 +83,23 @@ ELEMENT_EXAMPLES = {
 # Engines with a velocity constraint for blades or rims. All others replace it by contact, or lack it.
 ROLLING_JOINTS = {"lagrange", "exudyn"}
 YES, CONTACT, CODE = "yes", "by contact", "with code of ours"
-TOO_OLD = "this release lacks what our adapter calls"
+HAS_NONE, NOT_BUILT, TOO_OLD = "**has none**", "not built", "too old"
 
 
 @dataclass(frozen=True)
 class Capabilities(BuildingTask):
     """The elements that an engine builds.
 
-    The values are YES, CONTACT, CODE or the reason of a refusal, by the lines of ELEMENT_EXAMPLES; and `reactions` and
-    `width` from a run. A refusal comes from the engine's table of capabilities (`engines.capability`).
+    For each line of ELEMENT_EXAMPLES the values have one of the words above and, in `reason_key`, the reason of a
+    refusal. `reactions` and `width` come from a run.
     """
 
     description: ClassVar[str] = "what it builds"
 
     def run(self) -> Values:
-        values: dict[str, str] = {line: self._build(mechanism) for line, mechanism in ELEMENT_EXAMPLES.items()}
+        values: dict[str, str] = {}
+        for line, mechanism in ELEMENT_EXAMPLES.items():
+            values[line], values[reason_key(line)] = self._build(mechanism)
         run = self.method.build(WORLD["swinging bar"], BUILD_STEP)(4, 1)
         finite = [bool(np.isfinite(reaction).all()) for reaction in run.reaction]
         values["reactions"] = "yes" if all(finite) else "not at the start" if all(finite[1:]) else "no"
@@ -106,13 +108,15 @@ class Capabilities(BuildingTask):
         values["width"] = "32 bits" if np.array_equal(velocity, velocity.astype(np.float32)) else "64 bits"
         return values
 
-    def _build(self, mechanism: Mechanism) -> str:
+    def _build(self, mechanism: Mechanism) -> tuple[str, str]:
+        """(word of the table, reason of a refusal)."""
         try:
             self.method.build(mechanism, BUILD_STEP)
         except Unsupported as reason:
-            return str(reason)
+            absent = self.method.absent_elements.intersection(map(type, (*mechanism.joints, *mechanism.forces)))
+            return HAS_NONE if absent else NOT_BUILT, str(reason)
         except (AttributeError, ImportError, TypeError) as error:
-            return f"{TOO_OLD}: {describe(error)}"
+            return TOO_OLD, f"this release lacks a function that our adapter calls: {describe(error)}"
         rolls = any(isinstance(joint, Skate | Roll) for joint in mechanism.joints)
         result = CONTACT if rolls and self.method.name not in ROLLING_JOINTS else YES
         with suppress(ValueError):
@@ -120,7 +124,11 @@ class Capabilities(BuildingTask):
             if mechanism.forces:
                 enforcement.add(self.method.forces_by)
             result = result if enforcement == {"engine"} else CODE
-        return result
+        return result, ""
+
+
+def reason_key(line: str) -> str:
+    return f"{line}: reason"
 
 
 COMPARED_INSTANTS = 12
@@ -243,28 +251,19 @@ def comparable_error(row: Measurement | None, field: str = "angle") -> float:
 def matrix(answers: Mapping[Capabilities, Answer]) -> str:
     """A column for each engine with the elements that it builds; empty without answers."""
     engines = [task.method for task in answers]
-    body = [[line, *(verdict(str(answer.values[line])) for answer in answers.values())] for line in ELEMENT_EXAMPLES]
-    body += [[line, *(str(answer.values[line]) for answer in answers.values())] for line in ("reactions", "width")]
+    lines = (*ELEMENT_EXAMPLES, "reactions", "width")
+    body = [[line, *(str(answer.values[line]) for answer in answers.values())] for line in lines]
     body.append(["version", *(engine_versions([engine]) for engine in engines)])
     return markdown(["", *(engine.name for engine in engines)], body, left=len(engines) + 1) if engines else ""
 
 
-def verdict(result: str) -> str:
-    """The text of a cell. A reason with a link names the engine's documentation, so the engine lacks the element."""
-    if result in (YES, CONTACT, CODE):
-        return result
-    if result.startswith(TOO_OLD):
-        return "too old"
-    return "**has none**" if "https://" in result else "not built"
-
-
 def refusals_of(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str, str]]:
-    """(engine, line, verdict, reason) of each element that is not built."""
+    """(engine, line, word of the table, reason) of each element that is not built."""
     return [
-        (task.method.name, line, verdict(reason), reason)
+        (task.method.name, line, str(answer.values[line]), reason)
         for task, answer in answers.items()
         for line in ELEMENT_EXAMPLES
-        if (reason := str(answer.values[line])) not in (YES, CONTACT, CODE)
+        if (reason := str(answer.values[reason_key(line)]))
     ]
 
 
