@@ -1,1 +1,1 @@
-"""The pages: a package for each subject (page, texts, experiments), and the modules that they share."""
+"""The report's pages: a package for each subject, and modules that the pages share."""

@@ -1,7 +1,7 @@
-"""Claims of pages as predicates on rows and motions; a report that contradicts one of them is not published.
+"""Claims of pages as predicates on rows and motions. A report is not published if the rows contradict a claim.
 
-The claims of an experiment are Jinja expressions below its text in `experiments.md`; they use the functions of `_names`
-and the experiment's context. The claims of other parts of pages are functions in this module.
+The claims of an experiment are Jinja expressions in `experiments.md`. They can use the functions of `_names` and the
+experiment's context. Claims that belong to no experiment are functions in this module.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
-from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
 from reports.pages.atlas.page import stored_columns
@@ -21,7 +20,7 @@ from reports.write.unmeasured import UNMEASURED
 
 
 def _names(failure: Failure, material: Material) -> dict[str, Any]:
-    """The functions that an experiment's claims use; rows of a method are sorted by step, the largest first."""
+    """The functions that claims can use. The rows of a method are sorted by step, the largest first."""
     experiment = Rows(sorted(material.of(failure.cells), key=lambda row: -row.step))
 
     def rows(method: str) -> Rows:
@@ -33,28 +32,32 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         return [getattr(row, name) for method in methods for row in rows(method)]
 
     def falls(method: str, factor: float = 5.0, name: str = "angle") -> bool:
-        """Whether each error is smaller than the error at the next larger step by more than a factor."""
+        """Whether each error is less than 1 / `factor` of the error at the next larger step."""
         values = errors((method,), name)
         return len(values) > 1 and all(fine < coarse / factor for coarse, fine in pairwise(values))
 
     def stays(method: str, skip: int = 0) -> bool:
-        """Whether errors at neighbouring steps differ by at most a quarter; the first `skip` errors are ignored."""
+        """Whether errors at neighbouring steps differ by less than a quarter, from the error `skip` on."""
         values = errors((method,), "angle")[skip:]
         return len(values) > 1 and all(0.8 < fine / coarse < 1.25 for coarse, fine in pairwise(values))
 
     def above(method: str, other: str, factor: float = 1.0) -> bool:
-        """Whether the first method's error is more than `factor` times the other's at each step."""
+        """Whether at each step the error of `method` is more than `factor` times the error of `other`."""
         pairs = zip(errors((method,), "angle"), errors((other,), "angle"), strict=True)
         return all(first > factor * second for first, second in pairs)
 
     def share(*outcomes: str, without: str = "") -> float:
-        """The share of runs with these outcomes among all methods but `without`."""
+        """The share of runs with these outcomes; runs of the method `without` are not counted."""
         counted = Rows(row for row in experiment if row.method != without)
         return counted.count(*outcomes) / counted.count()
 
     def same_as_in(scene: str, name: str, *methods: str) -> bool:
-        """Whether methods have the same errors here as in the sweep of a scene, within 1 %."""
-        sweep = {(row.method, row.every): getattr(row, name) for row in material.rows.values() if _is_of(row, scene)}
+        """Whether the errors of these methods equal those of the sweep of a scene within 1 %."""
+        sweep = {
+            (row.method, row.every): getattr(row, name)
+            for row in material.rows.values()
+            if (row.scene, row.purpose) == (scene, "sweep")
+        }
         return all(
             abs(getattr(row, name) / sweep[method, row.every] - 1) < 0.01 for method in methods for row in rows(method)
         )
@@ -71,7 +74,7 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         "largest": lambda name, *methods: max(errors(methods, name)),
         "falls": falls,
         "stays": stays,
-        "ratio": lambda method: rows(method)[-1].angle / rows(method)[-2].angle,  # smallest step over the next one
+        "ratio": lambda method: rows(method)[-1].angle / rows(method)[-2].angle,  # of errors at the two smallest steps
         "above": above,
         "share": share,
         "alike": same_as_in,
@@ -79,12 +82,12 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
     }
 
 
-def _is_of(row: Measurement, scene: str) -> bool:
-    return (row.scene, row.purpose) == (scene, "sweep")
-
-
 def settings_of_a_loop(material: Material) -> bool:
-    """Whether one change alone gains little, both gain much, and implicitfast has the errors of Euler."""
+    """Whether the statements on MuJoCo's settings hold.
+
+    They are: a stiff loop alone or RK4 alone gains less than a factor of 2; both together gain a factor of 1000;
+    implicitfast has the errors of Euler.
+    """
     rows = Rows(material.sweep((guides.SETTINGS_LOOP,)))
 
     def method(name: str) -> Rows:
@@ -107,7 +110,7 @@ def settings_of_a_loop(material: Material) -> bool:
 
 
 def _outcomes_of_map(name: str) -> dict[str, dict[float, tuple[Outcome, ...]]]:
-    """Method -> parameter value -> outcomes of a map of the atlas, the largest step first."""
+    """Method -> parameter value -> outcomes in one map of the atlas, the largest step first."""
     outcomes: dict[str, dict[float, tuple[Outcome, ...]]] = {}
     for column in stored_columns():
         if column.subject == name:
@@ -116,7 +119,7 @@ def _outcomes_of_map(name: str) -> dict[str, dict[float, tuple[Outcome, ...]]]:
 
 
 def maps(material: Material) -> bool:
-    """Whether the remarks of the atlas on couplers, slots near the largest offset, and sleighs hold."""
+    """Whether the remarks of the atlas on the maps "coupler", "offset" and "sleigh" hold."""
     couplers, offsets, sleighs = (_outcomes_of_map(name) for name in ("coupler", "offset", "sleigh"))
     soft, naive = couplers["mujoco default"], sleighs.pop("pymunk default")
     nearest = [offsets[f"{name} default"] for name in ("pymunk", "mujoco")]
@@ -130,7 +133,7 @@ def maps(material: Material) -> bool:
     )
 
 
-# Page -> the claim of a part that is not an experiment.
+# Page -> its claim that belongs to no experiment.
 PAGE_CLAIMS: Mapping[str, Callable[[Material], bool]] = {
     "atlas": maps,
     "settings": settings_of_a_loop,
@@ -138,7 +141,7 @@ PAGE_CLAIMS: Mapping[str, Callable[[Material], bool]] = {
 
 
 def contradicted(pages: Mapping[Page, Material]) -> list[str]:
-    """The claims that rows or motions contradict, or can't confirm for lack of them, as "page, experiment: claim"."""
+    """The claims, as "page, experiment: claim", that are false or that need rows or motions that are missing."""
     return [where for page, material in pages.items() for where, claim in _claims(page, material) if not _holds(claim)]
 
 
@@ -155,5 +158,5 @@ def _claims(page: Page, material: Material) -> Iterator[tuple[str, Callable[[], 
 def _holds(claim: Callable[[], Any]) -> bool:
     try:
         return bool(claim())
-    except (LookupError, StopIteration, ValueError):  # a method or a step that the claim needs was not run
+    except (LookupError, StopIteration, ValueError):  # a method or step of the claim was not run
         return False

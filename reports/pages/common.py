@@ -1,4 +1,4 @@
-"""Functions for pages of scenes and their experiments: methods, cells, texts of `experiments.md`, known deviations."""
+"""Functions that the pages of scenes share: methods, cells, experiments with their texts, known deviations."""
 
 from __future__ import annotations
 
@@ -23,25 +23,28 @@ from reports.write.rows import lookups
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 MAIN_METHODS: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
-# The engines' variants that are run in every scene; `lagrange`, which has ideal constraints, is left out.
+# `lagrange` is left out, because its constraints are ideal.
 ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engine.name != "lagrange")
 
 
 def sweeps(count: int) -> Engine:
-    """pymunk with this number of iterations and `error_bias = 0`, so that a step closes the whole gap."""
+    """pymunk with `count` iterations and `error_bias = 0`; with that value a step closes the whole gap."""
     return replace(pymunk.DEFAULT, variant=f"{count} sweeps, all of the gap", iterations=count, error_bias=0.0)
 
 
 def cells(
     scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
 ) -> tuple[Cell, ...]:
-    """The cells of an experiment: a scene in each engine, with each number of steps between samples."""
+    """The cells of a scene in each engine with each number of steps between samples (`every`)."""
     steps = tuple(every)
     return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
 
 
 def steps_for(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
-    """The steps of an engine in an experiment: extrapolated variants reach rounding with the longest one already."""
+    """The numbers of steps between samples with which an engine is run.
+
+    For an extrapolated variant only the first is left: at this largest step its error is already rounding.
+    """
     return every[:1] if engine.variant == "extended" else every
 
 
@@ -54,18 +57,17 @@ def to_rounding(
     engines: Iterable[Engine] = ENGINES_ALONE,
     **fields: Any,
 ) -> Failure:
-    """An experiment in which each engine runs a scene at its `steps_for`; `fields`: other fields of the experiment."""
+    """An experiment in which each engine runs a scene at its `steps_for`; `fields` are further fields of `Failure`."""
     run = tuple(cell for engine in engines for cell in cells(scene, (engine,), steps_for(engine, every), samples))
     return Failure(title, cells=run, columns=columns, **fields)
 
 
 def described(source: str, *failures: Failure, **values: Any) -> tuple[Failure, ...]:
-    """The experiments with their texts from `experiments.md` beside the file `source`.
+    """The experiments with their texts from `experiments.md` in the folder of the file `source`.
 
-    A section has the experiment's title, a paragraph with the expectation, optional paragraphs with the lesson, and an
-    optional list of claims (`reports.pages.claims`). All are templates with `values` and the experiment's context. An
-    experiment that is no longer run has a table with its last numbers there. Raises ValueError unless the sections are
-    those of the experiments.
+    A section consists of the experiment's title, a paragraph with the expectation, optional paragraphs with the lesson,
+    and an optional list of claims (`reports.pages.claims`). All texts are templates with `values` and the experiment's
+    context. Raises ValueError unless the sections have the titles of the experiments, in the same order.
     """
     text = Path(source).with_name("experiments.md").read_text(encoding="utf-8")
     sections = {}
@@ -104,9 +106,9 @@ def scene_page(
     context: Callable[[Material], Mapping[str, Any]] = no_context,
     **fields: Any,
 ) -> Page:
-    """A page that teaches scenes: templates can look up rows of these, and its known deviations are in a file.
+    """A page on scenes. Its template can look up their rows; its known deviations are those of `deviations.toml`.
 
-    `context` adds further variables for the page's template; `fields`: other fields of `Page`.
+    `context` adds variables for the template; `fields` are further fields of `Page`.
     """
 
     def with_lookups(material: Material) -> Mapping[str, Any]:
@@ -116,8 +118,8 @@ def scene_page(
 
 
 @dataclass(frozen=True)
-class OfMethod(Task):
-    """A task of one method; `description`: of the result, short, a format of the task."""
+class MethodTask(Task):
+    """A task that runs one method. `description` is a format string with the task as its argument."""
 
     description: ClassVar[str]
 
@@ -133,7 +135,7 @@ class OfMethod(Task):
 
 
 def run_script(name: str, text: str) -> dict[str, Any]:
-    """The global names of a script after its run; its output is discarded."""
+    """Run a script, discard its output, and return its global names."""
     names: dict[str, Any] = {"__name__": "__main__"}
     with contextlib.redirect_stdout(io.StringIO()):
         exec(compile(text, name, "exec"), names)
@@ -141,7 +143,7 @@ def run_script(name: str, text: str) -> dict[str, Any]:
 
 
 def refusals(attempts: Mapping[str, Callable[[], object]]) -> list[Observation]:
-    """The reference's error messages for impossible settings. Raises AssertionError for a setting that it accepts."""
+    """The reference's error messages for settings that it must refuse. Raises AssertionError if it accepts one."""
     observations = []
     for setting, attempt in attempts.items():
         try:
@@ -156,7 +158,7 @@ def refusals(attempts: Mapping[str, Callable[[], object]]) -> list[Observation]:
 def read_answers(
     material: Material, method: str, settings: Iterable[tuple[Task, str]], read: Callable[[Answer], str]
 ) -> list[Observation]:
-    """An observation for each task that was run: the result of `read`, or why the task did not finish."""
+    """An observation for each task that was run: `read(answer)`, or the reason why the task did not finish."""
     answers = {setting: material.answers.get(task) for task, setting in settings}
     return [
         Observation(method, setting, read(answer) if answer.finished else answer.told)
@@ -171,7 +173,7 @@ def _written_deviations() -> dict[str, list[dict[str, Any]]]:
 
 
 def deviations(page: str) -> dict[tuple[str, str, str], Deviation]:
-    """The known deviations of a page, from `deviations.toml`."""
+    """The known deviations of a page by (scene, method, check), from `deviations.toml`."""
     by_check: dict[tuple[str, str, str], Deviation] = {}
     for entry in _written_deviations()[page]:
         scenes = dict(entry)

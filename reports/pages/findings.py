@@ -1,7 +1,7 @@
-"""Findings that every user of pymunk or MuJoCo should know; a finding that its rows contradict is left out.
+"""Findings for every user of pymunk or MuJoCo. A finding is left out if its rows contradict it.
 
-`findings.toml` has the sentences of each finding, the rows that they are about, the claims that must hold, and the
-lines of a small picture. Functions of this module (FURTHER_NAMES) add numbers from releases and from scripts.
+`findings.toml` has the text, rows, claims and picture of each finding. The functions in FURTHER_NAMES add numbers from
+releases and scripts.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ from reports.write.rows import Rows, rows_of_pages
 from reports.write.templates import environment, template
 from reports.write.unmeasured import UNKNOWN_MARK, UNMEASURED
 
-# Size of a picture in inches: 360 pixels wide in a browser, so that a telephone shows it unscaled.
+# Size of a picture in inches: it is 360 pixels wide in a browser, and fits on a telephone.
 PICTURE_WIDTH, PICTURE_HEIGHT = 3.75, 2.55
-# (dashes, mark, whether it is filled) of each line by position, so that lines of the same colour differ.
+# (dashes, mark, whether the mark is filled) of the first to fourth line, since lines of an engine have the same colour.
 LINE_STYLES = ((":", "o", False), ("--", "s", True), ("-", "D", True), ("-.", "^", False))
 STEP_AXIS, CPU_AXIS, RELEASE_AXIS = "step [ms]", "CPU time [ms per simulated second]", "release"
 TENTH_OF_MS = 1e-4  # s
@@ -44,7 +44,7 @@ TENTH_OF_MS = 1e-4  # s
 
 @dataclass(frozen=True)
 class PlottedLine:
-    """The points (x, y) of one engine and their label; x is a number or a release."""
+    """A label and points (x, y) of one engine; x is a number or a release."""
 
     label: str
     engine: str
@@ -52,7 +52,7 @@ class PlottedLine:
 
 
 def of_rows(label: str, rows: Rows, name: str, x: str = STEP_AXIS) -> PlottedLine:
-    """The errors of a quantity against step or CPU time, from coarse to fine."""
+    """The errors of a quantity against step or CPU time; the largest step is first."""
     engine = rows[0].engine if rows else ""
     if x == CPU_AXIS:
         usable = [row for row in rows.known(name) if row.cpu > 0 and Outcome(row.outcome).comparable]
@@ -61,17 +61,14 @@ def of_rows(label: str, rows: Rows, name: str, x: str = STEP_AXIS) -> PlottedLin
 
 
 def of_releases(label: str, entries: Iterable[Entry]) -> PlottedLine:
-    """The errors of one scene and method, from the oldest release to the newest."""
+    """The errors of one scene and method against the release; the oldest is first."""
     usable = [entry for entry in entries if entry.comparable and entry.error > 0]
     engine = usable[0].engine if usable else ""
     return PlottedLine(label, engine, tuple((entry.version, entry.error) for entry in usable))
 
 
 def draw(lines: Sequence[PlottedLine], x: str, y: str) -> Figure:
-    """A chart with logarithmic axes, except for releases, which are equally spaced; an engine has its own colour.
-
-    Raises ValueError for more lines than LINE_STYLES.
-    """
+    """A chart with logarithmic axes; releases are equally spaced. Raises ValueError for more than four lines."""
     if len(lines) > len(LINE_STYLES):
         raise ValueError(f"a finding's picture has {len(lines)} lines; it must have at most {len(LINE_STYLES)}")
     with drawing(PICTURE_HEIGHT, width=PICTURE_WIDTH) as figure:
@@ -105,7 +102,7 @@ def draw(lines: Sequence[PlottedLine], x: str, y: str) -> Figure:
 
 @dataclass(frozen=True)
 class Sources:
-    """The data of findings: rows from coarse to fine, and answers to tasks. Rows of releases are read from a file."""
+    """The rows and answers of all pages, from which findings are computed."""
 
     rows: Rows
     answers: Mapping[Task, Answer] = field(default_factory=dict)
@@ -118,9 +115,11 @@ class Sources:
 
 @dataclass(frozen=True)
 class Finding:
-    """A finding with its numbers. title, text: Markdown, without the link to the page. lines, x, y: its picture.
+    """A finding with its numbers.
 
-    contradicted: the claims that the rows do not confirm.
+    title, text: Markdown, without the link to `page`
+    contradicted: the claims that the rows do not confirm
+    lines, x, y: the lines of the picture and the labels of its axes
     """
 
     name: str
@@ -134,38 +133,36 @@ class Finding:
 
     @property
     def is_sound(self) -> bool:
-        """Whether all its numbers are known and all its claims are confirmed."""
         return not self.contradicted and UNKNOWN_MARK not in self.text
 
     @property
     def picture(self) -> str:
-        """The file name of its picture."""
         return f"finding_{self.name}.svg"
 
     @property
     def alternative(self) -> str:
-        """The alternative text of its picture."""
+        """The picture's alternative text."""
         return f"{self.y} against {self.x}: {'; '.join(line.label for line in self.lines)}"
 
     def figure(self) -> Figure:
         return draw(self.lines, self.x, self.y)
 
 
-# --- names in the expressions of `findings.toml` ---
+# --- functions that the expressions of `findings.toml` can use ---
 
 
 def error_at(rows: Rows, step: float, name: str) -> float:
-    """The error of a quantity at a step [s], also of a failed run; NaN without one."""
+    """The error of a quantity at a step [s], of a failed run too; NaN if there is none."""
     return next((error for row_step, error in rows.points(name) if is_step(row_step, step)), math.nan)
 
 
 def least(rows: Rows, name: str) -> float:
-    """The least error of a quantity, also of failed runs; NaN without one."""
+    """The least error of a quantity, failed runs included; NaN if there is none."""
     return min((error for _, error in rows.points(name)), default=math.nan)
 
 
 def duration(rows: Rows) -> float:
-    """The duration of the rows' scene [s]; NaN without rows."""
+    """The duration of the scene [s]; NaN without rows."""
     return next((row.samples * row.every * row.step for row in rows), math.nan)
 
 
@@ -181,7 +178,7 @@ EXPRESSION_NAMES: Mapping[str, Any] = {
 
 
 def releases(sources: Sources) -> dict[str, Any]:
-    """Errors of stiff loops before and after MuJoCo 3.7.0, and the growth of the cost of a step as shipped."""
+    """Errors of stiff loops in releases of MuJoCo, and the cost of a step as shipped relative to the newest release."""
     entries, versions = released().of("mujoco"), released().versions("mujoco")
     lines = {
         scene: [entry for entry in entries if (entry.scene, entry.variant) == (scene, "tuned")]
@@ -197,7 +194,7 @@ def releases(sources: Sources) -> dict[str, Any]:
 
 
 def trees(sources: Sources) -> dict[str, Any]:
-    """Random trees with loops in MuJoCo, with the stiffest documented settings and with stiffer rows by our code."""
+    """Acceleration errors of random trees with loops in MuJoCo: with the settings "tuned", and with our code."""
     newest = released().versions("mujoco")[-1]
     entries = [entry for entry in released().of("mujoco") if entry.quantity == ACCELERATION]
     last = {entry.variant: entry for entry in entries if entry.version == newest}
@@ -217,7 +214,7 @@ def trees(sources: Sources) -> dict[str, Any]:
     }
 
 
-# Script of the page of faults -> the fault that it shows.
+# Script on the page of faults -> the fault that it shows.
 FAULTS_OF_SCRIPTS: Mapping[str, str] = {
     "pymunk_groove": "a `GrooveJoint` off the centre of mass creates velocity across itself",
     "pymunk_kinetic_energy": "`Body.kinetic_energy` is twice the kinetic energy",
@@ -228,7 +225,7 @@ FAULTS_OF_SCRIPTS: Mapping[str, str] = {
 
 
 def faults(sources: Sources) -> dict[str, Any]:
-    """Faults of the installed releases, from the answers of their scripts."""
+    """The faults that the scripts show in the installed releases, and the number of scripts without such a result."""
     wrong, missing = [], 0
     for title in ("pymunk", "MuJoCo"):
         sentences, release = [], UNKNOWN_MARK
@@ -248,7 +245,11 @@ def faults(sources: Sources) -> dict[str, Any]:
 
 
 def exact(sources: Sources) -> dict[str, Any]:
-    """`fine`: CPU time for an error of 1e-6 rad by engine; `wins`: whether the judge is cheaper, for each target."""
+    """CPU times on the free four-bar.
+
+    `fine`: the least CPU time for an error of 1e-6 rad, by engine. `wins`: for each target error and engine, whether
+    `lagrange` is cheaper.
+    """
     settings = advice(sources.rows.of("free_four_bar"), "angle")
     rows = {(setting.engine, target): setting.row for setting in settings for target in setting.targets}
     cost = {key: row.cpu if row is not None and row.cpu > 0 else math.inf for key, row in rows.items()}
@@ -278,7 +279,6 @@ def _expression(text: str) -> Callable[..., Any]:
 
 
 def finding(name: str, sources: Sources) -> Finding:
-    """The finding of this name with numbers from these rows."""
     plan = FINDING_PLANS[name]
     names = {**EXPRESSION_NAMES, **(FURTHER_NAMES[name](sources) if name in FURTHER_NAMES else {})}
     names |= {rows: sources.rows.of(*selection) for rows, selection in plan.get("rows", {}).items()}
@@ -297,12 +297,12 @@ def finding(name: str, sources: Sources) -> Finding:
 
 
 def findings(pages: Mapping[Page, Material]) -> list[Finding]:
-    """The findings that these rows confirm and one of these pages explains, in the order of `findings.toml`."""
+    """The findings that the rows confirm and that one of these pages explains, in the order of `findings.toml`."""
     sources, names = Sources.of(pages), {page.name for page in pages}
     candidates = (finding(name, sources) for name in FINDING_PLANS)
     return [candidate for candidate in candidates if candidate.is_sound and candidate.page in names]
 
 
 def pictures(sound: Iterable[Finding]) -> dict[str, str]:
-    """The SVG text of each finding's picture, by file name."""
+    """SVG pictures of findings by file name."""
     return {finding.picture: svg(finding.figure(), finding.title) for finding in sound}

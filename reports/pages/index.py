@@ -1,4 +1,4 @@
-"""The index of all pages: findings, symptoms, all engines compared on one linkage and one skate; and readme's part."""
+"""The index of the pages, with findings, symptoms and comparisons of engines; and the generated part of the readme."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ from reports.write.templates import environment, inert_page, link, with_part
 
 @dataclass(frozen=True)
 class Symptom:
-    """What a user observes, a short `answer`, and the page with the rest, under `heading` if that is not empty."""
+    """A symptom that a user sees, a short answer, and the page that explains it, below `heading` if there is one."""
 
     seen: str
     answer: str
@@ -54,22 +54,19 @@ class Symptom:
 
 @cache
 def symptoms() -> tuple[Symptom, ...]:
-    """The table of `symptoms.md`."""
+    """The rows of the table in `symptoms.md`."""
     _, _, *lines = Path(__file__).with_name("symptoms.md").read_text(encoding="utf-8").splitlines()
     return tuple(Symptom(*(cell.strip() for cell in line.strip("|").split("|"))) for line in lines)
 
 
 def foot(command: str, engines: Iterable[Engine] = ()) -> str:
-    """The command, versions and machine of a page; `engines`: those of the page beside the registered ones."""
+    """The last line of a page; `engines` are those whose versions it names besides the registered ones."""
     return f"Made by `{command}` with {versions(engines)}; timings on {machine()}."
 
 
 def engines_of(pages: Iterable[Page]) -> list[Engine]:
-    """All engines that these pages compare."""
     return list(dict.fromkeys(engine for page in pages for engine in page.engines))
 
-
-# All engines, also the extras, on two scenes: a picture and a table of the index.
 
 COMPARED_PICTURE = "compared.svg"
 COMPARED_SCENES = {"free_four_bar": "four-bar", "sleigh": "skate"}  # name -> title
@@ -77,7 +74,7 @@ COMPARED_COLUMNS = (Column.SHIPPED, Column.SETTINGS, Column.CODE)
 
 
 def compared_lines(pages: Mapping[Page, Material]) -> list[EngineLine]:
-    """A line for each of COMPARED_SCENES and each engine that has rows of it on any page."""
+    """A line for each of COMPARED_SCENES and each engine, extras included, that has rows of this scene on any page."""
     lines: list[EngineLine] = []
     for name in COMPARED_SCENES:
         for page, scene in [(teaching, scene) for teaching in pages for scene in teaching.scenes if scene.name == name]:
@@ -93,7 +90,7 @@ def compared_lines(pages: Mapping[Page, Material]) -> list[EngineLine]:
 
 
 def compared_picture(lines: Sequence[EngineLine]) -> str:
-    """The least error within a CPU time, by scene and kind of method, as SVG; empty without lines."""
+    """An SVG picture of the least error against CPU time, by scene and kind of method; empty without lines."""
     rows = []
     for name, title in COMPARED_SCENES.items():
         of_scene = [line for line in lines if line.scene.name == name]
@@ -107,7 +104,7 @@ def compared_picture(lines: Sequence[EngineLine]) -> str:
                 line.engine: error_by_cost([rows for _, rows in line.columns.get(filled, ())], line.quantity)
                 for line, filled in pairs
             }
-            if column is not Column.CODE:  # not every engine has a variant with our code
+            if column is not Column.CODE:  # an engine without a variant with our code lacks nothing
                 absent[column] = {
                     reason: [line.engine for line, filled in pairs if absence_reason(line, filled) == reason]
                     for reason in (NO_JOINT, NOT_BUILT)
@@ -119,7 +116,7 @@ def compared_picture(lines: Sequence[EngineLine]) -> str:
 
 
 def compared_table(lines: Sequence[EngineLine]) -> str:
-    """A line for each engine and scene: the error within CPU_BUDGET and, in brackets, at COMPARED_STEP."""
+    """A Markdown table of the error within CPU_BUDGET and, in brackets, at COMPARED_STEP, by scene and engine."""
     body = []
     for line in lines:
         has_one_column = Column.WHOLE in line.columns
@@ -143,7 +140,7 @@ def _compared_cell(line: EngineLine, column: Column) -> str:
 
 
 def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
-    """The index: findings, symptoms, a line for each scene, and each page with its lesson; `files`: the other files."""
+    """The text of the index; it links only to pages that are among `pages` or `files`."""
     entries = [
         (page, judged([*material.sweep(page.scenes), *material.usual(page.scenes)], page.quantity))
         for page, material in pages.items()
@@ -175,9 +172,9 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
 
 
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
-    """The readme with the lines of `your_loop` and their errors; nothing in this part depends on timings.
+    """The readme with its generated part: the lines of the page `your_loop` and their errors, without timings.
 
-    Raises ValueError if a mark of the part is missing.
+    Raises ValueError if the readme lacks the marks around this part.
     """
     material = next((material for page, material in pages.items() if page.name == YOUR_LOOP.name), Material({}))
     part = environment().get_template(f"{YOUR_LOOP.name}/readme.md").render(dict(YOUR_LOOP.context(material)))

@@ -1,4 +1,4 @@
-"""Pages and tables as texts by file name, from stored rows and answers; nothing here writes files."""
+"""The texts of all pages, pictures and tables by file name, from stored rows and answers. No file is written here."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from reports.write.templates import inert_page, template_of
 
 
 def scene_context(scene: Scene, rows: list[Measurement], page: Page, material: Material) -> dict[str, Any]:
-    """The tables of a scene for the page's template, from the rows of its sweep; tables are empty without rows."""
+    """The variables of one scene for the page's template; tables are empty without rows."""
     engines = {method_name(engine): engine for engine in page.engines_of(scene)}
 
     def declared(method: str, step: float) -> float:
@@ -55,13 +55,13 @@ def scene_context(scene: Scene, rows: list[Measurement], page: Page, material: M
         "step": step,
         "table": table,
         "advice": page_tables.advice_table(advice, page.quantity, enforcement) if rows else "",
-        "exported": exported,  # whether a model file with settings alone describes the mechanism
+        "exported": exported,  # whether a model file without our code describes the mechanism
         "programs": advised_programs(scene, advice, engines) if scene is page.advised_scene else [],
     }
 
 
 def _charts(page: Page, rows: list[Measurement], material: Material) -> dict[str, str]:
-    """The page's SVG pictures by their short names."""
+    """The page's SVG pictures by name."""
     pictures_by_name: dict[str, str] = {}
     drawable = charts.drawable(rows, page.quantity)
     if any(row.cpu > 0 for row in drawable):
@@ -89,7 +89,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         "page": page,
         "scenes": scenes,
         "advised": next((scenes[i] for i, scene in enumerate(page.scenes) if scene is page.advised_scene), None),
-        # A program on the page finds a registered page alone by its name.
+        # The program on the page imports the page by its name, so the page must be registered.
         "registered": page.name in {registered.name for registered in catalogue.PAGES},
         "pictures": unmeasured.MissingAsNaN(names),
         "failures": [render_experiment(failure, material) for failure in page.failures],
@@ -109,24 +109,25 @@ def render_all(
     further: Mapping[str, str] = MappingProxyType({}),
     rendered: Mapping[str, Mapping[str, str]] = MappingProxyType({}),
 ) -> dict[str, str]:
-    """Every file of the results by name; only timings.csv and the pages' CPU columns differ between machines.
+    """Every file of the results by name. On another machine only timings.csv and the columns of CPU time differ.
 
-    `further`: other files, which the index may name. `rendered`: results of `render_page` that are already there, by
-    the pages' names.
+    Args:
+        further: other files, to which the index can link.
+        rendered: results of `render_page` that exist already, by the page's name.
     """
     files: dict[str, str] = dict(further)
     rows: dict[str, Measurement] = {}
     engines: dict[str, Engine] = {}
     for page, material in pages.items():
         files.update(rendered[page.name] if page.name in rendered else render_page(page, material, command))
-        # A cell may be an experiment of one page and a sweep of another; errors.csv has it as a sweep.
+        # A cell may belong to an experiment of one page and to the sweep of another: errors.csv has the sweep's row.
         rows.update({row.key: row for row in material.rows.values() if row.purpose == "sweep" or row.key not in rows})
         engines.update({row.key: cell.engine for cell, row in material.rows.items()})
     files |= pictures(findings(pages))
     if drawing := compared_picture(compared_lines(pages)):
         files[COMPARED_PICTURE] = drawing
     files["index.md"] = render_index(pages, command, files)
-    # Stored rows are valid only with the versions that they were made with, so the installed versions are theirs.
+    # A stored row is used only with the versions that it was made with, so the installed versions are its versions.
     by_engine = {engine: row_versions(engine) for engine in dict.fromkeys(engines.values())}
     made_with = {key: by_engine[engine] for key, engine in engines.items()}
     files["errors.csv"] = as_csv(rows.values(), timings=False, made_with=made_with)

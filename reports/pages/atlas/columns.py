@@ -1,4 +1,4 @@
-"""Columns of stability maps: one scene at one parameter value with one method, at every step; and the file of them."""
+"""Columns of stability maps, and the file that stores them. A column is one method at one parameter value."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ from reports.pages.atlas.subjects import StabilityMap
 from reports.write.csv_files import read_lines
 
 FILE = "atlas.csv"
-FORCE_SAMPLES = 20  # instants of the reference solution at which reactions are evaluated
-NOT_RUN = "="  # in place of an outcome's letter: a cell between two of the same outcome, which it shares
-BY_LETTER = {outcome.letter: outcome for outcome in reversed(Outcome)}  # "finished" for a letter that two share
+FORCE_SAMPLES = 20  # instants at which the reactions of the reference motion are evaluated
+# Letter of a cell that was not run, because the neighbours above and below have the same outcome.
+NOT_RUN = "="
+BY_LETTER = {outcome.letter: outcome for outcome in reversed(Outcome)}  # two outcomes may share a letter: the first
 RunCells = Callable[[list[Cell]], Mapping[Cell, Measurement]]
 
 
@@ -33,9 +34,13 @@ RunCells = Callable[[list[Cell]], Mapping[Cell, Measurement]]
 class StoredColumn:
     """A column of a map in the file, the largest step first.
 
-    subject: the map's name. longest: the largest step [s]. counts: the number of steps of each run. outcomes: a letter
-    for each step (`Outcome.letter`, or NOT_RUN). errors: the decimal logarithm of the angle error [rad]; NaN for cells
-    that were not run or did not finish. gives: see `tearing_step` [s]. left: see `residual_of_sweeps`.
+    subject: the map's name
+    longest: the largest step [s]
+    counts: the number of steps of each run
+    outcomes: `Outcome.letter` or NOT_RUN for each step
+    errors: the decimal logarithm of the angle error [rad]; NaN for cells that were not run or did not finish
+    gives: the result of `tearing_step` [s]
+    left: the result of `residual_of_sweeps`
     """
 
     subject: str
@@ -60,7 +65,7 @@ class StoredColumn:
 
     @property
     def outcome_of_steps(self) -> tuple[Outcome, ...]:
-        """The outcome at each step; a cell that was not run has the outcome at the next larger step."""
+        """The outcome at each step. For a cell that was not run, it is the outcome at the next larger step."""
         outcomes: list[Outcome] = []
         for letter in self.outcomes:
             outcomes.append(outcomes[-1] if letter == NOT_RUN and outcomes else BY_LETTER[letter])
@@ -68,13 +73,12 @@ class StoredColumn:
 
     @property
     def run_count(self) -> int:
-        """The number of steps that were run."""
         return len(self.outcomes) - self.outcomes.count(NOT_RUN)
 
 
 @dataclass(frozen=True)
 class MapColumn:
-    """The cells of one value of a map with one method; `steps`: (samples, steps per sample), the largest step first."""
+    """The cells of a column; `steps` has (samples, steps between samples) of each run, the largest step first."""
 
     stability_map: StabilityMap
     value: float
@@ -88,17 +92,17 @@ class MapColumn:
 
 
 def columns_of(stability_map: StabilityMap, engines: Iterable[Engine], points: int) -> list[MapColumn]:
-    """All columns of a map with this number of points along each side."""
+    """All columns of a map with `points` values and at most `points` steps."""
     steps, values = stability_map.steps(points), stability_map.at(points)
     scenes = {value: stability_map.make(value) for value in values}
     return [MapColumn(stability_map, value, scenes[value], engine, steps) for value in values for engine in engines]
 
 
 def run_columns(columns: Sequence[MapColumn], run: RunCells, stride: int) -> list[dict[int, Measurement]]:
-    """The rows of each column by the index of the step: every `stride`-th step, then bisection at borders.
+    """The rows of each column by the index of the step.
 
-    Between two steps with different outcomes the middle step is run, until the two are neighbours. Borders are then as
-    sharp as if all steps had been run; a region narrower than the stride may be missed. `run` is called once a round.
+    First every `stride`-th step is run. Then, between two steps with different outcomes, the middle step is run until
+    the two steps are neighbours. A region that is narrower than the stride may be missed. Each round calls `run` once.
     """
     rows: list[dict[int, Measurement]] = [{} for _ in columns]
     wanted = [sorted({*range(0, len(column.steps), stride), len(column.steps) - 1}) for column in columns]
@@ -119,7 +123,7 @@ def run_columns(columns: Sequence[MapColumn], run: RunCells, stride: int) -> lis
 
 
 def stored_column(column: MapColumn, rows: Mapping[int, Measurement]) -> StoredColumn:
-    """A column for the file, with two predictions of where its runs begin to fail."""
+    """The column for the file, with two predictions of the step at which runs begin to fail."""
     mechanism, engine = column.scene.mechanism(), column.engine
     counts = tuple(samples * every for samples, every in column.steps)
     longest, shortest = column.scene.duration / counts[0], column.scene.duration / counts[-1]
@@ -139,7 +143,7 @@ def stored_column(column: MapColumn, rows: Mapping[int, Measurement]) -> StoredC
 
 
 def _power(row: Measurement) -> float:
-    """The decimal logarithm of the angle error, to a tenth; NaN for a run that can't be compared."""
+    """The decimal logarithm of the angle error [rad], rounded to tenths; NaN for a run that can't be compared."""
     usable = Outcome(row.outcome).comparable and math.isfinite(row.angle) and row.angle > 0
     return round(math.log10(row.angle), 1) if usable else math.nan
 
@@ -147,12 +151,12 @@ def _power(row: Measurement) -> float:
 def tearing_step(scene: Scene, mechanism: Mechanism, engine: Engine, least: float, largest: float) -> float:
     """The smallest step [s] at which the engine's declared regularisation opens a joint so far that it counts as torn.
 
-    With `engines.Regularisation`, J a = bias - damping slip - stiffness gap - compliance A reaction, where A has each
-    row's own inverse inertia. A steady gap is therefore (compliance A reaction) / stiffness, and (compliance A reaction
-    + bias) / stiffness in an engine that leaves out the bias. The reactions are those of the ideal motion.
+    With `engines.Regularisation`, J a = bias - damping slip - stiffness gap - compliance A reaction, where A is the
+    diagonal of J M^-1 J^T. The steady gap is therefore (compliance A reaction) / stiffness. In an engine that omits the
+    bias it is (compliance A reaction + bias) / stiffness. The reactions are those of the ideal motion.
 
-    Steps from `least` to `largest` [s] are searched. The result is 0 if all of them tear, inf if none does, and NaN
-    without a reference solution.
+    Steps from `least` to `largest` [s] are searched. The result is 0 if the step `least` tears a joint, inf if no step
+    does, and NaN without a reference motion.
     """
     try:
         motion = scene.motion(np.linspace(0, min(scene.duration, scene.comparable_until), FORCE_SAMPLES))
@@ -179,15 +183,15 @@ def tearing_step(scene: Scene, mechanism: Mechanism, engine: Engine, least: floa
 def residual_of_sweeps(mechanism: Mechanism, engine: Engine) -> float:
     """The fraction of the slowest mode's error that remains after the iterations of a step [1].
 
-    NaN for an engine without a fixed number of Gauss-Seidel iterations. Above 1/2 a gap grows from step to step if a
-    step closes all of it (`engines.pymunk.convergence`).
+    NaN for an engine without a fixed number of Gauss-Seidel iterations. If each step is to close the whole gap, gaps
+    grow from step to step when this fraction is above 1/2 (`engines.pymunk.convergence`).
     """
     count = engine.iterations_of(mechanism)
     return math.nan if count is None else float(convergence_factor(mechanism) ** count)
 
 
 def as_csv(columns: Iterable[StoredColumn]) -> str:
-    """A sorted line for each column; the numbers of steps only where they change."""
+    """The file's text, with sorted columns. `counts` is empty in a line with the same counts as the line before."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([field.name for field in fields(StoredColumn)])
@@ -204,7 +208,7 @@ def as_csv(columns: Iterable[StoredColumn]) -> str:
 
 
 def read(path: Path) -> tuple[StoredColumn, ...]:
-    """The columns of such a file; none if it does not exist. Raises ValueError for a file with another content."""
+    """The columns of an atlas file; none if it does not exist. Raises ValueError for any other file."""
     if not path.is_file():
         return ()
     columns: list[StoredColumn] = []

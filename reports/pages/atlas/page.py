@@ -1,7 +1,4 @@
-"""The stability maps, drawn from the file that `crosscheck atlas` writes.
-
-A map has a panel for each method, regions of equal outcome, and lines that predict where the regions end.
-"""
+"""The page of stability maps, drawn from the file that `crosscheck atlas` writes."""
 
 from __future__ import annotations
 
@@ -32,10 +29,10 @@ from reports.write.columns import displayed_variant
 from reports.write.tables import DASH, markdown, number, step_words
 
 RESULTS = Path(__file__).parents[2] / "results"
-ERROR_BOUNDS = (math.inf, 1e-2, 1e-4)  # rad: the table has the largest step whose errors are below each of these
-CRITICAL_RESIDUAL = 0.5  # of the slowest mode: above it, gaps that a step closes entirely grow from step to step
+ERROR_BOUNDS = (math.inf, 1e-2, 1e-4)  # rad; the table has the largest admissible step for each bound
+CRITICAL_RESIDUAL = 0.5  # see `residual_of_sweeps`
 MAX_DECADES_FOR_FINE_TICKS = 2.2
-# The predictions: name -> (label, role of the colour, dashes). "gives" and "left" are columns of the file.
+# Prediction of a border -> (label, role of the colour, dashes). "gives" and "left" are fields of `StoredColumn`.
 PREDICTIONS: Mapping[str, tuple[str, str, Any]] = {
     "fastest": ("2 / frequency of {map.fastest}", "second", (0, (5, 2))),
     "gives": ("above this step the declared regularisation tears a joint", "first", (0, (1, 1.2))),
@@ -45,12 +42,11 @@ PREDICTIONS: Mapping[str, tuple[str, str, Any]] = {
 
 @cache
 def stored_columns(path: Path = RESULTS / FILE) -> tuple[StoredColumn, ...]:
-    """All columns of all maps."""
     return read(path)
 
 
 def columns_of(stability_map: StabilityMap) -> list[StoredColumn]:
-    """The columns of a map with the variants as pages print them; registered methods first, in their order."""
+    """The columns of a map with the names of variants on pages. Registered methods come first, in their order."""
     from engines.registry import VARIANTS, method_name
 
     order = {method_name(engine): index for index, engine in enumerate(VARIANTS)}
@@ -62,7 +58,7 @@ def columns_of(stability_map: StabilityMap) -> list[StoredColumn]:
 
 
 def outcome_table(columns: Sequence[StoredColumn]) -> str:
-    """A line for each method: the share of cells with each outcome, and the largest steps within ERROR_BOUNDS."""
+    """A Markdown table with the shares of outcomes and the largest steps for ERROR_BOUNDS of each method."""
     present = [outcome for outcome in Outcome if any(outcome in column.outcome_of_steps for column in columns)]
     body = []
     for method in dict.fromkeys(column.method for column in columns):
@@ -75,9 +71,9 @@ def outcome_table(columns: Sequence[StoredColumn]) -> str:
 
 
 def largest_step(columns: Sequence[StoredColumn], bound: float) -> str:
-    """The largest step at which, and below which, all runs finish with an angle error below `bound` [rad]; or a dash.
+    """The largest step such that, at it and at all smaller steps, all runs finish with errors below `bound` [rad].
 
-    A cell that was not run has the error of the next larger step.
+    The result is a dash if there is no such step. A cell that was not run has the error at the next larger step.
     """
     largest = DASH
     errors = [_errors_of_steps(column) for column in columns]
@@ -92,7 +88,7 @@ def largest_step(columns: Sequence[StoredColumn], bound: float) -> str:
 
 
 def _errors_of_steps(column: StoredColumn) -> list[float]:
-    """The error at each step [rad]; of a cell that was not run the error at the next larger step, or 0 without one."""
+    """The error at each step [rad]. For a cell that was not run, it is the error at the next larger step, or 0."""
     errors, last = [], 0.0
     for power in column.errors:
         last = last if math.isnan(power) else 10**power
@@ -101,9 +97,9 @@ def _errors_of_steps(column: StoredColumn) -> list[float]:
 
 
 def agreement(columns: Sequence[StoredColumn]) -> tuple[int, int]:
-    """(columns in which the declared regularisation predicts the tearing step within a factor of three, all columns).
+    """(number of columns whose tearing step is predicted within a factor of three, number of columns counted).
 
-    Only columns that tear at the largest steps and not at the smallest are counted: others have no border.
+    A column is counted if it has a prediction, a torn run at the largest step and none at the smallest.
     """
     near = count = 0
     for column in columns:
@@ -117,7 +113,6 @@ def agreement(columns: Sequence[StoredColumn]) -> tuple[int, int]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """A dictionary for each map that was run, and the totals."""
     maps = []
     for stability_map, columns in ((each, columns_of(each)) for each in MAPS):
         if columns:
@@ -136,7 +131,6 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def figures(material: Material) -> Mapping[str, str]:
-    """A picture for each map that was run."""
     return {
         each.name: svg(atlas_map(each, columns), f"{each.title}: step against {each.parameter}")
         for each in MAPS
@@ -145,7 +139,10 @@ def figures(material: Material) -> Mapping[str, str]:
 
 
 def atlas_map(stability_map: StabilityMap, columns: Sequence[StoredColumn]) -> Figure:
-    """Step against the parameter, one panel a method; axes are logarithmic, except for an integer parameter."""
+    """A panel for each method, with regions of equal outcome over parameter and step.
+
+    Axes are logarithmic, except that of an integer parameter.
+    """
     methods = list(dict.fromkeys(column.method for column in columns))
     across = min(2, len(methods)) or 1
     count = -(-len(methods) // across) or 1
@@ -203,7 +200,10 @@ def _legend_entries(
 
 
 def edges(values: Sequence[float], whole: bool) -> np.ndarray:
-    """The borders of cells with these increasing middles; in the logarithm, except for integers."""
+    """The borders between cells with these increasing middles, and the two ends.
+
+    A border is halfway between two middles: arithmetically for integers (`whole`), geometrically otherwise.
+    """
     middles = np.asarray(values, dtype=float) if whole else np.log(values)
     if len(middles) == 1:
         borders = np.array([middles[0] - 0.5, middles[0] + 0.5])
@@ -214,7 +214,7 @@ def edges(values: Sequence[float], whole: bool) -> np.ndarray:
 
 
 def regions_of_steps(column: StoredColumn) -> list[Outcome | str]:
-    """The region of each step: the shade of its error, or the outcome of a run that can't be compared."""
+    """For each step the shade of its error, or the outcome if the run can't be compared."""
     return [
         shade(error) if outcome.comparable else outcome
         for outcome, error in zip(column.outcome_of_steps, _errors_of_steps(column), strict=True)
@@ -222,7 +222,7 @@ def regions_of_steps(column: StoredColumn) -> list[Outcome | str]:
 
 
 def _draw_regions(panel: Axes, columns: Sequence[StoredColumn], whole: bool) -> set[Outcome | str]:
-    """One shape for each region; successive cells of a column are one rectangle of it."""
+    """Draw each region as one path, and return the regions. Successive cells of a column form one rectangle."""
     across = edges([column.value for column in columns], whole)
     shapes: dict[Outcome | str, list[tuple[float, float, float, float]]] = {}
     for column, (left, right) in zip(columns, pairwise(across), strict=True):
@@ -237,7 +237,7 @@ def _draw_regions(panel: Axes, columns: Sequence[StoredColumn], whole: bool) -> 
         codes = [Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY] * len(boxes)
         path = Outline(np.array(corners).reshape(-1, 2), codes)
         face = outcome_colour(region) if isinstance(region, Outcome) else getattr(LIGHT, region)
-        # A thin line of the same colour closes the seams between columns.
+        # A thin line of the same colour covers the gaps between columns.
         panel.add_patch(PathPatch(path, facecolor=face, edgecolor=face, linewidth=0.4))
         if isinstance(region, Outcome) and region.hatch:
             panel.add_patch(PathPatch(path, facecolor="none", edgecolor=LIGHT.quiet, linewidth=0, hatch=region.hatch))
@@ -248,7 +248,7 @@ def _draw_regions(panel: Axes, columns: Sequence[StoredColumn], whole: bool) -> 
 
 
 def _draw_predictions(panel: Axes, columns: Sequence[StoredColumn], stability_map: StabilityMap) -> set[str]:
-    """The names of the predictions that lie within the panel, and are drawn."""
+    """Draw the predictions that lie within the panel, and return their names."""
     values = np.array([column.value for column in columns])
     low, high = panel.get_ylim()
     names = set()
@@ -261,7 +261,7 @@ def _draw_predictions(panel: Axes, columns: Sequence[StoredColumn], stability_ma
     fastest = np.array([2 / stability_map.frequency(value) for value in values])
     if np.any((fastest > low) & (fastest < high)):
         line("fastest", values, fastest)
-    # Where all steps or no step tears, the curve leaves the panel at the bottom or at the top.
+    # If every step or no step tears a joint, the curve leaves the panel at the bottom or at the top.
     tearing = [math.inf if math.isnan(column.gives) else column.gives for column in columns]
     tearing = np.clip(tearing, low / 2, high * 2)
     if np.any((tearing > low) & (tearing < high)) or (tearing.min() < low and tearing.max() > high):

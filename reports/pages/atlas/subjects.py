@@ -1,7 +1,4 @@
-"""The maps of the atlas: a scene, the parameter that is varied, and the frequency that predicts where methods fail.
-
-Texts and ranges are in `subjects.toml`.
-"""
+"""The maps of the atlas: scenes with one varied parameter. Texts and ranges are in `subjects.toml`."""
 
 from __future__ import annotations
 
@@ -24,14 +21,15 @@ from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.scenes.wheels.vehicles import CarAndTrailer
 
-MIN_STEPS = 10  # of a run: the largest step is a tenth of the duration
+MIN_STEPS = 10  # steps of a run at the largest step
 
 
 @dataclass(frozen=True)
 class StabilityMap:
-    """A map of outcomes over step and parameter; `subjects.toml` explains the other fields.
+    """A map of outcomes over step and parameter. `subjects.toml` explains the fields that are not explained here.
 
-    make: parameter value -> scene. frequency: parameter value -> frequency of the fastest motion [rad/s].
+    make: parameter value -> scene
+    frequency: parameter value -> frequency of the fastest motion [rad/s], which predicts the step of failure
     """
 
     name: str
@@ -47,16 +45,16 @@ class StabilityMap:
     remark: str = ""
 
     def at(self, points: int) -> tuple[float, ...]:
-        """Values that are equally spaced in their logarithm; integers are equally spaced, and may be fewer."""
+        """The values form a geometric sequence. Integers form an arithmetic one, without repetitions."""
         low, high = self.values
         if self.whole:
             return tuple(map(float, dict.fromkeys(np.linspace(low, high, points).round().tolist())))
         return tuple(float(f"{value:.4g}") for value in np.geomspace(low, high, points))
 
     def steps(self, points: int) -> tuple[tuple[int, int], ...]:
-        """(samples, steps per sample) for about this many steps, equally spaced in their logarithm, the largest first.
+        """(samples, steps between samples) of at most `points` runs; their steps [s] form a decreasing sequence.
 
-        Only ten numbers of samples occur, so that the reference solution is needed at few instants.
+        A run has 10 to 20 samples, so that the reference motion is evaluated at few instants.
         """
         by_count: dict[int, tuple[int, int]] = {}
         for doubling in np.linspace(0.0, self.doublings, points):
@@ -87,15 +85,15 @@ def heavy_tip(ratio: float) -> LinkPendulum:
 
 
 def chain_of(links: float) -> LinkPendulum:
-    """A chain of one metre for half a second: it has fallen, and chaos has not yet amplified errors much."""
+    """A chain of 1 m for 0.5 s: it falls, but chaos has not yet amplified errors much."""
     return LinkPendulum(links=round(links), length=1 / round(links), duration=0.5, horizon=0.5)
 
 
 def stiffest_hanging(scene: LinkPendulum) -> float:
     """The highest frequency of small oscillations about the hanging equilibrium [rad/s].
 
-    M angle'' + K angle = 0 in absolute angles. Link j moves the centre of mass of link i by the arm L_ij: the length of
-    link j for j < i, half of it for j = i, else 0. M = L^T diag(m) L + diag(I), and K = g diag(L^T m).
+    M angle'' + K angle = 0 in absolute angles, with M = L^T diag(m) L + diag(I) and K = g diag(L^T m). The arm L_ij,
+    by which link j moves the centre of mass of link i, is the length of link j for j < i, half of it for j = i, else 0.
     """
     chain = scene.chain
     lengths, masses = np.array(chain.lengths), np.array(chain.masses)
@@ -106,42 +104,42 @@ def stiffest_hanging(scene: LinkPendulum) -> float:
 
 
 def near_the_largest_offset(gap: float) -> DrivenSliderCrank:
-    """A driven slider-crank with the offset (1 - gap) times the largest: the rod is nearly upright once a turn."""
+    """A driven slider-crank whose offset is (1 - gap) times the largest possible one."""
     plain = DrivenSliderCrank()
     return replace(plain, offset=(1 - gap) * (plain.rod - plain.crank), angle=math.pi / 2)
 
 
 def rod_rate(gap: float) -> float:
-    """The largest rate of that rod over a turn of the crank [rad/s]."""
+    """The largest rate of the rod of `near_the_largest_offset` over a turn of the crank [rad/s]."""
     scene = near_the_largest_offset(gap)
     angles = np.concatenate([np.linspace(0, 2 * math.pi, 721), math.pi / 2 * 3 + np.geomspace(1e-7, 0.1, 200)])
     return float(scene.rate * np.abs(scene.shape.rates(angles)[0]).max())
 
 
 def driven(rate: float) -> DrivenFourBar:
-    """The driven four-bar for half a second at any rate [rad/s]."""
+    """The four-bar, driven with this rate [rad/s] for 0.5 s."""
     return DrivenFourBar(rate=rate, revolutions=rate * 0.5 / (2 * math.pi))
 
 
 def short_trailer(length: float) -> CarAndTrailer:
-    """A drawbar of this length [m], with the trailer's centre of mass on its axle."""
+    """A car and a trailer with a drawbar of this length [m] and its centre of mass on the axle."""
     plain = CarAndTrailer()
     return replace(plain, length=length, centres=(plain.centres[0], 0.0), duration=2.0, horizon=2.0)
 
 
 def ellipse(ratio: float) -> RollingEllipse:
-    """An ellipse that starts on its flat side, slowly enough to keep contact."""
+    """An ellipse that starts on its flat side, so slowly that it keeps contact."""
     plain = RollingEllipse()
     return replace(plain, along_y=plain.along_x * ratio, start_rate=1.0, duration=1.0)
 
 
 def rocking(ratio: float) -> float:
-    """The frequency of small oscillations about the flat side [rad/s]."""
+    """The frequency of small oscillations of `ellipse` about its flat side [rad/s]."""
     law = ellipse(ratio).motion_law
     return law.small_frequency(law.rolling.theta)
 
 
-# Map name -> (scene at a parameter value, frequency [rad/s] of the motion that the map names).
+# Map -> its `make` and `frequency`.
 SCENES_AND_FREQUENCIES: Mapping[str, tuple[Callable[[float], Scene], Callable[[float], float]]] = {
     "coupler": (coupler, lambda ratio: 1 / coupler(ratio).mechanism().time_scale),
     "rate": (driven, lambda rate: rate),

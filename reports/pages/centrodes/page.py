@@ -1,4 +1,4 @@
-"""The page of centrodes: the coupler of a four-bar as rolling, and the instant centre as a measure of engines."""
+"""The page of centrodes: the coupler's motion in a four-bar as rolling, and errors of instant centres in engines."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from reports.plots.mechanisms import draw_ground, draw_pose
 from reports.plots.theme import LIGHT, bare, drawing, note, style_axes, svg
 from reports.write.tables import markdown, number
 
-MAX_POSES_CHECKED = 101  # enough to find the largest error of smooth curves, and fast
+MAX_POSES_CHECKED = 101
 
 
 def returned(curves: Centrodes) -> tuple[float, float]:
-    """(largest distance [m] between the poses and those of the rolling curves, range of rotation checked [rad]).
+    """(largest distance of origins [m] between the poses and those of the rolling curves, checked rotation [rad]).
 
-    Raises InvalidMechanism where the curves can't roll on each other.
+    Raises InvalidMechanism if the curves can't roll on each other.
     """
     rolling = curves.rolling()
     low, high = rolling.limits
@@ -49,7 +49,7 @@ def returned(curves: Centrodes) -> tuple[float, float]:
 
 
 def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indices: Sequence[int], body: int) -> Figure:
-    """A panel for each of these samples, which poses (samples, bodies, 3) and curves have in the same order."""
+    """A panel for each of these samples. `poses` (samples, bodies, 3) and `curves` have the same order of samples."""
     with drawing(4.4) as figure:
         for panel, index in zip(figure.subplots(1, len(indices), sharex=True, sharey=True), indices, strict=True):
             bare(panel, "")
@@ -78,7 +78,7 @@ def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indice
 
 
 def _letters(panel: Axes, mechanism: Mechanism, pose: Array) -> None:
-    """The names of the pins: at the ground beyond the end of the bar, elsewhere away from the middle of all pins."""
+    """Write the names of the pins. They are beyond the end of the bar at the ground, else outside of the linkage."""
     pins, bars = {}, {}
     for joint in mechanism.joints:
         if isinstance(joint, Pin) and joint.second is not None:
@@ -95,7 +95,7 @@ def _letters(panel: Axes, mechanism: Mechanism, pose: Array) -> None:
 
 
 def draw_rate(curves: Centrodes) -> Figure:
-    """ds/dtheta from the path of the centre and from the curvatures, and their relative difference."""
+    """A chart of ds/dtheta from the centre's path and from the curvatures, and of their relative difference."""
     total = 1 / (curves.space_curvature + curves.body_curvature)
     degrees = np.degrees(curves.theta)
     with drawing(4.0) as figure:
@@ -112,30 +112,29 @@ def draw_rate(curves: Centrodes) -> Figure:
 
 
 COUPLER_INDEX = 1  # among the bodies
-# Crank angles [rad] between which the coupler turns one way; its rate vanishes at 2.80 and 5.94 rad.
+# Crank angles [rad] between which the coupler's rate keeps its sign; it vanishes at 2.80 and 5.94 rad.
 ARC = (3.5, 5.5)
 ARC_SAMPLES = 401
-# The samples away from the ends of the arc, where the second derivative of a spline is least accurate.
+# At the ends of the arc, which this leaves out, the second derivative of a spline is least accurate.
 INNER = slice(20, -20)
 CENTRODE_STEPS = (1, 10)  # steps between samples of the scene
 CENTRODE_CELLS = tuple(Cell(DrivenFourBar(), engine, every) for engine in VARIANTS for every in CENTRODE_STEPS)
 
 
 def times(count: int) -> np.ndarray:
-    """Equally spaced times (count,) [s] while the crank passes ARC."""
+    """Equally spaced times (count,) [s] at which the crank is within ARC."""
     scene = DrivenFourBar()
     return np.linspace((ARC[0] - scene.start) / scene.rate, (ARC[1] - scene.start) / scene.rate, count)
 
 
 @cache
 def exact() -> tuple[Trajectory, Centrodes]:
-    """The reference motion over the arc, and both centrodes of the coupler."""
+    """(reference motion within ARC, centrodes of the coupler)."""
     truth = freeze(DrivenFourBar().motion(times(ARC_SAMPLES)))
     return truth, centrodes(truth.t, truth.pose[:, COUPLER_INDEX], truth.twist[:, COUPLER_INDEX])
 
 
 def figures(material: Material) -> dict[str, str]:
-    """The mechanism with both centrodes, and ds/dtheta."""
     truth, curves = exact()
     mechanism = DrivenFourBar().mechanism()
     # The curves are sorted by rotation; the poses must have the same order.
@@ -148,7 +147,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def round_trip(curves: Centrodes) -> float:
-    """The largest distance [m] between the motion of the rolling curves and the exact one, between the samples."""
+    """The largest distance [m] between the motion of the rolling curves and the exact motion, between the samples."""
     between = DrivenFourBar().motion(times(2 * ARC_SAMPLES)[1:-1]).pose[:, COUPLER_INDEX]
     rolling = curves.rolling()
     low, high = rolling.limits
@@ -158,13 +157,13 @@ def round_trip(curves: Centrodes) -> float:
 
 
 def agreement(curves: Centrodes) -> float:
-    """Largest relative difference between ds/dtheta and 1/(kappa_A + kappa_B), away from the ends."""
+    """The largest relative difference between ds/dtheta and 1/(kappa_A + kappa_B) within INNER."""
     total = curves.space_curvature + curves.body_curvature
     return float(np.abs(curves.rate * total - 1)[INNER].max())
 
 
 def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
-    """(cell, centre error [m], angle error [rad], rate error [rad/s]) of each method that was run."""
+    """(cell, centre error [m], angle error [rad], rate error [rad/s]) of each cell that was run."""
     low, high = times(2)
     rows = []
     for cell, run in material.motions(CENTRODE_CELLS).items():
@@ -174,13 +173,13 @@ def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
             for ours, exact in ((run.pose, truth.pose), (run.twist, truth.twist))
         )
         centre = centrode_error(truth, run, COUPLER_INDEX)[within]
-        # The centre of a body that hardly turns is not defined, and a run that broke off has NaN.
+        # The centre is NaN for a body that hardly turns, and after the end of a run.
         rows.append((cell, largest(centre[np.isfinite(centre)]), largest(angle), largest(rate)))
     return rows
 
 
 def largest(values: np.ndarray) -> float:
-    """The largest value; NaN without values, or if one is NaN."""
+    """The largest value; NaN if there is none or if one is NaN."""
     return float(values.max()) if values.size else math.nan
 
 

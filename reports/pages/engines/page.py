@@ -1,8 +1,8 @@
 """The page of engines: the elements that each engine builds, error against CPU time, and the velocity term of loops.
 
-The velocity term of loops: reactions at instants of the exact motion, where every gap and slip is zero, are compared
-with two equations. In the tree's coordinates q the rows of a loop are J q'' = -J' q' with the term, and J q'' = 0
-without it. Rows that an engine does not declare as regularised are exact. Both equations need no time step.
+The velocity term of a loop is the right-hand side of J q'' = -J' q' in the tree's coordinates q. An engine that leaves
+it out solves J q'' = 0. At instants of the exact motion, where gap and slip vanish, the engine's reactions are compared
+with the solutions of both equations. Rows that the engine does not declare as regularised have the term in both.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
 from reports.model.tasks import Answer, Values
-from reports.pages.common import OfMethod
+from reports.pages.common import MethodTask
 from reports.plots.theme import svg
 from reports.plots.work_precision import work_precision
 from reports.write.columns import Column, column_of
@@ -44,8 +44,8 @@ from reports.write.tables import markdown, number
 Array = NDArray[np.float64]
 
 
-class BuildingTask(OfMethod):
-    """A task that costs little more than building the engine's model."""
+class BuildingTask(MethodTask):
+    """A task that mainly builds models."""
 
     @property
     def cost(self) -> float:
@@ -56,10 +56,9 @@ BUILD_STEP = 1e-2  # s
 WORLD = {world.name: world.mechanism for world in (*WORLDS, *MOVING)}
 _WHEELS = tuple(Body(name, 1.0, 0.1, (x, 0.0, 0.0)) for name, x in (("first", 0.0), ("second", 1.0)))
 _AXLES = tuple(Pin(f"axle of the {body.name}", None, body.name, body.pose[:2], (0.0, 0.0)) for body in _WHEELS)
-_TURNS = (Term(None, "first", 1.0), Term(None, "second", 2.0))  # angle of the first wheel + 2 times that of the second
+_TURNS = (Term(None, "first", 1.0), Term(None, "second", 2.0))
 _DOWN = (0.0, -10.0)
-# Line of the table -> a mechanism with this element, from the conformance checks or as small as possible. A test
-# demands an example of each class of joints and of force elements.
+# Line of the table -> a mechanism with this element. A test demands an example of each class of joints and forces.
 ELEMENT_EXAMPLES = {
     "hinge": WORLD["swinging bar"],
     "loop": WORLD["swinging parallelogram"],
@@ -80,7 +79,7 @@ ELEMENT_EXAMPLES = {
     "disc rolls in a ring": WORLD["disc in a hole"],
 }
 
-# Engines with a velocity constraint for blades or rims. All others replace it by contact, or lack it.
+# Engines that build blades and rims without contact, by a velocity constraint.
 ROLLING_JOINTS = {"lagrange", "exudyn"}
 YES, CONTACT, CODE = "yes", "by contact", "with code of ours"
 HAS_NONE, NOT_BUILT, TOO_OLD = "**has none**", "not built", "too old"
@@ -103,7 +102,7 @@ class Capabilities(BuildingTask):
         run = self.method.build(WORLD["swinging bar"], BUILD_STEP)(4, 1)
         finite = [bool(np.isfinite(reaction).all()) for reaction in run.reaction]
         values["reactions"] = "yes" if all(finite) else "not at the start" if all(finite[1:]) else "no"
-        # Velocities are numbers of the engine itself; poses may be computed from coordinates by our code.
+        # Velocities are numbers of the engine itself. Poses may be computed from its coordinates by our code.
         velocity = run.twist[1:]
         values["width"] = "32 bits" if np.array_equal(velocity, velocity.astype(np.float32)) else "64 bits"
         return values
@@ -136,7 +135,7 @@ TERM_STEP = 1e-3  # s, for building a model; no step is made
 
 
 def started_at(mechanism: Mechanism, pose: Array, twist: Array) -> Mechanism:
-    """The mechanism with these poses and twists (bodies, 3) as its start."""
+    """The mechanism with another initial state: poses and twists (bodies, 3)."""
     bodies = tuple(
         replace(body, pose=tuple(body_pose.tolist()), twist=tuple(body_twist.tolist()))
         for body, body_pose, body_twist in zip(mechanism.bodies, pose, twist, strict=True)
@@ -147,12 +146,12 @@ def started_at(mechanism: Mechanism, pose: Array, twist: Array) -> Mechanism:
 def reactions_with(
     mechanism: Mechanism, soft: tuple[bool, ...], complete: bool, compliance: Array | float = 0.0
 ) -> Array:
-    """The reactions (rows,) [N] at the start.
+    """The reactions (rows,) [N] in the initial state.
 
     Args:
-        soft: the regularised rows.
-        complete: whether these have their velocity term.
-        compliance: of each row (rows,) [1/kg].
+        soft: whether each row is regularised (rows,).
+        complete: whether regularised rows have their velocity term.
+        compliance: of each row [1/kg] (rows,).
     """
     rows = mechanism.rows(mechanism.pose)
     bias = mechanism.bias(mechanism.pose, mechanism.twist)
@@ -169,7 +168,7 @@ def reactions_with(
 
 @dataclass(frozen=True)
 class VelocityTerm(BuildingTask):
-    """Differences of an engine's reactions (instants,) to those with and without the velocity term, relative."""
+    """Relative differences (instants,) between an engine's reactions and those with and without the velocity term."""
 
     description: ClassVar[str] = "the velocity term of a loop"
 
@@ -192,9 +191,9 @@ class VelocityTerm(BuildingTask):
 
 
 FREE_LOOP = FreeFourBar()
-MILLISECOND = round(FREE_LOOP.spacing / 1e-3)  # steps between samples
+MILLISECOND = round(FREE_LOOP.spacing / 1e-3)  # steps of 1 ms between samples
 
-# Quantity of the chart -> a scene of every mechanism whose page compares this quantity.
+# Quantity -> scenes of the chart, one of each mechanism whose page compares this quantity.
 CHARTED = {
     "angle": (
         *("free_four_bar", "driven_slider_crank", "pendulum_2", "pendulum_10", "n_four_bar_2"),
@@ -205,7 +204,7 @@ CHARTED = {
 SCENE_BY_NAME: dict[str, Scene] = {scene.name: scene for scene in SCENES}
 CHARTED_SCENES = tuple(SCENE_BY_NAME[name] for names in CHARTED.values() for name in names)
 
-# A model that takes tens of seconds to compile is run at one step of two scenes: one with a loop, one without.
+# Models that take long to compile are run at one step only, in one scene with a loop and in one without.
 COMPILED_CELLS = tuple(
     Cell(SCENE_BY_NAME[name], engine, MILLISECOND, "beside")
     for name in ("free_four_bar", "pendulum_2")
@@ -213,14 +212,14 @@ COMPILED_CELLS = tuple(
     if engine.build_time >= SLOW_TO_BUILD
 )
 
-# One method of each engine, as shipped if there is such a variant: settings hardly change what is built.
+# The first variant of each engine alone, since variants hardly differ in the elements that they build.
 MATRIX = tuple(
     map(
         Capabilities,
         tuple({engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}.values())[::-1],
     )
 )
-# Engines that declare a compliance of their loops, with the settings that make it small.
+# The variant "tuned" of each engine that declares compliant loops: its compliance is small.
 VELOCITY_TERMS = tuple(
     VelocityTerm(engine)
     for engine in (*registry.VARIANTS, *registry.OTHERS)
@@ -231,7 +230,7 @@ VELOCITY_TERMS = tuple(
 
 
 def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
-    """The rows of these scenes in all engines, also those beside the grid, as sweeps; without naive methods."""
+    """The rows of these scenes in all engines, extras included, as rows of a sweep; naive methods are left out."""
     names = {*scenes}
     return [
         replace(row, purpose="sweep")
@@ -243,13 +242,13 @@ def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
 
 
 def comparable_error(row: Measurement | None, field: str = "angle") -> float:
-    """The error of a run that can be compared; infinite for any other."""
+    """The run's error; infinite if the run can't be compared."""
     usable = row is not None and Outcome(row.outcome).comparable and getattr(row, field) > 0
     return getattr(row, field) if usable else inf
 
 
 def matrix(answers: Mapping[Capabilities, Answer]) -> str:
-    """A column for each engine with the elements that it builds; empty without answers."""
+    """A Markdown table with a column for each engine and a line for each element; empty without answers."""
     engines = [task.method for task in answers]
     lines = (*ELEMENT_EXAMPLES, "reactions", "width")
     body = [[line, *(str(answer.values[line]) for answer in answers.values())] for line in lines]
@@ -263,12 +262,12 @@ def refusals_of(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, 
         (task.method.name, line, str(answer.values[line]), reason)
         for task, answer in answers.items()
         for line in ELEMENT_EXAMPLES
-        if (reason := str(answer.values[reason_key(line)]))
+        if (reason := str(answer.values.get(reason_key(line), "")))
     ]
 
 
 def charted_methods(rows: Sequence[Measurement], field: str) -> set[tuple[str, str]]:
-    """(scene, method) of each engine as shipped and of its most accurate variant."""
+    """(scene, method) of the variant as shipped and of the most accurate variant of each engine in each scene."""
     chosen: set[tuple[str, str]] = set()
     for scene, engine in dict.fromkeys((row.scene, row.engine) for row in rows):
         of_engine = [row for row in rows if (row.scene, row.engine) == (scene, engine)]
@@ -278,7 +277,6 @@ def charted_methods(rows: Sequence[Measurement], field: str) -> set[tuple[str, s
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Error against CPU time, by quantity."""
     pictures: dict[str, str] = {}
     for field, names in CHARTED.items():
         rows = [row for row in rows_of(material, names) if comparable_error(row, field) < inf and row.cpu > 0]
@@ -291,7 +289,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def velocity_terms(material: Material) -> str:
-    """A line for each of VELOCITY_TERMS with its largest differences; empty without answers."""
+    """A Markdown table of the largest relative differences of VELOCITY_TERMS; empty without answers."""
     body = [
         [method_name(task.method), *(number(float(answer.array(name).max())) for name in ("with", "without"))]
         for task in VELOCITY_TERMS
@@ -302,7 +300,6 @@ def velocity_terms(material: Material) -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The tables by name, each empty where nothing was run."""
     answers = {task: answer for task in MATRIX if (answer := material.finished(task)) is not None}
     return {
         "matrix": matrix(answers),

@@ -1,9 +1,10 @@
-"""The page of errata: each slip of the chapter, the derivative that decides, and motions of engines.
+"""The page of errata: the wrong formulas of the chapter, and the derivatives and engines that prove them wrong.
 
-A slip is a document, slips/NUMBER.md, with the printed formula, the right one, and a script that computes both.
+Each slip has a document slips/NUMBER.md with the printed formula, the right one, and a script that computes both.
 
-Engines decide independently of the chapter's formulas: each runs a mechanism, and accelerations are differences of its
-velocities. Only linear relations of positions are assumed: the end of a bar is twice as far from its pin as its centre.
+Engines are evidence that does not use the chapter's formulas. Each engine runs a mechanism, and the accelerations are
+differences of its velocities. The only formulas assumed are linear: a bar's end is twice as far from its pin as the
+bar's centre.
 """
 
 from __future__ import annotations
@@ -35,16 +36,16 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.tasks import Answer, Task
 from reports.model.tasks import Values as Kept
-from reports.pages.common import OfMethod, run_script
+from reports.pages.common import MethodTask, run_script
 from reports.run.running import run_items
 from reports.write.tables import number
 
 REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 
-# s: the truncation error of the differences below (order eight) and their rounding are then far below engines' errors.
+# Time between samples [s]. The errors of the differences below (order eight) are then far below those of engines.
 WINDOW_SPACING = 1e-3
-RUN_SAMPLES = 300  # of a run; the last POINTS are used, well away from the start
-# Weights of the first and second derivatives at the middle of nine points.
+RUN_SAMPLES = 300  # only the last POINTS are used
+# Weights of nine points in the first and second derivatives at the middle point.
 FIRST_DERIVATIVE = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
 SECOND_DERIVATIVE = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
 POINTS, MIDDLE = len(FIRST_DERIVATIVE), len(FIRST_DERIVATIVE) // 2
@@ -52,7 +53,7 @@ POINTS, MIDDLE = len(FIRST_DERIVATIVE), len(FIRST_DERIVATIVE) // 2
 
 @dataclass(frozen=True)
 class SampleWindow:
-    """POINTS successive samples of one engine's motion; formulas are evaluated at the middle one."""
+    """POINTS successive samples of an engine's motion; formulas are evaluated at the middle sample."""
 
     pose: Array  # (POINTS, bodies, 3)
     twist: Array  # (POINTS, bodies, 3)
@@ -63,11 +64,11 @@ class SampleWindow:
 
 
 HILL, SLEIGH = RollingOnCircle(), ChaplyginSleigh()
-CONFIRMED = 0  # the key of (18.70) and (18.71), which are right as printed
+CONFIRMED = 0  # the number that stands for equations (18.70) and (18.71), which are right as printed
 
 
 def double_pendulum() -> Mechanism:
-    """Two uniform bars of 1 kg with the lengths, angles and rates of the errata, under gravity."""
+    """Two uniform bars of 1 kg under gravity, with lengths, angles and rates from `reference.chapter.errata`."""
     chain = Chain((errata.BAR,) * 2, (1.0, 1.0))
     angle, rate = np.array(errata.PHI), np.array(errata.PHI_RATE)
     pose, twist, _ = chain.placement(angle, rate, np.zeros(2))
@@ -81,12 +82,13 @@ def double_pendulum() -> Mechanism:
 
 
 def _pendulum(window: SampleWindow) -> dict[int, Values]:
-    """By r_A = 2 r_G1 and r_B/A = 2 (r_G2 - r_A) the accelerations of the ends follow from those of the centres."""
+    """Accelerations of the bars' ends, by r_A = 2 r_G1 and r_B/A = 2 (r_G2 - r_A)."""
     velocity = window.twist[:, :, :2]
     ends = np.stack([2 * velocity[:, 0], 2 * (velocity[:, 1] - 2 * velocity[:, 0])], axis=1)
     measured, turning = window.change(ends), window.change(window.twist[:, :, 2])
-    angle, rate = window.pose[MIDDLE, :, 2] + math.pi / 2, window.twist[MIDDLE, :, 2]  # a bar's x axis points down it
-    # The right-hand side of the note is phi1'' itself, so the second derivative of the angle decides.
+    # A bar's x axis points from its pin to its end; the chapter measures phi from another direction.
+    angle, rate = window.pose[MIDDLE, :, 2] + math.pi / 2, window.twist[MIDDLE, :, 2]
+    # The note states phi1'' itself, so the second derivative of the angle decides.
     twice = np.atleast_1d(SECOND_DERIVATIVE @ window.pose[:, 0, 2]) / WINDOW_SPACING**2
     values = {24: Values(rate[:1], turning[:1], twice)}
     for slip, (bar, printed) in errata.PENDULUM_SLIPS.items():
@@ -96,7 +98,7 @@ def _pendulum(window: SampleWindow) -> dict[int, Values]:
 
 
 def _rolling(window: SampleWindow) -> dict[int, Values]:
-    """The disc's centre is on the contact's normal, so the contact is where the ray to the centre meets the hill."""
+    """The point of contact lies on the line from the hill's centre to the disc's centre."""
     pose, twist = window.pose[:, 0], window.twist[:, 0]
     arm = HILL.eccentricity * np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
     centre = pose[:, :2] + arm
@@ -106,7 +108,7 @@ def _rolling(window: SampleWindow) -> dict[int, Values]:
     tangent = perpendicular(normal)
     advance = HILL.hill * (math.atan2(normal[1], normal[0]) - math.pi / 2)  # s; arc 0 is at the top
     speed = rate / (1 / HILL.hill + 1 / HILL.radius)
-    # A pole is a point of the body without velocity: the contact is one, the origin of the ground is not.
+    # The pole is the body's point without velocity: the point of contact, and not the origin of the ground.
     at_origin, at_contact = (
         twist[MIDDLE, :2] + rotation_velocity(rate, point - pose[MIDDLE, :2]) for point in (0.0, contact[MIDDLE])
     )
@@ -119,7 +121,7 @@ def _rolling(window: SampleWindow) -> dict[int, Values]:
 def _skate(window: SampleWindow) -> dict[int, Values]:
     pose, twist = window.pose[:, 0], window.twist[:, 0]
     along = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
-    speed = np.sum(twist[:, :2] * along, axis=-1)  # of C as well, because G is straight ahead of C
+    speed = np.sum(twist[:, :2] * along, axis=-1)  # of G and of C, since the line C G is parallel to the blade
     push, turning = (float(window.change(values)) for values in (speed, twist[:, 2]))
     state = (float(pose[MIDDLE, 2]), float(speed[MIDDLE]), push, float(twist[MIDDLE, 2]), turning, (SLEIGH.offset, 0.0))
     return {11: Values(*acceleration_of_g(*state), window.change(twist[:, :2]))}
@@ -136,14 +138,14 @@ def _four_bar(window: SampleWindow) -> dict[int, Values]:
 
 
 class DecidingMotion(NamedTuple):
-    """A mechanism whose motion decides, and the function that reads the values of each slip from a motion."""
+    """A mechanism, and the function that computes the values of each slip from its motion."""
 
     mechanism: Callable[[], Mechanism]
     read: Callable[[SampleWindow], dict[int, Values]]
 
 
 COMPANIONS: tuple[Scene, ...] = (HILL, SLEIGH, DrivenFourBar(), LinkPendulum())
-QUESTIONS: dict[str, DecidingMotion] = {  # by the description of the motion
+QUESTIONS: dict[str, DecidingMotion] = {  # by a description of the motion
     "a disc rolls off a round hill": DecidingMotion(HILL.mechanism, _rolling),
     "a sleigh on one skate coasts": DecidingMotion(SLEIGH.mechanism, _skate),
     "the crank of sample 18.15 turns at 10 rad/s": DecidingMotion(DrivenFourBar().mechanism, _four_bar),
@@ -152,8 +154,8 @@ QUESTIONS: dict[str, DecidingMotion] = {  # by the description of the motion
 
 
 @dataclass(frozen=True)
-class Refereed(OfMethod):
-    """The last POINTS samples of an engine's motion of the mechanism of one question."""
+class Refereed(MethodTask):
+    """The last POINTS samples of an engine's run of one of QUESTIONS."""
 
     question: str
     description: ClassVar[str] = "{0.question}"
@@ -169,7 +171,7 @@ TASKS = tuple(Refereed(engine, question) for question in QUESTIONS for engine in
 
 @dataclass(frozen=True)
 class Ruling:
-    """One engine's values for one slip: `values.decides` is from its motion after 0.3 s of `about`."""
+    """One engine's values for one slip, near 0.3 s of the motion `about`; `values.decides` is the engine's."""
 
     number: int
     method: str
@@ -178,9 +180,9 @@ class Ruling:
 
 
 def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...], list[str]]:
-    """(rulings of the engines, by the slip's number; messages about engines that failed).
+    """(rulings sorted by the slip's number, messages about failed runs).
 
-    An engine that lacks a joint has no ruling.
+    An engine that does not build the mechanism is in neither.
     """
     decided: list[Ruling] = []
     failed: list[str] = []
@@ -202,10 +204,13 @@ def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...],
 
 @dataclass(frozen=True)
 class Erratum:
-    """One slip of the chapter. printed, right: both formulas in one line. quoted, corrected: both formulas in LaTeX.
+    """One slip of the chapter.
 
-    deciding: a description of the derivative that decides. dimensions: whether the physical dimensions alone show the
-    slip; the size of its error then depends on the units. script: computes the values; empty for a slip of wording.
+    printed, right: both formulas as text
+    deciding: a description of the derivative that decides
+    dimensions: whether physical dimensions alone show the slip; the size of the error then depends on the units
+    quoted, corrected: both formulas in LaTeX
+    script: computes the values; empty for a slip of wording
     """
 
     number: int
@@ -222,22 +227,19 @@ class Erratum:
 
     @cached_property
     def names(self) -> Mapping[str, Any]:
-        """The global names of the script after its run."""
         return run_script(f"slip {self.number}", self.script)
 
     @property
     def values(self) -> Values:
-        """The values of the printed formula, of the right one and of the derivative that decides."""
         return Values(self.names["printed"], self.names["right"], self.names["measured"])
 
     @property
     def by_tolerance(self) -> Mapping[float, float]:
-        """Tolerance -> error of a method for which the chapter states no tolerance; empty for other slips."""
+        """Tolerance -> error, if the chapter prints an integration without its tolerance; else empty."""
         return self.names.get("by_tolerance", {})
 
 
 def read_slip(path: Path) -> Erratum:
-    """The slip of a document."""
     text = path.read_text("utf-8")
     fields = dict(re.findall(r"^- ([\w ]+): (.*)$", text, re.MULTILINE))
     quoted, corrected = re.findall(r"```math\n(.*?)\n```", text, re.DOTALL) or ("", "")
@@ -261,13 +263,13 @@ def digits(values: Iterable[float]) -> str:
 
 
 def missed(erratum: Erratum, pattern: str, between: str) -> str:
-    """The error of an integration at each of its tolerances; `pattern` formats an error and a tolerance."""
+    """The error at each tolerance of `by_tolerance`; `pattern` formats an error and a tolerance."""
     errors = erratum.by_tolerance.items()
     return between.join(pattern.format(number(error), number(tolerance)) for tolerance, error in errors)
 
 
 def verdict(erratum: Erratum, values: Values, ruled: Sequence[Ruling]) -> str:
-    """The errors of the printed and of the right formula, against the derivative that decides and against engines."""
+    """Sentences on the errors of both formulas relative to the derivative and to the engines in `ruled`."""
     right = number(values.agreement)
     misses = f"The printed formula misses it by {number(values.miss)}, the right one by {right}."
     pattern = "the printed one misses their motion by {0} or more, the right one by {1} at most."
@@ -287,7 +289,7 @@ def verdict(erratum: Erratum, values: Values, ruled: Sequence[Ruling]) -> str:
 
 
 def slip_rows() -> list[tuple[str, ...]]:
-    """A row for each slip: number, place, both formulas with their values, the derivative, the verdict."""
+    """(number, place, printed formula, right formula, derivative, verdict) of each slip."""
     rows = []
     for slip in SLIPS_OF_CHAPTER:
         formulas, decided, verdict_text = (slip.printed, slip.right), "-", f"words: {slip.reason}"
@@ -305,7 +307,7 @@ def slip_rows() -> list[tuple[str, ...]]:
 
 
 def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
-    """(a row for each slip and engine with the errors of both formulas; messages about engines that failed)."""
+    """(rows with the errors of both formulas by slip and engine, messages about failed runs)."""
     units, answers = {slip.number: slip.unit for slip in ERRATA}, dict(run_items(TASKS))
     decided, failed = rulings((task, answers[task]) for task in TASKS)
     return [
@@ -316,7 +318,7 @@ def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Values of the formulas, which are computed now, and decisions of engines, from their stored motions."""
+    """The values of formulas are computed here; those of engines come from stored motions."""
     decided, failed = rulings(material.answers.items())
     slips = [
         {

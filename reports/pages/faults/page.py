@@ -1,7 +1,7 @@
-"""Faults of released engines: page.md and upstream/NAME.md are documents written once, with scripts that show them.
+"""Faults of released engines, each described in a document with scripts that show it (page.md and upstream/NAME.md).
 
-The scripts are in the documents only. Those of SCRIPTS are run with every full grid, so that a finding disappears with
-the release that repairs its fault. A test runs every script and compares its output with its document.
+A full run executes the scripts of SCRIPTS with the installed release, so a finding disappears once its fault is
+repaired. A test runs every script and compares its output with its document.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from reports.model.tasks import Task, Values
 from reports.pages.common import run_script
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 
-UPSTREAM = Path(__file__).parent / "upstream"  # for each fault a text for the engine's issue tracker
+UPSTREAM = Path(__file__).parent / "upstream"  # texts for the engines' issue trackers
 SCRIPT_BLOCK = re.compile(r"(?:## `|<summary>)(\w+)\.py(?:`|</summary>)\n\n```python\n(.*?)```", re.DOTALL)
-RESULT = re.compile(r"expected (\S+), found (\S+)$")  # ends the line that a script of SCRIPTS prints
+RESULT = re.compile(r"expected (\S+), found (\S+)$")  # the end of a script's output
 
 
 @cache
 def scripts() -> Mapping[str, str]:
-    """Script name -> its text."""
+    """The scripts' texts by name."""
     return {
         name: text
         for path in sorted(UPSTREAM.iterdir())
@@ -45,17 +45,17 @@ def scripts() -> Mapping[str, str]:
 
 
 def printed_apart(name: str) -> str:
-    """The output of a script in a separate process. Raises RuntimeError with its last line if it fails."""
+    """The output of a script in a process of its own. Raises RuntimeError with the last line if the script fails."""
     run = subprocess.run([sys.executable, "-c", scripts()[name]], capture_output=True, text=True)
     if run.returncode:
         raise RuntimeError((run.stderr or run.stdout).strip().splitlines()[-1])
-    # Without the line that MJX prints about Warp, which is not used.
+    # MJX prints a line on Warp, which is not used.
     return "\n".join(line for line in run.stdout.splitlines() if not line.startswith("Failed to import"))
 
 
 @dataclass(frozen=True)
 class FaultScript(Task):
-    """A script, run with the installed engine; `digest`: of its text, so that an edited script is run again."""
+    """A script that is run with the installed engine. The digest of its text is part of the task's key."""
 
     name: str
     digest: str
@@ -63,7 +63,7 @@ class FaultScript(Task):
 
     @property
     def cost(self) -> float:
-        return 6.0 if self.engine else 0.05  # measured: compiling a program, and a model
+        return 6.0 if self.engine else 0.05  # measured; JAX compiles for seconds
 
     @property
     def engine(self) -> Engine | None:
@@ -72,9 +72,9 @@ class FaultScript(Task):
     def run(self) -> Values:
         """`expected` and `found`, in the unit of the script, and `version` of the engine's package.
 
-        Raises Unsupported if the script's package is an extra that is not installed.
+        Raises Unsupported if the engine is an extra that can't run here.
         """
-        if self.engine is not None:  # JAX has the settings of its first import, so it is imported in another process
+        if self.engine is not None:  # JAX keeps the settings of its first import, so the script has its own process
             DEFAULT.require()
             try:
                 match = RESULT.search(printed_apart(self.name))
@@ -86,7 +86,7 @@ class FaultScript(Task):
         import mujoco
 
         names = run_script(f"{self.name}.py", scripts()[self.name])
-        # pymunk.version is wrong in some releases (2.0.0 in 7.0.0), and MuJoCo's distribution has two names.
+        # pymunk.version is wrong in some releases (2.0.0 in 7.0.0). MuJoCo has two distributions.
         release = mujoco.__version__ if self.name.startswith("mujoco") else version("pymunk")
         return {**_values(names["expected"], names["found"]), "version": release}
 
@@ -96,7 +96,7 @@ def _values(expected: Any, found: Any) -> dict[str, np.ndarray]:
 
 
 def is_right(expected: float, found: float) -> bool:
-    """Whether they agree within the error of MuJoCo's regularisation at its stiffest setting, 1e-4."""
+    """Whether both agree within 2e-4: MuJoCo's regularisation alone has an error of 1e-4 at its stiffest setting."""
     return abs(found - expected) <= 2e-4 * max(1.0, abs(expected))
 
 
@@ -111,10 +111,10 @@ SCRIPTS: Mapping[str, FaultScript] = {
 
 @dataclass(frozen=True)
 class Offsets(Task):
-    """The velocity across the groove that pymunk's GrooveJoint creates, for several offsets of its anchor [m].
+    """The velocity across its groove that pymunk's GrooveJoint creates, for several distances of its anchor.
 
-    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The anchor is at this distance from the
-    centre of mass, at 45 degrees to the groove.
+    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The vector from the centre of mass to the
+    anchor has one of the lengths `offsets` [m] and an angle of 45 degrees to the groove.
     """
 
     offsets: tuple[float, ...]
@@ -122,7 +122,7 @@ class Offsets(Task):
     words: ClassVar[str] = "grooves: anchor's offset"
 
     def run(self) -> Values:
-        """`across` (offsets,) [m/s] after a step."""
+        """`across` (offsets,) [m/s], the velocities after one step."""
         return {"across": np.array(list(map(measured_across, self.offsets)))}
 
 
@@ -130,7 +130,7 @@ OFFSETS = Offsets(tuple(np.geomspace(0.05, 5.0, 13).round(6).tolist()))
 
 
 def measured_across(offset: float) -> float:
-    """The anchor's velocity across the groove [m/s] after one step of pymunk, which closes no gap."""
+    """The anchor's velocity across the groove [m/s] after one step of pymunk that closes no gap."""
     import pymunk
     from pymunk.constraints import GrooveJoint
 
@@ -144,17 +144,17 @@ def measured_across(offset: float) -> float:
 
 
 def predicted_across(offset: Any) -> Any:
-    """That velocity by cpGrooveJoint's formula: the impulse n (n.K^-1 v) instead of n (n.v) / (n.K n), n the normal.
+    """The velocity of `measured_across` by cpGrooveJoint's wrong formula for the impulse.
 
-    K = J M^-1 J^T of the two anchors held together, v their relative velocity: here K = [[1 + q, -q], [-q, 1 + q]] with
-    q = offset^2 / 2, v = (1, 0) and n = (0, 1), so that the impulse is -q / (1 + 2 q).
+    The formula is n (n.K^-1 v) instead of n (n.v) / (n.K n). Here n = (0, 1) is the normal, v = (1, 0) is the relative
+    velocity of the anchors, and K = J M^-1 J^T = [[1 + q, -q], [-q, 1 + q]] with q = offset^2 / 2 belongs to a pin at
+    the anchors. The impulse is then -q / (1 + 2 q).
     """
     square = offset**2 / 2
     return -square / (1 + 2 * square) * (1 + square)
 
 
 def draw_offsets(measured: np.ndarray) -> Figure:
-    """The velocity across the groove against the offset of the anchor, measured and by the wrong formula."""
     with drawing(3.4, width=6.4) as figure:
         axes = figure.subplots()
         fine = np.geomspace(OFFSETS.offsets[0], OFFSETS.offsets[-1], 200)
@@ -168,7 +168,6 @@ def draw_offsets(measured: np.ndarray) -> Figure:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """The chart of the groove, if it was measured."""
     answer = material.finished(OFFSETS)
     title = "Velocity that a groove creates across itself, against its anchor's offset"
     return {"groove": svg(draw_offsets(answer.array("across")), title)} if answer else {}

@@ -34,7 +34,7 @@ SAMPLES_PER_REVOLUTION = 50
 
 @dataclass(frozen=True)
 class PrintedRates(Task):
-    """Equations (18.70) and (18.71) integrated by RK45; the absolute tolerance is a thousandth of the relative one."""
+    """Equations (18.70) and (18.71) integrated by RK45. The absolute tolerance is a thousandth of `tolerance`."""
 
     revolutions: int
     tolerance: float
@@ -42,7 +42,7 @@ class PrintedRates(Task):
     words: ClassVar[str] = "printed rates over {0.revolutions} revolutions at {0.tolerance:g}"
 
     def run(self) -> Values:
-        """`error`: the largest error of beta [rad]; `evaluations` of the rates; `stopped`: why it ended early."""
+        """`error`: the largest error of beta [rad]. `stopped`: why the integration ended early, or ""."""
         scene = DrivenFourBar()
         t = np.linspace(0, self.revolutions * scene.duration, SAMPLES_PER_REVOLUTION * self.revolutions + 1)
         beta, _ = scene.four_bar.angles(scene.start + scene.rate * t)
@@ -63,7 +63,7 @@ DRIFTS = tuple(PrintedRates(revolutions, tolerance) for revolutions in (1, 100) 
 
 
 def rates_drift(material: Material) -> list[Observation]:
-    """The chapter's pseudocode at several tolerances over 1 and 100 revolutions, against the closed form."""
+    """The errors of the chapter's integration over 1 and 100 revolutions at several tolerances."""
 
     def read(answer: Answer) -> str:
         error, count, stopped = number(answer.number("error")), answer.number("evaluations"), answer.values["stopped"]
@@ -75,7 +75,7 @@ def rates_drift(material: Material) -> list[Observation]:
 
 
 def refusal(material: Material) -> list[Observation]:
-    """The reference's error message for a crank that is driven beyond its limit."""
+    """The reference's error message for a crank that is driven beyond its limit position."""
     scene = OverdrivenFourBar()
     return refusals({f"{scene.duration:.3g} s": lambda: scene.motion([scene.duration])})
 
@@ -85,18 +85,18 @@ FEW_ITERATIONS = tuple(
     for count in (1, 2, 5, 20)
 )
 
-# The crank's state is overwritten after each step; `mujoco.DRIVES` has the same with the loop as shipped.
+# The crank's state is overwritten after each step. The same drive with the loop as shipped is in `mujoco.DRIVES`.
 OVERWRITTEN_STIFF = replace(mujoco.TUNED, variant="tuned, overwritten crank", drive="overwrite")
 
 
 RECOMMENDED = "free_four_bar"
 
-# The nine poses of Fig. 18.66 are at the ends of eight equal intervals: the last pose is the first one again.
+# Fig. 18.66 has nine poses at the ends of eight equal intervals; the last pose equals the first.
 INTERVALS = 8
 SAMPLES_PER_INTERVAL = 8  # the engines' step is then about 1e-2 s
 DRAWN_OVER_TRUTH = {"pymunk default": ("first", "--"), "mujoco default": ("second", ":")}
 
-# The animation of README: these methods over the exact motion, with steps of a millisecond.
+# The readme's animation shows these methods and the exact motion, with steps of 1 ms.
 MOVING_PICTURE = "moving.svg"
 MOVING_EVERY = 10  # steps between samples
 MOVING_METHODS = {
@@ -114,7 +114,6 @@ POSED = {
 
 
 def figures(material: Material) -> dict[str, str]:
-    """The nine configurations; each engine as shipped is drawn over them where it differs visibly."""
     scene = DrivenFourBar()
     motions = material.motions(POSED.values())
     truth = scene.motion(np.arange(INTERVALS + 1) * scene.duration / INTERVALS)
@@ -129,7 +128,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def assemblies() -> str:
-    """Both assemblies of the sample's loop at its first crank angle, and the gap at C of each."""
+    """A Markdown table of both assemblies of the loop at the first crank angle, with the gap at C."""
     scene = DrivenFourBar()
     bars, theta = scene.four_bar, scene.start
     b = bars.crank * np.exp(1j * theta)
@@ -142,24 +141,21 @@ def assemblies() -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Numbers of the sentences: how far MuJoCo's regularisation yields, and the share of a gap that pymunk closes."""
+    """Numbers for the text: the compliance of MuJoCo's loops, and the fraction of a gap that pymunk closes."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
-    earlier_errors = [
-        e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", "free_four_bar", "tuned")
-    ]
+    wanted = ("3.6.0", "free_four_bar", "tuned")  # the last release without the loops' velocity term
+    errors = [entry.error for entry in released().entries if (entry.version, entry.scene, entry.variant) == wanted]
     return {
         "assemblies": assemblies(),
-        "soft_share": [1 / d - 1 for d in soft[:2]],  # with a closed gap, and with one of a millimetre or more
+        "soft_share": [1 / d - 1 for d in soft[:2]],  # without a gap, and with a gap of 1 mm or more
         "stiff_share": 1 / hard[0] - 1,
-        "before_term": earlier_errors[0]
-        if earlier_errors
-        else UNMEASURED,  # rad, of the last release without the loops' velocity term
+        "before_term": errors[0] if errors else UNMEASURED,  # rad
         "closed_in_a_millisecond": 1 - float(pymunk.DEFAULT.error_bias) ** 1e-3,
     }
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
-    """Methods between the usual variants are run in one scene alone: the gain of each setting is the same in all."""
+    """Whether a method is run in a scene. Methods that change single settings are run in one scene only."""
     return engine in VARIANTS or engine not in ENGINES or scene.name == RECOMMENDED
 
 

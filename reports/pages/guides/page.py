@@ -1,4 +1,4 @@
-"""Guides without scenes of their own: the glossary and the page on settings, with numbers from stored rows."""
+"""The glossary, and the page on settings with numbers from stored rows."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LOOP_METHODS: tuple[Engine, ...] = tuple(dict.fromkeys([*mujoco.METHODS, *pymunk
 
 
 def table(material: Material) -> str:
-    """Errors, order, plateau and cost of each method that has a row at a millisecond; empty if none has."""
+    """A Markdown table of the errors, order, plateau and cost of each method with a row at 1 ms; empty without rows."""
     look_up = lookups(material, (SETTINGS_LOOP,))
     body = []
     for engine in LOOP_METHODS:
@@ -35,7 +35,6 @@ def table(material: Material) -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The table, and the functions that look up single rows."""
     return {**lookups(material, (SETTINGS_LOOP,)), "table": table(material)}
 
 

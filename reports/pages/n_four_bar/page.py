@@ -1,4 +1,4 @@
-"""The page of the N-four-bar: a linkage whose one degree of freedom becomes N + 1 twice a turn."""
+"""The page of the N-four-bar. Twice in a turn, its one degree of freedom becomes N + 1."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from engines import mujoco
 from engines.lagrange import Lagrange
@@ -21,45 +23,40 @@ from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
 SHIPPED_RK4 = replace(mujoco.DEFAULT, variant="RK4 alone", integrator="RK4")
-
-
 SOFT_LOOPS = cells(NFourBar(), (mujoco.DEFAULT, SHIPPED_RK4), (1, 3, 10, 30))
-ONCE = NFourBar(duration=1.2, horizon=1.2)  # passes the first singular position and not the second
+ONCE = NFourBar(duration=1.2, horizon=1.2)  # it passes only the first singular position
 
 
 def forces_without_a_limit(material: Material) -> list[Observation]:
     """The largest reaction at instants that approach a singular position."""
-    scene = NFourBar()
-    singular = scene.singular_times(5.0)[0]
-    observations = []
-    for interval in (1e-1, 1e-2, 1e-3, 1e-4):
-        reaction = abs(scene.motion([singular - interval]).reaction).max()
-        observations.append(
-            Observation("the reference", f"{number(interval, 1)} s before", f"largest reaction {reaction:.3g} N")
-        )
-    return observations
+    intervals = np.array([1e-1, 1e-2, 1e-3, 1e-4])
+    reactions = np.abs(NFourBar().motion(NFourBar().singular_times(5.0)[0] - intervals).reaction).max(axis=1)
+    return [
+        Observation("the reference", f"{number(interval, 1)} s before", f"largest reaction {reaction:.3g} N")
+        for interval, reaction in zip(intervals, reactions, strict=True)
+    ]
 
 
 LINKAGES_IN_A_ROW = (NFourBar(), TenFourBars(), FortyFourBars())
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Stroboscopic pictures of reference motions: two and ten loops, and two through the singular position."""
     two, ten = NFourBar(), TenFourBars()
-    line = float(two.singular_times(5.0)[0])
+    singular = float(two.singular_times(5.0)[0])
     strips = (
         Strip(two, "Two loops", 7, end=0.9),
-        Strip(two, "Through the singular position", 7, start=line - 0.15, end=line + 0.15),
+        Strip(two, "Through the singular position", 7, start=singular - 0.15, end=singular + 0.15),
         Strip(ten, "Ten loops", 6, end=1.0),
     )
     return {"stroboscope": svg(stroboscope(strips), "N four-bars in motion")}
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Numbers of the sentences.
+    """Numbers for the text.
 
-    exact: period and singular instants [s] by scene. failed: the outcomes of a method without a best row. soft: errors
-    of soft loops; UNMEASURED unless all of their runs left the branch, as the sentence claims.
+    exact: period and singular instants [s] by scene
+    failed: a function; it tells whether all outcomes of a method are wrong motions
+    soft: number and range of the errors of SOFT_LOOPS; UNMEASURED unless all of their motions are wrong
     """
     look_up = lookups(material, LINKAGES_IN_A_ROW)
 

@@ -1,4 +1,4 @@
-"""The page of pendulums of 1 to 100 links, in reduced coordinates and with every joint a constraint."""
+"""The page of pendulums with 1 to 100 links."""
 
 from __future__ import annotations
 
@@ -26,15 +26,14 @@ from reports.write.unmeasured import UNMEASURED
 
 @dataclass(frozen=True)
 class NeighbourGrowth(Task):
-    """The divergence of neighbouring motions of a chain at these times [s]."""
+    """The growth of a small difference between two motions of a chain, at `times` [s]."""
 
     scene: LinkPendulum
     times: tuple[float, ...]
-    seconds: ClassVar[float] = 4.0  # measured with two links: four motions of 12 s
-    words: ClassVar[str] = "neighbouring starts of {0.scene.name}"
+    seconds: ClassVar[float] = 4.0  # measured with two links
+    words: ClassVar[str] = "growth of a difference in {0.scene.name}"
 
     def run(self) -> Values:
-        """`growth` (times,): the factor by which a small difference at the start has grown."""
         scene = self.scene
         start, rate = np.full(scene.links, scene.angle), np.full(scene.links, scene.rate)
         return {"growth": scene.chain.divergence(start, rate, np.array(self.times))}
@@ -45,7 +44,7 @@ DIVERGENCE = NeighbourGrowth(BEYOND, (1.0, LinkPendulum().horizon, 6.0, 9.0, BEY
 
 
 def divergence(material: Material) -> list[Observation]:
-    """The growth of a difference at the start, measured on neighbouring motions of the double pendulum."""
+    """The growth of a difference at t = 0 in the double pendulum."""
     method = "the reference, by neighbouring starts"
     answer = material.answers.get(DIVERGENCE)
     if answer is None or not answer.finished:
@@ -70,11 +69,11 @@ HEAVY_TIP_METHODS = (*MAIN_METHODS, sweeps(10), sweeps(1000), PENDULUM_SPARSE_NE
 
 
 def tip(ratio: float) -> LinkPendulum:
-    """Three links for one second; the last has `ratio` times the mass of the others."""
+    """A chain of three links for 1 s; the last link has `ratio` times the mass of the other links."""
     return LinkPendulum(links=3, tip=ratio, duration=1.0, horizon=1.0)
 
 
-# Extrapolated variants are run at the largest step alone: at smaller ones they take six seconds and fail as well.
+# Extrapolated variants are run at the largest step only, since they fail at smaller steps too.
 PHASE = cells(PointPendulum(), PUBLIC, (10, 50, 150)) + cells(
     PointPendulum(), (pymunk.EXTENDED, mujoco.EXTENDED), (10,)
 )
@@ -89,7 +88,7 @@ LARGE_STEPS = tuple(
 
 
 def beyond_the_horizon(material: Material) -> dict[str, Any]:
-    """`worst`: the largest angle error [rad] of the methods of higher order at the smaller step."""
+    """`worst`: the largest angle error [rad] of HIGHER_ORDER at the smaller step."""
     rows = material.of(cell for cell in BEYOND_HORIZON if cell.engine in HIGHER_ORDER and cell.every > 1)
     return {"worst": np.max([row.angle for row in rows]) if rows else UNMEASURED}
 
@@ -100,7 +99,7 @@ def fastest(scene: LinkPendulum) -> float:
 
 
 def opened_joints(material: Material) -> dict[str, Any]:
-    """`opened`: the largest gap of pymunk's joints, in link lengths; `fastest`: the chain's fastest mode [rad/s]."""
+    """`opened`: the largest gap in pymunk, in lengths of a link. `fastest`: the chain's highest frequency [rad/s]."""
     rows = material.of(cell for cell in LARGE_STEPS if cell.engine in (pymunk.DEFAULT, pymunk.TUNED))
     opened = np.max([row.gap for row in rows]) / HundredLinks().length if rows else UNMEASURED
     return {"opened": opened, "fastest": fastest(HundredLinks())}
@@ -108,8 +107,7 @@ def opened_joints(material: Material) -> dict[str, Any]:
 
 PERIOD = PointPendulum().pendulum.period  # s
 
-
-# MuJoCo with bodies that are free in the plane and every joint an equality, to show the effect of coordinates alone.
+# MuJoCo with free bodies, so that each joint is an equality constraint.
 FREE_COORDINATE_METHODS = (
     replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free"),
     PENDULUM_SPARSE_NEWTON,
@@ -118,7 +116,6 @@ FEATURED_VARIANTS = (*FEATURED, *(engine.variant for engine in FREE_COORDINATE_M
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Stroboscopic pictures of the reference motions."""
     single, two, ten, hundred = BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks()
     end = ((single.length / 2, 0.0),)
     strips = (
@@ -131,7 +128,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def answers() -> str:
-    """The answers to problems 18.5.1 and 18.5.2 for the errata's numbers, and their difference to a derivative."""
+    """A Markdown table of the answers to problems 18.5.1 and 18.5.2, and their differences to derivatives."""
     length, angles, rates, turning = errata.BAR, errata.PHI, errata.PHI_RATE, errata.PHI_ACCELERATION
     first = errata.velocities(length, angles, rates)
     second = errata.accelerations(length, angles, rates, turning)
@@ -147,7 +144,6 @@ def answers() -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The answers to the chapter's problems, and their numbers."""
     numbers = (errata.BAR, *errata.PHI, *errata.PHI_RATE, *errata.PHI_ACCELERATION)
     return {"answers": answers(), "numbers": numbers}
 
@@ -165,7 +161,7 @@ PAGE = scene_page(
         Failure("Two thousand seconds of a point pendulum", cells=PHASE, columns=("angle", "rate", "gap", "energy")),
         Failure(
             "A light chain with a heavy tip",
-            # pymunk extended is run at the largest step alone: the others take half a minute and four minutes.
+            # pymunk extended is run at the largest step only, because it takes minutes at the smallest one.
             cells=cells(tip(1e4), [engine for engine in HEAVY_TIP_METHODS if engine != pymunk.EXTENDED], (1, 10, 100))
             + cells(tip(1e4), (pymunk.EXTENDED,), (1,)),
         ),

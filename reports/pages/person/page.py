@@ -1,4 +1,4 @@
-"""The person's page: swaying on one foot, falling from one foot and from two."""
+"""The page of a person who sways on one foot, and who falls from one foot or from two feet."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LONGER_SWAY = SwayingOnOneFoot(duration=0.6, horizon=0.6)
 
 
 def growth(material: Material) -> list[Observation]:
-    """The modes of small motions about standing upright on one foot."""
+    """The modes of small motions about the upright pose on one foot."""
     squares, _ = modes_upright(SwayingOnOneFoot())
     observations = []
     for square in squares:
@@ -34,7 +34,6 @@ IMPOSSIBLE_STANCES: dict[str, float] = {"stance": 2.0, "hip_y": 0.95, "knees": 0
 
 
 def impossible(material: Material) -> list[Observation]:
-    """The reference's error messages for impossible stances."""
     return refusals(
         {f"{name} = {n!r}": partial(replace, TwoFeet(), **{name: n}) for name, n in IMPOSSIBLE_STANCES.items()}
     )
@@ -44,13 +43,12 @@ PERSONS = (SwayingOnOneFoot(), OneFoot(), TwoFeet())
 
 
 def ends(person: OneFoot) -> dict[str, Points]:
-    """The shoulder and the ankle of the lifted foot, which have no joint, in their bodies' frames [m]."""
+    """Body -> its end without a joint, in the body's frame [m]: the shoulder, and the ankle of the lifted foot."""
     ahead = person.lengths - person._behind
     return {"trunk": ((float(ahead[2]), 0.0),), "right shank": ((float(ahead[4]), 0.0),)}
 
 
 def figures(material: Material) -> dict[str, str]:
-    """The reference motions, pose beside pose, with the floor."""
     sway, one_foot, two_feet = SwayingOnOneFoot(duration=0.5), OneFoot(), TwoFeet()
     strips = (
         Strip(sway, "Swaying on one foot until the knee buckles", 6, ends=ends(sway), spread=0.7, floor=True),
@@ -61,13 +59,13 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Degrees of freedom by rank, and the time in which the knee's mode grows by a factor e [s]."""
+    """`freedoms`: degrees of freedom by scene. `knee`: the time in which the knee's mode grows by the factor e [s]."""
     freedoms = {scene.name: scene.mechanism().degrees_of_freedom()[0] for scene in PERSONS}
     knee = float(modes_upright(SwayingOnOneFoot())[0][-1]) ** -0.5
     return {"freedoms": freedoms, "knee": knee}
 
 
-# An error of fifth order remains in all three scenes, as observed.
+# The order that is observed in these scenes: after extrapolation an error of fifth order remains.
 OBSERVED_ORDERS = {
     (scene, "pymunk extended"): ConvergenceOrder(5, reaction=4, differences=8, amplified=17.0)
     for scene in ("person_swaying", "person_one_foot", "person_two_feet")

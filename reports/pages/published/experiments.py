@@ -24,7 +24,7 @@ from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory, energy, joint_gap
 from reports.model.tasks import Task, Values
-from reports.pages.common import OfMethod
+from reports.pages.common import MethodTask
 
 Array = NDArray[np.float64]
 ACROBOT_GRAVITY, HORIZON = 9.8, 100.0  # m/s^2, s
@@ -113,7 +113,7 @@ class DirectRK4(Task):
 
 
 @dataclass(frozen=True)
-class Acrobot(OfMethod):
+class Acrobot(MethodTask):
     """The drift of Acrobot's energy by one method."""
 
     description: ClassVar[str] = "Acrobot's energy"
@@ -161,7 +161,7 @@ def freudenstein(crank: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Newton(OfMethod):
+class Newton(MethodTask):
     """One method in the three problems at NEWTON_STEPS."""
 
     description: ClassVar[str] = "Newton's bounds"

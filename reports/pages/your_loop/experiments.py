@@ -19,7 +19,7 @@ from reference.scene import Scene
 from reports.check.judging import IdealMotion, reference_motion
 from reports.check.judging import measure_errors as errors_of_run
 from reports.model.tasks import Task, Values
-from reports.pages.common import OfMethod
+from reports.pages.common import MethodTask
 from reports.pages.your_loop.linkages import LINKAGES
 
 PAGE_STEP = 1e-3  # s
@@ -73,7 +73,7 @@ def _ideal(mechanism: Mechanism, samples: int, duration: float) -> IdealMotion:
 
 
 @dataclass(frozen=True)
-class Fresh(OfMethod):
+class Fresh(MethodTask):
     """The errors of one method in COUNT fresh mechanisms of a scene's kind, against the exact solver."""
 
     scene: Scene
