@@ -1,11 +1,11 @@
-"""Two published benchmarks for any method: the free motion of Gymnasium's Acrobot, and the bounds of the engine Newton.
+"""Two published benchmarks: the energy of Gymnasium's Acrobot, and the bounds in tests of the engine Newton.
 
-Acrobot: the drift of its energy, beside the numbers that a user published in issue 1714 of
-github.com/Farama-Foundation/Gymnasium. Data of the links: `gymnasium/envs/classic_control/acrobot.py`. The issue states
-no start, and the drift depends on it by a factor of hundreds. So one of its three numbers is used to find a start with
-both links in line, at rest.
+Acrobot: issue 1714 of github.com/Farama-Foundation/Gymnasium has three numbers for the drift of the energy. The links
+are those of `gymnasium/envs/classic_control/acrobot.py`. The issue does not state the initial state, which changes the
+drift by a factor of hundreds. Both links are assumed to be in line and at rest, and their angle is computed from the
+first of the three numbers.
 
-Newton: three small problems with their bounds, tests 2, 3 and 10 of `newton/tests/test_physics_validation.py` of
+Newton: the problems and bounds are those of tests 2, 3 and 10 of `newton/tests/test_physics_validation.py` in
 github.com/newton-physics/newton.
 """
 
@@ -28,13 +28,13 @@ from reports.pages.common import MethodTask
 
 Array = NDArray[np.float64]
 ACROBOT_GRAVITY, HORIZON = 9.8, 100.0  # m/s^2, s
-ACROBOT_STEPS = (0.2, 0.05, 0.01)  # s; the first is Gymnasium's own
-PUBLISHED = (3.554e-3, 4.189e-6, 1.519e-8)  # of the first energy, at ACROBOT_STEPS
-ACROBOT_START = 0.30488863  # rad: chosen so that the drift of RK4 at ACROBOT_STEPS[0] is PUBLISHED[0]; a test checks it
+ACROBOT_STEPS = (0.2, 0.05, 0.01)  # s; Gymnasium's step is 0.2 s
+PUBLISHED = (3.554e-3, 4.189e-6, 1.519e-8)  # relative drift of the energy at ACROBOT_STEPS
+ACROBOT_START = 0.30488863  # rad; with this angle the drift of RK4 at ACROBOT_STEPS[0] is PUBLISHED[0]
 
 
 def acrobot(angle: float = ACROBOT_START) -> Mechanism:
-    """Two links of 1 m, 1 kg and 1 kg m^2, in line at an angle [rad] from hanging, at rest."""
+    """Two links of 1 m, 1 kg and 1 kg m^2, in line and at rest, at an angle [rad] from the hanging pose."""
     along = np.array([math.sin(angle), -math.cos(angle)])
     bodies = tuple(
         Body(name, 1.0, 1.0, (*(distance * along).tolist(), angle), (0.0, 0.0, 0.0))
@@ -48,7 +48,7 @@ def acrobot(angle: float = ACROBOT_START) -> Mechanism:
 
 
 def _rates(state: Array) -> Array:
-    """The time derivative of (first angle, second angle relative to it, their rates), by Lagrange's equations."""
+    """The time derivative of (first angle, second angle relative to the first, both rates)."""
     first, second, rate, relative = state
     coupling = 0.5 * math.cos(second)
     inertia = np.array([[3.5 + 2 * coupling, 1.25 + coupling], [1.25 + coupling, 1.25]])
@@ -70,7 +70,7 @@ def _energy(state: Array) -> float:
     return kinetic - ACROBOT_GRAVITY * (1.5 * math.cos(first) + 0.5 * math.cos(first + second))
 
 
-@lru_cache(maxsize=len(ACROBOT_STEPS))  # the same states are evaluated in 64 and in 32 bits
+@lru_cache(maxsize=len(ACROBOT_STEPS))
 def _path(angle: float, step: float) -> Array:
     """Angles and rates (steps + 1, 4) by RK4."""
     state = np.array([angle, 0.0, 0.0, 0.0])
@@ -85,7 +85,7 @@ def _path(angle: float, step: float) -> Array:
 
 
 def rk4_drift(angle: float, step: float, rounded: bool = False) -> float:
-    """The relative drift of the energy by RK4 in the two angles; `rounded`: with states in 32 bits, as in Gymnasium."""
+    """The relative drift of the energy by RK4. With `rounded`, energies are computed from states in 32 bits."""
     states = _path(angle, step)
     if rounded:
         angles = [
@@ -98,13 +98,13 @@ def rk4_drift(angle: float, step: float, rounded: bool = False) -> float:
 
 @dataclass(frozen=True)
 class DirectRK4(Task):
-    """The drift of Acrobot's energy by RK4 in the two angles, without an engine."""
+    """The drift of Acrobot's energy by RK4 in the two angles."""
 
     seconds: ClassVar[float] = 1.0
     words: ClassVar[str] = "Acrobot's energy: RK4"
 
     def run(self) -> Values:
-        """`drift` (ACROBOT_STEPS,), and `rounded`: the drift with states in 32 bits."""
+        """`drift` and `rounded` (steps,): see `rk4_drift`."""
         names = {"drift": False, "rounded": True}
         return {
             name: np.array([rk4_drift(ACROBOT_START, step, rounded) for step in ACROBOT_STEPS])
@@ -114,7 +114,7 @@ class DirectRK4(Task):
 
 @dataclass(frozen=True)
 class Acrobot(MethodTask):
-    """The drift of Acrobot's energy by one method."""
+    """The drift of Acrobot's energy in an engine."""
 
     description: ClassVar[str] = "Acrobot's energy"
 
@@ -123,7 +123,7 @@ class Acrobot(MethodTask):
         return sum(HORIZON / step for step in ACROBOT_STEPS) * 2 * self.method.step_cost(acrobot())
 
     def run(self) -> Values:
-        """`drift` (ACROBOT_STEPS,): the largest change of the energy, relative to the energy at the start."""
+        """`drift` (steps,): the largest change of the energy, relative to the initial energy."""
         mechanism, drift = acrobot(), []
         for step in ACROBOT_STEPS:
             total = energy(mechanism, self.method.build(mechanism, step)(round(HORIZON / 0.2), round(0.2 / step)))
@@ -132,37 +132,38 @@ class Acrobot(MethodTask):
 
 
 NEWTON_GRAVITY = 10.0  # m/s^2
-ROD_LENGTH, BALL_RADIUS = 1.0, 0.01  # m: a ball on a rod without mass
-SMALL_SWING, LARGE_SWING = 0.05, 1.0  # rad: angles of release
+ROD_LENGTH, BALL_RADIUS = 1.0, 0.01  # m; the rod has no mass
+SMALL_SWING, LARGE_SWING = 0.05, 1.0  # rad; initial angles
 PERIODS = 3.5  # of the small swing
 LARGE_SWING_DURATION = 2.0  # s
-NEWTON_STEPS = (1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)  # s; Newton's own are 1e-3 s, and 2e-4 s for the four-bar
-SAMPLE_INTERVAL = 1e-2  # s: a multiple of all steps
-# Rocker's angle [degrees], gap [m], mean error of the small swing over its amplitude, relative drift of the energy.
+NEWTON_STEPS = (1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)  # s; Newton's tests have 1e-3 s, and 2e-4 s for the four-bar
+SAMPLE_INTERVAL = 1e-2  # s
+# Error of the rocker's angle [degrees], gap [m], mean error of the small swing relative to its amplitude, relative
+# drift of the energy.
 NEWTON_BOUNDS = {"angle": 0.1, "gap": 1e-3, "period": 1e-2, "energy": 5e-3}
-# A crank-rocker of bars with equal sections, one turn a second, no gravity.
+# A crank-rocker of bars with equal cross-sections; the crank makes one turn per second, and there is no gravity.
 CRANK_ROCKER = {"crank": 0.2, "coupler": 0.5, "rocker": 0.4, "ground": (0.5, 0.0), "density": 1.6}
 NEWTON_FOUR_BAR = DrivenFourBar(**CRANK_ROCKER, start=0.0, rate=2 * math.pi, gravity=(0.0, 0.0), revolutions=2.0)
 
 
 def pendulum(angle: float) -> Mechanism:
-    """The pendulum at rest, at this angle from hanging [rad]."""
+    """A ball on a rod, at rest at this angle [rad] from the hanging pose."""
     pose = (ROD_LENGTH * math.sin(angle), -ROD_LENGTH * math.cos(angle), angle)
     ball = Body("ball", 1.0, 0.4 * BALL_RADIUS**2, pose, (0.0, 0.0, 0.0))
     return Mechanism((ball,), (Pin("pivot", None, "ball", (0.0, 0.0), (0.0, ROD_LENGTH)),), (0.0, -NEWTON_GRAVITY))
 
 
 def freudenstein(crank: Array) -> Array:
-    """The rocker's angle [rad] at angles of the crank [rad], by Freudenstein's equation, not the scene's formula."""
+    """The rocker's angles [rad] at angles of the crank [rad] by Freudenstein's equation."""
     a, b, c, d = NEWTON_FOUR_BAR.crank, NEWTON_FOUR_BAR.coupler, NEWTON_FOUR_BAR.rocker, NEWTON_FOUR_BAR.ground[0]
-    size = d / a - np.cos(crank), -np.sin(crank)
+    x, y = d / a - np.cos(crank), -np.sin(crank)
     right = d / c * np.cos(crank) - (a * a - b * b + c * c + d * d) / (2 * a * c)
-    return np.arctan2(size[1], size[0]) + np.arccos(np.clip(right / np.hypot(*size), -1, 1))
+    return np.arctan2(y, x) + np.arccos(np.clip(right / np.hypot(x, y), -1, 1))
 
 
 @dataclass(frozen=True)
 class Newton(MethodTask):
-    """One method in the three problems at NEWTON_STEPS."""
+    """The measures of Newton's tests for an engine."""
 
     description: ClassVar[str] = "Newton's bounds"
 
@@ -172,7 +173,7 @@ class Newton(MethodTask):
         return sum(total / step * self.method.step_cost(NEWTON_FOUR_BAR.mechanism()) for step in NEWTON_STEPS)
 
     def run(self) -> Values:
-        """For each name in NEWTON_BOUNDS the measure (NEWTON_STEPS,); infinite for a run that diverged."""
+        """A measure (steps,) for each name in NEWTON_BOUNDS; infinite for a run that diverged."""
         measured = [self._measures(step) for step in NEWTON_STEPS]
         return {name: np.array([values[name] for values in measured]) for name in NEWTON_BOUNDS}
 

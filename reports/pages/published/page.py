@@ -1,7 +1,7 @@
-"""The page of published problems: Andrews' mechanism, and the cost of three benchmarks for a tolerance.
+"""The page of published problems: Andrews' mechanism, and three benchmarks.
 
-Published numbers are copied digit by digit. Source for Andrews' mechanism: F. Mazzia, C. Magherini, Test set for
-initial value problem solvers, release 2.4, II-17.
+The published numbers are copied. Those of Andrews' mechanism are from F. Mazzia, C. Magherini, Test set for initial
+value problem solvers, release 2.4, II-17.
 """
 
 from __future__ import annotations
@@ -40,50 +40,53 @@ from reports.plots.theme import svg
 from reports.write.rows import Rows
 from reports.write.tables import milliseconds
 
-# The coordinates of the test set: angles of bodies, or differences of two.
+# The coordinates of the test set are angles of bodies and differences of angles.
 ANGLE_NAMES = ("K1", "K2 - K1", "K3", "K4 - K5", "K5", "K6 - K7", "K7")
 END_TIME = 0.03  # s
 END_ANGLES = (15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948)
-END_ANGLES += (0.5244099658805304, 0.5347301163226948, 1.048080741042263)  # rad, at that instant
-START_ACCELERATIONS = (14222.4439199541138705911625887, -10666.8329399655854029433719415)  # rad/s^2, at the start
-START_MULTIPLIERS = (98.5668703962410896057654982170, -6.12268834425566265503114393122)  # N, at the start
+END_ANGLES += (0.5244099658805304, 0.5347301163226948, 1.048080741042263)  # rad, at END_TIME
+START_ACCELERATIONS = (14222.4439199541138705911625887, -10666.8329399655854029433719415)  # rad/s^2, at t = 0
+START_MULTIPLIERS = (98.5668703962410896057654982170, -6.12268834425566265503114393122)  # N, at t = 0
 
 
 def relative(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The test set's coordinates (..., 7) from the bodies' angles (..., 7) [rad], or from their derivatives."""
+    """The test set's coordinates (..., 7), or their derivatives, from the bodies' angles or their derivatives."""
     k1, k2, k3, k4, k5, k6, k7 = np.moveaxis(angles, -1, 0)
     return np.stack([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7], axis=-1)
 
 
 def compared(scene: Andrews) -> list[dict[str, Any]]:
-    """Angles at the end, and accelerations and multipliers at the start that are not zero, with the published numbers.
+    """Computed and published numbers: angles at END_TIME, and nonzero accelerations and multipliers at t = 0.
 
-    The test set has M q'' = f - G^T lambda, and its rows are the position of the rod's end minus that of body 3. In our
-    mechanism the rod is the second body of that joint as well, and M a = f + J^T reaction; so a multiplier is minus the
-    force on the rod.
+    A multiplier of the test set is minus our reaction. The test set has M q'' = f - G^T lambda, our mechanism has
+    M a = f + J^T reaction, and both define the row of the joint P with the same sign.
     """
     motion, mechanism = scene.motion([0.0, END_TIME]), scene.mechanism()
     free = mechanism.unconstrained(motion.pose[0], motion.twist[0])
     pushed = mechanism.rows(motion.pose[0]).T @ motion.reaction[0]
-    first = relative((free + pushed.reshape(free.shape) / mechanism.inertias)[:, 2])
+    accelerations = relative((free + pushed.reshape(free.shape) / mechanism.inertias)[:, 2])
     names = mechanism.row_names
     multipliers = [-motion.reaction[0, names.index(f"P3 {axis}")] for axis in "xy"]
     blocks = (
         (f"angle of {{}} at {END_TIME:g} s [rad]", ANGLE_NAMES, END_ANGLES, relative(motion.pose[1, :, 2])),
-        ("acceleration of {} at 0 [rad/s²]", ANGLE_NAMES[:2], START_ACCELERATIONS, first[:2]),
+        ("acceleration of {} at 0 [rad/s²]", ANGLE_NAMES[:2], START_ACCELERATIONS, accelerations[:2]),
         ("multiplier of P, {}, at 0 [N]", "xy", START_MULTIPLIERS, multipliers),
     )
     return [
-        {"what": what.format(name), "published": theirs, "found": float(ours), "difference": float(ours) - theirs}
-        for what, *columns in blocks
-        for name, theirs, ours in zip(*columns, strict=True)
+        {
+            "what": label.format(name),
+            "published": published,
+            "found": float(ours),
+            "difference": float(ours) - published,
+        }
+        for label, *columns in blocks
+        for name, published, ours in zip(*columns, strict=True)
     ]
 
 
 ANDREWS = Andrews()
-# The low and the high precision of problems A01 and A02 of the IFToMM library (A01_specification.xml,
-# A02_specification.xml). The library means relative errors of a point's coordinates; here the largest angle error over
-# the whole problem [rad] is compared with these numbers.
+# The low and the high precision in A01_specification.xml and A02_specification.xml of the IFToMM library. There they
+# bound relative errors of a point's coordinates; here they bound the largest angle error of the whole problem [rad].
 IFTOMM_PRECISIONS = (1e-1, 1e-3)
 IFTOMM_CELLS = (*PHASE, *sweep_cells((NFourBar(),), VARIANTS, FULL))
 DIRECT_RK4 = DirectRK4()
@@ -92,7 +95,7 @@ NEWTONS = tuple(Newton(engine) for engine in VARIANTS)
 
 
 def costs(rows: Rows, scene: Scene, engine: Engine) -> list[str]:
-    """CPU time of the whole problem [ms] at an engine's cheapest step, for each of IFTOMM_PRECISIONS."""
+    """The least CPU time of the whole problem [ms] for each of IFTOMM_PRECISIONS."""
     of_method = rows.of(scene.name, method_name(engine), "")
     if not of_method:
         return ["not run"] * len(IFTOMM_PRECISIONS)
@@ -102,7 +105,7 @@ def costs(rows: Rows, scene: Scene, engine: Engine) -> list[str]:
 
 
 def largest_step(answer: Answer, name: str) -> float | None:
-    """The largest of Newton's steps [s] at which, and below which, a bound is met; None without one."""
+    """The largest of NEWTON_STEPS [s] such that it and all smaller steps meet a bound; None if there is none."""
     largest = None
     for step, measure in sorted(zip(NEWTON_STEPS, answer.array(name), strict=True)):
         if not measure < NEWTON_BOUNDS[name]:
@@ -112,7 +115,7 @@ def largest_step(answer: Answer, name: str) -> float | None:
 
 
 def bounds(material: Material) -> list[dict[str, Any]]:
-    """For each method that was run: the largest step that meets each of Newton's bounds."""
+    """The `largest_step` for each of NEWTON_BOUNDS, by method."""
     return [
         {"method": method_name(task.method), "steps": {name: largest_step(answer, name) for name in NEWTON_BOUNDS}}
         for task in NEWTONS
@@ -121,8 +124,8 @@ def bounds(material: Material) -> list[dict[str, Any]]:
 
 
 def drifts(material: Material) -> list[dict[str, Any]]:
-    """The drift of Acrobot's energy at its three steps: RK4 without an engine, RK4 in 32 bits, and each method."""
-    named = [("RK4 in the two angles", DIRECT_RK4, "drift"), ("the same, seen in 32 bits", DIRECT_RK4, "rounded")]
+    """The drift of Acrobot's energy at ACROBOT_STEPS: by RK4, by RK4 with states in 32 bits, and in each engine."""
+    named = [("RK4 in the two angles", DIRECT_RK4, "drift"), ("the same states in 32 bits", DIRECT_RK4, "rounded")]
     named += [(method_name(engine), Acrobot(engine), "drift") for engine in VARIANTS]
     return [
         {"method": title, "drift": answer.array(name)}
@@ -132,13 +135,11 @@ def drifts(material: Material) -> list[dict[str, Any]]:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Stroboscopic pictures: the crank's first half turn, and a whole turn when it is fast."""
     strips = Strip(ANDREWS, "From rest", 7, end=0.012), Strip(ANDREWS, "Fast", 7, start=0.04, end=0.046)
     return {"stroboscope": svg(stroboscope(strips), "Andrews' squeezing mechanism in motion")}
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Published numbers beside ours, and the tables of the three benchmarks."""
     rows = Rows([*material.sweep((ANDREWS,)), *material.of(IFTOMM_CELLS)])
     problems = (PointPendulum(), NFourBar(), ANDREWS)
     by_method = [

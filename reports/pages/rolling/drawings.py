@@ -1,4 +1,4 @@
-"""Drawings of rolling bodies: roulettes, the contact and its directions, elliptic gears, acceleration, friction."""
+"""Drawings of rolling bodies: roulettes, contacts, elliptic gears, acceleration, friction."""
 
 from __future__ import annotations
 
@@ -25,25 +25,30 @@ POINTS_PER_CURVE = 241
 
 @dataclass(frozen=True)
 class Roulette:
-    """One panel: a body at some rotations [rad], and the path of one of its points [m]."""
+    """A rolling body and the path of one of its points.
+
+    point: in the body's frame [m]
+    path: rotations [rad] of the body at the ends of the path
+    shown: rotations [rad] at which the body is drawn
+    ground, body: arcs [m] between which the curves are drawn; None for the whole body
+    """
 
     title: str
     rolling: Rolling
     point: Vector
     path: tuple[float, float]
     shown: tuple[float, ...]
-    ground: tuple[float, float]  # arcs [m] of the ground that are drawn
-    body: tuple[float, float] | None = None  # arcs [m] of the body that are drawn; all of it if None
+    ground: tuple[float, float]
+    body: tuple[float, float] | None = None
 
 
 def roulettes() -> tuple[Roulette, ...]:
-    """Six roulettes with names in the chapter or in the classics."""
     turn, focus, ring = 2 * math.pi, (0.4, 0.0), Ring(0.6)
     disc, ellipse = Circle(0.4), Ellipse(0.5, 0.3)
     on_line = ((-turn, 0.0), (-turn, -4.2, -2.1, 0.0), (-2.9, 0.4))
     twins = Rolling.at_arcs(ellipse, Placed(ellipse, turn=math.pi / 2), 0.0, 0.0)
     inside = Rolling.at_arcs(Circle(0.45), ring)
-    # The material of a parabola is above it; turned over, it rolls on the line along its outside.
+    # The parabola's material is above the curve, so its convex side rolls on the line.
     parabola = Rolling.at_arcs(Parabola(0.3), Line())
     low, high, angles_shown = parabola.theta - 1.1, parabola.theta + 1.1, parabola.theta + np.array([-0.8, 0.0, 0.8])
     square, eighth = Rolling.at_arcs(Side(1.0), Placed(Catenary(0.5), turn=math.pi)), math.pi / 4
@@ -64,7 +69,7 @@ def roulettes() -> tuple[Roulette, ...]:
 
 
 def outline(curve: Curve, arcs: tuple[float, float] | None = None) -> Array:
-    """Points (n, 2) [m] along a boundary; the boundary of a square is closed."""
+    """Points (n, 2) [m] of a boundary between two arcs, or of the whole boundary; a Side is then a whole square."""
     if isinstance(curve, Side) and arcs is None:
         half = curve.side / 2
         return half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]], dtype=float)
@@ -73,12 +78,11 @@ def outline(curve: Curve, arcs: tuple[float, float] | None = None) -> Array:
 
 
 def placed(points: Array, pose: Array) -> Array:
-    """The world points (n, 2) of a body's points (n, 2) [m] at one pose (3,)."""
+    """Points (n, 2) [m] of a body at a pose (3,), in the frame of the ground."""
     return rotated(np.asarray(pose[2]), points) + pose[:2]
 
 
 def draw_roulettes(chosen: Sequence[Roulette], columns: int = 2) -> Figure:
-    """A panel for each roulette."""
     rows = -(-len(chosen) // columns)
     with drawing(2.75 * rows) as figure:
         for panel, roulette in zip(figure.subplots(rows, columns, squeeze=False).ravel(), chosen, strict=False):
@@ -98,7 +102,7 @@ def draw_roulettes(chosen: Sequence[Roulette], columns: int = 2) -> Figure:
 
 
 def draw_contact() -> Figure:
-    """A body on a hill, on flat ground and in a hole, with contact C, e_t, e_n and circle of curvature."""
+    """An ellipse on a hill, on flat ground and in a hole, with C, e_t, e_n and the circle of curvature."""
     body = Ellipse(0.5, 0.3)
     hill, hole = Placed(Circle(0.8), turn=math.pi / 2), Placed(Ring(1.1), turn=-math.pi / 2)
     grounds: tuple[tuple[str, Curve], ...] = (("on a hill", hill), ("on flat ground", Line()), ("in a hole", hole))
@@ -121,7 +125,7 @@ def draw_contact() -> Figure:
                 tip = point + 0.45 * vector
                 arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.8}
                 panel.annotate("", tip, point, arrowprops=arrow, zorder=5)
-                # Beside the arrow's tip: above it, but below it in a hole, whose ground rises towards the tip.
+                # The label of e_t is above the arrow; in a hole it is below, since the ground rises there.
                 above = (0.09 if a >= 0 else -0.09) * normal if vector is tangent else 0.0
                 panel.annotate(name, point + 0.53 * vector + above, color=colour, ha="center", va="center", fontsize=11)
             panel.plot(*point, "o", color=LIGHT.ink, markersize=4, zorder=6)
@@ -138,7 +142,6 @@ def draw_contact() -> Figure:
 
 
 def draw_gears(scene: EllipticGears) -> Figure:
-    """The gears at four instants, and their rates over time."""
     turn = 2 * math.pi / scene.turning_rate
     times = (0.15 + np.arange(4)) * turn / 4
     with drawing(4.6) as figure:
@@ -172,11 +175,11 @@ def draw_gears(scene: EllipticGears) -> Figure:
     return figure
 
 
-COEFFICIENTS = (0.2, 0.5, 1.0)  # of friction, in the diagram
+FRICTION_COEFFICIENTS = (0.2, 0.5, 1.0)
 
 
 def draw_acceleration() -> Figure:
-    """The rolling term and the term of a body pinned at C, over a turn of an ellipse and over the fit of the curves."""
+    """The rolling term of the acceleration and that of a body pinned at C: of an ellipse that turns, and of discs."""
     with drawing(3.6) as figure:
         left_panel, right = figure.subplots(1, 2)
         rolling = Rolling.at_angle(Ellipse(0.5, 0.3), Line())
@@ -200,7 +203,7 @@ def draw_acceleration() -> Figure:
         right.plot(fit, 1 / fit, color=LIGHT.first, linewidth=2)
         right.axhline(1.0, color=LIGHT.second, linewidth=2)
         note(right, "as if pinned at C", (1.3e-2, 1.0), (0, -12), LIGHT.second)
-        note(right, "what rolling adds", (2e-3, 500), (12, 2), LIGHT.first)
+        note(right, "rolling term", (2e-3, 500), (12, 2), LIGHT.first)
         for ratio, label, height in ((1.0, "flat", 0.025), (10.0, "sharp", 4.0), (0.01, "hole 1 %\nlarger", 0.025)):
             right.axvline(ratio, color=LIGHT.quiet, linewidth=0.8, linestyle=":")
             note(right, label, (ratio, height), (3, 0), LIGHT.quiet, va="bottom")
@@ -213,15 +216,15 @@ def draw_acceleration() -> Figure:
 
 
 def draw_friction(scenes: Sequence[RollingScene]) -> Figure:
-    """|T|/N over time, three coefficients of friction, and the instants at which a real contact slips or hops."""
+    """|T|/N over time, and the instants at which a contact with FRICTION_COEFFICIENTS slips or hops."""
     with drawing(3.6) as figure:
         for index, (panel, scene) in enumerate(zip(figure.subplots(1, len(scenes), sharey=True), scenes, strict=True)):
             law, end = scene.motion_law, scene.hop or scene.duration
             t = np.linspace(0, end * (1 - 1e-9), 800)
             panel.plot(t, law.required_friction(t), color=LIGHT.ink, linewidth=1.8)
-            for friction in COEFFICIENTS:
+            for friction in FRICTION_COEFFICIENTS:
                 panel.axhline(friction, color=LIGHT.second, linewidth=1.0, linestyle="--")
-                # The label is beside the panel, because within it the curve may cross the line anywhere.
+                # The label is beside the panel, because within the panel it may cover the curve.
                 beside = {"xycoords": ("axes fraction", "data"), "va": "center", "annotation_clip": False}
                 note(panel, f"$\\mu$ = {friction:g}", (1.0, friction), (3, 0), LIGHT.second, fontsize=8, **beside)
                 if (slip := law.slip(friction, scene.duration)) is not None:

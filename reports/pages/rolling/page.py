@@ -1,4 +1,4 @@
-"""The page of rolling bodies that are not round, by contact and by constraint, and of two elliptic gears."""
+"""The page of rolling bodies that are not round, and of two elliptic gears."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ ROLL_CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTEND
 
 
 def hill_cells(engines: Iterable[Engine]) -> tuple[Cell, ...]:
-    """Whole motions on the hill, also after the end of the comparison."""
+    """Motions on the hill, which continue after the last comparable instant."""
     return tuple(Cell(RollingOnCircle(), engine, every) for engine in engines for every in (10, 100))
 
 
@@ -52,7 +52,7 @@ CHATTERING = hill_cells((*PUBLIC, *STIFF_CONTACTS))
 
 
 def position_errors(cell: Cell, run: Trajectory) -> tuple[float, float]:
-    """The largest position error [m] of the only body while the motion can be compared, and the error at the end."""
+    """(largest position error [m] while the motion is comparable, position error [m] at the end)."""
     truth = cell.scene.motion(run.t)
     error = np.linalg.norm((run.pose - truth.pose)[:, 0, :2], axis=-1)
     comparable = run.t <= cell.scene.comparable_until * (1 + 1e-12)
@@ -71,8 +71,9 @@ def beyond_friction(material: Material) -> list[Observation]:
 
 
 def after_friction(material: Material) -> dict[str, Any]:
-    """`least`: the smallest ratio of a contact's error at the end to its largest error while rolling is possible;
-    `slips`, `hops`: the instants at which a real contact does so [s].
+    """`least`: the smallest ratio of a contact's error at the end to its largest comparable error.
+
+    `slips`, `hops`: the instants at which a real contact slips and hops [s].
     """
     scene = RollingOnCircle()
     contacts = [cell for cell in BEYOND_FRICTION if cell.engine in PUBLIC]
@@ -82,8 +83,7 @@ def after_friction(material: Material) -> dict[str, Any]:
 
 
 def absent_contact(cell: Cell, run: Trajectory) -> float:
-    """The share of samples before the slip at which the contact has no normal force, although it must have one."""
-    # The first sample is left out: no step precedes it.
+    """The share of samples before the slip at which the normal force is missing. The sample at t = 0 is left out."""
     rolling = (run.t <= cell.scene.comparable_until) & (run.t > 0)
     mechanism = cell.scene.mechanism()
     weight = mechanism.bodies[0].mass * float(np.hypot(*mechanism.gravity))
@@ -91,14 +91,13 @@ def absent_contact(cell: Cell, run: Trajectory) -> float:
 
 
 def chatter(material: Material) -> list[Observation]:
-    """The share of samples without a normal force on the hill."""
     return observe_each(
         material, CHATTERING, lambda cell, run: f"absent in {100 * absent_contact(cell, run):.0f} % of samples"
     )
 
 
 def absence(material: Material) -> dict[str, Any]:
-    """`absent`: the smallest share of samples without a normal force among all runs on the hill."""
+    """`absent`: the smallest `absent_contact` of all runs of CHATTERING."""
     shares = [absent_contact(cell, run) for cell, run in material.motions(CHATTERING).items()]
     return {"absent": min(shares, default=UNMEASURED)}
 
@@ -107,13 +106,12 @@ TOO_LARGE = tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(), PUB
 
 
 def least_opening(material: Material) -> dict[str, Any]:
-    """`least`: the smallest gap of a contact [m] at steps far too large."""
+    """`least`: the smallest gap [m] in runs of TOO_LARGE."""
     rows = material.of(TOO_LARGE)
     return {"least": np.min([row.gap for row in rows]) if rows else UNMEASURED}
 
 
 def refused(scene: RollingScene, setting: str) -> Callable[[Material], list[Observation]]:
-    """The reference's error message for an impossible motion."""
     refusal = cache(lambda: refusals({setting: lambda: scene.motion([scene.duration])}))
     return lambda material: refusal()
 
@@ -127,18 +125,18 @@ ROLLING_SCENES = (
     RollingOnCircle(),
     EllipticGears(),
 )
-# Exact multipliers with Euler are left out: they cost as much as with Runge-Kutta, and show nothing else.
+# Exact multipliers with Euler steps are left out, because they cost as much as those with Runge-Kutta steps.
 COMPARED_ENGINES = tuple(engine for engine in VARIANTS if engine.variant != "euler projection")
 ROLL_CONSTRUCTIONS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, *mujoco_methods.ROLLS)
 
-HILL_SCENE = RollingOnCircle()  # one object, because it computes the end of its comparison once
+HILL_SCENE = RollingOnCircle()  # one object, because it caches its last comparable instant
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
     """Whether a method is run in a scene.
 
-    Exact multipliers are left out where finding each contact takes nested searches; tests compare those with the
-    reference. Constructions beside the usual variants are run on the ellipse alone.
+    ROLL_CONSTRUCTIONS are run on the ellipse only. Exact multipliers are left out in two scenes in which they are slow.
+    Tests compare these with the reference.
     """
     if engine in ROLL_CONSTRUCTIONS:
         return scene.name == RollingEllipse.name
@@ -146,7 +144,6 @@ def compared(scene: Scene, engine: Engine) -> bool:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Drawings of the reference motions."""
     demanding = (RollingEllipse(), RollingOnCircle())
     return {
         "roulettes": svg(drawings.draw_roulettes(drawings.roulettes()), "Six bodies that roll, and what a point draws"),
@@ -158,7 +155,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """`at(scene, method, step)`: the row of a method ("mujoco tuned") nearest to a step [s]."""
+    """`at(scene, method, step)` is the row of a method, such as "mujoco tuned", nearest to a step [s]."""
     rows = Rows(material.sweep(ROLLING_SCENES))
 
     def at(scene: str, method: str, step: float) -> Any:

@@ -1,7 +1,4 @@
-"""The reference's banded solver for the joint forces of a chain, with RK4, as an engine.
-
-It builds the mechanism of a LongPendulum only, and shows how cheap an evaluation can be.
-"""
+"""The reference's banded solver for joint forces of a chain, with RK4, as an engine. It builds only LongPendulums."""
 
 from __future__ import annotations
 
@@ -22,7 +19,7 @@ from reference.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class BandedChain(Engine):
-    """An engine for pendulums of uniform bars only."""
+    """An engine for pendulums of uniform bars."""
 
     name = "reference"
     variant = "banded rk4"
@@ -30,12 +27,12 @@ class BandedChain(Engine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """Order 4 of Runge-Kutta; pins are exact, because angles are the coordinates."""
+        """4, of RK4. Pins are exact, because angles are the coordinates."""
         return ConvergenceOrder(4, gap=EXACT, slip=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """An estimate of the CPU time of a step [s]: mostly numpy's calls, as many for any chain."""
+        """An estimate [s]; up to three links, calls of numpy take most of the time."""
         return 50e-6 * max(1.0, len(mechanism.bodies) / 3)
 
     @validated
@@ -48,16 +45,14 @@ class BandedChain(Engine):
 
 
 def chain_of(mechanism: Mechanism) -> Chain:
-    """The chain of a mechanism. Raises Unsupported for any mechanism but that of a LongPendulum."""
+    """The chain of a LongPendulum's mechanism. Raises Unsupported for other mechanisms."""
     if not isinstance(mechanism, OpenChain):
-        raise Unsupported("the reference's chain is that of a LongPendulum alone")
+        raise Unsupported("the reference's banded solver builds only the mechanism of a LongPendulum")
     lengths = tuple(-2 * joint.second_point[0] for joint in mechanism.joints if isinstance(joint, Pin))
     return Chain(lengths, tuple(body.mass for body in mechanism.bodies), -mechanism.gravity[1])
 
 
 class BandedRun:
-    """A run of a chain; see `engines.Run`."""
-
     def __init__(self, mechanism: Mechanism, chain: Chain, dt: float) -> None:
         self._mechanism, self._chain, self._dt = mechanism, chain, dt
         self._start = np.concatenate([mechanism.pose[:, 2] + math.pi / 2, mechanism.twist[:, 2]])
@@ -85,7 +80,6 @@ class BandedRun:
         return Trajectory(t, pose, twist, reaction, stepping)
 
     def _step(self, state: Array) -> Array:
-        """The classical Runge-Kutta step."""
         rates, dt = self._chain.rates, self._dt
         first = rates(state)
         second = rates(state + dt / 2 * first)

@@ -1,4 +1,4 @@
-"""The page on scaling: the cost of a step and the error of pendulums of 1 to 1000 links."""
+"""The page on the cost of a step and the error of pendulums with 1 to 1000 links."""
 
 from __future__ import annotations
 
@@ -34,24 +34,28 @@ from reports.write.unmeasured import UNMEASURED
 
 @dataclass(frozen=True)
 class TruthError(Task):
-    """The error of the reference motion of a long chain at the end of its run."""
+    """The error of a long chain's reference motion at its end."""
 
     scene: LongPendulum
 
     seconds: ClassVar[float] = 0.5  # measured, with 200 links
-    words: ClassVar[str] = "error of the truth of {0.scene.links} links"
+    words: ClassVar[str] = "error of the reference motion of {0.scene.links} links"
 
     def run(self) -> Values:
-        """`error`: the largest error of an angle [rad]."""
+        """`error`: the largest angle error [rad]."""
         return {"error": self.scene.truth_error([self.scene.duration])[0]}
 
 
-FIT_POINTS = 3  # the largest sizes: there constant costs are small beside those that grow
+FIT_POINTS = 3  # the fit uses the largest sizes, at which constant costs are small
 
 
 @dataclass(frozen=True)
 class SizePoint:
-    """One method at one size: CPU seconds of a step, and the largest angle error [rad] (NaN where only timed)."""
+    """A method at one number of links (`size`).
+
+    step: CPU time of a step [s]
+    error: the largest angle error [rad]; NaN if the run was made for its CPU time only
+    """
 
     size: int
     step: float
@@ -61,7 +65,7 @@ class SizePoint:
 
 @dataclass(frozen=True)
 class MethodSeries:
-    """One method at all sizes, from small to large."""
+    """A method at all sizes; the smallest is first."""
 
     engine: str
     variant: str
@@ -72,12 +76,11 @@ class MethodSeries:
         return f"{self.engine} {self.variant}"
 
     def at(self, size: int) -> Any:
-        """The point of this size; UNMEASURED without one."""
         return next((point for point in self.points if point.size == size), UNMEASURED)
 
 
 def series_of(rows: Mapping[Cell, Measurement], timed: float) -> tuple[MethodSeries, ...]:
-    """The rows of pendulums by method; cells that last less than `timed` seconds give costs and no errors."""
+    """The rows by method. Cells that last less than `timed` [s] have a cost but no error."""
     points_by_method: dict[tuple[str, str], list[SizePoint]] = {}
     for cell, row in rows.items():
         comparable, is_full = Outcome(row.outcome).comparable, cell.scene.duration >= timed * (1 - 1e-9)
@@ -94,7 +97,7 @@ def series_of(rows: Mapping[Cell, Measurement], timed: float) -> tuple[MethodSer
 def exponent(sizes: Iterable[float], values: Iterable[float], last: int = FIT_POINTS) -> tuple[float, int, int]:
     """(slope of log value over log size for the `last` finite points, smallest and largest size of the fit).
 
-    NaN and zeros with fewer than two points.
+    With fewer than two points the result is (NaN, 0, 0).
     """
     pairs = [(n, v) for n, v in zip(sizes, values, strict=True) if math.isfinite(v) and v > 0][-last:]
     if len(pairs) < 2:
@@ -108,7 +111,7 @@ FURTHER_MARKS = ("X", "v")
 
 
 def scaling_chart(all_series: Sequence[MethodSeries]) -> Figure:
-    """Two panels side by side: CPU time of a step [µs], and the largest angle error after the whole run [rad]."""
+    """A panel with the CPU time of a step [µs], and one with the largest angle error [rad] of whole runs."""
     variants: dict[str, list[str]] = {}
     for series in all_series:
         variants.setdefault(series.engine, []).append(series.variant)
@@ -145,30 +148,30 @@ def scaling_chart(all_series: Sequence[MethodSeries]) -> Figure:
 
 
 def _look(series: MethodSeries, variants: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-    """The look of all charts, with other marks for a fourth and fifth method of an engine, so that they differ."""
+    """The usual `look`, but a fourth and a fifth method of an engine have marks of their own."""
     index = variants[series.engine].index(series.variant)
     other_mark = {"marker": FURTHER_MARKS[index - 3], "fillstyle": "full"} if index in (3, 4) else {}
     return look(series.engine, series.variant, variants) | other_mark
 
 
 def fitted(series: MethodSeries) -> str:
-    """'1.0 (50 to 1000)': the exponent of the cost over the sizes at which the method does not change."""
+    """The exponent of the cost with the smallest and the largest size of the fit, such as '1.0 (50 to 1000)'."""
     least, most = SIZES_OF_FIT.get(series.method, (0, math.inf))
     points = [point for point in series.points if least <= point.size <= most]
     slope, first, last = exponent([p.size for p in points], [p.step for p in points])
     return f"{slope:.1f} ({first} to {last})" if last else DASH
 
 
-FIXED_STEP = 5e-3  # s: about the largest at which Euler steps in reduced coordinates still follow 200 links
+FIXED_STEP = 5e-3  # s; at much larger steps, Euler steps in reduced coordinates fail with 200 links
 SMALL_SIZES = (1, 3, 10, 20)
 LARGE_SIZES = (50, 100)
-COSTLY_SIZES = (300, 1000)  # a few steps only, for their cost
+COSTLY_SIZES = (300, 1000)  # run for a few steps only, to measure their CPU time
 PENDULUM_SAMPLES = 5
-FEW_STEPS = 4  # of expensive methods at costly sizes
-MORE_STEPS = 40  # of cheap methods, so that the first step, which fills caches, is a small part
+FEW_STEPS = 4  # at COSTLY_SIZES
+MORE_STEPS = 40  # of cheap methods at COSTLY_SIZES, because their first step is slower than the next ones
 
 FREE_DEFAULT = replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free")
-# Without error estimates, whose runs would count as cost of a step.
+# Error estimates are off, because their runs would count as CPU time of a step.
 PLAIN = replace(mujoco.EXTENDED, coordinates="free", estimates=False)
 SCALING_SPARSE_NEWTON = replace(
     PLAIN,
@@ -185,16 +188,17 @@ SCALING_METHODS: tuple[Engine, ...] = (
     *(pymunk.DEFAULT, pymunk.TUNED, pymunk.EXTENDED, mujoco.DEFAULT, mujoco.TUNED),
     *(FREE_DEFAULT, SCALING_SPARSE_NEWTON, PGS, EULER, RUNGE_KUTTA, BandedChain()),
 )
-# Methods that take seconds for a step of a longer chain.
+# Longer chains take seconds for a step of these methods.
 AT_MOST_300 = (pymunk.EXTENDED, PGS, EULER, RUNGE_KUTTA)
 CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SCALING_SPARSE_NEWTON, BandedChain())
 
-# With equal links an iteration leaves 1 - pi^2/(4 N^2) of the slowest mode; a step has to leave RESIDUAL of it.
+# In a chain of N equal links, an iteration multiplies the slowest mode by 1 - pi^2/(4 N^2). The iterations of a step
+# multiply it by RESIDUAL, so their number is SWEEPS_OVER_SQUARE N^2. From CAPPED links on, a limit reduces this number.
 SWEEPS_OVER_SQUARE = -4 * log(RESIDUAL) / pi**2
 CAPPED = ceil(sqrt(ITERATION_LIMIT / SWEEPS_OVER_SQUARE))
 
-# Sizes (smallest, largest) of the fits of methods that change: the iterations of pymunk tuned have an upper limit, and
-# at COSTLY_SIZES its first steps, which have more iterations, are a large part of the few steps.
+# (smallest, largest) size of a fit. Below CAPPED links, the number of iterations of pymunk tuned grows with the size.
+# At COSTLY_SIZES, a large part of its few steps are first steps, which have more iterations.
 SIZES_OF_FIT: Mapping[str, tuple[float, float]] = {
     "pymunk tuned": (CAPPED, max(LARGE_SIZES)),
     "pymunk extended": (0, max(LARGE_SIZES)),
@@ -202,7 +206,7 @@ SIZES_OF_FIT: Mapping[str, tuple[float, float]] = {
 
 
 def cells() -> tuple[Cell, ...]:
-    """Each method at each size; the purpose "growth" is run always, "large" in a full run only."""
+    """Each method at each size. A quick run has only the cells with the purpose "growth"."""
     chosen = []
     for engine in SCALING_METHODS:
         for links in (*SMALL_SIZES, *LARGE_SIZES, *COSTLY_SIZES):
@@ -223,7 +227,7 @@ def cells() -> tuple[Cell, ...]:
 
 SCALING_CELLS = cells()
 FULL_DURATION = LongPendulum().duration
-REFERENCE_ERROR = TruthError(LongPendulum(max(LARGE_SIZES)))  # the longest chain that is run to the end
+REFERENCE_ERROR = TruthError(LongPendulum(max(LARGE_SIZES)))
 
 
 def found_series(material: Material) -> tuple[MethodSeries, ...]:
@@ -231,20 +235,17 @@ def found_series(material: Material) -> tuple[MethodSeries, ...]:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """The chart, if anything was run."""
     all_series = found_series(material)
     title = "Cost of a step and error against the number of links"
     return {"cost": svg(scaling_chart(all_series), title)} if all_series else {}
 
 
 def cost_table(all_series: tuple[MethodSeries, ...]) -> str:
-    """CPU time of a step [µs] by method and links."""
     sizes = sorted({point.size for series in all_series for point in series.points})
     return _table(all_series, sizes, lambda point: 1e6 * point.step)
 
 
 def error_table(all_series: tuple[MethodSeries, ...]) -> str:
-    """The largest angle error [rad] by method and links, of the runs that are compared."""
     run = {
         (method_name(c.engine), getattr(c.scene, "links", 0))
         for c in SCALING_CELLS
@@ -258,7 +259,6 @@ def error_table(all_series: tuple[MethodSeries, ...]) -> str:
 
 
 def _table(all_series: Iterable[MethodSeries], sizes: Sequence[int], value: Callable[[SizePoint], float]) -> str:
-    """A number in each cell, the outcome of a failed run, nothing without a run."""
     body = [[series.method, *(_words(series.at(size), value) for size in sizes)] for series in all_series]
     return markdown(["method", *map(str, sizes)], body)
 
@@ -268,7 +268,6 @@ def _words(point: Any, value: Callable[[SizePoint], float]) -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The tables, the exponents, and single points for sentences (UNMEASURED without a run)."""
     all_series = found_series(material)
     by_method = {series.method: series for series in all_series}
 
@@ -295,7 +294,7 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def crossing(one: MethodSeries | None, other: MethodSeries | None) -> tuple[int, int] | None:
-    """The neighbouring sizes between which the first begins to cost more than the other; None if it never does."""
+    """Two neighbouring sizes: `one` costs at most as much as `other` at the first, and more at the second; or None."""
     if one is None or other is None:
         return None
     pairs = [(p.size, p.step, q.step) for p in one.points if (q := other.at(p.size))]
