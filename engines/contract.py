@@ -5,7 +5,8 @@
    the call of a run with `validated`, so that the engine's own code does not abort the process.
 2. Set `name` and `variant`. Together they name the method in the report. `variant` is any printable string that is not
    empty. Methods of one `family` share a colour and a marker in charts; the family is the name unless it is overridden.
-3. Set `packages` to the installed distributions whose versions the numbers depend on. The report prints the versions.
+3. Set `packages` to the installed packages, of Python or npm, whose versions the numbers depend on. The report prints
+   these versions.
 4. `build(mechanism, dt)` returns a `Run`: the model at t = 0 for steps of dt [s]. It raises `Unsupported`, with one
    sentence, for a mechanism that the engine cannot represent. No joint or force element may be left out; see
    `engines.capability.Capability`, and `refuse_forces` for an engine that has only gravity.
@@ -205,6 +206,7 @@ class Engine(ABC):
     precision: ClassVar[float] = 0.0
     angle_error: ClassVar[float] = 0.0
     forces_by: ClassVar[Enforcement] = "engine"
+    steps_in_child: ClassVar[bool] = False
     absent_elements: ClassVar[frozenset[type]] = frozenset()
 
     @property

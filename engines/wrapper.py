@@ -36,6 +36,7 @@ class EngineWrapper(Engine):
     build_time: Any = _forwarded("build_time")  # pyright: ignore[reportIncompatibleVariableOverride]
     precision: Any = _forwarded("precision")  # pyright: ignore[reportIncompatibleVariableOverride]
     angle_error: Any = _forwarded("angle_error")  # pyright: ignore[reportIncompatibleVariableOverride]
+    steps_in_child: Any = _forwarded("steps_in_child")  # pyright: ignore[reportIncompatibleVariableOverride]
     forces_by: Any = _forwarded("forces_by")  # pyright: ignore[reportIncompatibleVariableOverride]
     absent_elements: Any = _forwarded("absent_elements")  # pyright: ignore[reportIncompatibleVariableOverride]
 

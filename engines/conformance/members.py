@@ -6,7 +6,6 @@ Mechanisms are refused by Unsupported with a sentence, values by a ValueError th
 from __future__ import annotations
 
 import dataclasses
-import importlib.metadata
 import math
 import pickle
 import re
@@ -29,6 +28,7 @@ from engines.conformance.check import (
     stepped,
 )
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World, rolling
+from engines.package_versions import installed_version
 from engines.trajectory_check import flaw_of_shapes
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
@@ -97,13 +97,13 @@ def can_be_pickled(subject: Subject) -> None:
 
 
 def names_its_packages(subject: Subject) -> None:
-    """`packages` is a tuple of installed distributions, whose versions are printed under the numbers."""
+    """`packages` is a tuple of installed packages, of Python or npm, whose versions are printed under the numbers."""
     packages = getattr(subject.engine, "packages", None)
     if not (isinstance(packages, tuple) and all(isinstance(name, str) for name in packages)):
         raise Fails(f"packages = {packages!r}", "a tuple of strings", "a comma is missing in a tuple of one")
     for name in packages:
         try:
-            importlib.metadata.version(name)
+            installed_version(name)
         except Exception as error:
             expected, means = "the name under which it was installed", "it is the name by which it is imported"
             raise Fails(f"{name!r}, which is not installed", expected, means) from error

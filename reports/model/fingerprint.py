@@ -13,12 +13,15 @@ import platform
 import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from functools import cache
 from importlib import metadata
 from importlib.machinery import EXTENSION_SUFFIXES, SOURCE_SUFFIXES
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
+
+from engines.package_versions import installed_version
 
 ROOT = Path(__file__).resolve().parents[2]
 OURS = ("reference", "engines", "reports")
@@ -60,6 +63,9 @@ def _versions(modules: frozenset[str], packages: frozenset[str], folders: tuple[
             distributions.update(_distributions().get(module, ()))
     for name in sorted(with_required(distributions | _rivals(packages))):
         versions[name] = metadata.version(name)
+    for name in packages:  # of npm too
+        with suppress(metadata.PackageNotFoundError):
+            versions.setdefault(normalised(name), installed_version(name))
     return {**versions, "Python": platform.python_version(), "our source files": _our_files(folders)[:12]}
 
 
@@ -103,7 +109,8 @@ def _files(module: str) -> tuple[Path, ...]:
 @cache
 def _our_files(folders: tuple[str, ...]) -> str:
     """A digest of our sources: a checkout in another folder has the same."""
-    return _content(path for folder in folders for path in sorted((ROOT / folder).rglob("*.py")))
+    paths = (sorted((ROOT / folder).rglob(pattern)) for folder in folders for pattern in ("*.py", "*.mjs"))
+    return _content(path for group in paths for path in group)
 
 
 def _content(paths: Iterable[Path]) -> str:

@@ -7,10 +7,11 @@ import platform
 from collections.abc import Iterable
 from datetime import UTC, datetime
 from functools import cache
-from importlib import metadata
+from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 
 from engines import Engine, registry
+from engines.package_versions import installed_version
 
 # Reference solutions and errors are computed with these, whatever the engine.
 MEASURED_WITH = ("numpy", "scipy")
@@ -35,8 +36,8 @@ def engine_versions(engines: Iterable[Engine]) -> str:
 @cache  # a lookup takes some milliseconds, and every page prints a dozen
 def _version(package: str) -> str:
     try:
-        return f"{package} {metadata.version(package)}"
-    except metadata.PackageNotFoundError:
+        return f"{package} {installed_version(package)}"
+    except PackageNotFoundError:
         return f"{package} not installed"
 
 

@@ -1,0 +1,299 @@
+"""Physics engines of the browser under test: planck and p2 in JavaScript, Rapier and Jolt as WebAssembly.
+
+A child process of Node steps them; `worlds.mjs` builds their joints. It lives as long as this process, so that the code
+which Node compiles while it runs is compiled once. The packages of npm are installed by `python -m engines.browser`
+into the user's cache folder.
+
+All damping of bodies is off: planck has none; p2 removes 10 % and Jolt 5 % of the velocity per second as shipped. No
+body sleeps and none collides. A Pin is a revolute joint or a hinge, a Weld a fixed joint, a Rod a distance joint. A
+Slot is a prismatic joint where a Drive of rate zero keeps the angle, else planck's wheel joint or p2's prismatic
+constraint without its rotational lock. A Drive is the motor of the Pin between the same two bodies.
+
+Every step is semi-implicit Euler: forces, impulses of the joints, then positions. The engines differ in the correction
+of gaps: planck and Jolt move the bodies after the step (split impulses, repeated `positionIterations` times), p2 has
+springs solved implicitly (Lacoursière's SPOOK, stiffness 1e6 N/m as shipped), Rapier has soft joints, solved in
+`numSolverIterations` sub-steps. So an order is declared for planck alone.
+
+Rapier, Jolt and p2 as shipped compute in single precision, planck in double. planck reduces speeds above 2 m and a
+quarter turn in a step (Settings.maxTranslation, maxRotation); its tuned variant removes these limits.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import shutil
+import subprocess
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from engines.capability import Capability
+from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
+from engines.extrapolated import Extrapolated
+from engines.motions import over_three
+from engines.package_versions import installed_version, npm_folder
+from engines.sampling import unwrapped
+from engines.single_run import ExtraEngine, Recorded
+from reference.checks import Name, validated
+from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
+from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
+
+Settings = tuple[tuple[str, float], ...]  # the engine's own parameters by name
+INSTALL = "python -m engines.browser"
+STEP_COST = 20e-6  # s: approximate CPU time of a step of three bodies
+SINGLE = 2.0**-23
+
+
+def _capability(engine: str, *further: type) -> Capability:
+    return Capability(
+        engine,
+        (Pin, Weld, Slot, Drive, *further),
+        (),
+        {
+            Gear: f"our adapter of {engine} builds no gear",
+            Skate: f"{engine} has no joint for a velocity across a blade",
+            Roll: f"in {engine} a disc rolls by contact and friction, and our adapter builds no contact",
+            Rod: "rapier's joints for two points keep a largest distance, or act as a spring",
+        },
+    )
+
+
+def install() -> None:
+    """Install the packages of all engines. Raises CalledProcessError, and FileNotFoundError without npm."""
+    folder = npm_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    packages = [
+        f"{package}@{engine.release}"
+        for engine in VARIANTS
+        if isinstance(engine, BrowserEngine)
+        for package in engine.packages
+    ]
+    options = ["--prefix", str(folder), "--no-audit", "--no-fund", "--ignore-scripts", "--save-exact"]
+    subprocess.run([shutil.which("npm") or "npm", "install", *options, *packages], check=True)
+
+
+class Child:
+    """A process of Node that runs the worlds of one engine."""
+
+    def __init__(self, engine: str, settings: Settings) -> None:
+        script = Path(__file__).with_name("worlds.mjs")
+        command = [shutil.which("node") or "node", str(script), str(npm_folder()), engine, json.dumps(dict(settings))]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.numbers = itertools.count()
+
+    def ask(self, operation: str, **request: Any) -> dict[str, Any]:
+        """The answer to a request. Raises Unsupported if the engine refuses, RuntimeError if the process ended."""
+        assert self.process.stdin
+        assert self.process.stdout
+        self.process.stdin.write(json.dumps({"operation": operation, **request}) + "\n")
+        self.process.stdin.flush()
+        line = self.process.stdout.readline()
+        if not line:
+            raise RuntimeError(f"Node ended with status {self.process.wait()} at {operation!r}")
+        answer: dict[str, Any] = json.loads(line)
+        if "error" in answer:
+            raise Unsupported(f"the engine refuses it: {answer['error']}")
+        return answer
+
+
+_children: dict[tuple[str, Settings], Child] = {}
+
+
+def child_of(engine: str, settings: Settings) -> Child:
+    """The process of an engine with these settings, started at the first use and again after its end.
+
+    Some settings belong to a whole process, so two variants do not share one.
+    """
+    child = _children.get((engine, settings))
+    if child is None or child.process.poll() is not None:
+        child = _children[engine, settings] = Child(engine, settings)
+    return child
+
+
+def joint_requests(mechanism: Mechanism, engine: str) -> list[dict[str, Any]]:
+    """The joints as `worlds.mjs` takes them: a drive is the motor, or the fixed angle, of its pin or slot.
+
+    Raises Unsupported for a drive without a pin or slot between the same bodies, and a second one there.
+    """
+    drives: dict[frozenset[str | None], Drive] = {}
+    for joint in mechanism.joints:
+        if isinstance(joint, Drive) and drives.setdefault(frozenset((joint.first, joint.second)), joint) is not joint:
+            raise Unsupported(f"drive {joint.name!r}: a joint of {engine} has one motor, and this is the second drive")
+    requests = []
+    for joint in mechanism.joints:
+        if not isinstance(joint, Pin | Weld | Rod | Slot):
+            continue
+        drive = drives.pop(frozenset((joint.first, joint.second)), None) if isinstance(joint, Pin | Slot) else None
+        sign = 1.0 if drive is None or drive.second == joint.second else -1.0
+        request: dict[str, Any] = {
+            "kind": type(joint).__name__,
+            "first": -1 if joint.first is None else mechanism.body_index(joint.first),
+            "second": -1 if joint.second is None else mechanism.body_index(joint.second),
+            "points": (joint.first_point, joint.second_point),
+            "motor": None,
+            "angle": math.remainder(joint.angle, 2 * math.pi) if isinstance(joint, Weld) else None,
+        }
+        if isinstance(joint, Rod):
+            request["length"] = joint.length
+        if isinstance(joint, Slot):
+            request["line"] = joint.line_angle
+            if drive is not None and drive.turning_rate:
+                raise Unsupported(f"drive {drive.name!r}: our adapter of {engine} turns no block in a slot")
+            if drive is not None:
+                request["angle"] = sign * drive.offset
+            elif engine in ("rapier", "jolt"):
+                raise Unsupported(f"joint {joint.name!r}: our adapter of {engine} builds no slot in which a body turns")
+        elif drive is not None:
+            request["motor"] = sign * drive.turning_rate
+        requests.append(request)
+    if drives:
+        drive = next(iter(drives.values()))
+        raise Unsupported(f"drive {drive.name!r}: a motor of {engine} belongs to a pin between the same two bodies")
+    return requests
+
+
+class BrowserWorld:
+    """The engine's objects for one mechanism."""
+
+    def __init__(self, mechanism: Mechanism, dt: float, engine: str, settings: Settings) -> None:
+        self.mechanism, self.dt, joints = mechanism, dt, joint_requests(mechanism, engine)
+        self.child = child_of(engine, settings)
+        self.number = next(self.child.numbers)
+        bodies = [
+            {"mass": body.mass, "inertia": body.inertia, "pose": body.pose, "twist": body.twist}
+            for body in mechanism.bodies
+        ]
+        model = {"bodies": bodies, "joints": joints, "gravity": mechanism.gravity, "dt": dt}
+        built = self.child.ask("build", id=self.number, **model)
+        self.inertias = np.array([(mass, mass, inertia) for mass, inertia in built["inertias"]])
+        count, rows = len(bodies), mechanism.row_count
+        self.size = Size(count, 3 * count, rows, rows)
+
+    def __del__(self) -> None:
+        if hasattr(self, "inertias") and self.child.process.poll() is None:
+            with suppress(OSError, RuntimeError):
+                self.child.ask("drop", id=self.number)
+
+    def record(self, samples: int, every: int) -> Recorded:
+        run = self.child.ask("run", id=self.number, samples=samples, every=every)
+        pose, twist, before = (np.array(run[name], dtype=float) for name in ("poses", "twists", "before"))
+        with np.errstate(all="ignore"):
+            pose[..., 2] = unwrapped(pose[..., 2], twist[..., 2], self.mechanism.pose[:, 2], self.dt * every)
+            acceleration = np.full_like(twist, np.nan)
+            acceleration[1:] = (twist[1:] - before) / self.dt
+        gravity = np.array(self.mechanism.gravity)
+        return Recorded(pose, twist, acceleration, run["seconds"], self.inertias, gravity)
+
+
+@dataclass(frozen=True)
+class BrowserEngine(ExtraEngine):
+    """An engine in the sense of `engines.Engine`.
+
+    settings: the engine's own parameters, by their names in its documentation
+    """
+
+    forces_by: ClassVar[Enforcement] = "ours"
+    steps_in_child: ClassVar[bool] = True
+    release: ClassVar[str]
+
+    variant: Name
+    settings: tuple[tuple[Name, float], ...] = ()
+
+    @property
+    def missing(self) -> str:
+        """One sentence that says how to install it; empty where it is installed."""
+        (package,) = self.packages
+        if shutil.which("node") is None:
+            return f"{self.name} needs Node, which is not installed, and then: {INSTALL}"
+        with suppress(PackageNotFoundError):
+            if installed_version(package) == self.release:
+                return ""
+        return f"{self.name} needs the package {package} {self.release} of npm: {INSTALL}"
+
+    @validated
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
+        """Not declared; the module says why."""
+        return NotDeclared(f"the residual of {self.name}'s iterations follows no rule in the step")
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """Approximate CPU time of a step [s]."""
+        return STEP_COST * over_three(mechanism)
+
+    def model(self, mechanism: Mechanism, dt: float) -> BrowserWorld:
+        return BrowserWorld(mechanism, dt, self.name, self.settings)
+
+
+class Planck(BrowserEngine):
+    """planck, the solver of Box2D 2.4 in JavaScript."""
+
+    name = "planck"
+    packages = ("planck",)
+    release = "1.5.0"
+    capability = _capability("planck", Rod)
+
+
+class P2(BrowserEngine):
+    """p2, in JavaScript."""
+
+    name = "p2"
+    packages = ("p2",)
+    release = "0.7.1"
+    capability = _capability("p2", Rod)
+
+    @property
+    def precision(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Vectors are in single precision unless the variable P2_ARRAY_TYPE is set before p2 is loaded."""
+        return 0.0 if dict(self.settings).get("double") else SINGLE
+
+
+class Rapier(BrowserEngine):
+    """Rapier in two dimensions, in WebAssembly; as shipped it has no joint that keeps a distance."""
+
+    name = "rapier"
+    packages = ("@dimforge/rapier2d-compat",)
+    release = "0.21.0"
+    capability = _capability("rapier")
+    precision = SINGLE
+
+
+class Jolt(BrowserEngine):
+    """Jolt in WebAssembly: bodies in space that move in the plane (EAllowedDOFs_Plane2D)."""
+
+    name = "jolt"
+    packages = ("jolt-physics",)
+    release = "1.1.0"
+    capability = _capability("jolt", Rod)
+    precision = SINGLE
+
+
+ENGINES = (Planck, P2, Rapier, Jolt)
+LIMITS = tuple((f"max{kind}", 1e9) for kind in ("Translation", "Rotation", "LinearCorrection", "AngularCorrection"))
+PLANCK_TUNED = Planck(
+    "tuned",
+    (
+        ("velocityIterations", 100.0),
+        ("positionIterations", 100.0),
+        ("linearSlop", 1e-12),
+        ("angularSlop", 1e-12),
+        *LIMITS,
+    ),
+)
+VARIANTS = (
+    Planck("default", (("velocityIterations", 8.0), ("positionIterations", 3.0))),
+    PLANCK_TUNED,
+    Extrapolated(PLANCK_TUNED, "extended", levels=(1, 2, 3, 4), powers=(1, 2, 3)),
+    P2("default", (("iterations", 10.0), ("tolerance", 1e-7), ("stiffness", 1e6), ("relaxation", 4.0))),
+    P2("tuned", (("iterations", 100.0), ("tolerance", 0.0), ("stiffness", 1e9), ("relaxation", 1.0), ("double", 1.0))),
+    Rapier("default", (("motor", 1e9),)),
+    Rapier("tuned", (("motor", 1e9), ("numSolverIterations", 32.0))),
+    Jolt("default"),
+    Jolt("tuned", (("mNumVelocitySteps", 100.0), ("mNumPositionSteps", 20.0), ("mBaumgarte", 1.0))),
+)
