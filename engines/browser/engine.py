@@ -15,7 +15,10 @@ springs solved implicitly (Lacoursière's SPOOK, stiffness 1e6 N/m as shipped), 
 `numSolverIterations` sub-steps. So an order is declared for planck alone.
 
 Rapier, Jolt and p2 as shipped compute in single precision, planck in double. planck reduces speeds above 2 m and a
-quarter turn in a step (Settings.maxTranslation, maxRotation); its tuned variant removes these limits.
+quarter turn in a step (Settings.maxTranslation, maxRotation); its tuned variant removes these limits. Rapier reduces
+speeds above 400 m/s and an eighth of a turn in a step. It integrates a rotation as a normalised sum of cosine and sine,
+so that a body turns by less than its angular velocity w, relatively by (w h)^2 / 3 with the sub-step h. A run in which
+a speed may have been reduced has a warning.
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ import json
 import math
 import shutil
 import subprocess
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError
@@ -44,25 +48,31 @@ from reference.checks import Name, validated
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
+from reference.trajectory import RunWarning
 
 Settings = tuple[tuple[str, float], ...]  # the engine's own parameters by name
 INSTALL = "python -m engines.browser"
 STEP_COST = 20e-6  # s: approximate CPU time of a step of three bodies
 SINGLE = 2.0**-23
+SPEED_CUT = RunWarning("upstream: the engine cut a velocity to its limit", "rate limit", "upstream")
+# The largest velocities [m/s] and [rad/s] that an engine allows, by the step [s].
+SPEED_LIMITS: Mapping[str, Callable[[float], tuple[float, float]]] = {
+    "planck": lambda dt: (2.0 / dt, math.pi / 2 / dt),
+    "rapier": lambda dt: (400.0, math.pi / 4 / dt),
+}
+EQUAL_ANGLES = 1e-12  # rad
 
 
-def _capability(engine: str, *further: type) -> Capability:
-    return Capability(
-        engine,
-        (Pin, Weld, Slot, Drive, *further),
-        (),
-        {
-            Gear: f"our adapter of {engine} builds no gear",
-            Skate: f"{engine} has no joint for a velocity across a blade",
-            Roll: f"in {engine} a disc rolls by contact and friction, and our adapter builds no contact",
-            Rod: "rapier's joints for two points keep a largest distance, or act as a spring",
-        },
-    )
+def _capability(engine: str, lacks_rod: str = "") -> Capability:
+    """The joints that an adapter builds, and no force but gravity; `lacks_rod`: why it builds no rod."""
+    lacks = {
+        Gear: f"our adapter of {engine} builds no gear",
+        Skate: f"{engine} has no joint for a velocity across a blade",
+        Roll: f"in {engine} a disc rolls by contact and friction, and our adapter builds no contact",
+    }
+    if lacks_rod:
+        return Capability(engine, (Pin, Weld, Slot, Drive), (), {**lacks, Rod: lacks_rod})
+    return Capability(engine, (Pin, Weld, Slot, Drive, Rod), (), lacks)
 
 
 def install() -> None:
@@ -86,7 +96,13 @@ class Child:
         script = Path(__file__).with_name("worlds.mjs")
         command = [shutil.which("node") or "node", str(script), str(npm_folder()), engine, json.dumps(dict(settings))]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        self.numbers = itertools.count()
+        self.engine, self.settings, self.numbers = engine, settings, itertools.count()
+
+    def close(self) -> None:
+        """Close the pipes of a process that has ended."""
+        for pipe in (self.process.stdin, self.process.stdout):
+            with suppress(OSError):
+                pipe and pipe.close()
 
     def ask(self, operation: str, **request: Any) -> dict[str, Any]:
         """The answer to a request. Raises Unsupported if the engine refuses, RuntimeError if the process ended."""
@@ -112,8 +128,11 @@ def child_of(engine: str, settings: Settings) -> Child:
     Some settings belong to a whole process, so two variants do not share one.
     """
     child = _children.get((engine, settings))
-    if child is None or child.process.poll() is not None:
-        child = _children[engine, settings] = Child(engine, settings)
+    if child is not None and child.process.poll() is None:
+        return child
+    if child is not None:
+        child.close()
+    child = _children[engine, settings] = Child(engine, settings)
     return child
 
 
@@ -130,33 +149,40 @@ def joint_requests(mechanism: Mechanism, engine: str) -> list[dict[str, Any]]:
     for joint in mechanism.joints:
         if not isinstance(joint, Pin | Weld | Rod | Slot):
             continue
-        drive = drives.pop(frozenset((joint.first, joint.second)), None) if isinstance(joint, Pin | Slot) else None
-        sign = 1.0 if drive is None or drive.second == joint.second else -1.0
-        request: dict[str, Any] = {
-            "kind": type(joint).__name__,
-            "first": -1 if joint.first is None else mechanism.body_index(joint.first),
-            "second": -1 if joint.second is None else mechanism.body_index(joint.second),
-            "points": (joint.first_point, joint.second_point),
-            "motor": None,
-            "angle": math.remainder(joint.angle, 2 * math.pi) if isinstance(joint, Weld) else None,
-        }
-        if isinstance(joint, Rod):
-            request["length"] = joint.length
-        if isinstance(joint, Slot):
-            request["line"] = joint.line_angle
-            if drive is not None and drive.turning_rate:
-                raise Unsupported(f"drive {drive.name!r}: our adapter of {engine} turns no block in a slot")
-            if drive is not None:
-                request["angle"] = sign * drive.offset
-            elif engine in ("rapier", "jolt"):
-                raise Unsupported(f"joint {joint.name!r}: our adapter of {engine} builds no slot in which a body turns")
-        elif drive is not None:
-            request["motor"] = sign * drive.turning_rate
+        first, second = (-1 if name is None else mechanism.body_index(name) for name in (joint.first, joint.second))
+        request: dict[str, Any] = {"kind": type(joint).__name__, "first": first, "second": second}
+        request |= {"points": (joint.first_point, joint.second_point), "motor": None, "angle": None}
+        match joint:
+            case Weld():
+                request["angle"] = joint.angle
+            case Rod():
+                request["length"] = joint.length
+            case Pin() | Slot():
+                drive = drives.pop(frozenset((joint.first, joint.second)), None)
+                sign = 1.0 if drive is None or drive.second == joint.second else -1.0
+                if isinstance(joint, Slot):
+                    request |= {"line": joint.line_angle, "angle": _fixed_angle(joint, drive, sign, engine)}
+                elif drive is not None:
+                    request["motor"] = sign * drive.turning_rate
         requests.append(request)
     if drives:
         drive = next(iter(drives.values()))
         raise Unsupported(f"drive {drive.name!r}: a motor of {engine} belongs to a pin between the same two bodies")
     return requests
+
+
+def _fixed_angle(slot: Slot, drive: Drive | None, sign: float, engine: str) -> float | None:
+    """The relative angle [rad] that a slot keeps; None where the second body turns. Raises Unsupported."""
+    if drive is None:
+        if engine in ("rapier", "jolt"):
+            raise Unsupported(f"joint {slot.name!r}: our adapter of {engine} builds no slot in which a body turns")
+        return None
+    if drive.turning_rate:
+        raise Unsupported(f"drive {drive.name!r}: our adapter of {engine} turns no block in a slot")
+    angle = sign * drive.offset
+    if engine == "rapier" and abs(angle) > EQUAL_ANGLES:
+        raise Unsupported(f"drive {drive.name!r}: a prismatic joint of rapier keeps two bodies at equal angles")
+    return angle
 
 
 class BrowserWorld:
@@ -188,8 +214,12 @@ class BrowserWorld:
             pose[..., 2] = unwrapped(pose[..., 2], twist[..., 2], self.mechanism.pose[:, 2], self.dt * every)
             acceleration = np.full_like(twist, np.nan)
             acceleration[1:] = (twist[1:] - before) / self.dt
+            fastest = np.abs(np.concatenate([twist[1:], before])).max(axis=(0, 1), initial=0.0)
+        limits = SPEED_LIMITS.get(self.child.engine, lambda dt: (math.inf, math.inf))(self.dt)
+        cut = math.hypot(*fastest[:2]) > 0.999 * limits[0] or fastest[2] > 0.999 * limits[1]
+        warnings = (SPEED_CUT,) if cut and not dict(self.child.settings).get("maxRotation") else ()
         gravity = np.array(self.mechanism.gravity)
-        return Recorded(pose, twist, acceleration, run["seconds"], self.inertias, gravity)
+        return Recorded(pose, twist, acceleration, run["seconds"], self.inertias, gravity, warnings)
 
 
 @dataclass(frozen=True)
@@ -237,7 +267,7 @@ class Planck(BrowserEngine):
     name = "planck"
     packages = ("planck",)
     release = "1.5.0"
-    capability = _capability("planck", Rod)
+    capability = _capability("planck")
 
 
 class P2(BrowserEngine):
@@ -246,7 +276,7 @@ class P2(BrowserEngine):
     name = "p2"
     packages = ("p2",)
     release = "0.7.1"
-    capability = _capability("p2", Rod)
+    capability = _capability("p2")
 
     @property
     def precision(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -255,12 +285,14 @@ class P2(BrowserEngine):
 
 
 class Rapier(BrowserEngine):
-    """Rapier in two dimensions, in WebAssembly; as shipped it has no joint that keeps a distance."""
+    """Rapier in two dimensions, in WebAssembly."""
 
     name = "rapier"
     packages = ("@dimforge/rapier2d-compat",)
     release = "0.21.0"
-    capability = _capability("rapier")
+    capability = _capability(
+        "rapier", "rapier's joints of two points keep a largest distance or act as a spring (JointData)"
+    )
     precision = SINGLE
 
 
@@ -270,7 +302,7 @@ class Jolt(BrowserEngine):
     name = "jolt"
     packages = ("jolt-physics",)
     release = "1.1.0"
-    capability = _capability("jolt", Rod)
+    capability = _capability("jolt")
     precision = SINGLE
 
 

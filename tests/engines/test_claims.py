@@ -264,6 +264,8 @@ DRAWN = {
     "box2d": ("pin", "rod", "weld", *ELEMENTS),
     "pinocchio": ("pin", "drive", "weld", *ELEMENTS),
     "bullet": ("pin", "weld", *ELEMENTS),
+    **dict.fromkeys(("planck", "p2", "jolt"), ("pin", "drive", "rod", "weld")),
+    "rapier": ("pin", "drive", "weld"),
 }
 # Largest error relative to the displacement, by order, after 180 steps in a fifth of the time scale: measured with a
 # margin. Box2D's compliant joints have SOFT, the largest of thirty draws; a wrong lever arm or sign has an error of 1.

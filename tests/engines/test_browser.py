@@ -1,0 +1,124 @@
+"""Engines of the browser: what their adapter refuses, warnings of reduced velocities, and the child process."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engines import Unsupported
+from engines.browser import VARIANTS
+from engines.browser.engine import BrowserEngine, child_of, joint_requests
+from engines.package_versions import installed_version
+from reference.joints import Body, Drive, Pin, Slot
+from reference.mechanism import Mechanism
+from reference.scenes.catalogue import scene
+
+DEFAULTS = [engine for engine in VARIANTS if isinstance(engine, BrowserEngine) and engine.variant == "default"]
+AXLE = Pin("axle", None, "bar", (0.0, 0.0), (-0.5, 0.0))
+GUIDE = Slot("guide", None, "bar", (0.0, 0.0), 0.0, (0.0, 0.0))
+
+
+def bar(angle=0.0, x=0.0, twist=(0.0, 0.0, 0.0)):
+    return Body("bar", 1.0, 1 / 12, (x, 0.0, angle), twist)
+
+
+def shot(speed, rate):
+    return Mechanism((bar(twist=(speed, 0.0, rate)),), ())
+
+
+def engine_named(name: str, variant: str = "default") -> BrowserEngine:
+    engine = next(engine for engine in VARIANTS if (engine.name, engine.variant) == (name, variant))
+    assert isinstance(engine, BrowserEngine)
+    if engine.missing:
+        pytest.skip(engine.missing)
+    return engine
+
+
+DRIVE = Drive("drive", None, "bar", 1.0, 0.0)
+REFUSED = {
+    "a drive without a pin": (Mechanism((bar(twist=(0.0, 0.0, 1.0)),), (DRIVE,)), "jolt", "belongs to a pin"),
+    "two drives of a pin": (
+        Mechanism((bar(x=0.5, twist=(0.0, 0.5, 1.0)),), (AXLE, DRIVE, replace(DRIVE, name="again"))),
+        "planck",
+        "drive 'again': .* second drive",
+    ),
+    "a block that turns in a slot": (Mechanism((bar(twist=(0.0, 0.0, 1.0)),), (GUIDE, DRIVE)), "p2", "turns no block"),
+    "a slot alone, in Jolt": (Mechanism((bar(),), (GUIDE,)), "jolt", "joint 'guide'"),
+    "a slot with an angle, in Rapier": (
+        Mechanism((bar(0.3),), (GUIDE, Drive("drive", None, "bar", 0.0, 0.3))),
+        "rapier",
+        "equal angles",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_the_adapter_refuses_by_name_a_drive_that_is_no_motor_and_a_slot_that_is_no_joint_of_the_engine(case):
+    mechanism, engine, named = REFUSED[case]
+    with pytest.raises(Unsupported, match=named):
+        joint_requests(mechanism, engine)
+
+
+def test_a_motor_has_the_sign_of_the_order_in_which_its_pin_names_the_bodies():
+    motors = []
+    for pin in (AXLE, Pin("axle", "bar", None, (-0.5, 0.0), (0.0, 0.0))):
+        mechanism = Mechanism((bar(x=0.5, twist=(0.0, 0.5, 1.0)),), (pin, DRIVE))
+        motors += [request["motor"] for request in joint_requests(mechanism, "planck")]
+    assert motors == [1.0, -1.0]
+
+
+@pytest.mark.parametrize(
+    ("name", "variant", "mechanism", "is_cut"),
+    [
+        ("planck", "default", shot(3000.0, 0.0), True),
+        ("planck", "default", shot(0.0, 2000.0), True),
+        ("planck", "default", shot(1000.0, 1000.0), False),
+        ("planck", "tuned", shot(3000.0, 2000.0), False),
+        ("rapier", "default", shot(500.0, 0.0), True),
+        ("rapier", "tuned", shot(0.0, 800.0), True),
+        ("rapier", "default", shot(300.0, 400.0), False),
+        ("p2", "default", shot(1e5, 1e5), False),
+        ("jolt", "default", shot(1e5, 1e3), False),
+    ],
+)
+def test_a_run_in_which_the_engine_reduces_a_velocity_has_a_warning(name, variant, mechanism, is_cut):
+    run = engine_named(name, variant).build(mechanism, 1e-3)(4, 5)
+    assert [getattr(warning, "kind", "") for warning in run.warnings] == ["rate limit"] * is_cut
+    way = np.abs(run.pose[-1] - mechanism.pose - 0.02 * mechanism.twist).max()
+    assert (way > 0.1) == is_cut
+
+
+@pytest.mark.parametrize("name", [engine.name for engine in DEFAULTS])
+def test_an_engine_runs_again_after_its_process_was_ended_from_outside(name):
+    engine, mechanism = engine_named(name), scene("pendulum_1").mechanism()
+    before = engine.build(mechanism, 1e-3)(3, 5)
+    run = engine.build(mechanism, 1e-3)
+    process = child_of(engine.name, engine.settings).process
+    process.kill()
+    process.wait()
+    with pytest.raises((RuntimeError, OSError)):
+        run(3, 5)
+    assert np.array_equal(engine.build(mechanism, 1e-3)(3, 5).pose, before.pose)
+
+
+@pytest.mark.parametrize("name", [engine.name for engine in DEFAULTS])
+def test_the_engine_in_use_is_the_release_that_the_adapter_names(name):
+    engine = engine_named(name)
+    (package,) = engine.packages
+    assert installed_version(package) == engine.release
+
+
+def test_two_runs_of_one_process_do_not_change_each_other():
+    engine, mechanism = engine_named("planck"), scene("free_four_bar").mechanism()
+    alone = engine.build(mechanism, 1e-3)(5, 10)
+    first, second = (engine.build(mechanism, 1e-3) for _ in range(2))
+    other = first(2, 10)
+    assert np.array_equal(second(5, 10).pose, alone.pose)
+    assert np.array_equal(other.pose, alone.pose[:3])
+
+
+def test_settings_of_variants_are_numbers_that_json_keeps():
+    for engine in VARIANTS:
+        settings = dict(getattr(engine, "settings", ()))
+        assert json.loads(json.dumps(settings)) == settings
