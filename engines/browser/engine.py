@@ -12,7 +12,7 @@ constraint without its rotational lock. A Drive is the motor of the Pin between 
 Every step is semi-implicit Euler: forces, impulses of the joints, then positions. The engines differ in the correction
 of gaps: planck and Jolt move the bodies after the step (split impulses, repeated `positionIterations` times), p2 has
 springs solved implicitly (Lacoursière's SPOOK, stiffness 1e6 N/m as shipped), Rapier has soft joints, solved in
-`numSolverIterations` sub-steps. So an order is declared for planck alone.
+`numSolverIterations` sub-steps. So no order is declared.
 
 Rapier, Jolt and p2 as shipped compute in single precision, planck in double. planck reduces speeds above 2 m and a
 quarter turn in a step (Settings.maxTranslation, maxRotation); its tuned variant removes these limits. Rapier reduces
