@@ -20,6 +20,7 @@ test: .venv/installed            ## the tests without those marked slow, then th
 	$(BIN)/python -m pytest -m "crosscheck and not slow" && exit $$tests
 
 publish: .venv/installed-mjx     ## for maintainers: all engines and releases, into reports/results and README.md
+	$(BIN)/python -m engines.browser
 	$(BIN)/crosscheck run --full
 	$(BIN)/crosscheck versions --all --publish
 	$(BIN)/crosscheck search --published

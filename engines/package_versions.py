@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from functools import cache
 from importlib import metadata
 from pathlib import Path
 
@@ -15,7 +14,6 @@ def npm_folder() -> Path:
     return cache_folder() / "browser"
 
 
-@cache
 def installed_version(package: str) -> str:
     """The version of a distribution, or else of a package of npm. Raises PackageNotFoundError if there is neither."""
     try:
