@@ -164,8 +164,8 @@ def test_observations_on_skates_and_wheels_agree_with_the_reference():
     assert lines["two skates in one line"] == "(3, 1); integrable: of 3 it can reach 1"
     reference = Material({}, {wheels.REFERENCE: answer_to(wheels.REFERENCE)})
     lines = {seen.method: seen.outcome for seen in wheels.folding(reference) if not seen.setting}
-    assert lines["closed form, at an even speed"] == lines["the reference, driven at an even speed"]
-    assert lines["the drawbar pushed along by that way"] == f"bent by {math.pi / 2:.4f} rad"
+    assert lines["closed form, at a constant speed"] == lines["the reference, driven at a constant speed"]
+    assert lines["the drawbar, pushed along this distance"] == f"bent by {math.pi / 2:.4f} rad"
 
 
 ROWS = [*falling("pymunk a", (8e-2, 4e-2, 1e-2)), *falling("pymunk b", (2e-2, 1.8e-2, 1.7e-2), outcome="torn")]

@@ -1,4 +1,4 @@
-"""Experiments in which constructions of a skate fail, and these constructions by name."""
+"""The constructions of a skate, and experiments in which they fail."""
 
 from __future__ import annotations
 
@@ -30,35 +30,31 @@ def known(names: Iterable[str]) -> dict[str, Engine]:
     return {name: _KNOWN[name] for name in names if name in _KNOWN}
 
 
-# Variants that a user would choose, and the best one of each engine.
-ORDINARY: tuple[Engine, ...] = tuple(
+WITHOUT_EULER: tuple[Engine, ...] = tuple(
     engine for engine in VARIANTS if engine.name != "lagrange" or engine.variant.startswith("rk4")
 )
 
-
-# Rates [rad/s] between which a small rotation grows as in the linearised motion: they are far above the rate at the
-# start, and their square is below a thousandth of the square of the largest rate.
+# Rates [rad/s] between which a small rotation grows as in the linearised motion. They are far above the initial rate,
+# and their squares are less than a thousandth of the square of the largest rate.
 LINEAR_GROWTH = (2e-3, 4e-2)
 
 
 def growth_of(t: np.ndarray, rate: np.ndarray) -> float:
     """The slope of log |rate| over time [1/s] between the rates of LINEAR_GROWTH; NaN if they are not reached."""
-    size = np.abs(rate)
-    late = int(np.argmax(size > LINEAR_GROWTH[1])) if np.any(size > LINEAR_GROWTH[1]) else 0
-    chosen = (np.arange(len(t)) < late) & (size > LINEAR_GROWTH[0])
+    speed = np.abs(rate)
+    late = int(np.argmax(speed > LINEAR_GROWTH[1])) if np.any(speed > LINEAR_GROWTH[1]) else 0
+    chosen = (np.arange(len(t)) < late) & (speed > LINEAR_GROWTH[0])
     if chosen.sum() < 3:
         return float("nan")
-    return float(np.polyfit(t[chosen], np.log(size[chosen]), 1)[0])
+    return float(np.polyfit(t[chosen], np.log(speed[chosen]), 1)[0])
 
 
 BACKWARDS = SleighBackwards()
-
-
-TURNING_ROUND = tuple(Cell(BACKWARDS, engine, 1) for engine in (*ORDINARY, *SKATE_CONSTRUCTIONS))
+TURNING_ROUND = tuple(Cell(BACKWARDS, engine, 1) for engine in (*WITHOUT_EULER, *SKATE_CONSTRUCTIONS))
 
 
 def backwards(material: Material) -> list[Observation]:
-    """The growth of a small rotation and the time of turning round, by method."""
+    """The growth of a small rotation, and the time at which the sleigh turns round."""
     t = np.linspace(0, BACKWARDS.duration, BACKWARDS.samples + 1)
     truth = BACKWARDS.motion(t).twist[:, 0, 2]
     return [
@@ -100,7 +96,7 @@ COUNTED: tuple[tuple[str, Mechanism], ...] = (
 
 
 def counting(material: Material) -> list[Observation]:
-    """Degrees of freedom by rank and by brackets, and integrability by Frobenius, of skates on one body."""
+    """The degrees of freedom of COUNTED by rank and by Lie brackets, and their integrability."""
     observations = []
     for name, mechanism in COUNTED:
         configuration, velocity = mechanism.degrees_of_freedom()

@@ -1,4 +1,4 @@
-"""The page of the skate: all constructions that we found, compared on the sleigh, and the theory of skates."""
+"""The page of the skate: its constructions, compared on the sleigh, and its theory."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ from reports.write.columns import enforcement_by_method
 from reports.write.page_tables import COMPARED_STEP
 from reports.write.rows import Rows
 
-BLADE_LENGTH = 0.35  # m, as drawn
-PARKED: Triple = (0.0, 1.0, 0.0)  # the target pose of parking: straight sideways of the start
+BLADE_LENGTH = 0.35  # m, in pictures
+PARKED: Triple = (0.0, 1.0, 0.0)  # the final pose of parking: straight sideways of the initial one
 
 
 def parking() -> Figure:
-    """Manoeuvres from a pose to the one beside it, and the displacement of ever smaller commutators."""
+    """Manoeuvres by which a skate moves sideways, and the displacement of a commutator against its size."""
     start: Triple = (0.0, 0.0, 0.0)
     panels = [
         _manoeuvre("turn, slide, turn", start, park(start, PARKED)),
@@ -60,22 +60,22 @@ def parking() -> Figure:
     moved = commutator_displacement(sizes, sizes) / sizes[:, None] ** 2
     sideways = Path(np.column_stack([sizes, moved[:, 1]]), "sideways, towards 1", "third")
     along = Path(np.column_stack([sizes, moved[:, 0]]), "along, towards 0", "first", "--")
-    title, across = "the commutator's way, over the product of its moves", "size of both moves [rad, m]"
+    title, across = "displacement of a commutator / product of its moves", "size of both moves [rad, m]"
     panels.append(Panel(title, [sideways, along], plane=False, x_label=across, logarithmic_across=True))
     return paths(panels, columns=2, height=2.6)
 
 
 def _manoeuvre(title: str, start: Triple, moves: tuple[Move, ...]) -> Panel:
-    way, poses = trace(start, moves), stops(start, moves)
+    path, poses = trace(start, moves), stops(start, moves)
     blades = [Blades(poses[1:-1], BLADE_LENGTH, "quiet", 1.6), Blades(poses[[0, -1]], BLADE_LENGTH, "ink", 3.4)]
     (x, y), (end_x, end_y) = poses[0][:2], poses[-1][:2]
     notes = [PanelNote((x, y - 0.16), "from", "center"), PanelNote((end_x, end_y + 0.16), "to", "center")]
-    return Panel(title, [Path(way[:, :2], "path of C", "second", "-", 1.6)], blades, notes)
+    return Panel(title, [Path(path[:, :2], "path of C", "second", "-", 1.6)], blades, notes)
 
 
 def slope() -> Figure:
-    """An ideal skate that turns on an incline and moves sideways along cycloids."""
-    panels, label = [], "path of C; down the slope is down"
+    """An ideal skate that turns on a slope: it moves across the slope on cycloids."""
+    panels, label = [], "path of C; the slope descends downwards"
     for title, scene in (
         ("turning at 1 rad/s from rest, blade across the slope", SkateOnSlope(turning_rate=1.0)),
         ("the same with a push of 0.5 m/s", SkateOnSlope(turning_rate=1.0, speed=0.5)),
@@ -89,8 +89,8 @@ def slope() -> Figure:
 SKATE_SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinnedBody())
 SLEIGH_AHEAD = ChaplyginSleigh()
 
-BLADES = 7  # skates drawn along a path
-# Method -> (colour, dashes); only methods that are visibly off.
+BLADES = 7  # blades drawn along a path
+# Method with a visible error -> (colour, dashes).
 DRAWN_PATHS: dict[str, tuple[str, Any]] = {
     "pymunk skate: centre's velocity zeroed": ("first", "--"),
     "pymunk skate: point's velocity zeroed": ("first", ":"),
@@ -98,19 +98,18 @@ DRAWN_PATHS: dict[str, tuple[str, Any]] = {
     "mujoco default": ("second", "--"),
     "mujoco tuned": ("second", ":"),
 }
-# Methods of the table beside the usual variants. "pymunk naive" zeroes the centre's velocity; "pymunk tuned" is the
-# groove at the predicted heading.
+# Methods in the table besides the usual variants. "pymunk naive" sets the centre's velocity across the blade to zero.
 LISTED = ("pymunk naive", "pymunk skate: groove, extrapolated", "pymunk skate: point's velocity zeroed")
 LISTED += ("mujoco friction blade",)
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
-    """Constructions of a skate are run on the sleigh alone; the sleigh backwards is an experiment of its own."""
+    """Whether a method is run in a scene: constructions of a skate are run on the sleigh ahead only."""
     return scene == SLEIGH_AHEAD or engine not in SKATE_CONSTRUCTIONS
 
 
 def skate_path(scene: ChaplyginSleigh, trajectory: Trajectory) -> np.ndarray:
-    """Poses (times, 3) of the skate, from those of the sleigh's body."""
+    """Poses (times, 3) of the skate in a motion of the sleigh."""
     pose = trajectory.pose[:, 0]
     arm = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2]), np.zeros(len(pose))], axis=-1)
     return pose - scene.offset * arm
@@ -126,12 +125,12 @@ PATHS = tuple(
 
 
 def path_picture(material: Material) -> Figure:
-    """The skate's path in the reference motion and by several methods, ahead and backwards."""
+    """The skate's path in the reference motion and in several methods, ahead and backwards."""
     panels = []
     for title, scene, cells in PATHS:
         motions = material.motions(cells.values())
         truth = scene.skate_pose(np.linspace(0, scene.duration, scene.samples + 1))
-        lines = [Path(truth[:, :2], "truth", "ink", "-", 3.0)]
+        lines = [Path(truth[:, :2], "exact", "ink", "-", 3.0)]
         for name, cell in cells.items():
             if cell in motions:
                 colour, dashes = DRAWN_PATHS[name]
@@ -143,9 +142,8 @@ def path_picture(material: Material) -> Figure:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Paths, parking, and the slope."""
     return {
-        "paths": svg(path_picture(material), "The skate's path, ahead and backwards, in truth and in several methods"),
+        "paths": svg(path_picture(material), "The skate's path, ahead and backwards: exact, and in several methods"),
         "parking": svg(parking(), "Parallel parking by turns and slides, and the commutator"),
         "slope": svg(slope(), "An ideal skate that turns on a slope"),
     }
@@ -162,9 +160,9 @@ CONSTRUCTION_HEADER = (
 
 
 def constructions(rows: Sequence[Measurement], enforcement: Mapping[str, str] | None = None) -> str:
-    """A line for each construction, best first: errors at about the compared step, cost, convergence of the error.
+    """A Markdown table of errors and cost at COMPARED_STEP, and of convergence; the best construction is first.
 
-    Constructions without a run near that step are left out; the text is empty without any line.
+    Constructions without a run near that step are left out. The text is empty if none is left.
     """
     verdicts = by_method(sweeps(rows), "position")
     lines = []
@@ -188,7 +186,7 @@ def constructions(rows: Sequence[Measurement], enforcement: Mapping[str, str] | 
 
 @cache
 def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> str:
-    """A table of the degrees of freedom by rank and by brackets; `names` replace the scenes' own names."""
+    """A Markdown table of degrees of freedom by rank and by Lie brackets; `names` replace those of the scenes."""
     body = []
     for name, scene in zip(names or tuple(scene.name for scene in scenes), scenes, strict=True):
         mechanism = scene.mechanism()
@@ -201,7 +199,7 @@ def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> 
 
 
 def uniform_conditions() -> str:
-    """A table of conditions (a, b, c) on one body: the equivalent skate, and w . curl w at a pose."""
+    """A Markdown table of conditions w = (a, b, c) on one body, with the equivalent skate and w . curl w at a pose."""
     body = []
     for row in ((0.0, 1.0, 0.5), (1.0, 0.0, 0.0), (3.0, 4.0, -2.0), (0.0, 0.0, 1.0)):
         skate, curl = skate_of(row), frobenius(row, np.array([0.3, -0.2, 0.8]))
@@ -214,10 +212,11 @@ def uniform_conditions() -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Tables, and functions that look up rows of the sleigh (UNMEASURED without a row).
+    """Tables, and functions that look up rows of the sleigh. They return UNMEASURED if there is no row.
 
-    at: a method's row nearest to a step [s]. least: the row of an engine's variant with the least position error.
-    finest: a method's row at the smallest step with a position error.
+    at: a method's row nearest to a step [s]
+    least: the row of an engine's variant with the least position error
+    finest: a method's row at the smallest step with a position error
     """
     rows = Rows(material.sweep((SLEIGH_AHEAD,)))
     enforcement = enforcement_by_method(
@@ -237,8 +236,8 @@ def context(material: Material) -> Mapping[str, Any]:
     }
 
 
-# The naive method moves another body and has no convergence order. The order of an ideal row is declared all the same,
-# so that the gate checks by how much the method misses it.
+# The naive method does not converge to the ideal motion. The order of an ideal row is declared nevertheless, so that
+# the gate measures how far the method misses it.
 DECLARED_ORDERS = {("sleigh_backwards", "pymunk default"): ConvergenceOrder(1, differences=1)}
 
 PAGE = scene_page(

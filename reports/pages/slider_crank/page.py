@@ -1,4 +1,4 @@
-"""The page of the slider-crank, driven and free, and of constructions of its slot."""
+"""The page of the slider-crank, and of constructions of its slot."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from reports.plots.theme import svg
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
-LEFT_BY = 1.0  # rad: a crank at this distance has left its dead centre
-TIMES_OF_LEAVING = 3001  # equally spaced over the scene's duration, every 0.5 ms
+LEFT_BY = 1.0  # rad; a crank with a larger angle has left its dead centre
+LEAVING_SAMPLES = 3001
 
 
 @dataclass(frozen=True)
 class Leaving(Task):
-    """The time at which a slider has moved the crank away from its dead centre, from `angle` [rad] beside it."""
+    """The time at which the crank has left its dead centre; its initial distance is `angle` [rad]."""
 
     angle: float
 
@@ -43,9 +43,9 @@ class Leaving(Task):
     words: ClassVar[str] = "leaving a dead centre from {0.angle:g} rad"
 
     def run(self) -> Values:
-        """`when`: the first of TIMES_OF_LEAVING instants at which the crank is further than LEFT_BY [s]."""
+        """`when`: the first sample at which the crank's angle is larger than LEFT_BY [s]."""
         scene = SliderAtDeadCentre(angle=self.angle)
-        t = [scene.duration * i / (TIMES_OF_LEAVING - 1) for i in range(TIMES_OF_LEAVING)]
+        t = [scene.duration * i / (LEAVING_SAMPLES - 1) for i in range(LEAVING_SAMPLES)]
         has_left = scene.motion(t).pose[:, 0, 2] > LEFT_BY
         return {"when": np.asarray(t[int(np.argmax(has_left))] if has_left.any() else np.nan)}
 
@@ -65,28 +65,26 @@ LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
 
 
 def delay(material: Material) -> dict[str, Any]:
-    """`later` [s]: delay of the nearest start relative to one at a hundred times its distance; `nearer`: log 100."""
+    """`later`: by how much the time increases from the second to the last of LEAVING [s]. `nearer`: log 100."""
     far, near = (material.finished(task) for task in LEAVING[-2:])
     later = near.number("when") - far.number("when") if far and near else UNMEASURED
     return {"later": later, "nearer": math.log(LEAVING[-2].angle / LEAVING[-1].angle)}
 
 
 def leaving(material: Material) -> list[Observation]:
-    """The times at which the reference motion is a radian away, for starts ever nearer to the dead centre."""
+    """The times at which the crank of the reference motion has left its dead centre, by initial distance."""
     settings = [(task, f"{number(task.angle)} rad aside") for task in LEAVING]
     describe = "a radian away after {:.3f} s".format
     return read_answers(material, "the reference", settings, lambda answer: describe(answer.number("when")))
 
 
 def out_of_reach(material: Material) -> list[Observation]:
-    """The reference's error messages for slots that the rod can't reach."""
     shape = DrivenSliderCrank().shape
     offsets = (shape.rod - shape.crank, 1.0)
     return refusals({f"offset {offset:.3g} m": partial(replace, shape, offset=offset) for offset in offsets})
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Stroboscopic pictures of reference motions: in line, with an offset, and on the other branch."""
     driven = DrivenSliderCrank()
     offset = DrivenSliderCrank(offset=0.4, crank=0.4)
     strips = (
@@ -99,7 +97,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Dead centres [°] and stroke [m] of the scene, by formula."""
+    """Dead centres [°] and stroke [m] of the driven scene."""
     shape = DrivenSliderCrank().shape
     stretched, folded = shape.dead_centres()
     return {"stretched": math.degrees(stretched), "in_line_again": math.degrees(folded), "stroke": shape.stroke()}

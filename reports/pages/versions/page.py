@@ -1,4 +1,4 @@
-"""The page of versions: a table and a heat map of each engine, from one file of rows."""
+"""The page of versions: a table and a heat map for each engine."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from reports.write.tables import markdown
 
 
 def variants(entries: Sequence[Entry]) -> tuple[str, ...]:
-    """The variants in the order of every table: the three usual ones, then the others by name."""
+    """The variants in the order of tables: the three usual variants first, the others by name."""
     present = {entry.variant for entry in entries}
     usual = [variant for variant in ("default", "tuned", "extended") if variant in present]
     return (*usual, *sorted(present - {*usual}))
 
 
 def heat_map(entries: Sequence[Entry], versions: Sequence[str]) -> Figure:
-    """Scenes by versions, a panel for each method; a cell has the power of ten of its error or its outcome's letter."""
+    """A panel for each method, with a cell for each scene and version: the power of ten of the error, or a letter."""
     methods = variants(entries)
     scenes = {method: tuple(dict.fromkeys(e.scene for e in entries if e.variant == method)) for method in methods}
     heights = [len(scenes[method]) for method in methods]
@@ -57,7 +57,7 @@ def heat_map(entries: Sequence[Entry], versions: Sequence[str]) -> Figure:
 
 
 def _look(entry: Entry) -> tuple[str, str]:
-    """(colour, text) of a cell. A failure has a letter and no hatch, which would make the letter unreadable."""
+    """(colour, text) of a cell. A failure is not hatched, because its letter would be hard to read."""
     if not entry.comparable:
         outcome = Outcome(entry.outcome)
         return outcome_colour(outcome), outcome.letter
@@ -67,7 +67,7 @@ def _look(entry: Entry) -> tuple[str, str]:
 
 def _draw_cell(panel: Axes, column: int, row: int, entry: Entry) -> None:
     colour, letters = _look(entry)
-    # An artist and not a patch, so that the limits are not computed again for each of some thousand cells.
+    # With `add_patch`, matplotlib would compute the limits again for each of some thousand cells.
     panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=LIGHT.paper, linewidth=1))
     panel.text(column + 0.5, row + 0.5, letters, ha="center", va="center", color=LIGHT.ink, fontsize=7, in_layout=False)
 
@@ -83,7 +83,7 @@ def _legend(figure: Figure, entries: Sequence[Entry]) -> None:
 
 
 def version_table(table: ReleaseTable, engine: str) -> str:
-    """A line for each version: the number of errors that became better or worse, its cost, and its known changes."""
+    """A Markdown table of the versions: known changes, numbers of errors that fell or rose, and relative costs."""
     entries, versions = table.of(engine), table.versions(engine)
     costs = {method: relative_cost(entries, versions, method) for method in variants(entries)}
     costs = {method: ratios for method, ratios in costs.items() if ratios}
@@ -104,7 +104,6 @@ def version_table(table: ReleaseTable, engine: str) -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """A dictionary for each engine."""
     table, described = released(), []
     for engine in table.engines:
         entries, versions = table.of(engine), table.versions(engine)
@@ -124,7 +123,6 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def figures(material: Material) -> Mapping[str, str]:
-    """A heat map for each engine, in the order of the page."""
     table = released()
     return {
         f"{name}_heat": svg(heat_map(table.of(name), table.versions(name)), f"{name}: errors of scenes by version")

@@ -1,4 +1,4 @@
-"""The page of ideal wheels: vehicles that coast, towed wheels and casters."""
+"""The page of ideal wheels: coasting vehicles, towed wheels and casters."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from reports.write.unmeasured import UNMEASURED
 
 @dataclass(frozen=True)
 class Folding(Task):
-    """The reference motion of a car that reverses with a trailer; `driven`: seconds of driving at an even speed."""
+    """The reference motion of a car that reverses with a trailer, coasting or driven for `driven` [s]."""
 
     scene: CarAndTrailer
     driven: float
@@ -39,7 +39,7 @@ class Folding(Task):
     words: ClassVar[str] = "the reference on a reversing trailer"
 
     def run(self) -> Values:
-        """`jackknifed`: when the trailer is at a right angle to the driven car [s]; `t`, `pose`: coasting."""
+        """`jackknifed`: when the trailer of the driven car is bent by a right angle [s]. `t`, `pose`: coasting."""
         scene = self.scene
         car = CarWithTrailers(scene.wheelbase, (scene.length,), (scene.hitch,))
         convoy = car.drive(scene.speed, scene.steering, scene.pose, (scene.bend,), [self.driven])
@@ -56,7 +56,7 @@ FOLDED = math.pi / 2  # rad
 
 
 def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
-    """The time at which |values| first passes a limit, linear between samples; None if it never does."""
+    """The time at which |values| first exceeds a limit, interpolated linearly; None if it never does."""
     over = np.flatnonzero(np.abs(values) > limit)
     if not over.size or over[0] == 0:
         return None
@@ -65,21 +65,21 @@ def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
     return float(t[end - 1] + (t[end] - t[end - 1]) * (limit - low) / (high - low))
 
 
-# Straight back, the bend b follows b' = (v/L) sin b: tan(b/2) grows as exp(v t/L).
+# If the car reverses straight at the speed v, the bend b follows b' = (v/L) sin b, and tan(b/2) grows as exp(v t/L).
 FOLDS = BACKING.length * math.log(1 / math.tan(BACKING.bend / 2)) / abs(BACKING.speed)  # s
 REFERENCE = Folding(BACKING, FOLDS + 1)
 RUNS = tuple(Cell(BACKING, engine, every) for engine in ENGINES_ALONE for every in steps_for(engine, (1, 10)))
 
 
 def folding(material: Material) -> list[Observation]:
-    """When the reversing trailer passes a right angle: by closed form, by kinematics, and by methods that coast."""
+    """The time at which the trailer is bent by a right angle: by closed form, by kinematics, and in the engines."""
     bent = float(Tow(BACKING.length, BACKING.bend).relative_angle(-FOLDS * abs(BACKING.speed)))
-    observations = [Observation("closed form, at an even speed", "", f"{FOLDS:.4f} s")]
+    observations = [Observation("closed form, at a constant speed", "", f"{FOLDS:.4f} s")]
     reference = material.finished(REFERENCE)
     if reference:
         driven = f"{reference.number('jackknifed'):.4f} s"
-        observations.append(Observation("the reference, driven at an even speed", "", driven))
-    observations.append(Observation("the drawbar pushed along by that way", "", f"bent by {bent:.4f} rad"))
+        observations.append(Observation("the reference, driven at a constant speed", "", driven))
+    observations.append(Observation("the drawbar, pushed along this distance", "", f"bent by {bent:.4f} rad"))
     if answer := material.answers.get(REFERENCE):
         coasting = _folded(answer.array("t"), answer.array("pose")) if reference else answer.told
         observations.append(Observation("the reference, coasting", "", coasting))
@@ -87,7 +87,7 @@ def folding(material: Material) -> list[Observation]:
 
 
 def lateness(material: Material) -> dict[str, Any]:
-    """`late`: the delay with which the trailer folds by the naive method [s], the larger step first."""
+    """`late`: by how much the trailer folds later in the naive method [s], at the larger and at the smaller step."""
     truth = material.finished(REFERENCE)
     exact = crossing(truth.array("t"), bend_of(truth.array("pose")), FOLDED) if truth else None
     motions = material.motions(cell for cell in RUNS if cell.engine == pymunk.DEFAULT)
@@ -111,14 +111,13 @@ FORCE_QUANTITIES = ("position", "slip", "energy", "reaction")
 CAR, CART = CarAndTrailer(redundant=True), Cart(redundant=True)
 
 
-# All tows start with the drawbar at a right angle to the way of the hitch.
-DRAWBAR = 1.0  # m
-RADII = (1.6, 1.0, 0.6)  # of the circles of the hitch, in drawbar lengths
+DRAWBAR = 1.0  # m; the drawbar is first at a right angle to the hitch's path
+RADII = (1.6, 1.0, 0.6)  # of the hitch's circles [m]
 DRAWBARS = 7  # drawn along a path
 
 
 def tows() -> Figure:
-    """A wheel towed along a straight line (the tractrix) and round circles with R > L, R = L and R < L."""
+    """A wheel towed along a straight line and round circles whose radii are larger than, equal to and below DRAWBAR."""
     panels = [_tow("straight: the tractrix", math.inf, 4 * DRAWBAR)]
     for radius, sign in zip(RADII, (">", "=", "<"), strict=True):
         panels.append(_tow(f"R {sign} L", radius, 2.5 * 2 * math.pi * radius))
@@ -127,18 +126,18 @@ def tows() -> Figure:
 
 def _tow(title: str, radius: float, distance: float) -> Panel:
     tow = Tow(DRAWBAR, math.pi / 2, radius)
-    way, stops = np.linspace(0, distance, 800), np.linspace(0, min(distance, 4 * DRAWBAR), DRAWBARS)
-    led = way if math.isinf(radius) else np.linspace(0, 2 * math.pi * radius, 200)
+    along, stops = np.linspace(0, distance, 800), np.linspace(0, min(distance, 4 * DRAWBAR), DRAWBARS)
+    once = along if math.isinf(radius) else np.linspace(0, 2 * math.pi * radius, 200)
     drawbars = np.column_stack([0.5 * (tow.hitch(stops) + tow.wheel(stops)), tow.heading(stops)])
     lines = [
-        Path(tow.hitch(led), "hitch", "quiet", "--", 1.2),
-        Path(tow.wheel(way), "towed wheel", "second", "-", 1.8, dot=True),
+        Path(tow.hitch(once), "hitch", "quiet", "--", 1.2),
+        Path(tow.wheel(along), "towed wheel", "second", "-", 1.8, dot=True),
     ]
     return Panel(title, lines, [Blades(drawbars, DRAWBAR, "quiet", 0.9, "drawbar")])
 
 
 def casters() -> Figure:
-    """Two casters of a cart: going ahead they trail; pushed back they swing round after the smallest deviation."""
+    """The two casters of a cart: they trail when the cart goes ahead, and swing round when it is pushed back."""
     cart = Casters(((0.7, 0.2), (0.7, -0.2)), 0.1)
     corners = np.array([[0.0, 0.2], *cart.places, [0.0, -0.2], [0.0, 0.2]])  # from the fixed axle to the kingpins
     t = np.linspace(0, 2, 801)
@@ -164,7 +163,7 @@ def casters() -> Figure:
 
 
 def reversing() -> Figure:
-    """A car that reverses straight with a trailer that is slightly bent: the trailer folds as a tractrix predicts."""
+    """A car that reverses straight with a slightly bent trailer, until the trailer folds."""
     car = CarWithTrailers(1.0, (0.8,), (0.2,))
     t = np.linspace(0, 3.2, 321)
     panels = []
@@ -206,21 +205,16 @@ COASTING_VEHICLES = tuple(
 
 
 def coasting(material: Material) -> Figure:
-    """The paths of the bodies of both vehicles, by the reference and by several methods."""
+    """The paths of the bodies of both vehicles in the reference motion and in several methods."""
     panels = []
     for title, scene, cells in COASTING_VEHICLES:
-        truth, motions = (
-            scene.motion(np.linspace(0, scene.duration, scene.samples + 1)),
-            material.motions(cells.values()),
-        )
-        lines = [Path(pose, "truth", "ink", "-", 3.0) for pose in _of_bodies(truth)]
+        truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1))
+        motions = material.motions(cells.values())
+        lines = [Path(pose, "exact", "ink", "-", 3.0) for pose in _of_bodies(truth)]
         for name, cell in cells.items():
             if cell in motions:
-                label, (colour, dashes) = (
-                    f"{cell.engine.name} {displayed_variant(scene, cell.engine)}",
-                    VEHICLE_METHODS[name],
-                )
-                style = (label, colour, dashes, 1.5)
+                label = f"{cell.engine.name} {displayed_variant(scene, cell.engine)}"
+                style = (label, *VEHICLE_METHODS[name], 1.5)
                 lines += [Path(pose, *style, framed=False, dot=True) for pose in _of_bodies(motions[cell])]
         panels.append(Panel(title, lines))
     return paths(panels, columns=2)
@@ -232,9 +226,8 @@ def _of_bodies(motion: Trajectory) -> np.ndarray:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Both vehicles coasting, tows, casters, and the trailer that folds."""
     return {
-        "coasting": svg(coasting(material), "Paths of the centres of mass, in truth and in several methods"),
+        "coasting": svg(coasting(material), "Paths of the centres of mass: exact, and in several methods"),
         "tows": svg(tows(), "A towed wheel: the tractrix, and tows round circles"),
         "casters": svg(casters(), "Casters that trail, and that swing round"),
         "reversing": svg(reversing(), "A reversing trailer folds"),
@@ -242,7 +235,6 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """`counted`: the table of degrees of freedom."""
     scenes = (*VEHICLES, CAR, CART)
     doubled = ("car_and_trailer, both wheels of each axle", "cart, both wheels of the fixed axle")
     return {"counted": counted(scenes, (*(scene.name for scene in VEHICLES), *doubled))}

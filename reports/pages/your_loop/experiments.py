@@ -1,4 +1,4 @@
-"""Measurements beside the rows of scenes: fresh mechanisms of each kind, and linkages of users of pymunk."""
+"""Errors in random mechanisms of each kind, and in linkages that users of pymunk build."""
 
 from __future__ import annotations
 
@@ -24,27 +24,25 @@ from reports.pages.your_loop.linkages import LINKAGES
 
 PAGE_STEP = 1e-3  # s
 MILLISECONDS_PER_SAMPLE = 10  # samples of the scenes are 1e-2 s apart
-# The seed of the draw is the hash of the last commit before its code was written: the mechanisms were not selected, and
-# each run draws the same.
+# The seed is the hash of the last commit before this code was written, so it was not chosen for its results.
 COMMIT = "007b1fa1"
 COUNT = 60  # mechanisms of each kind
-LEAST_SAMPLES = 20  # a motion that can be compared for fewer samples is drawn again
-SCALE_EXPONENT = 1.0  # each number is multiplied by 2**x, x between -SCALE_EXPONENT and SCALE_EXPONENT
-ANGLE_FIELDS = ("start", "angle", "start_angle")  # [rad], drawn from the whole circle
+LEAST_SAMPLES = 20  # a mechanism whose motion is known for fewer samples is drawn again
+SCALE_EXPONENT = 1.0  # each number is multiplied by 2**x with x between -SCALE_EXPONENT and SCALE_EXPONENT
+ANGLE_FIELDS = ("start", "angle", "start_angle")  # drawn from -pi to pi
 UNCHANGED_FIELDS = ("links", "duration", "horizon", "branch", "friction", "density", "gravity")
 
 
 def draw(scene: Scene, number: int) -> Mechanism:
-    """Mechanism `number` of the scene's kind: sizes, masses and rates times random factors, at a random angle.
+    """Random mechanism `number` of the scene's kind: lengths, masses and rates are scaled, and angles are drawn.
 
-    The draw is repeated until the numbers define a mechanism whose motion is known for LEAST_SAMPLES.
+    The draw is repeated until the mechanism's motion is known for more than LEAST_SAMPLES samples.
     """
     digest = hashlib.sha256(f"{COMMIT} {scene.name} {number}".encode()).hexdigest()
     random = np.random.default_rng(int(digest, 16))
     while True:
         changed: dict[str, Any] = {}
-        # Fields only: other attributes of a scene are cached results.
-        for name in (each.name for each in fields(cast(Any, scene))):
+        for name in (field.name for field in fields(cast(Any, scene))):
             match getattr(scene, name):
                 case _ if name == "branch":
                     changed[name] = int(random.choice((-1, 1)))
@@ -67,27 +65,26 @@ def draw(scene: Scene, number: int) -> Mechanism:
             continue
 
 
-@lru_cache(maxsize=COUNT)  # all engines are compared with the same motions
+@lru_cache(maxsize=COUNT)  # each engine is compared with the same motions
 def _ideal(mechanism: Mechanism, samples: int, duration: float) -> IdealMotion:
     return reference_motion(mechanism, samples, duration / samples)
 
 
 @dataclass(frozen=True)
 class Fresh(MethodTask):
-    """The errors of one method in COUNT fresh mechanisms of a scene's kind, against the exact solver."""
+    """The errors of one method in COUNT random mechanisms of a scene's kind, relative to the exact solver."""
 
     scene: Scene
     quantity: str = "angle"
     commit: str = COMMIT
-    description: ClassVar[str] = f"{COUNT} fresh mechanisms as {{0.scene.name}}"
+    description: ClassVar[str] = f"{COUNT} random mechanisms like {{0.scene.name}}"
     seconds: ClassVar[float] = 20.0
 
     def run(self) -> Values:
-        """`error` (COUNT,): the largest errors before neighbouring motions diverge; inf for a failed run."""
+        """`error` (mechanisms,): the largest error within the horizon of the ideal motion; inf for a failed run."""
         return {"error": np.array([self.error(number) for number in range(COUNT)])}
 
     def error(self, number: int) -> float:
-        """The error of mechanism `number` [rad, or m for positions]."""
         mechanism, samples = draw(self.scene, number), self.scene.samples
         ideal = _ideal(mechanism, samples, self.scene.duration)
         truth = ideal.trajectory
@@ -97,13 +94,13 @@ class Fresh(MethodTask):
         return float(early.max()) if np.isfinite(early).all() else inf
 
 
-GAP_DURATION = 10.0  # s: gaps are measured for longer than `choose` has looked ahead
-ANGLE_DURATION = 3.0  # s: angles are compared for this time at most
-LINKAGE_STEP = 1 / 240  # s, usual in games; shorter steps take several minutes of CPU time for all linkages
+GAP_DURATION = 10.0  # s; longer than the trial run of `choose`
+ANGLE_DURATION = 3.0  # s; angles are compared for at most this time
+LINKAGE_STEP = 1 / 240  # s, usual in games
 
 
 def run_lines(space: pymunk.Space, lines: str) -> dict[str, Any]:
-    """The global names after the lines were run on a space that is ready to be stepped."""
+    """Run the lines with the name `space`, and return their global names."""
     names: dict[str, Any] = {"pymunk": pymunk, "space": space, "print": lambda *words: None}
     exec(lines, names)
     return names
@@ -111,7 +108,7 @@ def run_lines(space: pymunk.Space, lines: str) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class BeforeAndAfter(Task):
-    """The errors of one linkage as shipped and with the lines of the page."""
+    """The errors of one linkage, first as shipped and then with the lines of the page."""
 
     linkage: str
     lines: str
@@ -120,10 +117,10 @@ class BeforeAndAfter(Task):
     words: ClassVar[str] = "with the lines: {0.linkage}"
 
     def run(self) -> Values:
-        """`gap` (2,) [px] as shipped and with the lines; `angle` (2,) [rad], the errors against the exact solver.
+        """`gap` (2,) [px] and `angle` (2,) [rad]: the largest errors as shipped and with the lines.
 
-        Angles are NaN if shapes touch or the space is not an ideal mechanism. `iterations` is 0 if the lines leave the
-        space as shipped.
+        Angles are NaN if shapes touch or if the space is not an ideal mechanism. `iterations` is 0 if the lines do not
+        change the space.
         """
         make = LINKAGES[self.linkage]
         shipped, closed, touched = make(), make(), []
@@ -147,7 +144,7 @@ class BeforeAndAfter(Task):
         }
 
     def _angle_errors(self, angles: np.ndarray) -> list[float]:
-        """The largest errors of angles (2, times, bodies) [rad] before neighbours diverge or an obstacle is met."""
+        """The largest errors (2,) of angles (2, times, bodies) [rad] until the horizon or the first obstacle."""
         space = LINKAGES[self.linkage]()
         try:
             reading = read(space, LINKAGE_STEP)

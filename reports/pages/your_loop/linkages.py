@@ -1,9 +1,9 @@
-"""Planar linkages as users of pymunk build them: in pixels, y up, mostly from rest. LINKAGES makes a new space of each.
+"""Planar linkages as users of pymunk build them: lengths are in pixels, and y points upwards.
 
-`linkages.json` has the elements of each linkage by its name, bodies first: `["bars", density, group, corners]` is one
-body of thin bars between its corners (closed if there are three or more); `["pin", a, b, point]` is a pivot of two
-bodies, numbered from 0, with -1 for the ground. Points of bars, balls, boxes and pins are points of the space; points
-of grooves, springs and rods are in the frames of the bodies. A new linkage is an entry of that file.
+`linkages.json` has a list of elements for each linkage; the bodies come first. `["bars", density, group, corners]` is
+one body of thin bars between the corners; three or more corners are a closed polygon. `["pin", a, b, point]` is a pivot
+between two bodies. Bodies are numbered from 0, and -1 is the ground. Points of bars, balls, boxes and pins are in the
+frame of the space. Points of grooves, springs and rods are in the frames of the bodies.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from pymunk.constraints import (
 
 PLANS: Mapping[str, list[list[Any]]] = json.loads(Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
 PIXEL_GRAVITY = (0, -900)  # px/s^2
-# The first word of an element between two bodies -> its class; the rest of the element are the arguments.
+# The first word of an element -> its class. The other words are the arguments of the class.
 PYMUNK_JOINTS: Mapping[str, Callable[..., Constraint]] = {
     "pin": PivotJoint,
     "motor": SimpleMotor,
@@ -43,7 +43,7 @@ PYMUNK_JOINTS: Mapping[str, Callable[..., Constraint]] = {
 
 
 def bars(density: float, corners: list[list[float]]) -> tuple[pymunk.Body, list[pymunk.Shape]]:
-    """A body of thin bars between the corners [px] with this mass per pixel, and its shapes."""
+    """A body of thin bars between the corners [px], with this mass per pixel; and its shapes."""
     points = [pymunk.Vec2d(*corner) for corner in corners]
     sides = list(itertools.pairwise(points)) + ([(points[-1], points[0])] if len(points) > 2 else [])
     masses = [density * (q - p).length for p, q in sides]
@@ -58,26 +58,25 @@ def bars(density: float, corners: list[list[float]]) -> tuple[pymunk.Body, list[
     return body, [pymunk.Segment(body, p - centre, q - centre, 3) for p, q in sides]
 
 
-def body_of(kind: str, size: float, *rest: Any) -> tuple[pymunk.Body, list[pymunk.Shape]]:
-    """The body of an element and its shapes; `size`: the mass, or the density of bars."""
-    match kind, rest:
+def body_of(kind: str, mass: float, *arguments: Any) -> tuple[pymunk.Body, list[pymunk.Shape]]:
+    """The body of an element and its shapes; for bars, `mass` is the mass per pixel."""
+    match kind, arguments:
         case "bars", (_, corners):
-            return bars(size, corners)
+            return bars(mass, corners)
         case "ball", (_, at, radius):
-            body = pymunk.Body(size, pymunk.moment_for_circle(size, 0, radius))
+            body = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0, radius))
             shapes: list[pymunk.Shape] = [pymunk.Circle(body, radius)]
         case "box", (_, at, sides):
-            body = pymunk.Body(size, pymunk.moment_for_box(size, sides))
+            body = pymunk.Body(mass, pymunk.moment_for_box(mass, sides))
             shapes = [pymunk.Poly.create_box(body, sides)]
         case _:  # a slider, which can't rotate and has no shape
-            (at,) = rest
-            body, shapes = pymunk.Body(size, inf), []
+            (at,) = arguments
+            body, shapes = pymunk.Body(mass, inf), []
     body.position = tuple(at)
     return body, shapes
 
 
 def make(name: str) -> pymunk.Space:
-    """A new space with the linkage of this name."""
     space = pymunk.Space()
     space.gravity = PIXEL_GRAVITY
     bodies: list[pymunk.Body] = []
@@ -90,10 +89,9 @@ def make(name: str) -> pymunk.Space:
             shape.friction = 1.0
             space.add(shape)
         elif kind in PYMUNK_JOINTS:
-            a, b, *rest = arguments
-            joined = [space.static_body if index < 0 else bodies[index] for index in (a, b)]
-            joint = PYMUNK_JOINTS[kind](*joined, *(tuple(each) if isinstance(each, list) else each for each in rest))
-            space.add(joint)
+            joined = [space.static_body if index < 0 else bodies[index] for index in arguments[:2]]
+            further = [tuple(value) if isinstance(value, list) else value for value in arguments[2:]]
+            space.add(PYMUNK_JOINTS[kind](*joined, *further))
         else:
             body, shapes = body_of(kind, *arguments)
             for shape in shapes:

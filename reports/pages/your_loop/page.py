@@ -1,4 +1,4 @@
-"""The page with lines to paste into a model of MuJoCo or pymunk, and the errors before and after."""
+"""The page with lines to paste into a model of MuJoCo or pymunk, and the errors without and with these lines."""
 
 from __future__ import annotations
 
@@ -30,7 +30,11 @@ LOOP, SLIDER, CHAIN, DISC, SKATE = map(
 
 @dataclass(frozen=True)
 class PastedCase:
-    """A kind of mechanism with one engine: `before`: as shipped, None without such a joint; `after`: with the lines."""
+    """A kind of mechanism in one engine.
+
+    before: the engine as shipped; None if it lacks the joint
+    after: the engine with the lines of the page
+    """
 
     title: str
     page: str
@@ -69,7 +73,7 @@ PYMUNK_CASES = (
 
 
 def cell(case: PastedCase, engine: Engine) -> Cell:
-    """The cell of a case at the page's only step; beside the grid if no other page runs the method in this scene."""
+    """The cell of a case at 1 ms. Its purpose is "beside" if no other page runs the method in this scene."""
     beside = engine == pymunk.LEAPFROG and case.scene != LOOP
     return Cell(case.scene, engine, MILLISECONDS_PER_SAMPLE, "beside" if beside else "sweep")
 
@@ -82,7 +86,7 @@ BUILT = tuple(BeforeAndAfter(name, PYMUNK_LINES.replace("(space, 1e-3)", "(space
 
 
 def table(material: Material, cases: tuple[PastedCase, ...]) -> str:
-    """A line for each case: errors of fresh mechanisms before and after, errors and CPU times of the page's scene."""
+    """A Markdown table of the cases: errors in random mechanisms, and errors and CPU times of the example."""
     body = []
     for case in cases:
         rows = [material.rows.get(cell(case, engine)) for engine in case.engines]
@@ -98,7 +102,7 @@ def table(material: Material, cases: tuple[PastedCase, ...]) -> str:
 
 
 def spread(material: Material, task: Fresh) -> list[float]:
-    """[median, least, largest] error of the fresh mechanisms; UNMEASURED if they were not run."""
+    """[median, least, largest] error of the random mechanisms; UNMEASURED if they were not run."""
     answer = material.finished(task)
     if answer is None:
         return [UNMEASURED] * 3
@@ -107,13 +111,13 @@ def spread(material: Material, task: Fresh) -> list[float]:
 
 
 def spread_words(material: Material, task: Fresh) -> str:
-    """'1e-3 (1e-5 to 0.2)', or a dash if they were not run."""
+    """The `spread` as '1e-3 (1e-5 to 0.2)'; a dash if it is unmeasured."""
     median, least, largest = (number(value, infinite="gave up") for value in spread(material, task))
     return DASH if median == DASH else f"{median} ({least} to {largest})"
 
 
 def before_and_after(material: Material) -> str:
-    """A line for each linkage of pymunk's users; empty if none was run."""
+    """A Markdown table of BUILT; empty if no task has finished."""
     body = []
     for task in BUILT:
         answer = material.finished(task)
@@ -129,15 +133,16 @@ def before_and_after(material: Material) -> str:
 
 
 def code_before_step(engine: str) -> str:
-    """The code before each step of a skate, from the program that a test runs."""
+    """The part of the skate's program that runs before each step."""
     source = program("sleigh", f"{engine} tuned")
     return source[source.index("def aim():") : source.index("end = ")].rstrip()
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The lines and tables. reactions: relative errors of the joint forces on the loop, by engine.
+    """The lines and tables.
 
-    fresh: by engine, the spreads of the closed linkage as shipped and with the lines.
+    reactions: relative errors of the joint forces in the closed linkage, by engine
+    fresh: `spread` of the closed linkage as shipped and with the lines, by engine
     """
     earlier = [e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
     first = {"mujoco": MUJOCO_CASES[0], "pymunk": PYMUNK_CASES[0]}

@@ -1,4 +1,4 @@
-"""The page that explains the results of `crosscheck check` with three models of a user."""
+"""The page that explains the results of `crosscheck check` with three models."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MODEL_FILES = Path(__file__).parent / "models"
 
 @dataclass(frozen=True)
 class ModelCheck(Task):
-    """The check of one of the models beside this file; its text is a field, so that another text is another task."""
+    """The check of a model in MODEL_FILES. The model's text is a field, so that it is part of the task's key."""
 
     file: str
     text: str
@@ -37,7 +37,7 @@ class ModelCheck(Task):
 
     @property
     def stem(self) -> str:
-        """The name of the model in the template and in the names of its pictures."""
+        """The model's name in the template and in names of pictures."""
         return self.file.split(".")[0]
 
     def run(self) -> Values:
@@ -50,7 +50,7 @@ class ModelCheck(Task):
         for setting in (document, *document["tried"]):
             setting.pop("cpu")
             setting.pop("front", None)
-        # The cheapest setting differs between machines; the largest sufficient step does not.
+        # Unlike the cheapest sufficient setting, that with the largest step does not depend on the machine.
         coarsest = coarsest_enough(checked)
         document["advised"] = coarsest and {
             "words": coarsest.change.words,
@@ -63,13 +63,12 @@ class ModelCheck(Task):
 
 
 def coarsest_enough(checked: CheckResult) -> SettingRun | None:
-    """The first setting with the largest step within the tolerance."""
+    """The setting with the largest step whose error is within the tolerance; None if there is none."""
     enough = [setting for setting in checked.table if setting.error <= checked.tolerance]
     return max(enough, key=lambda setting: setting.change.dt, default=None)
 
 
 def model_check(file: str, name: str = "", **settings: float) -> ModelCheck:
-    """The check of a model of the page."""
     text = (MODEL_FILES / file).read_text(encoding="utf-8")
     return ModelCheck(file, text, f"{file}:{name}" if name else file, **settings)  # type: ignore[arg-type]
 
@@ -89,13 +88,12 @@ MODEL_SOURCES = {
 
 
 def rows() -> list[dict[str, str]]:
-    """The rows of all models that were tried."""
     with TRIED_MODELS.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def other_models() -> dict[str, object]:
-    """The number of models that were tried, that are read as they are and with options off, and their table."""
+    """Numbers of models that were tried, that are read unchanged, and that are read without options; and a table."""
     tried = rows()
     readable = [row for row in tried if row["bodies"]]
     body = [[MODEL_SOURCES[row["source"]], f"`{row['model']}`", _sentence(row)] for row in tried]
@@ -108,7 +106,7 @@ def other_models() -> dict[str, object]:
 
 
 def read_elements() -> str:
-    """The table of elements that the readers of models read, and of their meaning."""
+    """A Markdown table of the elements that `check` reads, and of their meaning."""
     body = [
         [key, element, meaning]
         for key, reader in sorted(readers().items())
@@ -126,7 +124,7 @@ def _sentence(row: dict[str, str]) -> str:
 
 
 def result_of(material: Material, task: ModelCheck) -> dict[str, Any] | None:
-    """The results of a check with their table; None if it was not run or did not finish."""
+    """The results of a check and their table; None if it did not finish."""
     if (answer := material.finished(task)) is None:
         return None
     document = json.loads(str(answer.values["found"]))
@@ -134,7 +132,6 @@ def result_of(material: Material, task: ModelCheck) -> dict[str, Any] | None:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Errors over time, and the worst moment, of each model."""
     return {
         f"{task.stem}_{key}": drawing
         for task in MODEL_CHECKS
@@ -144,7 +141,6 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def table(document: Mapping[str, Any]) -> str:
-    """The settings that were tried, and their errors."""
     body = [
         [
             setting["words"],
@@ -156,7 +152,6 @@ def table(document: Mapping[str, Any]) -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The tables, and by a model's name its check and the results (None if it was not run)."""
     return {
         "read": read_elements(),
         "others": other_models(),
@@ -169,7 +164,7 @@ PAGE = Page(
     name="your_model",
     title="Your own model",
     lesson="What `crosscheck check` reports on your own model: its error, its causes, and settings that suffice.",
-    companions=(FreeFourBar(),),  # a full run of it runs the checks too
+    companions=(FreeFourBar(),),
     figures=figures,
     context=context,
     tasks=MODEL_CHECKS,
