@@ -1,1 +1,1 @@
-"""Pictures of rows and poses; these modules do not depend on pages."""
+"""Pictures of rows and poses."""

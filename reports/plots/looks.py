@@ -1,4 +1,4 @@
-"""Colours, lines and marks of engines and outcomes; the order of the registry decides the look of a family."""
+"""Colours, lines and marks of engines and outcomes. A family's look follows from its place in the registry."""
 
 from __future__ import annotations
 
@@ -10,52 +10,49 @@ from engines import registry
 from reports.model.outcomes import Outcome
 from reports.plots.theme import LIGHT, SERIES
 
-# One more mark than colours, so that the first 72 families have different pairs of colour and mark.
+# There are nine marks and eight colours, so that 72 families have different pairs of colour and mark.
 MARKS = ("o", "s", "^", "D", "P", "*", "p", "h", "<")
 DASHES: tuple[Any, ...] = (":", "--", "-", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 3)), (0, (4, 1, 1, 1)))
 FILLS = ("empty", "left", "full", "bottom", "top", "right", "empty", "full")
-# The three usual variants of a family look the same in every chart.
 USUAL_VARIANTS = ("default", "tuned", "extended")
 
 
 def family_of(engine: str) -> str:
-    """The family of an engine by its name; the name itself if it is not registered."""
+    """The family of an engine's name; the name itself if no such engine is registered."""
     return next((entry.family for entry in (*registry.ENGINES, *registry.OTHERS) if entry.name == engine), engine)
 
 
 def _palette_index(family: str, engines: Iterable[str]) -> int:
-    """The index of a family in the palette: the registered ones first, then those of other engines by name."""
+    """The index of a family in the palette: registered families come first, then those of `engines` by name."""
     registered = [engine.family for engine in (*registry.ENGINES, *registry.OTHERS)]
     others = sorted({family_of(family), *map(family_of, engines)} - {*registered})
     return [*dict.fromkeys(registered), *others].index(family)
 
 
 def role(family: str, engines: Iterable[str] = ()) -> str:
-    """The role of a family's colour in a theme; `engines`: the names of all engines in the same picture."""
+    """The role of a family's colour in a theme; `engines` are the names of all engines in the picture."""
     return SERIES[_palette_index(family, engines) % len(SERIES)]
 
 
 def mark(family: str, engines: Iterable[str] = ()) -> str:
-    """The shape of a family's marks."""
     return MARKS[_palette_index(family, engines) % len(MARKS)]
 
 
 def colour(engine: str, engines: Iterable[str] = ()) -> str:
-    """The colour of an engine's family."""
     return getattr(LIGHT, role(family_of(engine), engines))
 
 
 def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-    """Line and mark of one method; `shown`: the variants in the same chart, by engine.
+    """The keyword arguments of a method's line in a chart; `shown` has the variants in the chart by engine.
 
-    The family determines colour and mark, the variant determines line and filling, so that methods differ without
-    colours too.
+    The family determines colour and mark, and the variant determines dashes and filling. Methods therefore differ for
+    readers who see no colours. The three usual variants of a family look the same in every chart.
     """
     family = family_of(engine)
     methods = [(name, of_name) for name, variants in shown.items() if family_of(name) == family for of_name in variants]
     usual = [(methods[0][0], usual_variant) for usual_variant in USUAL_VARIANTS]
     first = len(USUAL_VARIANTS) if any(method in usual for method in methods) else 0
-    # In a family without usual variants the registered methods come first, so that their looks never change.
+    # In a family without usual variants, the registered methods come first, so that their looks are always the same.
     everywhere = [] if first else [(entry.name, entry.variant) for entry in registry.VARIANTS if entry.family == family]
     others = [other for other in dict.fromkeys([*everywhere, *methods]) if other not in usual]
     method = (engine, variant)
@@ -74,7 +71,7 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]]) -> dict[
     }
 
 
-# (upper bound of the error, role of its colour), each darker than the one before on light paper.
+# (upper bound of the error, role of its colour); on light paper the colours become darker.
 SHADES = ((1e-9, "exact"), (1e-6, "fine"), (1e-4, "good"), (1e-2, "fair"), (math.inf, "middling"))
 SHADE_NAMES = {
     "exact": "error below 1e-9",
@@ -86,10 +83,9 @@ SHADE_NAMES = {
 
 
 def shade(error: float) -> str:
-    """The role of an error's colour; the last one for NaN."""
     return next((role for bound, role in SHADES if error < bound), "middling")
 
 
 def outcome_colour(outcome: Outcome) -> str:
-    """The colour of a cell with this outcome, where it is not coloured by its error (`shade`)."""
+    """The colour of a cell whose run can't be compared."""
     return getattr(LIGHT, outcome.colour)

@@ -1,7 +1,7 @@
-"""Mechanisms drawn from their poses: a bar joins the joint points of a body, a small circle is a joint.
+"""Pictures of mechanisms: a line connects the joint points of a body, and a circle is a joint.
 
-`configurations` draws pictures side by side, with methods over the reference motion. `stroboscope` draws poses at equal
-intervals in one picture, paler for earlier ones, or side by side like a film.
+`configurations` has a panel for each pose, with methods drawn over the reference motion. `stroboscope` draws poses at
+equal intervals into one panel; earlier poses are paler, or the poses are side by side.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from reports.plots.theme import LIGHT, bare, drawing
 
 Array = NDArray[np.float64]
 
-# A method's pose is drawn only if the error of a point exceeds this fraction of the picture: the width of a line.
+# Largest error of a point that is not visible, as a fraction of the picture: the width of a line.
 VISIBLE = 5e-3
 JOINT_DOTS: dict[str, Any] = {"marker": "o", "markerfacecolor": LIGHT.paper, "markeredgecolor": LIGHT.ink}
 INK: dict[str, Any] = {"color": LIGHT.ink, "linewidth": 2.2, "markersize": 4.5, "zorder": 2, **JOINT_DOTS}
 
 
 def draw_pose(panel: Axes, mechanism: Mechanism, pose: Array, **line: Any) -> None:
-    """The bars of one pose (bodies, 3); keyword arguments are those of a line."""
+    """Draw the bodies at a pose (bodies, 3); keyword arguments are those of `Axes.plot`."""
     for points in body_points(mechanism, pose).values():
         panel.plot(points[:, 0], points[:, 1], solid_capstyle="round", **line)
 
@@ -49,10 +49,10 @@ def configurations(
     others: Mapping[str, tuple[Array, str, Any]] | None = None,
     columns: int = 3,
 ) -> Figure:
-    """A panel for each of the reference poses (pictures, bodies, 3), with methods drawn over them where they differ.
+    """A panel for each of the reference poses `truth` (panels, bodies, 3).
 
-    others: name -> (poses (pictures, bodies, 3), name of a theme colour, line style). The legend says of a method that
-    is not drawn that it is not visibly off.
+    `others` maps a method to (poses (panels, bodies, 3), role of the colour, dashes). A method is drawn where its error
+    is visible. The legend marks methods that are drawn nowhere.
     """
     others = others or {}
     looks = {
@@ -81,15 +81,15 @@ def configurations(
                 if visibly_off(mechanism, pose, poses[index], size):
                     drawn.add(name)
                     draw_pose(panel, mechanism, poses[index], zorder=3, **looks[name])
-        labels = {name: name if name in drawn else f"{name}: not visibly off" for name in others}
-        handles = [Line2D([], [], color=LIGHT.ink, linewidth=2.2, label="truth")]
+        labels = {name: name if name in drawn else f"{name}: no visible error" for name in others}
+        handles = [Line2D([], [], color=LIGHT.ink, linewidth=2.2, label="exact")]
         handles += [Line2D([], [], label=labels[name], **look) for name, look in looks.items()]
         figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 
 
 def visibly_off(mechanism: Mechanism, truth: Array, pose: Array, size: float) -> bool:
-    """Whether a joint point is off by more than VISIBLE of the picture's size [m]; False if the pose is not finite."""
+    """Whether the error of a joint point exceeds VISIBLE times `size` [m]; False if the pose is not finite."""
     if not np.isfinite(pose).all():
         return False
     first, second = body_points(mechanism, truth), body_points(mechanism, pose)
@@ -100,17 +100,18 @@ def visibly_off(mechanism: Mechanism, truth: Array, pose: Array, size: float) ->
 Points = tuple[tuple[float, float], ...]
 
 LEAST_OPACITY = 0.12  # of the earliest pose
-LINE_BREAK = np.full((1, 2), np.nan)  # separates bodies that are drawn as one line
-BLOCK_SIZE = 0.045  # side of a body with a single joint point, as a fraction of the picture's size
+LINE_BREAK = np.full((1, 2), np.nan)  # between bodies that are plotted as one line
+BLOCK_SIZE = 0.045  # side of the rectangle of a body with one joint point, as a fraction of the picture
 
 
 @dataclass(frozen=True)
 class Strip:
     """One panel: `count` poses of a scene's reference motion from `start` to `end` [s].
 
-    ends: further points to draw, by body, in its frame [m] (a free end, a shoulder). spread: shift of each pose to the
-    right of the one before [m], as in a film. trace: a body and a point of it, whose path is drawn. floor: whether the
-    ground is a line at y = 0.
+    ends: points of bodies without a joint, such as a free end, in the body's frame [m]
+    spread: shift between successive poses to the right [m]
+    trace: a body and one of its points, whose path is drawn
+    floor: whether a line at y = 0 is drawn
     """
 
     scene: Scene
@@ -124,18 +125,16 @@ class Strip:
     floor: bool = False
 
     def times(self) -> Array:
-        """The times of the poses (count,) [s]."""
         return np.linspace(self.start, self.scene.duration if self.end is None else self.end, self.count)
 
     @property
     def caption(self) -> str:
-        """The title and the interval between poses."""
         t = self.times()
         return f"{self.title}: every {t[1] - t[0]:.3g} s" if len(t) > 1 else f"{self.title}: {t[0]:.3g} s"
 
 
 def outline(mechanism: Mechanism, pose: Array, ends: Mapping[str, Points]) -> dict[str, Array]:
-    """The world points (points, 2) [m] of each body's joints and `ends`, sorted along its x axis."""
+    """Body -> its joint points and `ends` (points, 2) [m] in the ground's frame, sorted along the body's x axis."""
     out = {}
     for name, points in body_points(mechanism, pose).items():
         x, y, angle = pose[mechanism.body_index(name)]
@@ -146,13 +145,13 @@ def outline(mechanism: Mechanism, pose: Array, ends: Mapping[str, Points]) -> di
 
 
 def path(scene: Scene, body: str, point: tuple[float, float], t: Array) -> Array:
-    """The path (times, 2) [m] of a point of a body, given in the body's frame [m]."""
+    """The path (times, 2) [m] of `point`, which is given in the body's frame [m]."""
     pose = scene.motion(t).pose[:, scene.mechanism().body_index(body)]
     return pose[:, :2] + rotated(pose[:, 2], np.array(point))
 
 
 def stroboscope(strips: Sequence[Strip], columns: int = 2) -> Figure:
-    """A panel for each strip with all its poses, the last one the darkest."""
+    """A panel for each strip with all its poses; the last pose is the darkest."""
     poses_of_strips = [_poses(strip) for strip in strips]
     boxes = [_box(strip, poses) for strip, poses in zip(strips, poses_of_strips, strict=True)]
     columns = min(columns, len(strips))

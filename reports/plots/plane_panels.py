@@ -1,4 +1,4 @@
-"""Panels with paths, blades and notes in the plane, and panels with curves over time."""
+"""Panels with paths, blades and notes in the plane, and panels with other curves."""
 
 from __future__ import annotations
 
@@ -16,17 +16,18 @@ from reports.plots.theme import FIGURE_WIDTH, LIGHT, drawing, style_axes
 
 Array = NDArray[np.float64]
 
-PANEL_MARGIN = 0.07  # of a panel's larger extent
+PANEL_MARGIN = 0.07  # as a fraction of the panel's larger side
 MIN_HEIGHT, MAX_HEIGHT = 1.4, 5.0  # of a panel, in inches
-MIN_ASPECT = 0.7  # least width over height, since ticks need room
+MIN_ASPECT = 0.7  # of width to height, so that the labels of ticks do not overlap
 
 
 @dataclass(frozen=True)
 class Path:
     """A line through points (points, 2). Paths with the same label share an entry of the legend.
 
-    colour: a role of the theme. framed: whether the panel is large enough for this path; a wrong motion may leave the
-    picture. dot: whether the end has a dot.
+    colour: a role of the theme
+    framed: whether the limits of the axes include the path; a wrong motion may leave the panel
+    dot: whether the end has a dot
     """
 
     points: ArrayLike
@@ -44,7 +45,7 @@ class Path:
 
 @dataclass(frozen=True)
 class Blades:
-    """Skates or bars, drawn as strokes of `length` [m] at poses (n, 3) of their centres; `label`: for the legend."""
+    """Skates or bars, drawn as lines of `length` [m] with their centres at poses (n, 3)."""
 
     poses: ArrayLike
     length: float
@@ -60,7 +61,7 @@ class Blades:
 
 @dataclass(frozen=True)
 class PanelNote:
-    """A text at a point; `align`: matplotlib's horizontal alignment."""
+    """A text at a point; `align` is matplotlib's horizontal alignment."""
 
     point: tuple[float, float]
     text: str
@@ -69,7 +70,7 @@ class PanelNote:
 
 @dataclass(frozen=True)
 class Panel:
-    """One panel. `plane`: both axes have the same scale; otherwise they have labels and may be logarithmic."""
+    """One panel. With `plane`, both axes are lengths and have the same scale."""
 
     title: str
     paths: Sequence[Path] = ()
@@ -82,7 +83,7 @@ class Panel:
     logarithmic_across: bool = False
 
     def corners(self) -> tuple[Array, Array]:
-        """The lowest and highest coordinates of framed paths, blades and notes."""
+        """The lowest and highest coordinates of framed paths, blades and notes; MIN_ASPECT may add width."""
         points = [path.finite() for path in self.paths if path.framed]
         points += [stroke for blades in self.blades for stroke in blades.strokes()]
         points += [np.array([note.point]) for note in self.notes]
@@ -94,7 +95,7 @@ class Panel:
 
 
 def paths(panels: Sequence[Panel], columns: int = 3, height: float | None = None) -> Figure:
-    """The panels in rows with one legend; `height` [inches] of a row, by default from the shapes of its panels."""
+    """The panels in rows with one legend. The default `height` of a row [inches] follows from its panels."""
     columns = min(columns, len(panels))
     rows = [panels[i : i + columns] for i in range(0, len(panels), columns)]
     heights = [height or max(_height(panel, FIGURE_WIDTH / columns) for panel in row) for row in rows]

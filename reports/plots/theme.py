@@ -1,4 +1,4 @@
-"""Colours for light and dark backgrounds, and figures as SVG texts that follow the reader's colour scheme."""
+"""Colours for light and dark backgrounds, and SVG texts that follow the reader's colour scheme."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatterSciNotation
 from numpy.typing import ArrayLike
 
-FIGURE_WIDTH = 9.2  # inches: GitHub shows a page of about this width without scaling
+FIGURE_WIDTH = 9.2  # inches; GitHub does not scale pictures of this width
 
 
 @dataclass(frozen=True)
 class Theme:
-    """One colour for each role; the defaults are for a light background.
+    """The colours of roles; the defaults are for a light background.
 
-    No two roles have the same colour, because a stylesheet recognises a role in an SVG by its colour.
+    Roles must have different colours, because a stylesheet finds a role in an SVG by its colour.
     """
 
     paper: str = "#fdfdfc"
@@ -70,12 +70,12 @@ DARK = Theme(
     worse="#55437f",
 )
 
-# The roles of families of engines in charts, and of different lines in other pictures.
+# Roles of families of engines in charts, and of lines in other pictures.
 SERIES = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 RC_SETTINGS = {
     "svg.hashsalt": "crosscheck",
-    "svg.fonttype": "none",  # text remains text: it can be searched, read aloud and copied
+    "svg.fonttype": "none",  # text is not converted to paths
     "font.family": "DejaVu Sans",
     "font.size": 9,
     "axes.titlesize": 9.5,
@@ -86,37 +86,36 @@ RC_SETTINGS = {
     "legend.frameon": False,
     "legend.labelcolor": LIGHT.ink,
     "axes.titlecolor": LIGHT.ink,  # of titles at the left, which are not `Axes.title`
-    # A fixed position of titles: otherwise matplotlib measures all ticks to place them.
-    "axes.titley": 1.0,
+    "axes.titley": 1.0,  # without a fixed position, matplotlib measures all ticks to place titles
 }
 
 
-# Verdana has letters of the same widths as DejaVu Sans, and replaces it where it is missing.
+# Verdana replaces DejaVu Sans on systems without it, and has letters of the same widths.
 FONTS = "'DejaVu Sans', Verdana, sans-serif"
-# Names that matplotlib derives from a digest of coordinates, whose last bits may differ between runs.
+# Names that matplotlib derives from coordinates; the last bits of these may differ between runs.
 DIGESTED = re.compile(r"\b([mpCh][0-9a-f]{10})\b")
 
 
 def settings() -> AbstractContextManager[None]:
-    """A context with our settings in place of the user's matplotlib configuration, for making and saving figures."""
+    """A context in which matplotlib has our settings instead of the user's."""
     plain: dict[Any, Any] = {**matplotlib.rcParamsDefault, **RC_SETTINGS}
     return matplotlib.rc_context(plain)
 
 
 def new_figure(height: float, theme: Theme = LIGHT, width: float = FIGURE_WIDTH) -> Figure:
-    """An empty figure (sizes in inches) with the theme's background."""
+    """An empty figure; sizes are in inches."""
     return Figure(figsize=(width, height), facecolor=theme.paper, layout="constrained")
 
 
 @contextmanager
 def drawing(height: float, width: float = FIGURE_WIDTH) -> Iterator[Figure]:
-    """A figure that is drawn within `settings`."""
+    """A context with a new figure and our `settings`."""
     with settings():
         yield new_figure(height, LIGHT, width)
 
 
 def note(panel: Axes, text: str, point: ArrayLike, offset: tuple[float, float], color: str, **style: Any) -> None:
-    """A text at an offset [points of 1/72 inch] from a data point."""
+    """Write a text at an offset [1/72 inch] from a data point."""
     panel.annotate(text, point, xytext=offset, textcoords="offset points", color=color, **style)  # type: ignore[arg-type]
 
 
@@ -125,7 +124,7 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class PowersOfTen(LogFormatterSciNotation):
-    """Labels of a logarithmic axis as text, such as 10⁻³; matplotlib's own are formulas, which take long to parse."""
+    """Labels of a logarithmic axis such as 10⁻³. They are texts, because matplotlib parses formulas slowly."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
         if not super().__call__(x, pos):  # a minor tick without a label
@@ -135,7 +134,7 @@ class PowersOfTen(LogFormatterSciNotation):
 
 
 def _in_powers(figure: Figure) -> None:
-    """Replace matplotlib's default formatters of logarithmic axes by ours."""
+    """Replace the default formatters of logarithmic axes by PowersOfTen."""
     for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) if axis.get_scale() == "log"):
         if type(axis.get_major_formatter()) is LogFormatterSciNotation:
             axis.set_major_formatter(PowersOfTen())
@@ -144,7 +143,7 @@ def _in_powers(figure: Figure) -> None:
 
 
 def style_axes(axes: Axes, theme: Theme = LIGHT, grid: bool = True) -> None:
-    """A grey frame, grey ticks, and a grid behind the data."""
+    """Give axes a grey frame, grey ticks, and a grid behind the data."""
     axes.set_facecolor(theme.paper)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
@@ -160,7 +159,7 @@ def style_axes(axes: Axes, theme: Theme = LIGHT, grid: bool = True) -> None:
 
 
 def bare(panel: Axes, title: str) -> None:
-    """A panel without axes and with equal scales."""
+    """Hide the axes of a panel and give them equal scales."""
     style_axes(panel, grid=False)
     panel.set_axis_off()
     panel.set_aspect("equal")
@@ -168,10 +167,9 @@ def bare(panel: Axes, title: str) -> None:
 
 
 def svg(figure: Figure, title: str) -> str:
-    """A figure in the colours of LIGHT as a reproducible SVG text that follows the reader's colour scheme.
+    """A figure in the colours of LIGHT as a reproducible SVG text. A stylesheet replaces the colours in a dark scheme.
 
-    The drawing itself has the light colours, for viewers without stylesheets; one rule for each role replaces them in a
-    dark scheme. `title`: the text for screen readers.
+    `title` is the text for screen readers.
     """
     out = io.StringIO()
     _in_powers(figure)
@@ -190,6 +188,6 @@ def svg(figure: Figure, title: str) -> str:
 
 
 def _renumbered(text: str) -> str:
-    """The drawing with consecutive numbers as names of its clips, marks and hatches."""
+    """The SVG text with consecutive numbers in names of clips, marks and hatches."""
     names: dict[str, str] = {}
     return DIGESTED.sub(lambda match: names.setdefault(match[1], f"{match[1][0]}{len(names) + 1}"), text)

@@ -1,7 +1,4 @@
-"""Charts of rows: error against CPU time, error against step, engines at equal CPU time.
-
-The colours, lines and marks of methods are in `reports.plots.looks`.
-"""
+"""Charts of rows: error against CPU time, error against step, and all engines at equal CPU time."""
 
 from __future__ import annotations
 
@@ -25,15 +22,15 @@ from reports.plots.looks import colour, family_of, look, mark
 from reports.plots.theme import LIGHT, PowersOfTen, drawing, new_figure, note, settings, style_axes
 
 PANEL_COLUMNS = 2
-LONGEST_OF_FOUR = 30  # letters: with longer names only three fit side by side in the legend
+LONGEST_OF_FOUR = 30  # letters of a name of which four fit into a line of the legend
 SLOPES = (1, 2, 4)
-FAN_POSITIONS = 25  # along each side of a panel, at which the fan of slopes is tried
+FAN_POSITIONS = 25  # positions of the fan of slopes that are tried along each side of a panel
 
 Featured = Callable[[Measurement], bool]
 
 
 def pareto(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The Pareto front of (cost, error) pairs, by rising cost."""
+    """The Pareto front of (cost, error) pairs; costs increase."""
     front: list[tuple[float, float]] = []
     for cost, error in sorted(points):
         if not front or error < front[-1][1]:
@@ -42,9 +39,9 @@ def pareto(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def forwards(members: Iterable[Measurement]) -> list[Measurement]:
-    """The rows of one method from coarse to fine, without rows that cost no less than one at a smaller step.
+    """The rows of one method that cost less than all rows at smaller steps; the largest step is first.
 
-    Methods that choose steps or iterations by pilot runs have such rows at large steps.
+    Methods that choose steps or iterations by trial runs may cost more at large steps.
     """
     forward: list[Measurement] = []
     for row in sorted(members, key=lambda row: row.step):
@@ -61,7 +58,7 @@ def _variants_by_engine(rows: Sequence[Measurement]) -> dict[str, list[str]]:
 
 
 def drawable(rows: Iterable[Measurement], field: str) -> list[Measurement]:
-    """The rows of sweeps whose error can be drawn on a logarithmic axis."""
+    """The comparable rows of sweeps with a positive finite error."""
     return [
         row
         for row in rows
@@ -93,7 +90,7 @@ def _panels(scenes: Sequence[str], height: float) -> tuple[Figure, list[Axes]]:
 
 def _finish(panel: Axes) -> None:
     for axis, (low, high) in ((panel.xaxis, panel.get_xlim()), (panel.yaxis, panel.get_ylim())):
-        # A range below two decades may contain a single power of ten, and one tick shows no scale.
+        # A range below two decades may contain only one power of ten, and a single tick does not show the scale.
         narrow = math.log10(high / low) < 2
         axis.set_major_locator(LogLocator(base=10, subs=(1.0, 3.0) if narrow else (1.0,), numticks=9))
         axis.set_major_formatter(PowersOfTen(minor_thresholds=(math.inf, math.inf)))
@@ -113,7 +110,7 @@ Pairs = list[tuple[float, float]]
 def _chart(
     shown: Sequence[Measurement], scenes: Sequence[str], field: str, label: str, series: Callable[..., Pairs]
 ) -> tuple[Figure, list[Axes], list[Line2D]]:
-    """A panel for each scene with a line for each method through `series(rows)`, and the entries of the legend."""
+    """(figure, panel of each scene, entries of the legend); each method is a line through `series(rows)`."""
     variants = _variants_by_engine(shown)
     figure, panels = _panels(scenes, 3.6)
     for index, (panel, scene) in enumerate(zip(panels, scenes, strict=True)):
@@ -131,10 +128,9 @@ def _chart(
 
 
 def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle") -> Figure:
-    """Error against CPU time: a panel for each scene, a series for each method, and the Pareto front below them.
+    """A panel for each scene with error against CPU time and the Pareto front of all rows.
 
-    The front is that of all rows. Rows that are not featured are small grey dots. A series has no rows that `forwards`
-    removes.
+    Each featured method is a line through the rows that `forwards` keeps. Other rows are small grey dots.
     """
 
     def pairs(members: Iterable[Measurement]) -> Pairs:
@@ -152,7 +148,7 @@ def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row:
             if others := pairs(row for row in of_scene if not featured(row)):
                 panel.plot(*zip(*others, strict=True), ".", color=LIGHT.quiet, markersize=3, zorder=2)
             _finish(panel)
-        handles.append(Line2D([], [], color=LIGHT.grid, linewidth=8, label="nothing is better and cheaper"))
+        handles.append(Line2D([], [], color=LIGHT.grid, linewidth=8, label="least error within a CPU time"))
         if len(shown) < len(rows):
             handles.append(Line2D([], [], color=LIGHT.quiet, marker=".", linestyle="none", label="other methods"))
         _legend(figure, handles)
@@ -162,7 +158,7 @@ def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row:
 def error_against_step(
     rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle"
 ) -> Figure:
-    """Error against step: a panel for each scene, with slopes 1, 2 and 4 as guides."""
+    """A panel for each scene with error against step and guides with the slopes 1, 2 and 4."""
 
     def pairs(members: Iterable[Measurement]) -> Pairs:
         return [(1e3 * row.step, getattr(row, field)) for row in members]
@@ -182,11 +178,11 @@ def error_against_step(
 
 
 def _guides(panel: Axes) -> None:
-    """A fan of slopes at the position farthest from the lines of the panel; the limits of the axes do not change."""
+    """Draw a fan of slopes as far as possible from the lines of the panel; the limits of the axes stay the same."""
     low, high = np.log10([panel.get_xlim(), panel.get_ylim()]).T
     size = high - low  # decades
     width, gap = min(0.22 * size[0], 0.28 * size[1] / max(SLOPES)), 0.05 * size[0]
-    # The extent of the fan and its numbers, as fractions of the panel, relative to the fan's vertex.
+    # Points of the fan and its numbers relative to the vertex, as fractions of the panel.
     slopes = [(share * width, slope * share * width) for slope in SLOPES for share in np.linspace(0, 1, 5)]
     fan = np.array([*slopes, *((width + gap, slope * width) for slope in SLOPES)]) / size
     lines = [(np.log10(line.get_xydata()) - low) / size for line in panel.lines]
@@ -207,7 +203,7 @@ def _guides(panel: Axes) -> None:
 
 COMPARED_HEIGHT = 6.2  # inches
 MAIN_ENGINES = ("pymunk", "mujoco")
-EXACT_SOLVER = "lagrange"  # not an engine for users: it shows the accuracy of exact multipliers in plain code
+EXACT_SOLVER = "lagrange"
 ENGINE_NAMES = {
     "pymunk": "pymunk",
     "mujoco": "MuJoCo",
@@ -224,7 +220,11 @@ CostErrorPairs = Sequence[tuple[float, float]]  # (CPU seconds per simulated sec
 
 @dataclass(frozen=True)
 class ComparedRow:
-    """A row of panels. lines: column -> engine -> points. absent: column -> reason -> the engines without a line."""
+    """A row of panels.
+
+    lines: column -> engine -> points
+    absent: column -> reason -> engines without a line
+    """
 
     title: str
     axis: str
@@ -233,7 +233,7 @@ class ComparedRow:
 
 
 def engines_compared(rows: Sequence[ComparedRow]) -> Figure:
-    """The least error within a CPU time against that time, both logarithmic; all panels have the same axes."""
+    """A panel for each row and column with the least error within a CPU time; all panels have the same axes."""
     engines = list(dict.fromkeys(engine for row in rows for lines in row.lines.values() for engine in lines))
     with drawing(COMPARED_HEIGHT) as figure:
         columns = list(dict.fromkeys(column for row in rows for column in row.lines))
@@ -270,7 +270,6 @@ def _write(panel: Axes, x: float, y: float, text: str, side: Literal["left", "ri
 
 
 def _look_of(engine: str, engines: Sequence[str]) -> dict[str, Any]:
-    """The colour and mark of the engine's family; the exact solver has a dashed grey line."""
     if engine == EXACT_SOLVER:
         return {"color": LIGHT.quiet, "linestyle": "--", "linewidth": 1.5, "marker": ".", "markersize": 5}
     paint = colour(engine, engines=engines)
@@ -280,5 +279,5 @@ def _look_of(engine: str, engines: Sequence[str]) -> dict[str, Any]:
         "linewidth": 2.2 if engine in MAIN_ENGINES else 1.5,
         "marker": mark(family_of(engine), engines),
         "markersize": 5.5,
-        "markerfacecolor": paint if engine in MAIN_ENGINES else LIGHT.paper,  # differs without colours too
+        "markerfacecolor": paint if engine in MAIN_ENGINES else LIGHT.paper,
     }

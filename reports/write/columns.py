@@ -1,7 +1,7 @@
-"""Tables that compare engines over all scenes: at equal CPU time, at equal error and at equal step.
+"""Tables that compare engines in all scenes: at equal CPU time, at equal error and at equal step.
 
-A method's column depends on what enforces the joints, not on the method's name: a method has documented settings only
-where the engine's own solver enforces every joint.
+A method's column in a scene depends on what enforces the joints: methods with documented settings are those whose
+engine enforces every joint.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from reports.write.tables import DASH, error_words, markdown, milliseconds, numb
 
 
 class Column(StrEnum):
-    """The kinds of methods, each with a column in the tables of engines; NAIVE methods are left out of these tables."""
+    """The kinds of methods. Each kind except NAIVE has a column in the tables."""
 
     SHIPPED = "as shipped"
     SETTINGS = "documented settings"
     CODE = "with our code"
-    NAIVE = "naive"  # code outside the engine enforces a joint that the engine lacks
-    WHOLE = ""  # all methods of an engine without the variants below
+    NAIVE = "naive"  # code outside the engine enforces a joint
+    WHOLE = ""  # methods of an engine without variants of COLUMN_OF_VARIANT
 
 
 COLUMN_OF_VARIANT = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Column.CODE}
@@ -49,7 +49,6 @@ ENFORCEMENT_LABELS: Mapping[Enforcement, str] = {
 
 @cache
 def column_of(scene: Scene, engine: Engine) -> Column:
-    """The column of a method for a scene."""
     mechanism = mechanism_of(scene)
     enforcement = {engine.enforcement(joint, mechanism) for joint in mechanism.joints}
     if "ours" in enforcement:
@@ -60,21 +59,20 @@ def column_of(scene: Scene, engine: Engine) -> Column:
 
 
 def displayed_variant(scene: Scene, engine: Engine) -> str:
-    """The variant as pages print it: "naive" replaces "default" where code outside the engine enforces a joint."""
+    """The variant's name on pages. For a naive method, "naive" replaces "default" or precedes the name."""
     if engine.variant not in COLUMN_OF_VARIANT or column_of(scene, engine) is not Column.NAIVE:
         return engine.variant
     return str(Column.NAIVE) if engine.variant == "default" else f"{Column.NAIVE}, {engine.variant}"
 
 
 def with_displayed_variants(rows: Mapping[Cell, Measurement]) -> dict[Cell, Measurement]:
-    """The rows with their variants as pages print them."""
     return {cell: replace(row, variant=displayed_variant(cell.scene, cell.engine)) for cell, row in rows.items()}
 
 
 def describe_enforcement(engine: Engine, mechanism: Mechanism) -> str:
-    """What enforces the joints: 'engine', or 'engine; skate: our code' where it differs between joints.
+    """What enforces the joints: 'engine', or 'engine; skate: our code' if joints differ.
 
-    Joints are named by their kind, and by their own names where joints of one kind differ.
+    Joints have the names of their kinds, or their own names if joints of one kind differ.
     """
     joints: list[tuple[str, str, Enforcement]] = [
         (type(joint).__name__.lower(), joint.name, engine.enforcement(joint, mechanism)) for joint in mechanism.joints
@@ -95,36 +93,36 @@ def describe_enforcement(engine: Engine, mechanism: Mechanism) -> str:
     return "; ".join(["engine", *others] if "engine" in names else others)
 
 
-@cache  # a method examines its whole model for each joint, and a scene may have a hundred
+@cache  # `enforcement` may examine the whole model, and a scene may have a hundred joints
 def _describe_enforcement_in(scene: Scene, engine: Engine) -> str:
     return describe_enforcement(engine, mechanism_of(scene))
 
 
 def enforcement_by_method(cells: Iterable[Cell]) -> dict[str, str]:
-    """What enforces the joints in these cells, by method; several descriptions where the cells of a method differ."""
-    found: dict[str, dict[str, None]] = {}
+    """What enforces the joints, by method. If cells of a method differ, their descriptions are joined by " or "."""
+    by_method: dict[str, dict[str, None]] = {}
     for cell in cells:
         method = f"{cell.engine.name} {displayed_variant(cell.scene, cell.engine)}"
-        found.setdefault(method, {}).setdefault(_describe_enforcement_in(cell.scene, cell.engine))
-    return {method: " or ".join(descriptions) for method, descriptions in found.items()}
+        by_method.setdefault(method, {}).setdefault(_describe_enforcement_in(cell.scene, cell.engine))
+    return {method: " or ".join(descriptions) for method, descriptions in by_method.items()}
 
 
-CPU_BUDGET = 1e-2  # CPU seconds per simulated second within which methods are compared: a hundredth of real time
-ACCEPTED_CPU = EQUAL_COST_FACTOR * CPU_BUDGET  # the scatter of timings is not counted
+CPU_BUDGET = 1e-2  # CPU time per simulated second at which methods are compared [s/s]
+ACCEPTED_CPU = EQUAL_COST_FACTOR * CPU_BUDGET
 
 NO_JOINT, NOT_BUILT, TOO_SLOW = "no such joint", "not built", "too slow"
 SMALLER_STEP_FAILS = "a smaller step fails"
 
 
 def describe_inner_runs(engine: Engine, scene: Scene, step: float) -> str:
-    """'5 runs, finest 0.125 ms' at a step [s]; empty for a method of a single run."""
+    """The number of inner runs and their smallest step, such as '5 runs, finest 0.125 ms'; empty for a single run."""
     steps = engine.inner_steps(mechanism_of(scene))
     return f"{len(steps)} runs, finest {number(1e3 * step * min(steps), 3)} ms" if len(steps) > 1 else ""
 
 
 @dataclass(frozen=True)
 class EngineLine:
-    """The rows of one scene in one engine, by column. A column without methods: the engine has none of that kind."""
+    """The methods of an engine and their rows in one scene, by column. A column is missing if it has no method."""
 
     page: Page
     scene: Scene
@@ -133,7 +131,6 @@ class EngineLine:
 
     @property
     def quantity(self) -> str:
-        """The name of the quantity by which the page compares methods."""
         return self.page.quantity
 
 
@@ -141,10 +138,10 @@ PageRows = tuple[Page, Sequence[Measurement]]  # a page, and the rows of its sce
 
 
 def engine_lines(entries: Iterable[PageRows]) -> list[EngineLine]:
-    """A line for each scene and engine that have rows.
+    """A line for each scene and engine with rows.
 
-    Where an engine's tuned variant needs our code for a scene, a method of the page that needs none takes its place
-    under the documented settings, if there is such a method.
+    If the variant "tuned" needs our code in a scene, the column SETTINGS has the page's other methods with documented
+    settings.
     """
     return [
         _engine_line(page, scene, engine, [row for row in rows if row.scene == scene.name])
@@ -177,7 +174,7 @@ FormatCell = Callable[[EngineLine, Column], str]
 
 
 def absence_reason(line: EngineLine, column: Column) -> str:
-    """Why there is no method: the engine lacks the joint, or our adapter does not build it; '' where there is one."""
+    """NO_JOINT, NOT_BUILT, or "" if a method of the column builds the mechanism or none was run."""
     if column not in line.columns:
         return NO_JOINT
     rows = [row for _, of_method in line.columns[column] for row in of_method]
@@ -196,7 +193,7 @@ def _format_cell(line: EngineLine, column: Column, format_rows: FormatCell) -> s
 
 
 def remarks_of(line: EngineLine, column: Column) -> str:
-    """', contact' where contact with friction replaces a joint of the engine, and the names of unusual variants."""
+    """A text for the end of a cell: ', contact' if a contact replaces a joint, and the names of unusual variants."""
     joints = mechanism_of(line.scene).joints
     contact = column in (Column.SHIPPED, Column.SETTINGS) and any(isinstance(joint, Skate | Roll) for joint in joints)
     variants = [engine.variant for engine, _ in line.columns[column]]
@@ -209,7 +206,7 @@ def _table(
     format_rows: FormatCell,
     remarks: Mapping[tuple[str, Column], str] = MappingProxyType({}),
 ) -> str:
-    """A line a scene, a column for each engine and kind of method; `remarks` are appended to the headers."""
+    """A Markdown table with a line for each scene and a column for each engine and kind; `remarks` end the headers."""
     engines = dict.fromkeys(line.engine for line in lines)
     present = {(line.engine, column) for line in lines for column in line.columns}
     heads = [(engine, column) for engine in engines for column in Column if (engine, column) in present]
@@ -235,7 +232,7 @@ def _by_engine(lines: Sequence[EngineLine]) -> Iterator[tuple[str, list[EngineLi
 def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
     """The least error of a method's runs that take at most this CPU time [s/s]; infinite without such a run.
 
-    An error counts only if no smaller step has a larger one: otherwise two errors cancelled at that step.
+    A run counts with the largest error at its step and at all smaller steps, since two errors may cancel at its step.
     """
     worst, least = 0.0, math.inf
     for row in sorted(rows, key=lambda row: row.step):
@@ -247,7 +244,7 @@ def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
 
 
 def error_by_cost(methods: Iterable[Sequence[Measurement]], name: str) -> list[tuple[float, float]]:
-    """(CPU time [s/s], least error within it) by rising cost, at each cost that lowers it and at the highest cost."""
+    """(CPU time [s/s], `error_within` it) for the first, the last, and each CPU time at which the error falls."""
     methods = list(methods)
     costs = sorted({row.cpu for rows in methods for row in rows if row.cpu > 0})
     pairs = [(cost, min(error_within(rows, name, cost) for rows in methods)) for cost in costs]
@@ -260,7 +257,7 @@ def _swept(entries: Iterable[PageRows]) -> list[EngineLine]:
 
 
 def equal_cost(entries: Iterable[PageRows]) -> str:
-    """One table of all engines: the least error of each column within CPU_BUDGET; empty without rows."""
+    """The table of the least errors within CPU_BUDGET; empty without rows."""
     lines = _swept(entries)
     return _table(lines, within_budget) if lines else ""
 
@@ -277,7 +274,7 @@ def within_budget(line: EngineLine, column: Column) -> str:
 
 
 def equal_error(entries: Iterable[PageRows]) -> dict[str, str]:
-    """Engine -> its table: the least CPU time [ms/s] for an error below each of TARGETS."""
+    """The table of each engine: the least CPU time [ms/s] for an error below each of TARGETS."""
 
     def least_costs(line: EngineLine, column: Column) -> str:
         costs = [
@@ -293,9 +290,9 @@ def equal_error(entries: Iterable[PageRows]) -> dict[str, str]:
 
 
 def equal_step(entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_STEPS) -> dict[str, str]:
-    """Engine -> its table: the errors at these steps [s], given by name. No cell has a time.
+    """The table of each engine: the errors at these steps [s] (name -> step), and the effect of smaller steps.
 
-    The number of runs of a method is in the header where it is the same for all scenes.
+    The number of a method's inner runs is in the header if it is the same in all scenes.
     """
     last, lines = list(steps.values())[-1], engine_lines(entries)
     runs: dict[tuple[str, Column], set[str]] = {}
@@ -314,7 +311,7 @@ def equal_step(entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_S
 
 
 def _errors_at_steps(line: EngineLine, engine: Engine, rows: Sequence[Measurement], steps: Mapping[str, float]) -> str:
-    """'0.044, 0.01; plateau 0.011', or the outcomes if no step has an error that can be compared."""
+    """A text such as '0.044, 0.01; plateau 0.011'; the outcomes if no run can be compared."""
     if not any(Outcome(row.outcome).comparable for row in rows):
         return ", ".join(dict.fromkeys(row.outcome for row in rows))
     wanted = [step for name, step in steps.items() if is_run_at(name, engine.name, engine.variant)]
@@ -322,13 +319,13 @@ def _errors_at_steps(line: EngineLine, engine: Engine, rows: Sequence[Measuremen
     chosen = [next((row for row in rows if is_step(row.step, step)), None) for step in wanted]
     errors = [getattr(row, line.quantity) for row in chosen if row is not None and Outcome(row.outcome).comparable]
     cells = [error_words(row, line.quantity) for row in chosen]
-    cells = cells if len(set(cells)) > 1 else cells[:1]  # "saturated" once
+    cells = cells if len(set(cells)) > 1 else cells[:1]
     end = _effect_of_smaller_steps(sweep, rows, errors) if sweep else ""
     return "; ".join(filter(None, (", ".join(cells), end)))
 
 
 def _effect_of_smaller_steps(sweep: Sweep, rows: Iterable[Measurement], errors: Sequence[float]) -> str:
-    """How the error changes below the steps of the table; an order only if the error falls to the finest step."""
+    """The change of the error at steps that are smaller than those of the table."""
     finest = min((row for row in rows if row.purpose == "sweep"), key=lambda row: row.step)
     if not Outcome(finest.outcome).comparable:
         return f"**{finest.outcome}** at {step_words(finest.step)}"

@@ -1,7 +1,7 @@
-"""The CSV files of a report: errors, timings, and the descriptions that both replace by digests; and published rows.
+"""The CSV files of a report: errors, timings, descriptions of rows, digests of files; and the rows that are published.
 
-A number that agrees with the published one within rounding keeps its published text, so that a diff shows real changes
-only. Pages are rendered from the numbers as these files have them.
+A number that agrees with the published number within rounding keeps its published text, so that a diff shows only real
+changes. Pages are rendered from the numbers in these files.
 """
 
 from __future__ import annotations
@@ -20,21 +20,23 @@ from reports.model.measure import TIMINGS, Measurement
 from reports.model.quantities import DIGITS, OF, QUANTITIES, agrees
 from reports.write.provenance import machine
 
-# The columns that identify a row.
 IDENTITY_COLUMNS = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step")
 
 
 def as_csv(
     rows: Iterable[Measurement], timings: bool, header: str = "", made_with: Mapping[str, str] | None = None
 ) -> str:
-    """Sorted rows as CSV: the errors without timings, or the timings alone; `header` lines become comments.
+    """Sorted rows as CSV, either with their errors or with their timings.
 
-    Parameters and settings are digests (see `descriptions_csv`). Numbers have DIGITS digits: further ones depend on the
-    machine's rounding. `made_with`: the versions of all packages that a row depends on, by the row's key; their digests
-    become a last column.
+    Parameters and settings are digests (see `descriptions_csv`). Numbers have DIGITS digits, because more digits depend
+    on the machine's rounding.
+
+    Args:
+        header: each line becomes a comment.
+        made_with: the versions on which a row depends, by the row's key; the last column has their digests.
     """
-    rest = [f.name for f in fields(Measurement) if f.name not in (*IDENTITY_COLUMNS, *TIMINGS, "key", "limit")]
-    names = [*IDENTITY_COLUMNS, *(TIMINGS if timings else rest)]
+    results = [f.name for f in fields(Measurement) if f.name not in (*IDENTITY_COLUMNS, *TIMINGS, "key", "limit")]
+    names = [*IDENTITY_COLUMNS, *(TIMINGS if timings else results)]
     out = io.StringIO()
     out.writelines(f"# {line}\n" for line in header.splitlines())
     writer = csv.writer(out, lineterminator="\n")
@@ -48,7 +50,6 @@ def as_csv(
 
 
 def cell_text(row: Measurement, name: str) -> str:
-    """The text of a row in a column."""
     value = getattr(row, name)
     if name in DESCRIPTION_COLUMNS:
         return digest(value, SHORT)
@@ -56,23 +57,23 @@ def cell_text(row: Measurement, name: str) -> str:
 
 
 def no_formula(text: str) -> str:
-    """The text with an apostrophe before a sign by which a spreadsheet would take it for a formula."""
+    """The text, with an apostrophe in front if a spreadsheet would interpret it as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
 def read_lines(text: str) -> tuple[list[str], list[dict[str, str]]]:
-    """(comments, without their sign; rows by column) from the text of such a file."""
+    """(comments, rows as dictionaries) of a CSV text."""
     lines = text.splitlines()
     comments = [line.removeprefix("# ") for line in lines if line.startswith("#")]
     return comments, list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
-# Long texts that many rows share; the files have their digests.
+# Columns with long texts, which the files replace by digests.
 DESCRIPTION_COLUMNS = ("parameters", "settings")
 
 
 def descriptions_csv(rows: Iterable[Measurement], made_with: Mapping[str, str] | None = None) -> str:
-    """The text of each digest."""
+    """The texts of all digests in the files of rows."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(["digest", "of", "description"])
@@ -82,21 +83,21 @@ def descriptions_csv(rows: Iterable[Measurement], made_with: Mapping[str, str] |
     return out.getvalue()
 
 
-# The file with the digests of all tables and pages that one report wrote.
 DIGESTS = "digests.csv"
 
 
 def digests_csv(files: Mapping[str, str]) -> str:
-    """The digest of each table and page of a report.
+    """The digests of the tables and pages of a report.
 
-    Pictures are left out, because no number is read from them; timings too, because those of an earlier run may remain.
+    Pictures are left out, because nobody reads numbers from them. Timings are left out, because those of an earlier
+    run may remain.
     """
     names = sorted(name for name in files if name.endswith((".csv", ".md")) and name not in (DIGESTS, "timings.csv"))
     return "".join(["file,digest\n", *(f"{name},{digest(files[name], SHORT)}\n" for name in names)])
 
 
 def not_as_written(folder: Path) -> tuple[str, ...] | None:
-    """The tables and pages of a folder that changed since one report wrote them; None without a file of digests."""
+    """The tables and pages of a folder that differ from DIGESTS; None without a file of digests."""
     try:
         lines = (folder / DIGESTS).read_text(encoding="utf-8").splitlines()[1:]
     except (OSError, UnicodeDecodeError):
@@ -113,26 +114,25 @@ def _digest_of(path: Path) -> str:
 
 
 ERROR_COLUMNS = (*(quantity.name for quantity in QUANTITIES), *OF)
-# Factors within which times agree on one machine. In two full runs one after the other, 95 of 100 rows agreed within
-# 1.17 (stepping: the least of several runs) and 1.74 (building, which is done once).
+# Factors within which times agree on one machine. In two successive full runs, 95 % of the rows agreed within 1.17
+# (cpu, the least of several runs) and 1.74 (build, which is measured once).
 TIMING_NOISE = {"cpu": 1.2, "build": 1.8}
 
 
 @dataclass(frozen=True)
 class Published:
-    """The texts of errors.csv and timings.csv: column -> text, by the row's identity; empty without files."""
+    """The texts of errors.csv and timings.csv by IDENTITY_COLUMNS and by column; empty without files."""
 
     rows: Mapping[tuple[str, ...], Mapping[str, str]] = field(default_factory=dict)
     machine: str = ""
 
     @property
     def engines(self) -> tuple[str, ...]:
-        """The engines with rows, in the order of the files."""
         return tuple(dict.fromkeys(row["engine"] for row in self.rows.values()))
 
 
 def read_published(folder: Path) -> Published:
-    """The published rows of a folder. Raises BadInput for files that no report wrote."""
+    """The published rows of a folder. Raises BadInput for files without a column of a report."""
     rows: dict[tuple[str, ...], dict[str, str]] = {}
     comments: list[str] = []
     for name in ("errors.csv", "timings.csv"):
@@ -149,7 +149,7 @@ def read_published(folder: Path) -> Published:
 
 
 def as_published(rows: Mapping[Cell, Measurement], before: Published) -> dict[Cell, Measurement]:
-    """The rows with their numbers as printed: the published ones, unless more than rounding or timing noise differs."""
+    """The rows with their numbers as the files print them; see `with_published_numbers`."""
     same_machine = before.machine == machine()
     published: dict[Cell, Measurement] = {}
     for cell, row in rows.items():
@@ -161,12 +161,12 @@ def as_published(rows: Mapping[Cell, Measurement], before: Published) -> dict[Ce
 def with_published_numbers(
     row: Measurement, before: Mapping[str, str], same_machine: bool, amplified: float = 1.0
 ) -> Measurement:
-    """One row with the published numbers that it confirms.
+    """The row with published numbers in place of those that agree within rounding or timing noise.
 
     Args:
         before: the published texts by column; they are ignored if the outcome differs.
         same_machine: whether times can be compared.
-        amplified: rounding of the method, relative to usual rounding (`reports.model.quantities.agrees`).
+        amplified: the method's rounding relative to usual rounding (`reports.model.quantities.agrees`).
     """
     if before.get("outcome") != row.outcome:
         before = {}
@@ -181,7 +181,7 @@ def with_published_numbers(
 
 
 def within_factor(now: float, before: float, factor: float) -> bool:
-    """Whether two times agree within a factor; NaN agrees with NaN."""
+    """Whether two times agree within a factor, or are both NaN."""
     return before / factor <= now <= before * factor or (now != now and before != before)
 
 

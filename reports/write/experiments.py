@@ -1,4 +1,4 @@
-"""Experiments in which methods fail, rendered for a page; and observations on motions."""
+"""The rendering of experiments, and observations on motions."""
 
 from __future__ import annotations
 
@@ -24,18 +24,21 @@ from reports.write.templates import template
 
 @dataclass(frozen=True)
 class RenderedExperiment:
-    """The texts and tables of an experiment; `observations` and `grid` are empty without rows."""
+    """The texts and tables of an experiment.
+
+    observations, grid: Markdown tables; empty without observations or rows
+    unrun: whether the experiment has cells or tasks, but none was run
+    """
 
     title: str
     expected: str
     observations: str
     grid: str
     remark: str
-    unrun: bool = False  # the experiment has cells or tasks, and none of them was run
+    unrun: bool = False
 
 
 def render_experiment(failure: Failure, material: Material) -> RenderedExperiment:
-    """The texts and tables of an experiment from the rows and answers of its run."""
     rows = [without_incomparable_errors(cell, material.rows[cell]) for cell in failure.cells if cell in material.rows]
     observations = tuple(failure.observations(material)) if failure.observations else ()
     was_run = rows or any(task in material.answers for task in failure.tasks)
@@ -60,7 +63,7 @@ def _render_remark(failure: Failure, rows: Sequence[Measurement], material: Mate
 
 
 def without_incomparable_errors(cell: Cell, row: Measurement) -> Measurement:
-    """The row; without errors that need the truth if the scene's comparison ends before its first sample."""
+    """The row; if only the sample at t = 0 can be compared, the errors that need the reference motion are NaN."""
     if cell.scene.comparable_until >= cell.scene.duration / cell.sample_count:
         return row
     return replace(row, **{quantity.name: math.nan for quantity in QUANTITIES if quantity.needs_truth})
@@ -69,10 +72,9 @@ def without_incomparable_errors(cell: Cell, row: Measurement) -> Measurement:
 def observe(
     material: Material, cell: Cell, setting: str, describe: Callable[[Trajectory], str]
 ) -> tuple[Observation, ...]:
-    """The observation on one engine's motion; none if it was not run or has no such joint.
+    """The observation on one motion; none if it was not run or if the engine does not build the mechanism.
 
-    A run that failed or is not finite is reported as such, so that the page is rendered. `describe` gets finite motions
-    only; an exception that it raises is an error of this suite and passes through.
+    `describe` is called with a finite motion only. For other motions, the outcome is observed.
     """
     answer = material.answers.get(Motion(cell))
     if answer is None or answer.outcome == Outcome.UNSUPPORTED:
@@ -85,7 +87,7 @@ def observe(
 def observe_each(
     material: Material, cells: Iterable[Cell], describe: Callable[[Cell, Trajectory], str]
 ) -> list[Observation]:
-    """The observations on several cells, each with its step."""
+    """The observations on the motions of cells; their setting is the step."""
     return [
         line
         for cell in cells

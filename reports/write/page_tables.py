@@ -1,4 +1,4 @@
-"""The tables of a mechanism's page: errors by method, recommended settings, and the programs with these settings."""
+"""The tables of a mechanism's page: errors by method, recommended settings, and programs with these settings."""
 
 from __future__ import annotations
 
@@ -16,16 +16,15 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, quantity
 from reports.write.tables import DASH, ENFORCED_BY, markdown, milliseconds, number, step_words, sweep_words
 
-# The step [s] at which methods are compared, or the nearest of the grid: a usual step, refined once.
+# Methods are compared at the step of the grid that is nearest to this one [s].
 COMPARED_STEP = 1e-3
-# Error bounds for which a setting is recommended, in the unit of the page's quantity.
+# Error bounds in the unit of the page's quantity; a setting is recommended for each bound.
 TARGETS = (1e-2, 1e-4, 1e-6, 1e-9)
-# Costs within this factor count as equal: timings of short runs scatter by about a fifth. Among equal costs the first
-# method of the page is recommended, since a page lists each engine's own settings before methods with our code.
+# Costs within this factor count as equal, since timings of short runs scatter by about a fifth. Among methods of equal
+# cost, the first of the page is recommended: a page lists settings of the engine before methods with our code.
 EQUAL_COST_FACTOR = 1.25
 
-# (method, step [s]) -> the error that its declared regularisation causes, in the unit of the page's quantity; NaN if
-# that is not known.
+# (method, step [s]) -> the error that the method's declared regularisation causes, or NaN if it is unknown.
 DeclaredError = Callable[[str, float], float]
 
 
@@ -34,7 +33,7 @@ def undeclared(method: str, step: float) -> float:
 
 
 def compared_step(rows: Iterable[Measurement]) -> float:
-    """The step [s] of these rows that is nearest to COMPARED_STEP, by ratio; NaN without rows."""
+    """The step [s] of the sweep that is nearest to COMPARED_STEP, by ratio; NaN without rows."""
     steps = {row.step for row in rows if row.purpose == "sweep"}
     return min(steps, key=lambda step: abs(math.log(step / COMPARED_STEP)), default=math.nan)
 
@@ -46,13 +45,13 @@ def scene_table(
     declared: DeclaredError = undeclared,
     inner_runs: Mapping[str, str] = MappingProxyType({}),
 ) -> str:
-    """A line for each method of one scene: errors and cost at the compared step, then the behaviour at smaller steps.
+    """A Markdown table of the methods in one scene: errors and cost at `compared_step`, and convergence.
 
     Args:
-        name: the quantity of the page; the quantities of the joints follow it where a row has them.
+        name: the quantity of the page. Errors of the joints follow it, if a row has them.
         enforcement: what enforces the joints, by method.
-        declared: a positive value is printed beside the error, and a plateau that it does not explain is marked.
-        inner_runs: a description of the runs of a method that takes several.
+        declared: positive errors have a column. A plateau that is larger than the declared error is marked.
+        inner_runs: a description of the inner runs, by method.
     """
     step, compared = compared_step(rows), quantity(name)
     verdicts = by_method(sweeps(rows), name)
@@ -89,8 +88,7 @@ def scene_table(
 
 @dataclass(frozen=True)
 class Advice:
-    """The cheapest method of one engine for some targets: its row at the recommended step; None if no step of any
-    method meets these targets."""
+    """The row of an engine's cheapest method and step for some targets; None if no step meets these targets."""
 
     engine: str
     targets: tuple[float, ...]
@@ -99,13 +97,13 @@ class Advice:
 
 
 def advice(rows: Sequence[Measurement], name: str, order: Sequence[str] = ()) -> tuple[Advice, ...]:
-    """The cheapest method for each engine and target, from the rows of one scene; `order`: the page's methods.
+    """The cheapest method for each engine and target, from the rows of one scene; `order` has the page's methods.
 
-    A step meets a target if all smaller steps of its method meet it too: otherwise its small error was luck.
+    A step counts only if all smaller steps of its method meet the target too, since errors may cancel at one step.
     """
     verdicts = by_method(sweeps(rows), name)
     rank = {method: index for index, method in enumerate(order)}
-    found: list[Advice] = []
+    advised: list[Advice] = []
     for engine in dict.fromkeys(row.engine for row in rows):
         methods = [members for key, members in groups(rows).items() if key[1] == engine]
         by_setting: dict[tuple[str, float] | None, tuple[Measurement | None, list[float]]] = {}
@@ -114,8 +112,8 @@ def advice(rows: Sequence[Measurement], name: str, order: Sequence[str] = ()) ->
             by_setting.setdefault((row.method, row.step) if row else None, (row, []))[1].append(target)
         for row, targets in by_setting.values():
             sweep = verdicts[row.scene, row.engine, row.variant] if row else None
-            found.append(Advice(engine, tuple(targets), row, sweep))
-    return tuple(found)
+            advised.append(Advice(engine, tuple(targets), row, sweep))
+    return tuple(advised)
 
 
 def _cheapest(
@@ -128,7 +126,7 @@ def _cheapest(
 
 
 def reliable(members: Sequence[Measurement], name: str, target: float) -> list[Measurement]:
-    """The timed rows of one method from the finest step up to the first step that does not meet the target."""
+    """The timed rows of one method at steps such that the target is met there and at all smaller steps."""
     rows = []
     for row in sorted(members, key=lambda row: row.step):
         if not (Outcome(row.outcome).comparable and getattr(row, name) <= target):
@@ -137,19 +135,18 @@ def reliable(members: Sequence[Measurement], name: str, target: float) -> list[M
     return [row for row in rows if row.cpu > 0]
 
 
-def advice_table(found: Iterable[Advice], name: str, enforcement: Mapping[str, str] | None = None) -> str:
-    """A line for each advice: method, what enforces the joints, step, error, cost and order."""
-    header, body = advice_lines(found, name, enforcement)
+def advice_table(advised: Iterable[Advice], name: str, enforcement: Mapping[str, str] | None = None) -> str:
+    header, body = advice_lines(advised, name, enforcement)
     return markdown(header, body, left=4 if enforcement else 3)
 
 
 def advice_lines(
-    found: Iterable[Advice], name: str, enforcement: Mapping[str, str] | None = None
+    advised: Iterable[Advice], name: str, enforcement: Mapping[str, str] | None = None
 ) -> tuple[list[str], list[list[str]]]:
-    """The header and the lines of the table of advice."""
+    """(header, lines) of the table of recommended settings."""
     unit = quantity(name).unit
     body = []
-    for setting in found:
+    for setting in advised:
         targets = ", ".join(number(target, 1) for target in setting.targets)
         row, sweep = setting.row, setting.sweep
         if row is None or sweep is None:
@@ -163,14 +160,12 @@ def advice_lines(
     return [*header, "step", f"error [{unit}]", "CPU [ms/s]", "order"], body
 
 
-# Each recommended setting is printed as code that runs as it is and prints a number.
-#
-# A program that needs the engine alone is a file `results/programs/<scene>_<method>.py`; "_" replaces all characters
-# but letters and digits. It states its `duration`, within the scene's horizon, and its `steps`; it ends with the
-# position and angle of one body in `end`, and prints them. These files are written by hand, because `crosscheck export`
-# can't write methods that need code in each step; only their line of `steps` comes from the method's row. All other
-# settings are run by one block of code on the page, which calls this suite.
-PROGRAM_FOLDER = "programs"  # within the folder of the pages
+# A program that does not import this suite is a file `results/programs/<scene>_<method>.py`, in which "_" replaces all
+# but letters and digits. It has the lines `duration = ...` (within the scene's horizon) and `steps = ...`. It prints
+# the position and angle of one body, `end`. These files are written by hand, because `crosscheck export` can't write
+# methods with code in each step. A report changes only the line `steps = ...`. For settings without such a file, the
+# page has code that calls this suite.
+PROGRAM_FOLDER = "programs"  # in the folder of the results
 RESULTS = Path(__file__).parents[1] / "results"
 DURATION_LINE = re.compile(r"^duration = ([\d.]+)", re.MULTILINE)
 STEPS_LINE = re.compile(r"^steps = \d+.*$", re.MULTILINE)
@@ -178,9 +173,11 @@ STEPS_LINE = re.compile(r"^steps = \d+.*$", re.MULTILINE)
 
 @dataclass(frozen=True)
 class Program:
-    """A recommended method with `every`, its number of steps between two samples.
+    """The program of a recommended method.
 
-    `file` and `text`: a program that needs the engine alone, relative to the results; the text is empty without one.
+    every: the number of steps between samples
+    file: its path in the folder of the results
+    text: empty if there is no such file
     """
 
     method: str
@@ -189,10 +186,10 @@ class Program:
     text: str
 
 
-def advised_programs(scene: Scene, found: Iterable[Advice], methods: Iterable[str]) -> list[Program]:
+def advised_programs(scene: Scene, advised: Iterable[Advice], methods: Iterable[str]) -> list[Program]:
     """A program for each recommended method of a scene, in the order of `methods`."""
     settings: dict[str, list[tuple[Measurement, float]]] = {method: [] for method in methods}
-    for setting in found:
+    for setting in advised:
         if setting.row is not None and setting.row.method in settings:
             settings[setting.row.method].append((setting.row, min(setting.targets)))
     return [
@@ -223,6 +220,6 @@ def _slug(name: str) -> str:
 
 
 def program(scene: str, method: str) -> str:
-    """The program of a method that needs its engine alone; empty without one."""
+    """The text of a method's program file; empty if there is none."""
     path = RESULTS / file_of(scene, method)
     return path.read_text(encoding="utf-8") if path.is_file() else ""

@@ -1,4 +1,4 @@
-"""Versions, processor and date of a result, for the foot of every page."""
+"""Versions, processor and date for the last line of pages."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ from pathlib import Path
 from engines import Engine, registry
 from engines.package_versions import installed_version
 
-# Reference solutions and errors are computed with these, whatever the engine.
+# Reference motions and errors of every engine are computed with these packages.
 MEASURED_WITH = ("numpy", "scipy")
 
 
 def versions(engines: Iterable[Engine] = ()) -> str:
-    """'Python 3.11.7, numpy 2.4.0, ...' for all registered engines and these."""
+    """The versions of all registered engines and of these, such as 'Python 3.11.7, numpy 2.4.0, ...'."""
     return row_versions(*registry.ENGINES, *engines)
 
 
 def row_versions(*engines: Engine) -> str:
-    """'Python 3.11.7, numpy 2.4.0, ...' for the rows of these engines."""
+    """The versions on which rows of these engines depend, such as 'Python 3.11.7, numpy 2.4.0, ...'."""
     names = dict.fromkeys([*MEASURED_WITH, *(name for engine in engines for name in engine.packages)])
     return ", ".join([f"Python {platform.python_version()}", *map(_version, names)])
 
 
 def engine_versions(engines: Iterable[Engine]) -> str:
-    """'exudyn 1.13.6, pin 4.1.0, ...' of the engines' own packages."""
+    """The versions of the engines' own packages, such as 'exudyn 1.13.6, pin 4.1.0, ...'."""
     return ", ".join(dict.fromkeys(_version(name) for engine in engines for name in engine.packages))
 
 
-@cache  # a lookup takes some milliseconds, and every page prints a dozen
+@cache  # a lookup takes milliseconds
 def _version(package: str) -> str:
     try:
         return f"{package} {installed_version(package)}"
@@ -42,9 +42,9 @@ def _version(package: str) -> str:
 
 
 def still_installed(versions: str) -> bool:
-    """Whether every package of such a line is installed in that version; other packages do not matter.
+    """Whether all packages in a result of `row_versions` are installed in these versions.
 
-    Of Python only the minor version is compared: a patch changes no number of an engine.
+    Only Python's minor version is compared, since a patch release changes no number of an engine.
     """
     python, *others = versions.split(", ")
     installed = [f"Python {platform.python_version()}", *(_version(line.split(" ", 1)[0]) for line in others)]
@@ -52,12 +52,11 @@ def still_installed(versions: str) -> bool:
 
 
 def _minor(python: str) -> str:
-    """'Python 3.11' for 'Python 3.11.7'."""
     return ".".join(python.split(".")[:2])
 
 
 def machine() -> str:
-    """'x86_64, 2 processors, name of the processor'; without paths and without the host's name."""
+    """A text such as 'x86_64, 2 processors, name of the processor, Linux'; it does not contain the host's name."""
     return f"{platform.machine()}, {os.cpu_count()} processors, {_processor()}, {platform.system()}"
 
 

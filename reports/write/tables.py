@@ -1,4 +1,4 @@
-"""Numbers and rows as text: the one number format, the one text table, and Markdown tables."""
+"""Numbers and rows as text: the number format, text tables and Markdown tables."""
 
 from __future__ import annotations
 
@@ -17,11 +17,7 @@ ENFORCED_BY = "joints enforced by"
 
 
 def number(value: float, digits: int = 2, unknown: str = DASH, infinite: str = "∞") -> str:
-    """A number as text with this many significant digits: 1.3e-4, 1e-3, 0.25, 12.
-
-    All of `reports` formats numbers by this function. A caller passes its own texts for NaN and infinity:
-    `number(error, infinite="gave up")` for a run that diverged, `number(value, unknown=UNKNOWN_MARK)` in a sentence.
-    """
+    """A number with this many significant digits, such as 1.3e-4, 1e-3, 0.25, 12; `unknown` is the text for NaN."""
     if not math.isfinite(value):
         return unknown if math.isnan(value) else infinite
     if value == 0:
@@ -33,17 +29,17 @@ def number(value: float, digits: int = 2, unknown: str = DASH, infinite: str = "
 
 
 def words_of(cell: str | float) -> str:
-    """A cell as text: a text unchanged, an integer with all digits, another number by `number`."""
+    """The text of a cell; an integer has all its digits."""
     return cell if isinstance(cell, str) else str(cell) if isinstance(cell, int) else number(cell)
 
 
 def milliseconds(seconds: float, unknown: str = DASH) -> str:
-    """CPU seconds as milliseconds, without the unit."""
+    """A CPU time in milliseconds, without the unit."""
     return number(1e3 * seconds, unknown=unknown)
 
 
 def step_words(seconds: float, unknown: str = DASH) -> str:
-    """A step with its unit: '10 ms', '0.33 ms'."""
+    """A step with its unit, such as '0.33 ms'."""
     return unknown if math.isnan(seconds) else f"{number(1e3 * seconds)} ms"
 
 
@@ -54,12 +50,12 @@ def text_table(
     separators: tuple[str, str] = ("  ", "  "),
     rule: tuple[str, str] | None = None,
 ) -> list[str]:
-    """Lines of a table in aligned columns, for a terminal; the header is the first line.
+    """The lines of a table for a terminal; the first line is the header.
 
     Args:
-        left: how many of the first columns are aligned to the left; None for all of them.
-        separators: the text between two columns in the header, and in the rows.
-        rule: (character, text between two columns) of a line below the header; None for no such line.
+        left: the number of columns that are aligned to the left; None for all columns.
+        separators: the texts between columns in the header and in the rows.
+        rule: (character, text between columns) of a line below the header.
     """
     lines = [tuple(header), *map(tuple, rows)]
     widths = [max(map(display_width, column)) for column in zip(*lines, strict=True)]
@@ -76,7 +72,7 @@ def text_table(
 
 
 def display_width(text: str) -> int:
-    """The width of a text on a terminal: two columns for a wide character, none for a combining one."""
+    """The width of a text on a terminal."""
     if text.isascii():
         return len(text)
     return sum(0 if combining(char) else 2 if east_asian_width(char) in "WF" else 1 for char in text)
@@ -85,9 +81,9 @@ def display_width(text: str) -> int:
 def markdown(
     header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1, enforcement: Mapping[str, str] | None = None
 ) -> str:
-    """A Markdown table; the first `left` columns are texts, the others numbers. A bar in a cell is escaped.
+    """A Markdown table; the first `left` columns are aligned to the left.
 
-    `enforcement`: what enforces the joints, by method. It becomes a column after the first one, which has the methods.
+    `enforcement` (what enforces the joints, by method) becomes the second column; the first one has the methods.
     """
     if enforcement:
         header, left = [header[0], ENFORCED_BY, *header[1:]], left + 1
@@ -104,7 +100,7 @@ ERROR_HEADER = ("method", "outcome", "step", *(f"{q.label} [{q.unit}]" for q in 
 
 
 def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
-    """The largest error of each quantity in each cell of one scene, by method and step, for ERROR_HEADER."""
+    """The lines below ERROR_HEADER, sorted by method and step."""
     return [
         [row.method, row.outcome, step_words(row.step)]
         + [number(getattr(row, q.name)) for q in QUANTITIES]
@@ -115,7 +111,7 @@ def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
 
 
 def order_rows(swept: Iterable[Sweep], quantities: Sequence[str]) -> list[list[str]]:
-    """A line for each method: its name, then order and plateau of each quantity."""
+    """A line for each method with `sweep_words` of each quantity."""
     swept = tuple(swept)
     keys = dict.fromkeys((s.scene, s.engine, s.variant) for s in swept)
     columns = [by_method(swept, name) for name in quantities]
@@ -123,9 +119,9 @@ def order_rows(swept: Iterable[Sweep], quantities: Sequence[str]) -> list[list[s
 
 
 def sweep_words(sweep: Sweep, lost: str = "") -> str:
-    """'1.99 (±0.13, 4 points)', '3.9 (2 points, unchecked), then rounding', 'plateau **2e-5**', or a dash.
+    """A text such as '1.99 (±0.13, 4 points)', '3.9 (2 points, unchecked), then rounding' or 'plateau **2e-5**'.
 
-    `lost`: the outcome of the finest step, if that can't be compared.
+    `lost` is the outcome at the smallest step, if that run can't be compared.
     """
     order = ""
     if sweep.points >= 2:
@@ -148,14 +144,14 @@ def sweep_words(sweep: Sweep, lost: str = "") -> str:
 
 
 def error_words(row: Measurement | None, name: str) -> str:
-    """The error of a run; its outcome if the run can't be compared; a dash without a run."""
+    """The error of a run, or its outcome if it can't be compared; a dash without a run."""
     if row is None:
         return DASH
     return number(getattr(row, name)) if Outcome(row.outcome).comparable else str(row.outcome)
 
 
 def outcome_grid(rows: Iterable[Measurement]) -> str:
-    """A table of an experiment: a line for each method, a column for each step, the outcome and a number in each cell.
+    """A Markdown table with a line for each method and a column for each step.
 
     Raises ValueError if two rows have the same method and step.
     """
@@ -172,7 +168,7 @@ def outcome_grid(rows: Iterable[Measurement]) -> str:
 
 
 def _outcome_in_brief(row: Measurement) -> str:
-    """The outcome with one number: the gap of a torn loop, otherwise the angle error."""
+    """The angle error, or the outcome if the run can't be compared; a torn joint has its gap."""
     if Outcome(row.outcome).comparable:
         return f"{number(row.angle)} rad"
     if row.outcome == Outcome.TORN and math.isfinite(row.gap):
@@ -181,7 +177,7 @@ def _outcome_in_brief(row: Measurement) -> str:
 
 
 def cell_table(rows: Iterable[Measurement], columns: Sequence[str]) -> str:
-    """A line for each row: method (with the outcome of a failed run), step, the largest errors of these quantities."""
+    """A Markdown table with a line for each row: method, step and the errors of these quantities."""
     quantities = [quantity(name) for name in columns]
     body = []
     for row in rows:
@@ -194,7 +190,7 @@ SUMMARY_HEADER = ("method", "angle error [rad]", "at step", "CPU [ms/s]", "order
 
 
 def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:
-    """A line for each method of one scene, for SUMMARY_HEADER: least angle error, order (and its points), plateau."""
+    """The lines below SUMMARY_HEADER, one for each method of one scene."""
     rows = list(rows)
     verdicts = by_method(sweeps(rows), "angle")
     out = []

@@ -1,4 +1,4 @@
-"""The Jinja environment of pages and remarks, links to headings, and parts of documents that a report replaces."""
+"""The Jinja environment of pages, links to headings, and parts of documents that a report replaces."""
 
 from __future__ import annotations
 
@@ -20,20 +20,17 @@ FENCED_BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 
 
 def anchor(heading: str) -> str:
-    """The part of a link after '#' for a heading: lower case, without punctuation, with hyphens for spaces."""
+    """The anchor of a heading in a link, after '#'."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def headings(text: str) -> tuple[str, ...]:
-    """The headings of a Markdown text; lines of code that begin with '#' are not headings."""
+    """The headings of a Markdown text; comments in code are not headings."""
     return tuple(HEADING.findall(FENCED_BLOCK.sub("", text)))
 
 
 def link(page: str, heading: str, files: Mapping[str, str]) -> str:
-    """The address of a heading in the page's file or in another file whose name begins with the page's name.
-
-    Without such a heading it is the address of the page.
-    """
+    """The address of a heading in a file whose name begins with the page's name; else the page's address."""
     for name in sorted(files, key=lambda name: (name != f"{page}.md", name)):
         if name.startswith(page) and name.endswith(".md") and heading in headings(files[name]):
             return f"{name}#{anchor(heading)}"
@@ -41,20 +38,20 @@ def link(page: str, heading: str, files: Mapping[str, str]) -> str:
 
 
 def without_dead_links(text: str, exists: Callable[[str], bool]) -> str:
-    """The page with plain text in place of links to pages that do not exist."""
+    """The text without links to pages that do not exist; the words of these links remain."""
     return PAGE_LINK.sub(lambda match: match[0] if exists(match[2]) else match[1], text)
 
 
 def marks(name: str) -> tuple[str, str]:
-    """The comments before and after a part of a document."""
+    """The comments at the beginning and at the end of a part of a document."""
     return f"<!-- {name}: written by `crosscheck report` -->", f"<!-- end of {name} -->"
 
 
 def with_part(document: str, name: str, text: str) -> str:
-    """The document with this text as its part of this name. Raises ValueError if a mark of the part is missing."""
+    """The document with another text in a part. Raises ValueError if a mark of this part is missing."""
     first, last = marks(name)
-    before, begin, rest = document.partition(first)
-    _, end, after = rest.partition(last)
+    before, begin, following = document.partition(first)
+    _, end, after = following.partition(last)
     if not begin or not end:
         raise ValueError(f"the document lacks the marks {first!r} and {last!r}")
     return f"{before}{begin}\n{text}\n{end}{after}"
@@ -63,26 +60,26 @@ def with_part(document: str, name: str, text: str) -> str:
 TEMPLATES = Path(__file__).parents[1] / "pages"
 
 CODE = re.compile(r"(^ *```.*?^ *```$|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
-# The only HTML in our pages: details, summary and comments.
+# Pages contain the tags `details` and `summary`, and comments.
 FOREIGN_TAG = re.compile(r"<(?=[A-Za-z/!?])(?!/?(?:details|summary)>|!--)")
 
 
 def inert(text: str) -> str:
-    """HTML or Markdown with every tag that is not ours escaped, since names of scenes and engines may contain any."""
+    """HTML or Markdown with all FOREIGN_TAGs escaped, since names of scenes and engines may contain tags."""
     return FOREIGN_TAG.sub("&lt;", text)
 
 
 def inert_page(text: str) -> str:
-    """A Markdown page with foreign tags escaped outside of code."""
+    """A Markdown page with FOREIGN_TAGs escaped outside of code."""
     parts = CODE.split(text)
     return "".join(part if index % 2 else inert(part) for index, part in enumerate(parts))
 
 
 @cache
 def environment(folder: Path = TEMPLATES) -> Environment:
-    """An environment that raises an exception for an undefined name and prints UNKNOWN_MARK for an unknown number.
+    """The environment of templates. An undefined name raises an exception; an unknown number becomes UNKNOWN_MARK.
 
-    Templates of another folder have the prefix "own/", so that none of them replaces our "base.md".
+    Templates of another folder have the prefix "own/", so that they can't replace our templates.
     """
     out = Environment(
         loader=ChoiceLoader([FileSystemLoader(TEMPLATES), PrefixLoader({"own": FileSystemLoader(folder)})]),
@@ -104,12 +101,11 @@ def _filter(name: str, *values: Any, **options: Any) -> Any:
 
 @cache
 def template(text: str) -> Template:
-    """A compiled template from a text."""
     return environment().from_string(text)
 
 
 def template_of(page: Page) -> Template:
-    """The page's own template, or the one of its name in this package, or the generic one."""
+    """The page's own template, else the template with the page's name, else "base.md"."""
     if page.template is not None:
         return environment(page.template.parent).get_template(f"own/{page.template.name}")
     return environment().select_template([f"{page.name}/page.md", "base.md"])
