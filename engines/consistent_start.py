@@ -1,11 +1,11 @@
-"""The state in which a motion of ideal joints begins where a user's own does not satisfy them.
+"""A start that satisfies ideal joints, for a model whose own start does not.
 
-Positions that were printed with six digits leave joints open by about a millionth. The nearest closed positions, in the
-norm of the masses, are those of the model (Newton's method with M^-1 J^T).
+If positions were printed with six digits, joints are open by about a millionth of the length. The start then has the
+nearest positions that close all joints, in the norm of the masses (Newton's method with M^-1 J^T).
 
-A motor that is at rest at t = 0, as in most scripts of games, asks for a velocity that no body has yet. Rigid bodies
-then take up the rate at once. The impulse of ideal joints makes the least of all possible changes, measured as the
-kinetic energy of the change, (v - v0)^T M (v - v0) / 2, subject to J v = rate (Gauss's principle for impulses).
+In most scripts of games a motor and its bodies are at rest at t = 0. Ideal joints then change the velocities by an
+impulse. The change is the least in kinetic energy, (v - v0)^T M (v - v0) / 2, subject to J v = rate (Gauss's principle
+for impulses).
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from reference.mechanism import START_TOLERANCE, Mechanism, open_joint
 from reference.rows import rank
 
 Array = NDArray[np.float64]
-# The least of the rows in a combination that no velocities satisfy: a row with a smaller weight in it is rounding.
+# A message names the rows whose slip is above this share of the largest. A smaller slip is rounding.
 TAKES_PART = 1e-6
 MOST_NAMED = 4
-# Of the largest coordinate or the mechanism's length, and rad: gaps of positions that were printed with six digits.
+# Largest gap of positions that were printed with six digits, in rad or relative to the largest coordinate.
 PRINTED = 1e-5
-FAR = 100.0  # lengths from the origin: beyond, six digits do not tell how a mechanism stands
-MOST_ITERATIONS = 20  # of Newton's method from there; it converges in three unless a position is singular
-DIGITS = 1e-6  # rad: a hundredth of the error that is usually asked for
-FASTEST = 1e150  # m/s, rad/s
+FAR = 100.0  # largest coordinate for PRINTED, in lengths of the mechanism
+MOST_ITERATIONS = 20  # of Newton's method, which converges in three unless a position is singular
+DIGITS = 1e-6  # largest rounding of an angle [rad]: a hundredth of the usual tolerance
+FASTEST = 1e150  # largest velocity whose square is a floating point number [m/s, rad/s]
 
 
 class OpenStart(InvalidMechanism):
@@ -40,7 +40,7 @@ class OpenStart(InvalidMechanism):
 
 
 class _AnyStart(Mechanism):
-    """A mechanism whose start may break its rows."""
+    """A mechanism whose start may violate its rows."""
 
     def _refuse_a_bad_start(self) -> None:
         pass
@@ -49,8 +49,10 @@ class _AnyStart(Mechanism):
 def closed_positions(
     bodies: Sequence[Body], joints: Sequence[Joint], gravity: Vector, forces: Sequence[ForceElement]
 ) -> tuple[Array, Note] | None:
-    """The nearest poses (bodies, 3) that close all joints, and a note; None where they are closed, or open by more than
-    PRINTED, or where Newton's method finds none so near."""
+    """The nearest poses (bodies, 3) that close all joints, and a note.
+
+    None if all joints are closed, if one is open by more than PRINTED, or if Newton's method finds no poses so near.
+    """
     if not joints:
         return None
     mechanism = _AnyStart(tuple(bodies), tuple(joints), gravity, tuple(forces))
@@ -63,8 +65,7 @@ def closed_positions(
     def is_open(pose: Array) -> bool:
         return open_joint(mechanism, gap_at(pose), still, pose, mechanism.twist, size) is not None
 
-    # By how much the coordinate that changes a row most has to move, in units of the length or rad.
-    # Digits are counted from the largest coordinate.
+    # The gap of a row in displacements of the coordinate that changes it most, in rad or relative to `far`.
     far = float(np.clip(np.abs(mechanism.pose[:, :2]).max(), size, FAR * size))
     rows = mechanism.rows(mechanism.pose) * np.tile([far, far, 1.0], len(bodies))
     gap = np.abs(gap_at(mechanism.pose)) / np.abs(rows).max(axis=1)
@@ -74,7 +75,7 @@ def closed_positions(
     for _ in range(MOST_ITERATIONS):
         pose = pose + _least_change(mechanism, gap_at(pose), pose)
         moved = np.abs(pose - mechanism.pose) / [far, far, 1.0]
-        if not moved.max() <= 100 * PRINTED:  # a singular position: a small gap needs a large move
+        if not moved.max() <= 100 * PRINTED:  # in a singular position a small gap needs a large displacement
             return None
         if not np.any(np.abs(gap_at(pose)) > 1e-13 * row_unit):
             break
@@ -94,9 +95,9 @@ def closed_positions(
 def with_consistent_start(
     bodies: Sequence[Body], joints: Sequence[Joint], gravity: Vector, forces: Sequence[ForceElement]
 ) -> tuple[Mechanism, tuple[Note, ...]]:
-    """The mechanism of these elements, with velocities that satisfy its rows, and a note if these are not the bodies'.
+    """The mechanism with velocities that satisfy its rows, and a note if they differ from those of the bodies.
 
-    Raises OpenStart where a position is open, and InvalidMechanism where no velocities satisfy all rows.
+    Raises OpenStart for a joint that is open, and InvalidMechanism if no velocities satisfy all rows.
     """
     elements = tuple(joints), gravity, tuple(forces)
     _refuse_without_digits(bodies)
@@ -120,7 +121,7 @@ def with_consistent_start(
 
 
 def _refuse_without_digits(bodies: Sequence[Body]) -> None:
-    """Raise InvalidMechanism for an angle too large to be one: its own rounding is more than DIGITS of a radian."""
+    """Raise InvalidMechanism for an angle whose rounding exceeds DIGITS, and a velocity above FASTEST."""
     rounded = "floating point numbers of that size tell no angle to a millionth of a radian; give a smaller one"
     infinite = "its square, an energy, is no floating point number; give a smaller one"
     for body in bodies:
@@ -133,31 +134,30 @@ def _refuse_without_digits(bodies: Sequence[Body]) -> None:
 
 
 def _least_change(own: Mechanism, slip: Array, pose: Array) -> Array:
-    """(bodies, 3): M^-1 J^T times the impulses that take away the slip (rows,), in the least squares of M^(-1/2).
+    """The least change of velocities (bodies, 3), in the norm of the masses, that removes the slip (rows,).
 
-    Of a gap instead of a slip: the change of positions, to first order.
+    For a gap (rows,) in place of the slip, it is the least change of positions to first order.
     """
     rows, root = own.rows(pose), np.sqrt(own.inertias.reshape(-1))
     matrix = rows / root
     norm = np.linalg.norm(matrix, axis=1)
     scale = 1 / np.where(norm > 0, norm, 1.0)
     left, sizes, right = np.linalg.svd(matrix * scale[:, None], full_matrices=False)
-    # Whether rows depend on one another does not depend on masses.
-    count = rank(rows, own.length_scale)
+    count = rank(rows, own.length_scale)  # of J without masses, since these do not change the dependence of rows
     change = np.zeros_like(root)
-    for _ in range(2):  # once more with what rounding has left
+    for _ in range(2):  # the second iteration reduces the rounding error
         wanted = -(slip + rows @ change) * scale
         change += right[:count].T @ (left[:, :count].T @ wanted / sizes[:count]) / root
     return change.reshape(-1, 3)
 
 
 def _per_length(own: Mechanism, slip: Array) -> Array:
-    """Slips (rows,) as rates [1/s]."""
+    """Slips (rows,) as rates [1/s]: linear ones are divided by the mechanism's length."""
     return np.where(own.is_angular, slip, slip / own.length_scale)
 
 
 def _contradiction(own: Mechanism, missed: Array) -> str:
-    """What is wrong where the rows are still missed by so much (rows,) [m/s, rad/s] at the best velocities."""
+    """The message for rows that no velocities satisfy together; `missed` (rows,) is the least slip [m/s, rad/s]."""
     sizes = np.abs(_per_length(own, missed))
     joints = [joint.name for joint in own.joints for _ in range(joint.size)]
     driven = [name for name, rate in zip(joints, own.rate, strict=True) if rate]

@@ -1,7 +1,6 @@
-"""Accelerations, or velocities after an impulse, that rows of a mechanism allow: Gauss's principle, in numpy.
+"""Accelerations, or velocities after an impulse, that satisfy constraint rows, by Gauss's principle in numpy.
 
-Of all motions that satisfy the rows it is the nearest to the free motion, in the metric of the masses. Rows may be
-soft: they give way to their forces.
+The result is nearest to the free motion in the norm of the masses. Rows may be compliant.
 """
 
 from __future__ import annotations
@@ -17,31 +16,33 @@ REFINEMENTS = 3
 
 @dataclass(frozen=True, eq=False)
 class Constrained:
-    """Accelerations or velocities, shaped as the free ones, and the forces or impulses of the rows (rows,)."""
+    """Accelerations or velocities (bodies, 3), and the forces or impulses of the rows (rows,)."""
 
     motion: Array
     force: Array
 
 
 def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: Array | None = None) -> Constrained:
-    """J a = right - give give^T f with M (a - free) = J^T f, for rows (rows, 3 bodies) and `give` (rows, any number).
+    """The solution of J a = right - give give^T f and M (a - free) = J^T f for accelerations a and forces f.
 
-    By the SVD of J M^(-1/2), never through its square. That is right to rounding of the largest part of M^(1/2) a, in
-    which a light body's is small: so what both equations leave is solved for again (iterative refinement; Skeel 1980).
+    rows (rows, 3 bodies): the Jacobian J
+    give (rows, any number): a factor of the compliance
+    The SVD of J M^(-1/2) is used, not its square. Its rounding error is relative to the largest component of M^(1/2) a,
+    which is too large for a light body. Iterative refinement of both equations reduces it (Skeel 1980).
     """
     if not len(rows):
         return Constrained(free, np.zeros(0))
     root = np.sqrt(inertias.reshape(-1))
     matrix = rows / root
     norm = np.linalg.norm(matrix, axis=1)
-    if give is not None:  # further coordinates of unit mass, which the forces move
+    if give is not None:  # additional coordinates of unit mass on which the forces act
         matrix = np.hstack([matrix, give])
     left, sizes, right_vectors = np.linalg.svd(matrix / norm[:, None], full_matrices=False)
     start, motion, force = free.reshape(-1), np.zeros(len(root)), np.zeros(len(rows))
     for _ in range(1 + REFINEMENTS):
-        pushed = start - motion + (rows.T @ force) / root**2
-        short = right - rows @ motion - (0.0 if give is None else give @ (give.T @ force))
-        residual = left.T @ ((short - rows @ pushed) / norm)
-        motion = motion + pushed + (right_vectors.T @ (residual / sizes))[: len(root)] / root
+        motion_residual = start - motion + (rows.T @ force) / root**2
+        row_residual = right - rows @ motion - (0.0 if give is None else give @ (give.T @ force))
+        residual = left.T @ ((row_residual - rows @ motion_residual) / norm)
+        motion = motion + motion_residual + (right_vectors.T @ (residual / sizes))[: len(root)] / root
         force = force + left @ (residual / sizes**2) / norm
     return Constrained(motion.reshape(free.shape), force)

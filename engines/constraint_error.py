@@ -1,9 +1,9 @@
-"""The error of a motion that shows in its joints: poses by their gaps, and reactions by these poses.
+"""The errors of poses and reactions that follow from the gaps of the joints.
 
-What an engine's regularisation, or the iterations that its solver lacks, leave open is much the same at every step, so
-that runs agree on it. Near a singular position a small gap is a large displacement: J M^-1 J^T has an eigenvalue near
-zero, and forces R f of a compliance R as small release its direction. The gap is there to be measured, though: the
-smallest motion that closes it, in the metric of the masses, is that displacement.
+Gaps from an engine's regularisation, or from too few iterations of its solver, hardly depend on the step. Runs at
+several steps agree on them and do not show the error. Near a singular position J M^-1 J^T has an eigenvalue near zero,
+and a small gap means a large displacement. That displacement is the least motion that closes the gap, in the norm of
+the masses.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 
-# Instants of a motion at which gaps are looked at. Those that matter build up while it stays near a singular position.
+# Largest number of instants of a motion at which gaps are evaluated. Large displacements build up over many steps.
 INSTANTS = 100
-# Rows times rows times coordinates, up to which an instant costs less than some hundred steps: beyond, there are fewer
-# of them, and none of a chain of a hundred links, which would take seconds.
+# Largest sum of rows * rows * coordinates over all instants. A mechanism with many rows has fewer instants, and a chain
+# of a hundred links has none, since they would take seconds.
 WORK = 20_000_000
-# Reactions whose estimated error is above this part of the largest force are reported.
+# Reactions whose estimated error exceeds this share of the largest force get a warning.
 FORCES = 1e-3
-# Of the loads on bodies and of what turns them: smaller reactions are differences of larger forces, and where nothing
-# is held they are rounding: velocities divided by a step leave 1e-9 of these forces, in estimates twenty times that.
+# Least value of the largest force, as a share of the loads and inertial forces. Smaller reactions are differences of
+# larger forces. If nothing is held, reactions are rounding: about 1e-9 of these forces, in estimates 2e-8.
 LEAST_FORCE = 1e-4
 
 
-def some(mechanism: Mechanism, sound: NDArray[np.bool_]) -> NDArray[np.int_]:
-    """Places of up to INSTANTS of the `sound` (times,) times, evenly spread; none where rows take more than WORK."""
-    places, rows = np.flatnonzero(sound), mechanism.row_count
+def examined_times(mechanism: Mechanism, valid: NDArray[np.bool_]) -> NDArray[np.int_]:
+    """Indices of up to INSTANTS evenly spread times of those that are `valid` (times,); none if they exceed WORK."""
+    places, rows = np.flatnonzero(valid), mechanism.row_count
     most = min(INSTANTS, WORK // (rows * rows * 3 * len(mechanism.bodies))) if rows else 0
     if most < 2 or not len(places):
         return places[:0]
@@ -41,40 +41,39 @@ def some(mechanism: Mechanism, sound: NDArray[np.bool_]) -> NDArray[np.int_]:
 def closing(mechanism: Mechanism, t: Array, pose: Array, at: Array | None = None) -> Array:
     """The displacements (instants, bodies, 3) [m, m, rad] that close the gaps of a motion at the instants `at` [s].
 
-    Poses (times, bodies, 3) are those at times t [s], which are the instants unless others are given. With B = J M^-1/2
-    it is -M^-1/2 B^+ gap, whose condition is that of J and not of J M^-1 J^T. Rows that depend on others to
-    RANK_TOLERANCE ask for nothing, and rows that hold velocities have no gap. Worked out at `some` of the times, and
-    linear in between; zero if the first pose is not finite, and constant from where one is not.
+    Poses (times, bodies, 3) are those at times t [s]; by default the instants are these times. The displacement is
+    -M^-1/2 B^+ gap with B = J M^-1/2. Rows that depend on others to RANK_TOLERANCE, and rows of velocities, add no
+    displacement. It is computed at the `examined_times` and interpolated linearly. From the first pose that is not
+    finite it is constant. If there are no examined times, it is zero.
     """
     at = t if at is None else at
-    looks = some(mechanism, np.logical_and.accumulate(np.isfinite(pose).all(axis=(1, 2))))
-    if not len(looks):
+    examined = examined_times(mechanism, np.logical_and.accumulate(np.isfinite(pose).all(axis=(1, 2))))
+    if not len(examined):
         return np.zeros((len(at), *pose.shape[1:]))
-    seen, when, root = pose[looks], t[looks], np.sqrt(mechanism.inertias.reshape(-1))
-    rows = mechanism.rows(seen) / root
-    size = np.linalg.norm(rows, axis=-1)
-    size[size == 0] = 1.0
-    inverse = -np.linalg.pinv(rows / size[..., None], rcond=RANK_TOLERANCE) / root[:, None]
-    moved = (inverse @ (np.nan_to_num(mechanism.gap(seen, when)) / size)[..., None])[..., 0]
-    between = [np.interp(at, when, column) for column in moved.T]
-    return np.stack(between, axis=1).reshape(len(at), *pose.shape[1:])
+    poses, times, root = pose[examined], t[examined], np.sqrt(mechanism.inertias.reshape(-1))
+    rows = mechanism.rows(poses) / root
+    norm = np.linalg.norm(rows, axis=-1)
+    norm[norm == 0] = 1.0
+    inverse = -np.linalg.pinv(rows / norm[..., None], rcond=RANK_TOLERANCE) / root[:, None]
+    moved = (inverse @ (np.nan_to_num(mechanism.gap(poses, times)) / norm)[..., None])[..., 0]
+    interpolated = [np.interp(at, times, column) for column in moved.T]
+    return np.stack(interpolated, axis=1).reshape(len(at), *pose.shape[1:])
 
 
 def displaced_reaction(mechanism: Mechanism, pose: Array, reaction: Array, moved: Array) -> Array:
     """The reactions (times, rows) that give bodies the same accelerations at poses displaced by `moved`.
 
-    pose and moved (times, bodies, 3), reaction (times, rows). Near a singular position small displacements of rows
-    change them by much.
+    pose, moved (times, bodies, 3); reaction (times, rows)
     """
     pulled = np.einsum("tr,trc->tc", reaction, mechanism.rows(pose)).reshape(pose.shape)
     return mechanism.reactions_of(pose + moved, pulled / mechanism.inertias, mechanism.inertias)
 
 
 def largest_force(mechanism: Mechanism, pose: Array, twist: Array, reaction: Array) -> float:
-    """The largest of reactions (times, rows) in a motion, poses and twists (times, bodies, 3) [N].
+    """The largest reaction in a motion [N]; a torque is divided by the mechanism's length.
 
-    A torque counts as the force that it is at the mechanism's length. At least LEAST_FORCE of the loads in the motion,
-    and of m v^2 / length.
+    It is at least LEAST_FORCE times the loads and the sum of m v^2 / length.
+    pose, twist (times, bodies, 3); reaction (times, rows)
     """
     length = mechanism.length_scale
     arm, sizes = np.where(mechanism.is_angular, length, 1.0), np.array([1.0, 1.0, 1 / length])
@@ -86,7 +85,7 @@ def largest_force(mechanism: Mechanism, pose: Array, twist: Array, reaction: Arr
 
 
 def reaction_doubts(mechanism: Mechanism, pose: Array, twist: Array, reaction: Array, error: Array) -> list[RunWarning]:
-    """The warning of reactions (times, rows) whose `error` is above FORCES of the `largest_force`, if it is."""
+    """A warning if the `error` of reactions (times, rows) exceeds FORCES times the `largest_force`, or no warning."""
     if not mechanism.row_count:
         return []
     arm = np.where(mechanism.is_angular, mechanism.length_scale, 1.0)

@@ -1,4 +1,4 @@
-"""Richardson's extrapolation to zero step, around any engine: run it at several steps, keep what the steps agree on."""
+"""Richardson's extrapolation to zero step from runs of any engine at several steps."""
 
 from __future__ import annotations
 
@@ -27,56 +27,59 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-# Share of the claim from which a motion whose estimate passes the claim is unresolved. Fitted with richardson.LEAST.
+# If the estimate exceeds the claim, the motion is unresolved from the first time at which the estimate exceeds this
+# share of the claim. The value was fitted together with richardson.LEAST.
 EARLY = 1 / 30
-# Multiples of the claim between which the estimate does not decide, and one more run does (`further_level`).
+# An estimate between these multiples of the claim is decided by one more run (`further_level`).
 OPEN = (0.1, 30.0)
 # Factor on the displacement that closes the joints. The displacement was 0.4 to 1.1 of the whole error in 57 motions of
-# random mechanisms, near singular positions too.
+# random mechanisms, also near singular positions.
 RELEASED = 1.5
-# rad: a line of a spring, damper or rod that turns further in one step of the coarsest run may be missed by all runs.
+# All runs may miss the motion of a spring, damper or rod that turns by more than this in a step of the coarsest run
+# [rad].
 TURNED = 0.5
-# Poses of bodies in each run that are compared at most: all steps of nearly every run.
+# Largest number of body poses that are compared in each run. Nearly every run has fewer and is compared at all steps.
 WATCHED = 300_000
 
 
 @runtime_checkable
 class Watched(Protocol):
-    """A run that can leave reactions out: NaN at all samples but each `each`-th."""
+    """A run that can compute the reactions at each `each`-th sample alone; they are NaN at the other samples."""
 
     def watched(self, samples: Count, every: Count, each: Count) -> Trajectory: ...
 
 
 @runtime_checkable
 class Settling(Protocol):
-    """An engine with a start-up phase. It must last the same time at every level, else no error expansion exists."""
+    """An engine with a start-up phase.
+
+    An error expansion exists only if the phase lasts the same time at every level.
+    """
 
     def settled_for(self, steps: Count) -> Engine: ...
 
 
 @dataclass(frozen=True)
 class Extrapolated(EngineWrapper, Valid):
-    """An engine in the sense of `engines.Engine` that runs another one at steps dt / level, and extrapolates.
+    """An engine that runs another engine at steps dt / level and extrapolates the runs to zero step.
 
     A sample is the linear combination of the runs' poses, twists and reactions that is free of errors in the `powers`
-    of the step (L. F. Richardson, 1911): the powers that the inner engine's error has, one fewer than `levels`. A
-    sample is NaN where one of the runs is not finite. The cost is the sum of all runs.
+    of the step (L. F. Richardson, 1911). The `powers` are those of the inner engine's error. There is one fewer than
+    `levels`. A sample is NaN if one of the runs is not finite.
 
-    The `estimate` is the larger of two: `expected_error` of the differences between successive columns of Richardson's
-    table, with the rounding of all steps; and the displacement that would close the joints' gaps
-    (`engines.constraint_error`), which shows errors that all runs share. Where the former is near `engines.CLAIM`, or
-    where the last difference is far smaller than the ones before predict, one more run decides.
+    The `estimate` is the larger of two errors. The first is the `expected_error` from the differences between
+    successive columns of Richardson's table, with the rounding of all steps. The second is the displacement that would
+    close the joints' gaps (`engines.constraint_error`): it shows errors that all runs share. One more run decides if
+    the first is near `engines.CLAIM`, or if the last difference is far smaller than the earlier differences predict.
 
-    The estimate is computed at every step of dt, independent of the sampling. Where it exceeds the claim, the motion is
-    unresolved from the time `unresolved_at` at which it exceeds EARLY of the claim, with a warning. If a damper stops a
-    motion within one step of the coarsest run, all runs may miss it, and the motion is unresolved from t = 0. Reactions
-    with a large estimate of their own get a warning.
+    The estimate is computed at the steps of dt and does not depend on the sampling. If it exceeds the claim, the run
+    has a warning, and `unresolved_at` is the time at which the estimate exceeds EARLY of the claim. If a damper stops
+    a motion within one step of the coarsest run, all runs may miss it, and the motion is unresolved from t = 0.
+    Reactions with a large estimate get a warning of their own.
 
-    Where the estimate exceeds the apparent error of the finest run (the distance to the extrapolation of the two
-    finest), the runs have no error expansion: for example, one took another branch at a singular position. From there
-    on the samples are those of the finest run, and the estimate is the largest distance of another run from it.
-
-    Raises ValueError for levels that are not rising whole numbers or powers that do not fit them.
+    The apparent error of the finest run is its distance from the extrapolation of the two finest runs. If the estimate
+    exceeds it, the runs have no error expansion: for example, one run took another branch at a singular position. From
+    that time on the samples are those of the finest run, and the estimate is its largest distance from another run.
     """
 
     engine: Engine
@@ -99,10 +102,10 @@ class Extrapolated(EngineWrapper, Valid):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The power after those removed; rounding grows by the sum of the weights' sizes.
+        """The first power that is not removed; rounding grows by the sum of the weights' absolute values.
 
         Reactions that are a change of velocity over a step use the steps of the finest run. Their error has additional
-        powers, so only twice the inner order is promised of them.
+        powers, so the declared order of reactions is only twice the inner order.
         """
         inner = self.engine.order(mechanism)
         if isinstance(inner, NotDeclared):
@@ -123,24 +126,21 @@ class Extrapolated(EngineWrapper, Valid):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """All steps of all levels [s]."""
         return sum(self.levels) * self.engine.step_cost(mechanism)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> None:
-        """Nothing is declared: a softness that is tied to the step is extrapolated too."""
+        """None: a regularisation that depends on the step is extrapolated to zero step too."""
 
     def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
-        """One run a level."""
         return tuple(1 / level for level in self.levels)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:
-        """Build the engine once a level; raises whatever it raises."""
         return ExtrapolatedRun(self, mechanism, dt)
 
 
 class ExtrapolatedRun(OneShot):
-    """The built models of all levels, ready to be stepped once; see `engines.Run`."""
+    """The built models of all levels; see `engines.Run`."""
 
     def __init__(self, method: Extrapolated, mechanism: Mechanism, dt: float) -> None:
         self._method, self._mechanism, self._dt = method, mechanism, dt
@@ -157,46 +157,49 @@ class ExtrapolatedRun(OneShot):
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         self.begin()
-        watched = _watched_every(samples, every, len(self._mechanism.bodies))
-        stride = every // watched
-        count, runs = samples * stride, zip(self._runs, self._levels, strict=True)
-        parts = [_part(run, count, watched * level, stride) for run, level in runs]
-        whole = self._combined(parts, watched, stride)
-        spent = whole.stepping
-        if not whole.warnings_of("unconverged") and self._is_open(whole, parts):
-            further = _part(self._build_at(self._further), count, watched * self._further, stride)
-            spent += further.stepping
-            whole = self._combined(parts, watched, stride, further)
-        sampled = {name: getattr(whole, name)[::stride] for name in ("t", "pose", "twist", "reaction", "estimate")}
-        return replace(whole, **sampled, stepping=spent)
+        spacing = _steps_between_compared(samples, every, len(self._mechanism.bodies))
+        stride = every // spacing
+        count = samples * stride
+        runs = [_run(run, count, spacing * level, stride) for run, level in zip(self._runs, self._levels, strict=True)]
+        extrapolated = self._extrapolated(runs, spacing, stride)
+        stepping = extrapolated.stepping
+        if not extrapolated.warnings_of("unconverged") and self._needs_further_run(extrapolated, runs):
+            further = _run(self._build_at(self._further), count, spacing * self._further, stride)
+            stepping += further.stepping
+            extrapolated = self._extrapolated(runs, spacing, stride, further)
+        fields = ("t", "pose", "twist", "reaction", "estimate")
+        sampled = {name: getattr(extrapolated, name)[::stride] for name in fields}
+        return replace(extrapolated, **sampled, stepping=stepping)
 
-    def _is_open(self, whole: Trajectory, parts: list[Trajectory]) -> bool:
-        """Whether another run decides: where the estimate is near the claim, where lines turn far in a step of the
-        coarsest run, and where the last difference may be small by chance: at the ratio of the two before it, it would
-        be near the claim.
+    def _needs_further_run(self, extrapolated: Trajectory, runs: list[Trajectory]) -> bool:
+        """Whether another run decides the error.
+
+        It does if the estimate is not far from the claim. It also does if the last difference may be small by chance:
+        with the ratio of the two differences before it, it would be near the claim.
         """
         low, high = OPEN
-        if len(self._levels) < 3 or whole.estimate is None:
+        if len(self._levels) < 3 or extrapolated.estimate is None:
             return False
-        largest = float(self._largest(whole.estimate)[-1])
-        if whole.unresolved_at is None and largest < low * CLAIM:
-            poses = np.stack([part.pose for part in parts]) / self._unit
+        largest = float(self._largest(extrapolated.estimate)[-1])
+        if extrapolated.unresolved_at is None and largest < low * CLAIM:
+            poses = np.stack([run.pose for run in runs]) / self._unit
             sizes = [float(difference.max()) for difference in differences(poses, self._levels, self._powers)]
             return len(sizes) > 2 and LEAST * sizes[-2] ** 2 > low * CLAIM * sizes[-3]
         return largest < high * CLAIM
 
-    def _combined(
-        self, parts: list[Trajectory], every: int, stride: int, further: Trajectory | None = None
+    def _extrapolated(
+        self, runs: list[Trajectory], every: int, stride: int, further: Trajectory | None = None
     ) -> Trajectory:
-        """The extrapolation of these runs, with `every` steps of dt between their times; `further`: the run that
-        decides the estimate. Reactions are known at each `stride`-th time.
+        """The extrapolation of runs with `every` steps of dt between their times.
+
+        Reactions are known at each `stride`-th time. The run `further` decides the estimate.
         """
         levels, powers = self._levels, self._powers
         weights = extrapolation_weights(levels, powers)
         poses, twists, reactions = (
-            np.stack([getattr(part, name) for part in parts]) for name in ("pose", "twist", "reaction")
+            np.stack([getattr(run, name) for run in runs]) for name in ("pose", "twist", "reaction")
         )
-        t, steps = parts[-1].t, (len(parts[-1].t) - 1) * every
+        t, steps = runs[-1].t, (len(runs[-1].t) - 1) * every
         pose, twist, reaction = (combine(values, weights) for values in (poses, twists, reactions))
         estimate = self._estimate(poses, pose, steps)
         lost = (self._largest(estimate) > CLAIM) & self._has_no_expansion(poses, self._largest(estimate))
@@ -211,21 +214,21 @@ class ExtrapolatedRun(OneShot):
             estimate = decided if above else np.fmax(decided, estimate)
         estimate = np.maximum(estimate, RELEASED * np.abs(closing(self._mechanism, t, pose)))
         finest = (poses[-1, ::stride], twists[-1, ::stride], reactions[-1, ::stride])
-        warnings = [warning for part in parts for warning in part.warnings]
+        warnings = [warning for run in runs for warning in run.warnings]
         warnings += reaction_doubts(self._mechanism, *finest, expected_error(reactions[:, ::stride], levels, powers))
-        missed = any(warning.time == 0 for part in parts for warning in part.warnings_of("unresolved"))
+        missed = any(warning.time == 0 for run in runs for warning in run.warnings_of("unresolved"))
         coarsest = every * levels[0 if further is None else 1]
         unresolved_at = 0.0 if missed else self._unresolved_at(t, estimate, poses[-1], coarsest)
         if unresolved_at is not None:
             reason = "the runs are no series in the step" if lost.any() else "its own estimate is not below its claim"
             warnings.append(unresolved(unresolved_at, reason))
-        resets = [part.reset_at for part in parts if part.reset_at is not None]
+        resets = [run.reset_at for run in runs if run.reset_at is not None]
         return Trajectory(
             t=t,
             pose=pose,
             twist=twist,
             reaction=reaction,
-            stepping=sum(part.stepping for part in parts),
+            stepping=sum(run.stepping for run in runs),
             warnings=tuple(dict.fromkeys(warnings)),
             reset_at=min(resets, default=None),
             estimate=estimate,
@@ -233,28 +236,29 @@ class ExtrapolatedRun(OneShot):
         )
 
     def _unresolved_at(self, t: Array, estimate: Array, finest: Array, coarsest: int) -> float | None:
-        """The first time [s] at which the claim is not held; None if there is none.
+        """The first time [s] at which the error may exceed the claim, or None.
 
-        `finest` are the finest run's poses; the coarsest run makes so many steps between two times.
+        finest (times, bodies, 3): the poses of the finest run
+        coarsest: the number of steps of the coarsest run between two times
         """
         if self._mechanism.applied.dissipate and self._dt / self._levels[0] > self._mechanism.time_scale:
             return 0.0
         largest = self._largest(estimate)
-        turned = self._turned(finest) / coarsest > TURNED
+        turned = self._line_rotation(finest) / coarsest > TURNED
         flags = ([largest > EARLY * CLAIM] if (largest > CLAIM).any() else []) + ([turned] if turned.any() else [])
         return min((float(t[np.argmax(flag)]) for flag in flags), default=None)
 
     def _estimate(self, poses: Array, pose: Array, steps: int) -> Array:
-        """(times, bodies, 3) [m, m, rad] for poses (levels, times, bodies, 3) and what they are extrapolated to."""
-        # The coarsest run may have another error in its first step than in all others: a gap is closed a step late, for
-        # example. If that run alone is off, the extrapolation is off by the whole last difference.
+        """Estimated errors (times, bodies, 3) of the extrapolation `pose` of `poses` (levels, times, bodies, 3)."""
+        # The coarsest run may have a larger error in its first step than in later steps: for example, it closes a gap
+        # one step late. If that run alone is wrong, the error of the extrapolation is the whole last difference.
         least = np.full(poses.shape[1], LEAST)
         least[: 2 if steps < len(least) else 1] = 1.0
         error = expected_error(poses / self._unit, self._levels, self._powers, least) * self._unit
         return error + self._rounding(pose, steps)
 
     def _rounding(self, pose: Array, steps: int) -> Array:
-        """Each step rounds a pose, by half a unit at most, and the combination carries that with its weights."""
+        """The rounding errors of all steps: half a unit in the last place of a pose in each, times the weights."""
         weights = extrapolation_weights(self._levels, self._powers)
         carried = np.abs(weights) @ self._levels * np.finfo(float).eps / 2 * steps
         elapsed = np.linspace(0.0, 1.0, len(pose))[:, None, None]
@@ -262,22 +266,21 @@ class ExtrapolatedRun(OneShot):
             return carried * elapsed * np.maximum(np.abs(pose), self._unit)
 
     def _largest(self, estimate: Array) -> Array:
-        """(times,) the largest so far, of a radian or of the mechanism's length: an error may pass zero later."""
+        """The largest estimate up to each time (times,) [rad, or lengths of the mechanism]: errors may cross zero."""
         with np.errstate(all="ignore"):
             return np.fmax.accumulate((estimate / self._unit).max(axis=(1, 2)))
 
     def _has_no_expansion(self, poses: Array, largest: Array) -> NDArray[np.bool_]:
-        """(times,) where the estimate exceeds the finest run's largest error so far. Two runs cannot show it."""
+        """Whether the estimate exceeds the finest run's largest error up to each time (times,); False for two runs."""
         if len(self._levels) < 3:
             return np.zeros(len(largest), dtype=bool)
         finer = combine(poses[-2:], extrapolation_weights(self._levels[-2:], self._powers[:1]))
         return largest > self._largest(np.abs(finer - poses[-1]))
 
-    def _turned(self, pose: Array) -> Array:
-        """(times,) by how much the line of any spring, damper or rod turns up to the next of these poses [rad]."""
+    def _line_rotation(self, pose: Array) -> Array:
+        """The largest rotation of the line of a spring, damper or rod up to the next pose (times,) [rad]."""
         mechanism, out = self._mechanism, np.zeros(len(pose))
-        lines = [part for part in (*mechanism.forces, *mechanism.joints) if part.acts_along_line]
-        for line in lines:
+        for line in (element for element in (*mechanism.forces, *mechanism.joints) if element.acts_along_line):
             along = np.zeros(len(pose), dtype=complex)
             for (name, (x, y)), sign in zip(line.points, (-1.0, 1.0), strict=True):
                 body = pose[:, mechanism.body_index(name)] if name else np.zeros((1, 3))
@@ -287,12 +290,12 @@ class ExtrapolatedRun(OneShot):
         return out
 
 
-def _watched_every(samples: int, every: int, bodies: int) -> int:
-    """The steps between the instants that are compared: one, unless these are too many to be kept."""
-    least = max(1, -(-samples * every * bodies // WATCHED))  # every / divisor <= WATCHED / (samples bodies)
-    return next((part for part in range(least, every) if every % part == 0), every)
+def _steps_between_compared(samples: int, every: int, bodies: int) -> int:
+    """The number of steps between two instants that are compared: 1 unless more than WATCHED poses would be stored."""
+    least = max(1, -(-samples * every * bodies // WATCHED))
+    return next((count for count in range(least, every) if every % count == 0), every)
 
 
-def _part(run: Run, samples: int, every: int, stride: int) -> Trajectory:
-    """One level's run, with reactions at every `stride`-th sample: to compute them takes longer than to step."""
+def _run(run: Run, samples: int, every: int, stride: int) -> Trajectory:
+    """A run with reactions at each `stride`-th sample, since they take longer to compute than the steps."""
     return run.watched(samples, every, stride) if isinstance(run, Watched) else run(samples, every)

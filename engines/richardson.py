@@ -1,7 +1,8 @@
 """Richardson's extrapolation to zero step, and estimates of its error, as functions of arrays.
 
-`levels` are the numbers of steps of the runs that are combined, in ascending order; `powers` of the step are those
-that the runs' error has and the combination removes, one fewer. Values are arrays (levels, times, ...).
+levels: relative numbers of steps of the combined runs, in ascending order
+powers: powers of the step in the runs' error that the combination removes, one fewer than levels
+values (levels, times, ...): results of the runs
 """
 
 from __future__ import annotations
@@ -15,12 +16,12 @@ from reference.checks import Count, InvalidMechanism, Numbers, validated
 
 Array = NDArray[np.float64]
 
-# Safety factor on the next difference that the successive differences predict.
+# Safety factor on the predicted next difference.
 CAUTION = 4
-# Least share of the last difference that counts as the error. Fitted on 1300 random mechanisms in three engines.
+# The estimated error is at least this share of the last difference. Fitted to 1300 random mechanisms in three engines.
 LEAST = 0.5
-# Factor on the difference to the extrapolation with a run of 1.5 times as many steps. It is better by the ratio of
-# their steps, six, so that the difference is the error within a fifth: this allows for more than twice that.
+# Safety factor on the difference from an extrapolation that has one finer run, with 1.5 times as many steps. The error
+# of that extrapolation is six times smaller, so the difference is the error to within a fifth.
 DECIDED = 1.5
 
 
@@ -38,9 +39,10 @@ def extrapolation_weights(levels: tuple[Count, ...], powers: tuple[Count, ...]) 
 
 @validated
 def combine(values: Numbers, weights: Array) -> Array:
-    """sum of weights (levels,) times values (levels, ...), NaN wherever a level is not finite.
+    """The sum of weights (levels,) times values (levels, ...); NaN where a level is not finite.
 
-    It is the finest plus weighted differences from it: values that all levels share, such as the start, are exact.
+    It is computed as the finest level plus weighted differences from it. Values that are equal at all levels, such as
+    the start, therefore have no rounding error.
     """
     with np.errstate(all="ignore"):
         finest = values[-1]
@@ -49,27 +51,26 @@ def combine(values: Numbers, weights: Array) -> Array:
 
 
 def differences(values: Array, levels: tuple[int, ...], powers: tuple[int, ...]) -> list[Array]:
-    """The distances (times, ...) from the extrapolation of k finest runs (k from 1) to that of one more."""
-    parts = [
+    """Absolute differences (times, ...) between the extrapolations of the k + 1 and the k finest runs, k = 1, 2, ..."""
+    extrapolations = [
         combine(values[-count:], extrapolation_weights(levels[-count:], powers[: count - 1]))
         for count in range(1, len(levels) + 1)
     ]
     with np.errstate(all="ignore"):
-        return [np.abs(more - fewer) for fewer, more in pairwise(parts)]
+        return [np.abs(more - fewer) for fewer, more in pairwise(extrapolations)]
 
 
 @validated
 def expected_error(
     values: Numbers, levels: tuple[Count, ...], powers: tuple[Count, ...], least: float | Array = LEAST
 ) -> Array:
-    """An estimate (times, ...) of the error of values (levels, times, ...) that are extrapolated, all in one unit.
+    """An estimate (times, ...) of the error of the extrapolation of values (levels, times, ...), all in one unit.
 
-    The differences between the extrapolations of k + 1 and of the k finest runs fall with k while the runs have an
-    error expansion. The last difference is the error of the extrapolation without the coarsest run. The remaining error
-    is smaller by the last ratio of differences, or by the ratio to which the last two lead, since ratios rise in
-    asymptotic series. The estimate is CAUTION times that: no less than the share `least` (times,) of the last
-    difference, which may pass zero, and no more than the effect of one run that is off. Ratios are those of the largest
-    differences so far.
+    The `differences` fall with k if the runs have an error expansion. The last difference is the error of the
+    extrapolation without the coarsest run. The ratio of successive differences predicts the remaining error. Ratios
+    rise in asymptotic series, so the larger of the last ratio and its extrapolation is used. The estimate is CAUTION
+    times the prediction. It is at least the share `least` (times,) of the last difference, which may cross zero. It is
+    at most the error that one wrong run would cause. Ratios are those of the largest differences up to each time.
     """
     steps = differences(values, levels, powers)
     with np.errstate(all="ignore"):
@@ -87,12 +88,12 @@ def expected_error(
 def decided_error(
     values: Array, combined: Array, further: Array, levels: tuple[int, ...], powers: tuple[int, ...]
 ) -> Array:
-    """The error of `combined` values, by the extrapolation with a run of `further_level` for the coarsest."""
+    """The error of `combined` by comparison with an extrapolation in which `further` replaces the coarsest run."""
     weights = extrapolation_weights((*levels[1:], further_level(levels)), powers)
     with np.errstate(all="ignore"):
         return DECIDED * np.abs(combine(np.concatenate([values[1:], further[None]]), weights) - combined)
 
 
 def further_level(levels: tuple[int, ...]) -> int:
-    """The level of a run that decides: 1.5 times as many steps as the finest, rounded up."""
+    """The level of the deciding run: 1.5 times the finest level, rounded up."""
     return -(-3 * levels[-1] // 2)

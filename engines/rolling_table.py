@@ -1,12 +1,12 @@
-"""Where rolling puts a body, as fast functions of one angle, for every adapter: a step can't wait for arrays.
+"""The position of a rolling body as a fast function of one angle.
 
-`reference.rolling` knows the contact for arrays of rotations; one call of it takes longer than a hundred steps of an
-engine. Two round curves, or a round one on a line, are in closed form here; any other pair is a table of short
-polynomials through exact contacts.
+`reference.rolling` computes contacts for arrays of rotations. One call takes longer than a hundred steps of an engine.
+This module has closed forms for two round curves and for a round curve on a line. For any other pair it interpolates
+exact contacts by polynomials in a table.
 
-With s' = ds/dtheta, the arm a = r_{O'/C} and e_n (see `reference.rolling.kinematics`), the body's origin in the frame
-of the ground is P = point + a, and P' = i a, P'' = s' e_n - a: the velocity (18.66) at one radian a second, and the
-acceleration that rolling implies then. Vectors are complex numbers x + i y.
+Vectors are complex numbers x + i y. The body's origin in the frame of the ground is P = point + a, with the arm
+a = r_{O'/C}. Its derivatives by the rotation theta are P' = i a and P'' = s' e_n - a, with s' = ds/dtheta: the velocity
+(18.66) and the acceleration at an angular velocity of 1 rad/s. See `reference.rolling.kinematics` for the symbols.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from engines.remembered import by_identity
 from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 
-# P'' is interpolated at Chebyshev points of a cell, and P' and P are its integrals: nothing is differentiated, so
-# nothing is amplified. Powers of the distance from a cell's middle do no harm, because their coefficients fall.
+# P'' is interpolated at Chebyshev points of a cell. P' and P are integrals of the polynomial, so that rounding errors
+# are not amplified by differentiation. A basis of powers is accurate, because the coefficients fall.
 NODES = 6
 COARSEST = 2 * math.pi / 256
-FINEST = 2 * math.pi / 2**17  # beyond, a table would be larger than the number of its uses
-BLOCK = 16  # cells that are laid together
-EXAMINED = np.arange(-32, 32, 4)  # cells that tell how wide a cell may be, from that of the start
-# Where contacts are taken, in halves of a cell from its middle: there and at the nodes; and where they are compared.
+FINEST = 2 * math.pi / 2**17  # a finer table has more cells than a motion uses
+CELLS_IN_BLOCK = 16  # cells that are computed together
+EXAMINED = np.arange(-32, 32, 4)  # indices, relative to the cell of the start, of the cells that determine the width
+# Rotations in a cell as shares of its half width: the middle and the nodes, and the points between nodes.
 SAMPLED = np.append(0.0, np.cos(math.pi * (np.arange(NODES) + 0.5) / NODES))
-BETWEEN = np.cos(math.pi * np.arange(NODES + 1) / NODES)
-# Of the largest P'' nearby: a few roundings of a contact.
+COMPARED = np.cos(math.pi * np.arange(NODES + 1) / NODES)
+# Sufficient accuracy relative to the largest P'': a few rounding errors of a contact.
 ROUNDING = 1e-14
-# A table that misses more than this falls back on exact contacts, which cost about a hundred times as much.
+# A table with a larger relative error is not used. Exact contacts cost about a hundred times as much.
 POOR = 1e-11
-# rad; a motion that has blown up asks for places where a double no longer tells one angle from the next.
+# Largest rotation [rad]. A diverged motion has rotations at which the spacing of floating point numbers is too coarse.
 FARTHEST = 1e9
 
 Place = tuple[complex, complex, complex]
@@ -45,7 +45,7 @@ LOST: Place = (NOWHERE, NOWHERE, NOWHERE)
 
 
 def unplaced(curve: Curve) -> tuple[Curve, complex, float]:
-    """The curve inside any number of placings, its shift [m] as x + i y, and its turn [rad]."""
+    """The curve without its displacements, with their total shift [m] as x + i y and total rotation [rad]."""
     if not isinstance(curve, Placed):
         return curve, 0j, 0.0
     inner, shift, turn = unplaced(curve.curve)
@@ -53,27 +53,27 @@ def unplaced(curve: Curve) -> tuple[Curve, complex, float]:
 
 
 class Rolled(Protocol):
-    """A rolling pair; rotations theta [rad] are those of the body against the ground's, unwrapped.
+    """A rolling pair as functions of the unwrapped rotation theta [rad] of the body relative to the ground.
 
-    Where the pair can't roll, and for an infinite rotation, `arm` and `contact` raise ValueError.
+    `arm` and `contact` raise ValueError for a rotation that is infinite or beyond the limits of rolling.
     """
 
     def place(self, theta: float) -> Place:
-        """P, P', P'' [m, m/rad, m/rad^2]; NaN beyond the rotations at which the body can roll."""
+        """P, P' and P'' [m, m/rad, m/rad^2]; NaN beyond the limits of rolling."""
         ...
 
     def arm(self, theta: float) -> complex:
-        """The body's origin seen from the contact [m], in the ground's frame."""
+        """The vector from the contact to the body's origin [m] in the ground's frame."""
         ...
 
     def contact(self, theta: float) -> tuple[complex, complex]:
-        """The contact in the ground's frame, and in the body's [m]."""
+        """The contact in the frames of the ground and of the body [m]."""
         ...
 
 
 @by_identity()  # a table takes as long as thousands of steps
 def rolled(rolling: Rolling) -> Rolled:
-    """The fast functions of a pair, made once for as long as the same pair is asked for."""
+    """The fast functions of a rolling pair."""
     ground, body = _round(rolling.ground), _round(rolling.body)
     if body is not None and ground is not None:
         return RoundOnRound(rolling, ground, body)
@@ -83,7 +83,7 @@ def rolled(rolling: Rolling) -> Rolled:
 
 
 def _round(curve: Curve) -> tuple[complex, float] | None:
-    """Centre [m] and radius [m] of a disc, or of a hole with a negative radius; None for any other curve."""
+    """Centre [m] and radius [m] of a disc or a hole; the radius of a hole is negative. None for any other curve."""
     curve, shift, turn = unplaced(curve)
     if isinstance(curve, Circle | Ring):
         return shift + rect(1.0, turn) * complex(*curve.centre), curve.sense * curve.radius
@@ -96,7 +96,7 @@ def _exactly(rolling: Rolling, theta: float) -> Place:
 
 
 def _contacts(rolling: Rolling, theta: NDArray[np.float64]) -> tuple[NDArray[np.complex128], ...]:
-    """P, P' and P'' (...) by the reference."""
+    """P, P' and P'' at the rotations theta, by `reference.rolling`."""
     contact = rolling.contact(theta)
     point, arm = (vector[..., 0] + 1j * vector[..., 1] for vector in (contact.point, contact.arm))
     normal = np.sin(contact.tangent_angle) - 1j * np.cos(contact.tangent_angle)
@@ -104,14 +104,14 @@ def _contacts(rolling: Rolling, theta: NDArray[np.float64]) -> tuple[NDArray[np.
 
 
 class RoundOnLine:
-    """A disc on a line: its middle goes straight, and its origin round its middle."""
+    """A disc on a line: its centre moves along a straight line."""
 
     def __init__(self, rolling: Rolling, body: tuple[complex, float]) -> None:
         self._start = rolling.theta
         self._middle, radius = body
         start = rolling.contact(rolling.theta)
-        self._along = radius * rect(1.0, float(start.tangent_angle))  # of the middle in a radian
-        self._radius = -1j * self._along  # from the contact to the middle
+        self._along = radius * rect(1.0, float(start.tangent_angle))  # displacement of the centre per radian
+        self._radius = -1j * self._along  # from the contact to the centre
         self._point = complex(*start.point)
 
     @property
@@ -133,16 +133,16 @@ class RoundOnLine:
 
 
 class RoundOnRound:
-    """A disc or a ring on a disc or in a ring: its middle goes round the ground's, and its origin round its middle.
+    """A disc or a ring on a disc or in a ring: its centre moves on a circle about the ground's centre.
 
-    Radii of holes are negative, as their curvatures are. The tangent turns by m = r_B / (r_A + r_B) in a radian.
+    Radii and curvatures of holes are negative. The tangent turns by r_B / (r_A + r_B) per radian of the body.
     """
 
     def __init__(self, rolling: Rolling, ground: tuple[complex, float], body: tuple[complex, float]) -> None:
         self._start = rolling.theta
         (self._centre, around), (self._middle, radius) = ground, body
         self._turning = radius / (around + radius)
-        # Along the normal -i e^(i angle): from the ground's middle to the contact, from there to the body's, and both.
+        # Factors on the tangent: ground's centre to contact, contact to body's centre, ground's to body's centre.
         self._ground, self._radius, self._between = -1j * around, -1j * radius, -1j * (around + radius)
         self._angle = float(rolling.contact(rolling.theta).tangent_angle)
 
@@ -172,30 +172,31 @@ class RoundOnRound:
 
 
 class Table:
-    """Any pair by polynomials in cells of equal width. It grows with the angles that it is asked for."""
+    """Any rolling pair, by polynomials in cells of equal width. A cell is computed at its first use."""
 
     def __init__(self, rolling: Rolling) -> None:
         self._rolling = rolling
         low, high = rolling.limits
         self._low, self._high = max(low, -FARTHEST), min(high, FARTHEST)
         self._cells: dict[int, tuple[complex, ...] | None] = {}
-        width, before = COARSEST, math.inf
+        width, previous = COARSEST, math.inf
         while True:
             self._width, self._per_radian = width, 1 / width
             error = self._error()
-            # Where curves nearly fit the contact itself is rounded so coarsely that finer cells bring no more.
-            if error < ROUNDING or width <= FINEST or (error < POOR and error > before / 4):
+            # If the curvatures of the two curves are nearly equal, exact contacts have large rounding errors, and finer
+            # cells are no better.
+            if error < ROUNDING or width <= FINEST or (error < POOR and error > previous / 4):
                 break
-            # The error falls with the power NODES: halvings that can't be enough are not tried.
+            # The error is proportional to the power NODES of the width.
             halvings = math.ceil(math.log2(error / ROUNDING) / NODES) if error < math.inf else 1
-            width, before = max(width / 2 ** min(halvings, 3), FINEST), error
+            width, previous = max(width / 2 ** min(halvings, 3), FINEST), error
         self.exact_only = not error < POOR
-        self.place(rolling.theta)  # the block about the start; others are laid when they are met
+        self.place(rolling.theta)
 
     def place(self, theta: float) -> Place:
         if not self._low <= theta <= self._high:
             return LOST
-        cell = self._cells.get(math.floor(theta * self._per_radian)) or self._laid(theta)
+        cell = self._cells.get(math.floor(theta * self._per_radian)) or self._cell(theta)
         if cell is None:
             return _exactly(self._rolling, theta)
         middle, p, q, a, b, c, d, e, f, b1, c1, d1, e1, f1, a2, b2, c2, d2, e2, f2 = cell
@@ -207,9 +208,9 @@ class Table:
         )
 
     def arm(self, theta: float) -> complex:
-        if not self._low <= theta <= self._high:
-            return -1j * _exactly(self._rolling, theta)[1]
-        cell = self._cells.get(math.floor(theta * self._per_radian)) or self._laid(theta)
+        cell = None
+        if self._low <= theta <= self._high:
+            cell = self._cells.get(math.floor(theta * self._per_radian)) or self._cell(theta)
         if cell is None:
             return -1j * _exactly(self._rolling, theta)[1]
         middle, _, q, a, _, _, _, _, _, b1, c1, d1, e1, f1, _, _, _, _, _, _ = cell
@@ -223,27 +224,28 @@ class Table:
 
     @property
     def width(self) -> float:
-        """Of a cell [rad]; the cell at zero begins at zero."""
+        """Width of a cell [rad]. Cell 0 begins at the rotation 0."""
         return self._width
 
     def cells(self, first: int, count: int) -> NDArray[np.complex128]:
-        """(count, 20) the cells from `first` on, as `_fitted` gives them; NaN where there is none."""
+        """`count` cells from the index `first` (count, 20), see `_fitted`; NaN for cells beyond the limits."""
         none = (NOWHERE,) * (3 + NODES + 2 * NODES - 1)
         for index in range(first, first + count):
             if index not in self._cells:
-                self._lay(index // BLOCK * BLOCK)
+                self._compute_block(index)
         return np.array([self._cells[index] or none for index in range(first, first + count)])
 
-    def _laid(self, theta: float) -> tuple[complex, ...] | None:
-        """The cell of a rotation, laid if it is not there yet; None where only exact contacts will do."""
+    def _cell(self, theta: float) -> tuple[complex, ...] | None:
+        """The cell of a rotation, or None if the exact contact has to be used there."""
         index = math.floor(theta * self._per_radian)
         if index not in self._cells and not self.exact_only:
-            self._lay(index // BLOCK * BLOCK)
+            self._compute_block(index)
         return self._cells.get(index)
 
-    def _lay(self, start: int) -> None:
-        """The cells from `start` on, a block of them; None for those that aren't wholly within the limits."""
-        index = np.arange(start, start + BLOCK)
+    def _compute_block(self, member: int) -> None:
+        """Compute the cells of the block that has the cell `member`; None for cells not entirely within the limits."""
+        start = member // CELLS_IN_BLOCK * CELLS_IN_BLOCK
+        index = np.arange(start, start + CELLS_IN_BLOCK)
         low, high = index * self._width, (index + 1) * self._width
         inside = (low >= self._low) & (high <= self._high)
         self._cells.update(dict.fromkeys(index.tolist()))
@@ -253,32 +255,33 @@ class Table:
             )
 
     def _fitted(self, index: NDArray[np.int_]) -> NDArray[np.complex128]:
-        """(cells, 20): the middle of each cell, P and P' there, and the coefficients of P'', P' and P."""
+        """Each cell's middle, P and P' there, and the coefficients of P'', P' and P (cells, 20)."""
         return self._through(index, _contacts(self._rolling, self._at(index, SAMPLED)))
 
-    def _at(self, index: NDArray[np.int_], part: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(cells, parts): rotations at these parts of half a cell's width from the middles of the cells."""
-        return np.asarray((index[:, None] + 0.5) * self._width + 0.5 * self._width * part, dtype=float)
+    def _at(self, index: NDArray[np.int_], share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rotations (cells, shares) [rad] at shares of the half width from the middle of each cell."""
+        return np.asarray((index[:, None] + 0.5) * self._width + 0.5 * self._width * share, dtype=float)
 
     def _through(self, index: NDArray[np.int_], contacts: tuple[NDArray[np.complex128], ...]) -> NDArray[np.complex128]:
-        """`_fitted` through contacts (cells, 1 + NODES or more) at the parts SAMPLED of each cell."""
+        """`_fitted` from contacts (cells, 1 + NODES or more), of which the first are those at SAMPLED."""
         place, first, second = contacts
         power = np.arange(NODES)
         powers = np.linalg.inv(np.vander(SAMPLED[1:], increasing=True)) / (0.5 * self._width) ** power[:, None]
-        bend = second[:, 1 : 1 + NODES] @ powers.T
-        once = bend / (power + 1)
+        coefficients = second[:, 1 : 1 + NODES] @ powers.T
+        integral = coefficients / (power + 1)
         middle = ((index + 0.5) * self._width).astype(complex)
-        return np.column_stack([middle, place[:, 0], first[:, 0], bend, once[:, 1:], once / (power + 2)])
+        return np.column_stack(
+            [middle, place[:, 0], first[:, 0], coefficients, integral[:, 1:], integral / (power + 2)]
+        )
 
     def _error(self) -> float:
-        """How far cells about the start miss P'' half way between their nodes, in parts of the largest P''."""
+        """The largest error of P'' between the nodes of the cells EXAMINED, relative to the largest P''."""
         around = EXAMINED + math.floor(self._rolling.theta * self._per_radian)
         inside = (around * self._width >= self._low) & ((around + 1) * self._width <= self._high)
         if not np.any(inside):
             return math.inf
-        # One search for all contacts: its rounds cost nearly the same for many as for few.
-        contacts = _contacts(self._rolling, self._at(around[inside], np.append(SAMPLED, BETWEEN)))
+        contacts = _contacts(self._rolling, self._at(around[inside], np.append(SAMPLED, COMPARED)))
         cells, exact = self._through(around[inside], contacts), contacts[2][:, 1 + NODES :]
-        u = 0.5 * self._width * BETWEEN
+        u = 0.5 * self._width * COMPARED
         fitted = sum(cells[:, 3 + k, None] * u**k for k in range(NODES))
         return float(np.abs(fitted - exact).max() / np.abs(exact).max())

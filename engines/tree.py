@@ -1,7 +1,7 @@
-"""A mechanism as a tree of planar joints and the loops that close it, and the way from tree coordinates to poses.
+"""A mechanism as a tree of planar joints with loop-closing joints, and poses from tree coordinates.
 
-Each body's frame is parallel to the world's at t = 0 and stands at the centre of mass there, so that all tree
-coordinates are zero at the start: the mechanism begins assembled, exactly, and angles are never wrapped.
+At t = 0 the frame of each body is parallel to the world's, with its origin at the centre of mass. All tree coordinates
+are then zero at the start, so that the mechanism is assembled exactly. Angles are never wrapped.
 """
 
 from __future__ import annotations
@@ -24,22 +24,24 @@ from reference.plane import components
 from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
-Holding = Pin | Slot | Weld  # the joints that may hold a link
+TreeJoint = Pin | Slot | Weld  # the joints that may connect a link to its parent
 
-# CPU time [s] of the force elements at one state, see `pushes`.
+# CPU time of `pushes` [s].
 TREE_FORCES_COST = 250e-6
 
 
 @dataclass(frozen=True)
 class Link:
-    """A body in the tree: hinged on its parent by a pin, sliding in it by a slot, or moving freely if it has neither.
+    """A body in the tree: a pin hinges it on its parent, a slot guides it along a line of its parent, or it is free.
 
-    A weld is a hinge that doesn't turn.
+    A weld is a hinge without rotation. A free body has the coordinates x, y and rotation. A hinged body has a rotation.
+    A body in a slot has a displacement along the slot and, if it `turns`, a rotation.
 
-    `parent` is a body's index, or None for the ground. `arm` is the joint seen from the parent's centre of mass (from
-    the world's origin if that is the ground), `anchor` the same point from the body's own, and `direction` the slot's
-    line, all (x, y) [m] with world directions at t = 0. `column` is its first tree coordinate. In order, a free body
-    has x, y and a rotation, a hinged one a rotation, one in a slot the way along it and, if it `turns`, a rotation.
+    parent: index of a body, or None for the ground
+    column: index of the first tree coordinate
+    arm (x, y) [m]: from the parent's centre of mass, or the world's origin, to the joint at t = 0
+    anchor (x, y) [m]: from the body's centre of mass to the joint at t = 0
+    direction (x, y): unit vector of the slot's line at t = 0
     """
 
     body: int
@@ -53,28 +55,31 @@ class Link:
 
     @property
     def slides(self) -> int:
-        """How many of its coordinates are lengths: they come first."""
+        """The number of coordinates that are lengths; they come before the rotation."""
         return {"free": 2, "hinge": 0, "slot": 1}[self.kind]
 
     @property
     def columns(self) -> range:
-        """Its tree coordinates."""
+        """The indices of its tree coordinates."""
         return range(self.column, self.column + self.slides + self.turns)
 
     @property
     def rotation(self) -> int | None:
-        """The tree coordinate that turns this body against its parent, if it has one."""
+        """The index of its rotation relative to the parent, or None."""
         return self.columns[-1] if self.turns else None
 
 
 @dataclass(frozen=True)
 class Tree:
-    """Links, parents before children, and the joints that no link stands for."""
+    """Links, each parent before its children, and the joints that close loops.
+
+    kept: drives of rate zero that are satisfied because the tree has no rotation there
+    """
 
     mechanism: Mechanism
     links: tuple[Link, ...]
     loops: tuple[Pin | Slot | Weld, ...]
-    kept: tuple[Drive, ...] = ()  # drives of rate zero that hold because the tree has no rotation there
+    kept: tuple[Drive, ...] = ()
 
     @cached_property
     def coordinates(self) -> int:
@@ -83,11 +88,11 @@ class Tree:
     @cached_property
     def _held(self) -> frozenset[str]:
         closing = {joint.name for joint in self.loops}
-        holding = (joint.name for joint in self.mechanism.joints if isinstance(joint, Holding))
-        return frozenset((*(name for name in holding if name not in closing), *(drive.name for drive in self.kept)))
+        names = {joint.name for joint in self.mechanism.joints if isinstance(joint, TreeJoint)}
+        return frozenset(names - closing | {drive.name for drive in self.kept})
 
     def holds(self, joint: Joint) -> bool:
-        """Whether the tree's coordinates satisfy the joint by themselves."""
+        """Whether the joint is satisfied at all values of the tree coordinates."""
         return joint.name in self._held
 
     @cached_property
@@ -101,17 +106,19 @@ class Tree:
         )
 
     def closes_by(self, joint: Joint) -> bool:
-        """Whether rows of a solver hold the joint like one that closes a loop: neither the tree, nor a driven
-        coordinate, skates and rolls not counted."""
+        """Whether a solver needs loop-closing rows for the joint.
+
+        Skates, rolls, and drives of one tree coordinate need none.
+        """
         return joint.name in self._looping
 
     @property
     def closed(self) -> bool:
-        """Whether any joint is held by a row of the solver: skates and rolls not counted."""
+        """Whether any joint needs loop-closing rows; see `closes_by`."""
         return bool(self._looping)
 
     def turning(self, first: str | None, second: str | None) -> dict[int, float]:
-        """The tree coordinates whose sum, with these signs, is the rotation of the second body against the first."""
+        """Coordinates and their factors; the sum is the rotation of the second body relative to the first."""
         signs: dict[int, float] = {}
         for name, sign in ((second, 1.0), (first, -1.0)):
             for link in self.path_to_ground(name):
@@ -120,7 +127,7 @@ class Tree:
         return {column: sign for column, sign in sorted(signs.items()) if sign}
 
     def path_to_ground(self, name: str | None) -> Iterator[Link]:
-        """The links from a body to the ground, the body's own first; none for the ground."""
+        """The links from a body to the ground, beginning with that of the body; none for the ground."""
         body = None if name is None else self.mechanism.body_index(name)
         while body is not None:
             link = self._link_of[body]
@@ -133,7 +140,7 @@ class Tree:
 
     @cached_property
     def geared(self) -> tuple[Drive, ...]:
-        """The drives that no single coordinate stands for."""
+        """The drives whose rotation is not that of a single coordinate."""
         drives = [joint for joint in self.mechanism.joints if isinstance(joint, Drive) and joint not in self.kept]
         return tuple(drive for drive in drives if len(self.turning(drive.first, drive.second)) != 1)
 
@@ -154,38 +161,39 @@ class Tree:
         return rates
 
     def motion(self, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, bodies, 3) of tree motions (times, coordinates) [m, rad, s].
+        """Poses, twists and accelerations (times, bodies, 3) of a tree motion (times, coordinates) [m, rad, s].
 
-        NaN where these are not finite.
+        They are NaN at times at which the motion is not finite.
         """
         pose, twist, change = np.empty((3, len(position), len(self.mechanism.bodies), 3))
         with np.errstate(all="ignore"):
             states = self._states(position.T, velocity.T, acceleration.T, np.cos, np.sin)
         for body, state in enumerate(states):
-            for part, begin in ((pose, 0), (twist, 3), (change, 6)):
-                part[:, body, 0], part[:, body, 1], part[:, body, 2] = state[begin : begin + 3]
+            for values, begin in ((pose, 0), (twist, 3), (change, 6)):
+                values[:, body, 0], values[:, body, 1], values[:, body, 2] = state[begin : begin + 3]
         pose[..., 2] += self.mechanism.pose[:, 2]
         return pose, twist, change
 
     def instant(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """Poses and twists (bodies, 3) at tree coordinates and rates (coordinates,): `motion` of one time.
+        """Poses and twists (bodies, 3) at tree coordinates and their rates (coordinates,); NaN if any is not finite.
 
-        In plain floats, which for one time are ten times as fast as arrays. NaN where one of these is not finite.
+        It computes with Python floats, which are ten times as fast as `motion` with arrays of one time.
         """
         if not (np.isfinite(position).all() and np.isfinite(velocity).all()):
             pose, twist = np.full((2, len(self.mechanism.bodies), 3), math.nan)
             return pose, twist
-        rest = [0.0] * self.coordinates
-        states = np.array(self._states(position.tolist(), velocity.tolist(), rest, math.cos, math.sin))
+        acceleration = [0.0] * self.coordinates
+        states = np.array(self._states(position.tolist(), velocity.tolist(), acceleration, math.cos, math.sin))
         pose, twist = states[:, :3], states[:, 3:6]
         pose[:, 2] += self.mechanism.pose[:, 2]
         return pose, twist
 
-    def _states(self, way: Any, rate: Any, gain: Any, cos: Any, sin: Any) -> list[tuple[Any, ...]]:
-        """By body x, y and by how much it has turned, the rates of these, and the rates of those.
+    def _states(self, position: Any, rate: Any, change: Any, cos: Any, sin: Any) -> list[tuple[Any, ...]]:
+        """Of each body: x, y and the rotation since t = 0, with their first and second derivatives.
 
-        `way`, `rate`, `gain`: by tree coordinate a float, or an array of times, with the functions that take such.
-        Bodies turn by the angle's change, not by the angle: at t = 0 the pose is then the start, to rounding.
+        position, rate, change: of each tree coordinate the value and its derivatives, as floats or arrays of times
+        cos, sin: functions of such values
+        The rotation since t = 0 is used, not the angle, so that the pose at t = 0 is the start to rounding.
         """
         start = self.mechanism.pose.tolist()
         ground = (0.0,) * 9
@@ -195,21 +203,21 @@ class Tree:
             x, y, turned, vx, vy, spin, ax, ay, spun = ground if link.parent is None else states[link.parent]
             own_turned, own_spin, own_spun = turned, spin, spun
             if link.turns:
-                own_turned, own_spin, own_spun = turned + way[last], spin + rate[last], spun + gain[last]
+                own_turned, own_spin, own_spun = turned + position[last], spin + rate[last], spun + change[last]
             if link.kind == "free":
-                x, y = start[link.body][0] + way[column], start[link.body][1] + way[column + 1]
-                vx, vy, ax, ay = rate[column], rate[column + 1], gain[column], gain[column + 1]
+                x, y = start[link.body][0] + position[column], start[link.body][1] + position[column + 1]
+                vx, vy, ax, ay = rate[column], rate[column + 1], change[column], change[column + 1]
             else:
                 cosine, sine = cos(turned), sin(turned)
                 arm_x, arm_y = link.arm
                 if link.kind == "slot":
                     along_x, along_y = link.direction
-                    arm_x, arm_y = arm_x + way[column] * along_x, arm_y + way[column] * along_y
+                    arm_x, arm_y = arm_x + position[column] * along_x, arm_y + position[column] * along_y
                     along_x, along_y = cosine * along_x - sine * along_y, sine * along_x + cosine * along_y
                     vx, vy = vx + rate[column] * along_x, vy + rate[column] * along_y
                     coriolis = 2 * spin * rate[column]
-                    ax = ax + gain[column] * along_x - coriolis * along_y
-                    ay = ay + gain[column] * along_y + coriolis * along_x
+                    ax = ax + change[column] * along_x - coriolis * along_y
+                    ay = ay + change[column] * along_y + coriolis * along_x
                 arm_x, arm_y = cosine * arm_x - sine * arm_y, sine * arm_x + cosine * arm_y
                 cosine, sine = cos(own_turned), sin(own_turned)
                 own_x, own_y = link.anchor
@@ -224,34 +232,35 @@ class Tree:
 
 
 def pushes(tree: Tree, position: Array, velocity: Array) -> tuple[Array, Array]:
-    """Poses (bodies, 3) [m, m, rad], and what force elements do to bodies (bodies, 3) [N, N, N m].
+    """Poses (bodies, 3) [m, m, rad], and the loads of force elements on bodies (bodies, 3) [N, N, N m].
 
-    For engines that have no springs, or springs of another law: as their users do, before every step. position,
-    velocity (coordinates,): tree coordinates [m, rad] and their rates. NaN where these are NaN or infinite.
+    Engines without springs, or with springs of another law, apply these loads before each step. Positions and
+    velocities (coordinates,) are tree coordinates [m, rad] and their rates. Results are NaN if any is not finite.
     """
     pose, twist = tree.instant(position, velocity)
     return pose, np.asarray(tree.mechanism.applied.on(pose, twist), dtype=np.float64)
 
 
 def spanning_tree(mechanism: Mechanism, hanging: bool = True) -> Tree:
-    """The tree that grows breadth first from the ground along welds, pins and slots; all it doesn't reach moves freely.
+    """The tree of a mechanism, built breadth first from the ground along welds, pins and slots, in this preference.
 
-    Not `hanging`, every body moves freely. Every one of them that holds no link is a loop. A slot holds a link
-    where its slotted body comes first; welds are preferred, then pins. A drive of rate zero across it keeps the
-    angle. The trees of the last mechanisms are kept: a report asks for one once a joint.
+    A body that is not reached is free; without `hanging`, all bodies are. A slot connects a link to its parent only if
+    the parent has the line. A drive of rate zero between the two then removes the rotation. Every other weld, pin or
+    slot closes a loop. The trees of the last mechanisms are cached.
     """
     return _tree_of(mechanism, hanging)
 
 
 @by_identity()
 def _tree_of(mechanism: Mechanism, hanging: bool) -> Tree:
-    joints = [joint for joint in mechanism.joints if isinstance(joint, Holding)]
+    joints = [joint for joint in mechanism.joints if isinstance(joint, TreeJoint)]
     resting = [joint for joint in mechanism.joints if isinstance(joint, Drive) and joint.turning_rate == 0]
     links: list[Link] = []
     kept: list[Drive] = []
-    holding: set[str] = set()
+    connecting: set[str] = set()
     order = (Weld, Pin, Slot)
-    for name, parent, joint in _hung(mechanism, sorted(joints, key=lambda j: order.index(type(j))) if hanging else []):
+    candidates = sorted(joints, key=lambda joint: order.index(type(joint))) if hanging else []
+    for name, parent, joint in _with_parents(mechanism, candidates):
         body, column = mechanism.body_index(name), links[-1].columns.stop if links else 0
         if joint is None:
             links.append(Link(body, None, "free", column))
@@ -268,14 +277,14 @@ def _tree_of(mechanism: Mechanism, hanging: bool) -> Tree:
             links.append(Link(body, base, "slot", column, arm, anchor, direction, not drives))
         else:
             links.append(Link(body, base, "hinge", column, arm, anchor, turns=isinstance(joint, Pin)))
-        holding.add(joint.name)
-    return Tree(mechanism, tuple(links), tuple(joint for joint in joints if joint.name not in holding), tuple(kept))
+        connecting.add(joint.name)
+    return Tree(mechanism, tuple(links), tuple(joint for joint in joints if joint.name not in connecting), tuple(kept))
 
 
-def _hung(mechanism: Mechanism, joints: list[Holding]) -> Iterator[tuple[str, str | None, Holding | None]]:
-    """Every body, breadth first from the ground, with its parent and the joint between them; None for free bodies."""
+def _with_parents(mechanism: Mechanism, joints: list[TreeJoint]) -> Iterator[tuple[str, str | None, TreeJoint | None]]:
+    """The bodies in the order of the tree, each with its parent and the joint between them, or twice None if free."""
     placed: set[str | None] = {None}
-    joints_of = defaultdict[str | None, list[Holding]](list)
+    joints_of = defaultdict[str | None, list[TreeJoint]](list)
     for joint in joints:
         joints_of[joint.first].append(joint)
         joints_of[joint.second].append(joint)
@@ -299,7 +308,7 @@ def _hung(mechanism: Mechanism, joints: list[Holding]) -> Iterator[tuple[str, st
 
 
 def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, float]) -> tuple[float, float]:
-    """A body's own point, from its centre of mass, with world directions at t = 0 [m]."""
+    """The vector from a body's centre of mass to one of its points [m], along the world's axes at t = 0."""
     if name is None:
         return point
     x, y = components(mechanism.pose[mechanism.body_index(name), 2], *point)
@@ -307,7 +316,7 @@ def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, flo
 
 
 def refuse_slots_in_loops(tree: Tree, engine: str) -> None:
-    """Raises Unsupported for slots that no coordinate of the tree stands for."""
+    """Raises Unsupported for a slot that closes a loop."""
     for joint in tree.loops:
         if isinstance(joint, Slot):
             raise Unsupported(f"joint {joint.name!r}: our adapter of {engine} builds no slot that closes a loop")

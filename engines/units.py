@@ -1,4 +1,4 @@
-"""A mechanism whose masses and times are counted in other units: it moves alike, and engines have other numbers."""
+"""A mechanism in other units of mass and time: the motion is the same, the numbers in an engine are not."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from reference.mechanism import Mechanism
 
 
 def power_of_two(value: float) -> float:
-    """The nearest: a unit by which no number is rounded."""
+    """The power of two nearest to a value. As a unit it causes no rounding."""
     return 2.0 ** round(math.log2(value))
 
 

@@ -24,7 +24,7 @@ from engines.lagrange.records import (
     new_storage,
 )
 from engines.lagrange.system import FORCE_FIELDS, JOINT_FIELDS, system_of
-from engines.rolling_table import BLOCK, FARTHEST, Table, rolled
+from engines.rolling_table import CELLS_IN_BLOCK, FARTHEST, Table, rolled
 from reference.joints import Roll
 from reference.mechanism import Body, Mechanism
 from reference.rolling.kinematics import Rolling
@@ -70,7 +70,7 @@ class CellWindows:
         if abs(wanted - first) * table.width > 2 * math.pi:  # a diverged motion: the old window is not needed again
             count = 0
         # One block on either side at first, then twice as far each time: making cells takes longer than a short motion.
-        reach = min(max(BLOCK, count), MOST_CELLS // 2)
+        reach = min(max(CELLS_IN_BLOCK, count), MOST_CELLS // 2)
         low, high = wanted - reach, wanted + reach
         if count and high - low + count <= MOST_CELLS:
             low, high = min(low, first), max(high, first + count)

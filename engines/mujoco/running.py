@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import OneShot, Size
-from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts, some
+from engines.constraint_error import FORCES, closing, displaced_reaction, examined_times, reaction_doubts
 from engines.contract import unresolved
 from engines.mujoco.joints.roll import roll_warnings
 from engines.mujoco.model import MuJoCoModel
@@ -190,7 +190,7 @@ class MuJoCoRun(OneShot):
         mechanism = self.model.mechanism
         is_valid = np.isfinite(run.reaction).any(axis=1) & np.isfinite(displacements).all(axis=(0, 2, 3))
         matters = np.any(np.abs(displacements) > MIN_DISPLACEMENT * mechanism.pose_unit, axis=(0, 2, 3))
-        at = some(mechanism, np.logical_and(is_valid, matters))
+        at = examined_times(mechanism, np.logical_and(is_valid, matters))
         if not len(at):
             return []
         pose, reaction = run.pose[at], run.reaction[at]

@@ -1,4 +1,4 @@
-"""Velocities that no joint allows at t = 0: the motion begins after the least impulse, or one line says why none is."""
+"""Models whose start violates their joints: the nearest consistent start, or one line that says why there is none."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -29,7 +29,7 @@ STEPPED = 1e-6  # see tests/engines/test_reading_pymunk.py
 
 
 def linkage(*points, ground=(0, 0), gravity=-9.81):
-    """A space of bars, the first pinned to the ground, each to the next; and its bars."""
+    """A space with a chain of bars, the first pinned to the ground, and the bars."""
     space = pymunk.Space()
     space.gravity = (0, gravity)
     bars = []
@@ -70,7 +70,7 @@ def a_motor_twice():
 
 
 @pytest.mark.parametrize("make", [one_motor, two_motors_on_a_moving_chain, a_motor_twice])
-def test_a_start_that_breaks_rows_becomes_the_nearest_that_does_not_and_is_named(make):
+def test_velocities_that_violate_joints_become_the_nearest_consistent_ones(make):
     space = make()
     reading, equations = read(space), Equations(space)
     wanted = equations.nearest_speeds()
@@ -83,7 +83,7 @@ def test_a_start_that_breaks_rows_becomes_the_nearest_that_does_not_and_is_named
     assert f"({energy:.3g} J" in note.reason
 
 
-def test_a_start_that_satisfies_its_joints_is_left_as_it_is():
+def test_a_consistent_start_is_not_changed():
     reading = read(linkage(A, B, C, D)[0])
     assert not reading.mechanism.twist.any()
     assert not reading.notes
@@ -93,9 +93,9 @@ def test_a_start_that_satisfies_its_joints_is_left_as_it_is():
     ("rates", "named"),
     [((1.0, 2.0), ("SimpleMotor 1, SimpleMotor 2",)), ((3.0,), ("SimpleMotor 1", "PivotJoint"))],
 )
-def test_rates_that_contradict_each_other_are_one_line(rates, named):
+def test_contradictory_motor_rates_are_refused_in_one_line(rates, named):
     space, bars = linkage(A, B, C, D)
-    if len(rates) == 1:  # a truss: a fifth bar leaves no freedom
+    if len(rates) == 1:  # a pivot makes it a truss without degree of freedom
         space.add(PivotJoint(space.static_body, bars[0], B))
     space.add(*[SimpleMotor(space.static_body, bars[0], rate) for rate in rates])
     with pytest.raises(InvalidMechanism, match="no velocities satisfy") as refused:
@@ -112,7 +112,7 @@ ROUND = """<mujoco><option timestep="0.001" integrator="{integrator}"/><default>
  <keyframe><key qvel="3 0"/></keyframe></mujoco>"""
 
 
-def test_in_mujoco_too_and_a_stiffer_row_comes_nearer_to_the_impulse():
+def test_a_stiffer_row_in_mujoco_is_nearer_to_the_impulse_of_ideal_joints():
     errors = []
     for solref in (0.02, 0.005):
         model = mujoco.MjModel.from_xml_string(ROUND.format(integrator="RK4", solref=solref))
@@ -127,7 +127,7 @@ def test_in_mujoco_too_and_a_stiffer_row_comes_nearer_to_the_impulse():
         assert refuse_disagreement(reading) < STEPPED
         checked = check(reading, "meshed", 0.3, 1e-4, plan=SweepPlan(0.0))
         errors.append(checked.own_errors.largest)
-        # The error by the compliance of the row is separated from that of the step, with the velocities of the user.
+        # The error is that of the row's compliance, not of the step.
         assert checked.parts.softness == pytest.approx(checked.own_errors.largest, rel=0.05)
     assert errors[1] < 0.5 * errors[0]
 
@@ -137,10 +137,10 @@ def six_digits(values):
 
 
 @pytest.mark.parametrize("size", [1.0, 1e-3])
-def test_positions_that_were_printed_with_six_digits_are_closed_by_the_nearest_ones(size):
+def test_joints_open_by_six_digit_rounding_are_closed(size):
     space, bars = linkage(*((size * x, size * y) for x, y in (A, B, C, D)), gravity=-9.81 * size)
     exact = [(*bar.position, 0.0) for bar in bars]
-    turn = 0.3  # as a whole, so that no digit is zero
+    turn = 0.3  # rotation of the whole mechanism, so that no digit of a position is zero
     for bar in bars:
         bar.position, bar.angle = six_digits(bar.position.rotated(turn)), six_digits([turn])[0]
     for pivot in space.constraints:
@@ -157,7 +157,7 @@ def test_positions_that_were_printed_with_six_digits_are_closed_by_the_nearest_o
     assert [note for note in reading.notes if "nearest positions" in note.reason]
     run = reading.model.run(10, 1)
     assert run.pose[0] == pytest.approx(mechanism.pose, abs=1e-12 * size)
-    bars[1].position += (1e-4 * size, 0)  # no rounding
+    bars[1].position += (1e-4 * size, 0)  # larger than the rounding to six digits
     with pytest.raises(InvalidMechanism, match="is open by"):
         read(space, 1e-3)
 
@@ -172,7 +172,7 @@ CYLINDER = (ROOT / "tests/reports/inputs/b02b_cylinder_spring.xml").read_text()
 
 
 @pytest.mark.parametrize("text", [CYLINDER, COUPLED], ids=["loop", "coupling"])
-def test_a_state_of_mujoco_that_was_printed_with_six_digits_is_closed(text):
+def test_joints_of_mujoco_open_by_six_digit_rounding_are_closed(text):
     model = mujoco.MjModel.from_xml_string(text)
     first = read_mujoco(model)
     truth = TRUTH.build(first.mechanism, 1e-3)(100, 1)
@@ -180,7 +180,7 @@ def test_a_state_of_mujoco_that_was_printed_with_six_digits_is_closed(text):
     data.qpos[:] = six_digits(positions(first.model.planar, truth.pose[-1:])[0])
     reading = read_mujoco(model, data)
     mechanism = reading.mechanism
-    assert np.abs(np.nan_to_num(mechanism.gap(mechanism.pose, 0.0))).max() < 1e-11  # of factors up to 18
+    assert np.abs(np.nan_to_num(mechanism.gap(mechanism.pose, 0.0))).max() < 1e-11  # rounding, with factors up to 18
     assert [note for note in reading.notes if "nearest positions" in note.reason]
     assert mechanism.pose == pytest.approx(truth.pose[-1], abs=5e-6)
     assert refuse_disagreement(reading) < 1e-6

@@ -1,4 +1,4 @@
-"""Extrapolation to zero step, on toy engines whose error is known term by term."""
+"""Extrapolation to zero step, tested on toy engines whose error has known terms."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engines import CLAIM, Run, Size, Unsupported
-from engines.extrapolated import Extrapolated, _watched_every
+from engines.extrapolated import Extrapolated, _steps_between_compared
 from engines.richardson import combine, expected_error, extrapolation_weights
 from reference.forces import TorsionDamper
 from reference.joints import Skate
@@ -23,12 +23,15 @@ from tests.toys import Plain
 
 @dataclass(frozen=True)
 class SeriesToy(Plain):
-    """Its pose is cos t plus coefficient * t * dt^power for every term; twist and reaction err by multiples of it."""
+    """A toy engine with the pose cos t + error; the error is the sum of coefficient * t * dt^power over `terms`.
+
+    The errors of twists and reactions are multiples of it.
+    """
 
     terms: dict[int, float] = field(default_factory=lambda: {2: 1.0, 3: -2.0})
-    broken_below: float = 0.0  # s, smaller steps give NaN from the second sample on
-    resets_below: float = 0.0  # s, smaller steps reset themselves
-    turned_above: float = math.inf  # s, larger steps are 1 rad off from t = 2 s on
+    broken_below: float = 0.0  # [s] runs with smaller steps are NaN after the first sample
+    resets_below: float = 0.0  # [s] runs with smaller steps have a reset
+    turned_above: float = math.inf  # [s] runs with larger steps have an error of 1 rad from t = 2 s on
     name: str = "toy"
     variant: str = "plain"
 
@@ -63,7 +66,7 @@ class SeriesRun:
         )
 
 
-def test_a_warning_keeps_its_fields_in_another_process_and_a_plain_string_has_none():
+def test_a_run_warning_keeps_its_fields_when_pickled():
     moment = pickle.loads(pickle.dumps(RunWarning("upstream: late", "rate limit", "upstream", 0.5)))
     assert (str(moment), moment.kind, moment.origin, moment.time) == ("upstream: late", "rate limit", "upstream", 0.5)
     base = SeriesToy().build(sledge(), 0.1)(3, 1)
@@ -74,7 +77,7 @@ def test_a_warning_keeps_its_fields_in_another_process_and_a_plain_string_has_no
 
 
 def sledge() -> Mechanism:
-    """A bar on a skate: a toy's poses open no joint of it."""
+    """A bar on a skate, which has no gap at any pose of a toy engine."""
     return replace(pendulum(), joints=(Skate("blade", None, "bar", (0.0, 0.0), 0.0),))
 
 
@@ -91,45 +94,42 @@ def run(method: Extrapolated, dt: float = 0.1) -> Trajectory:
     return method.build(sledge(), dt)(10, 3)
 
 
-def test_the_weights_keep_a_constant_and_cancel_every_power():
+def test_the_weights_sum_to_one_and_cancel_every_power():
     assert extrapolation_weights((1, 2), (2,)) == pytest.approx([-1 / 3, 4 / 3], abs=1e-15)  # Richardson's
     for levels, powers in (((1, 2), (1,)), ((2, 3, 4, 6, 8), (2, 3, 4, 5)), ((1, 2, 4), (2, 4))):
         weights = extrapolation_weights(levels, powers)
         assert weights.sum() == pytest.approx(1, abs=1e-13)
         for power in powers:
-            # Rounding only: the terms are at most |w| each, and |w| < 100 here.
+            # The tolerance is the rounding of terms below 100.
             assert weights @ (levels[0] / np.array(levels)) ** power == pytest.approx(0, abs=1e-13)
 
 
-def test_an_error_in_the_named_powers_vanishes_from_poses_twists_and_reactions():
+def test_errors_in_the_removed_powers_vanish():
     inner = SeriesToy().build(sledge(), 0.1)(10, 3)
     assert min(errors(inner)) > 1e-2
-    assert max(errors(run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), (2, 3))))) < 1e-13  # rounding
-    right = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3, 4), (2, 3, 4)))
-    assert present(right.estimate).max() < 1e-12  # rounding of all steps
-    # With the powers (2, 4) the term 2 t dt^3 leaves an error of 2 * 3 * 1e-3 / 60, with the others a larger one; the
-    # estimate shows it.
+    assert max(errors(run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), (2, 3))))) < 1e-13
+    exact = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3, 4), (2, 3, 4)))
+    assert present(exact.estimate).max() < 1e-12  # rounding of all steps
+    # With the powers (2, 4) the term 2 t dt^3 leaves an error of 2 * 3 * 1e-3 / 60; other powers leave more.
     for powers in ((2, 4), (1, 3), (3, 4)):
         extrapolated = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), powers))
         assert min(errors(extrapolated)) > 0.9e-4
         assert present(extrapolated.estimate).max() > 1e-5
-    # A series in the step is resolved whatever its size.
+    # Error expansions of any size are recognised.
     for size in (1e-6, 1.0, 30.0):
         toy = SeriesToy({2: size, 3: -2 * size, 4: size})
-        trajectories = [
-            run(Extrapolated(toy, "extended", (1, 2), (2,))),
-            run(Extrapolated(toy, "extended", (1, 2, 3, 4), (2, 3, 4))),
-        ]
-        assert not any("no series" in warning for trajectory in trajectories for warning in trajectory.warnings)
+        for levels, powers in (((1, 2), (2,)), ((1, 2, 3, 4), (2, 3, 4))):
+            trajectory = run(Extrapolated(toy, "extended", levels, powers))
+            assert not any("no series" in warning for warning in trajectory.warnings)
 
 
-def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_on():
-    # As if all but the finest had passed a singular position the other way at t = 2 s.
+def test_runs_without_error_expansion_give_the_finest_run_and_are_unresolved():
+    # All runs but the finest take another branch at t = 2 s.
     turned = Extrapolated(SeriesToy(turned_above=0.03), "extended", (1, 2, 3, 4), (2, 3, 4)).build(sledge(), 0.1)(10, 3)
     finest = SeriesToy(turned_above=0.03).build(sledge(), 0.025)(10, 12)
     assert turned.unresolved_at == pytest.approx(2.1)
     assert turned.warnings == (
-        "ours: reactions are resolved to 5e+00 of the largest force",  # those of the other runs are of their poses
+        "ours: reactions are resolved to 5e+00 of the largest force",
         "ours: unresolved from 2.1 s on, the runs are no series in the step",
     )
     late = turned.t > 2
@@ -137,21 +137,20 @@ def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_o
         assert np.array_equal(getattr(turned, name)[late], getattr(finest, name)[late])
         assert not np.array_equal(getattr(turned, name)[~late], getattr(finest, name)[~late])
     assert turned.estimate is not None
-    # The other runs differ from the finest one by 1 rad, which is the estimate.
+    # The estimate is the difference of 1 rad between the finest run and another.
     assert np.all(np.abs(turned.estimate[late] - 1) < 0.1)
     assert turned.estimate[~late].max() < 1e-3
 
 
 @pytest.mark.parametrize("every", [1, 2, 3, 10])
-def test_how_often_it_is_sampled_changes_neither_the_motion_nor_the_estimate_nor_what_is_told(every):
+def test_the_sampling_changes_neither_motion_nor_estimate_nor_warnings(every):
     method = Extrapolated(SeriesToy({2: 1.0, 3: 300.0, 4: 100.0, 5: 5000.0}), "extended", (1, 2, 3, 4), (2, 3, 4))
     dense, sampled = (method.build(sledge(), 0.025)(60 // count, count) for count in (1, every))
     for name in ("t", "pose", "twist", "estimate"):
         assert np.array_equal(present(getattr(sampled, name)), present(getattr(dense, name))[::every])
-    # At this instant its own estimate passes the claim, whether it is a sample or not.
     assert sampled.unresolved_at == dense.unresolved_at
     assert 0 < present(dense.unresolved_at) < dense.t[-1]
-    # It is unresolved from before its estimate is above the claim.
+    # The motion is unresolved before the estimate exceeds the claim.
     above = np.max(present(dense.estimate), axis=(1, 2)) > CLAIM
     assert present(dense.unresolved_at) < dense.t[np.argmax(above)]
     assert f"ours: unresolved from {dense.unresolved_at:.4g} s on, its own estimate is not below its claim" in (
@@ -160,21 +159,21 @@ def test_how_often_it_is_sampled_changes_neither_the_motion_nor_the_estimate_nor
 
 
 @pytest.mark.parametrize(("most", "steps"), [(60, 1), (20, 3), (1, 6)])
-def test_more_poses_than_are_kept_are_compared_at_fewer_instants(most, steps, monkeypatch):
+def test_long_runs_are_compared_at_fewer_instants(most, steps, monkeypatch):
     monkeypatch.setattr("engines.extrapolated.WATCHED", most)
-    assert _watched_every(samples=10, every=6, bodies=1) == steps
+    assert _steps_between_compared(samples=10, every=6, bodies=1) == steps
 
 
 @pytest.mark.parametrize("growth", [0.0, 0.3, 1.0])
-def test_the_estimate_is_near_the_error_of_a_series_also_where_it_is_no_longer_asymptotic(growth):
-    # 1 / (1 - h / 3) has all powers; the steps are a part of its radius, up to the whole of it.
+def test_the_estimate_is_near_the_error_of_a_power_series_in_the_step(growth):
+    # 1 / (1 - h / 3) has all powers of the step h.
     levels, powers = (2, 3, 4, 6, 8), (1, 2, 3, 4)
     steps = (0.05 + growth) / np.array(levels)
     values = np.cumsum(np.ones((5, 3)), axis=1) / (1 - steps[:, None] / 3)
     error = np.abs(combine(values, extrapolation_weights(levels, powers)) - np.arange(1, 4))
     estimate = expected_error(values, levels, powers)
     assert np.all(estimate > error)
-    # Where differences fall by more than a hundredfold, the last one counts all the same, in part.
+    # If differences fall by more than a factor of 100, the estimate is a share of the last difference.
     last = np.abs(
         np.subtract(*(combine(values[i:], extrapolation_weights(levels[i:], powers[: 4 - i])) for i in (0, 1)))
     )
@@ -182,7 +181,7 @@ def test_the_estimate_is_near_the_error_of_a_series_also_where_it_is_no_longer_a
 
 
 def test_runs_that_step_over_a_damper_are_unresolved_from_the_start():
-    # 1 / 3 kg m^2 about the pin, and so strong a damper: what moves is at rest after a third of a millisecond.
+    # With 1 / 3 kg m^2 about the pin, the damper stops the bar in a third of a millisecond.
     linkage = replace(sledge(), forces=(TorsionDamper("damper", None, "bar", 1e3),))
     exact = Extrapolated(SeriesToy({2: 0.0}), "extended", (1, 2, 3), (2, 3))
     assert exact.build(linkage, 0.9 * linkage.time_scale)(10, 1).unresolved_at is None
@@ -191,21 +190,21 @@ def test_runs_that_step_over_a_damper_are_unresolved_from_the_start():
     assert any("unresolved from 0 s on" in warning for warning in over.warnings)
 
 
-def test_reactions_are_told_by_the_forces_that_act_and_not_by_themselves(monkeypatch):
+def test_warnings_of_reactions_are_relative_to_the_acting_forces(monkeypatch):
     linkage, plain = sledge(), SeriesRun.__call__
     weight = linkage.bodies[0].mass * 9.81
     for size, is_reported in ((weight, True), (1e-9 * weight, False)):
 
         def noisy(self: SeriesRun, samples: int, every: int, size: float = size) -> Trajectory:
-            run_result = plain(self, samples, every)  # no two runs agree on the reactions
-            return replace(run_result, reaction=np.full_like(run_result.reaction, size * np.sin(1e4 * self.dt)))
+            trajectory = plain(self, samples, every)
+            return replace(trajectory, reaction=np.full_like(trajectory.reaction, size * np.sin(1e4 * self.dt)))
 
         monkeypatch.setattr(SeriesRun, "__call__", noisy)
-        run_result = Extrapolated(SeriesToy({2: 0.0}), "extended", (1, 2, 3), (2, 3)).build(linkage, 0.01)(10, 3)
-        assert any("reactions are resolved" in warning for warning in run_result.warnings) == is_reported
+        trajectory = Extrapolated(SeriesToy({2: 0.0}), "extended", (1, 2, 3), (2, 3)).build(linkage, 0.01)(10, 3)
+        assert any("reactions are resolved" in warning for warning in trajectory.warnings) == is_reported
 
 
-def test_a_level_that_fails_makes_the_samples_not_a_number_and_is_not_dropped():
+def test_samples_are_nan_if_one_level_fails():
     trajectory = run(Extrapolated(SeriesToy(broken_below=0.04), "extended", (1, 2, 3), (2, 3)))
     assert np.all(np.isfinite(trajectory.pose[0]))
     for values in (trajectory.pose, trajectory.twist, trajectory.reaction, trajectory.estimate):
@@ -216,7 +215,7 @@ def test_a_level_that_fails_makes_the_samples_not_a_number_and_is_not_dropped():
     assert combined[1] == pytest.approx(3.0)
 
 
-def test_cost_is_the_sum_and_warnings_and_the_first_reset_are_passed_on():
+def test_stepping_times_add_up_and_warnings_and_the_first_reset_are_passed_on():
     trajectory = run(Extrapolated(SeriesToy(resets_below=0.06), "extended", (1, 2, 3), (2, 3)))
     assert trajectory.stepping == pytest.approx(1e-3 * 30 * (1 + 2 + 3))
     assert trajectory.reset_at == pytest.approx(100 * 0.1 / 3)
@@ -233,16 +232,14 @@ def test_levels_and_powers_that_do_not_fit_are_refused(levels, powers):
         Extrapolated(SeriesToy(), "extended", levels, powers)
 
 
-def test_differences_that_are_small_by_chance_are_decided_by_a_further_run():
-    """The terms of orders 5 and 6 cancel in the last difference and not in the error that is left."""
+def test_a_further_run_decides_if_the_last_difference_is_small_by_chance():
+    # The terms of orders 5 and 6 cancel in the last difference, but not in the remaining error.
     levels, powers, dt = (1, 2, 3, 4), (2, 3, 4), 0.1
     steps = dt / np.array(levels)
     residual = {power: float(extrapolation_weights(levels, powers) @ steps**power) for power in (5, 6)}
     without = {power: float(extrapolation_weights(levels[1:], powers[:-1]) @ steps[1:] ** power) for power in (5, 6)}
     last = {power: residual[power] - without[power] for power in (5, 6)}
-    size = (
-        3 * CLAIM / abs(residual[5] - residual[6] * last[5] / last[6])
-    )  # the error is 3 claims after a second, and grows
+    size = 3 * CLAIM / abs(residual[5] - residual[6] * last[5] / last[6])  # the error is 3 CLAIM after a second
     toy = SeriesToy({2: 1e-3, 3: -2e-3, 4: 1e-3, 5: size, 6: -size * last[5] / last[6]})
     trajectory = run(Extrapolated(toy, "extended", levels, powers), dt)
     error = np.abs(trajectory.pose - np.cos(trajectory.t)[:, None, None]).max(axis=(1, 2))

@@ -1,4 +1,4 @@
-"""What adapters share: the fast contact of every pair that rolls, and the motions of a spanning tree."""
+"""Fast contacts of rolling pairs, and motions of spanning trees, which several adapters use."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def rolling_of(scene: Scene) -> Rolling:
     return next(joint.rolling for joint in scene.mechanism().joints if isinstance(joint, Roll))
 
 
-# A disc, with its middle off its origin, and with the ground somewhere: nothing in the closed forms may rest on zeros.
+# Centres and frames are displaced, so that no constant of the closed forms is zero.
 DISC = Placed(Circle(0.25, (0.05, -0.02)), turn=0.7, shift=(0.03, 0.04))
 HILL = Placed(Circle(0.9, (0.2, 0.1)), turn=-0.4, shift=(0.5, 1.0))
 PAIRS = {
@@ -62,45 +62,43 @@ def as_complex(vectors: np.ndarray) -> np.ndarray:
 
 
 def far_and_back(rolling: Rolling) -> np.ndarray:
-    """Return rotations [rad] in both directions, with jumps, far beyond the first cells of a table."""
+    """Rotations [rad] in both directions, with jumps, far beyond the first cells of a table."""
     theta = rolling.theta + np.concatenate([np.linspace(-9.0, 9.0, 203), [7.3, -2.0, 4.0]])
     low, high = rolling.limits
     return theta[(low < theta) & (theta < high)]
 
 
 @every_pair
-def test_places_contacts_and_arms_are_the_references_to_rounding(rolling: Rolling) -> None:
+def test_poses_contacts_and_arms_equal_the_reference_to_rounding(rolling: Rolling) -> None:
     theta = far_and_back(rolling)
-    index, first, second = (
-        np.array(values) for values in zip(*map(rolled(rolling).place, theta.tolist()), strict=True)
-    )
+    place, first, second = np.array(list(map(rolled(rolling).place, theta.tolist()))).T
     rate = np.ones_like(theta)
-    # Lengths of about 1 m and a few roundings each; of pairs in a hole the contact runs round four times as fast as
-    # the body turns, and the reference finds it by a search to 1e-14.
-    assert np.abs(index - as_complex(rolling.pose(theta))).max() < 2e-14
+    # The tolerances are a few rounding errors of lengths of about 1 m. In a hole the contact turns up to four times as
+    # fast as the body, and the reference finds it iteratively to 1e-14.
+    assert np.abs(place - as_complex(rolling.pose(theta))).max() < 2e-14
     assert np.abs(first - as_complex(rolling.velocity(theta, rate))).max() < 1e-13
     assert np.abs(second - as_complex(rolling.acceleration(theta, rate, 0 * rate))).max() < 5e-13
     fast, exact = rolled(rolling), rolling.contact(theta)
     for angle, point, arm in zip(theta.tolist(), as_complex(exact.point), as_complex(exact.arm), strict=True):
-        ground, linkage = fast.contact(angle)
+        ground, on_body = fast.contact(angle)
         assert abs(ground - point) < 1e-13  # m: rounding of an arc of a few metres
         assert abs(fast.arm(angle) - arm) < 1e-13
-        assert abs(linkage + arm * cmath.rect(1.0, -angle)) < 1e-13
+        assert abs(on_body + arm * cmath.rect(1.0, -angle)) < 1e-13
 
 
-def test_a_pair_that_fits_too_closely_for_a_table_asks_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pair_without_an_accurate_table_uses_exact_contacts(monkeypatch: pytest.MonkeyPatch) -> None:
     rolling = PAIRS["disc on an ellipse"]
-    tabled = Table(rolling)
+    table = Table(rolling)
     monkeypatch.setattr(rolling_table, "POOR", 0.0)
-    asking = Table(rolling)
-    assert not asking._cells
+    exact = Table(rolling)
+    assert not exact._cells
     for theta in (0.0, 1.0, 4.0):
-        assert np.allclose(asking.place(theta), tabled.place(theta), rtol=0, atol=1e-12)
-        assert np.allclose(asking.contact(theta), tabled.contact(theta), rtol=0, atol=1e-13)
-        assert abs(asking.arm(theta) - tabled.arm(theta)) < 1e-13
+        assert np.allclose(exact.place(theta), table.place(theta), rtol=0, atol=1e-12)
+        assert np.allclose(exact.contact(theta), table.contact(theta), rtol=0, atol=1e-13)
+        assert abs(exact.arm(theta) - table.arm(theta)) < 1e-13
 
 
-def test_where_the_curves_end_there_is_no_place_and_no_contact() -> None:
+def test_beyond_the_end_of_a_curve_there_is_no_contact() -> None:
     rolling = Rolling.at_angle(Circle(0.1), Placed(Side(0.4), turn=math.pi))
     low, high = rolling.limits
     fast = rolled(rolling)
@@ -114,7 +112,7 @@ def test_where_the_curves_end_there_is_no_place_and_no_contact() -> None:
             fast.contact(beyond)
 
 
-# Random ones with every joint, and those of the scenes, where a slot's drive of rate zero keeps its block from turning.
+# Random mechanisms with all kinds of joints, and mechanisms of scenes.
 MECHANISMS = (
     *(random_mechanism(21, number, ALL_KINDS) for number in range(6)),
     *(scene.mechanism() for scene in SCENES[::2] if len(scene.mechanism().bodies) < 20),
@@ -124,26 +122,27 @@ MECHANISMS = (
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=range(len(MECHANISMS)))
 def test_twists_and_accelerations_are_the_derivatives_of_the_poses(mechanism):
     tree = spanning_tree(mechanism)
-    way, rate, gain = np.random.default_rng(5).normal(size=(3, tree.coordinates))
+    position, rate, change = np.random.default_rng(5).normal(size=(3, tree.coordinates))
     h = 1e-4
     t = np.array([-h, 0.0, h])[:, None]
-    pose, twist, change = tree.motion(way + rate * t + gain * t**2 / 2, rate + gain * t, np.tile(gain, (3, 1)))
-    for values, derivative in ((pose, twist), (twist, change)):
+    positions = position + rate * t + change * t**2 / 2
+    pose, twist, acceleration = tree.motion(positions, rate + change * t, np.tile(change, (3, 1)))
+    for values, derivative in ((pose, twist), (twist, acceleration)):
         differences = (values[2] - values[0]) / (2 * h)
-        # The error of the difference is h^2 times a third derivative: cubes of rates, which are sums over many links.
+        # The error of the difference is h^2 / 6 times the third derivative, which has cubes of sums of many rates.
         np.testing.assert_allclose(differences, derivative[1], rtol=0, atol=1e-4 * np.abs(derivative).max())
-    for result, expected in zip(tree.instant(way, rate), (pose[1], twist[1]), strict=True):
-        np.testing.assert_allclose(result, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
+    for value, expected in zip(tree.instant(position, rate), (pose[1], twist[1]), strict=True):
+        np.testing.assert_allclose(value, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
 
 
-def test_what_is_pushed_is_what_the_force_elements_do_there_and_nothing_where_a_coordinate_is_none():
+def test_pushes_are_the_loads_of_the_force_elements_and_nan_for_infinite_coordinates():
     mechanism = Andrews().mechanism()
     tree = spanning_tree(mechanism)
-    way, rate = np.zeros(tree.coordinates), tree.start_rates()
-    pose, pushed = pushes(tree, way, rate)
+    position, rate = np.zeros(tree.coordinates), tree.start_rates()
+    pose, loads = pushes(tree, position, rate)
     np.testing.assert_allclose(pose, mechanism.pose, rtol=0, atol=1e-15 * mechanism.length_scale)
     expected = mechanism.applied.on(mechanism.pose, mechanism.twist)
-    np.testing.assert_allclose(pushed, expected, rtol=1e-14, atol=1e-14 * np.abs(expected).max())
-    assert np.abs(pushed).max() > 0
-    way[0] = np.inf
-    assert np.isnan(pushes(tree, way, rate)[0]).all()
+    np.testing.assert_allclose(loads, expected, rtol=1e-14, atol=1e-14 * np.abs(expected).max())
+    assert np.abs(loads).max() > 0
+    position[0] = np.inf
+    assert np.isnan(pushes(tree, position, rate)[0]).all()
