@@ -48,16 +48,16 @@ from tests.reports.test_command_line import call, one_line
 from tests.wrong.mistakes import mistaken, mistakes
 
 TABLE = re.compile(r"^(\w.*?) +(\de-\d\d)((?: +\d\.\de[+-]\d\d)+)$", re.MULTILINE)
-MENDED = {"mujoco_loop", "mujoco_sparse"}  # faults of earlier releases than those that the suite depends on
+CORRECTED = {"mujoco_loop", "mujoco_sparse"}  # faults that the releases under test do not have
 
 
 def documented(name: str) -> list[str]:
-    """The outputs that the document of a script shows, each with its release on top."""
+    """The outputs that the document of a script shows; the first line of each is the release."""
     (text,) = (text for path in UPSTREAM.iterdir() if f"{name}.py" in (text := path.read_text(encoding="utf-8")))
     if "_cost" not in name:
         later = text.partition(f"`{name}.py`")[2]
         return [later.partition("```text\n")[2].partition("\n```")[0]]
-    earlier = text.partition(f"<summary>{name}.py")[0].partition("## What it costs over time")[2]
+    earlier = text.partition(f"<summary>{name}.py")[0].partition("## Cost")[2]
     return re.findall(r"```text\n(.*?)\n```", earlier.rpartition("</details>")[2], re.DOTALL)
 
 
@@ -68,7 +68,7 @@ def test_the_output_of_a_script_agrees_with_its_document(name):
         return
     package = "mujoco-core" if name.startswith("mujoco") else "pymunk"
     printed = printed_apart(name)
-    if name in MENDED:
+    if name in CORRECTED:
         assert all(is_right(float(expected), float(result)) for expected, result in RESULT.findall(printed))
     same = [output for output in documented(name) if re.search(rf" {metadata.version(package)}\b(?! with)", output)]
     for output in same:  # none for a fault of earlier releases, or where a newer release is installed
@@ -80,7 +80,7 @@ def test_the_output_of_a_script_agrees_with_its_document(name):
         for key, values in displayed.items():  # two digits are printed
             assert now[key] == pytest.approx(values, rel=0.1)
     if not same:
-        assert name.removesuffix("_cost") in MENDED or metadata.version(package) not in ("7.3.1", "4.0.1")
+        assert name.removesuffix("_cost") in CORRECTED or metadata.version(package) not in ("7.3.1", "4.0.1")
 
 
 def test_a_groove_drives_the_wrong_velocity_to_zero():
@@ -93,7 +93,7 @@ def test_a_fault_is_right_only_in_releases_that_corrected_it():
     for name, task in SCRIPTS.items():
         answer = answer_to(task)
         if answer.finished:
-            assert is_right(answer.number("expected"), answer.number("found")) == (name in MENDED)
+            assert is_right(answer.number("expected"), answer.number("found")) == (name in CORRECTED)
 
 
 def test_a_script_whose_extra_is_missing_is_not_run_and_its_page_and_answer_name_the_extra(monkeypatch):
