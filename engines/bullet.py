@@ -135,10 +135,7 @@ def inertia_warnings(tree: Tree, motors: Iterable[int]) -> tuple[RunWarning, ...
     """
     if not tree.coordinates:
         return ()
-    still = np.zeros(tree.coordinates)
-    rest, units = tree.instant(still, still)[1], np.eye(tree.coordinates)
-    twists = np.array([(tree.instant(still, unit)[1] - rest).reshape(-1) for unit in units])
-    masses = (twists * tree.mechanism.inertias.reshape(-1)) @ twists.T
+    masses = (tree.unit_twists * tree.mechanism.inertias.reshape(-1)) @ tree.unit_twists.T
     size = np.sqrt(np.diag(masses))
 
     def inertia(columns: list[int], column: int) -> float:
@@ -167,13 +164,13 @@ def motor_rates(tree: Tree) -> dict[int, float]:
                 f"body {bodies[link.body].name!r}: it slides and turns, or hangs on nothing; that needs a "
                 "link of mass zero in bullet's tree, and our adapter makes none"
             )
+    for drive in tree.drives:
+        signs = tree.turning(drive.first, drive.second)
+        if len(signs) != 1 or next(iter(signs)) in rates:
+            raise Unsupported(f"drive {drive.name!r}: a motor of bullet turns one joint, and has one rate")
+        ((column, sign),) = signs.items()
+        rates[column] = sign * drive.turning_rate
     for joint in tree.mechanism.joints:
-        if isinstance(joint, Drive) and joint not in tree.kept:
-            signs = tree.turning(joint.first, joint.second)
-            if len(signs) != 1 or next(iter(signs)) in rates:
-                raise Unsupported(f"drive {joint.name!r}: a motor of bullet turns one joint, and has one rate")
-            ((column, sign),) = signs.items()
-            rates[column] = sign * joint.turning_rate
         if isinstance(joint, Gear):
             geared_columns(tree, joint)
     return rates

@@ -106,7 +106,7 @@ class Pinocchio(ExtraEngine):
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         """Our code for drives; the engine for all other joints."""
-        return "ours" if isinstance(joint, Drive) and joint not in spanning_tree(mechanism).kept else "engine"
+        return "ours" if joint in spanning_tree(mechanism).drives else "engine"
 
     def model(self, mechanism: Mechanism, dt: float) -> PinocchioModel:
         tree = spanning_tree(mechanism)
@@ -137,13 +137,12 @@ class PinocchioModel:
             self.loop_data.append(self.loops[-1].createData())
         pinocchio.initConstraintDynamics(self.model, self.data, self.loops, self.loop_data)
         self.proximal = pinocchio.ProximalSettings(PROXIMAL_TOLERANCE, PROXIMAL_REGULARISATION, PROXIMAL_ITERATIONS)
-        drives = [joint for joint in mechanism.joints if isinstance(joint, Drive) and joint not in tree.kept]
-        self.driven = np.zeros((len(drives), tree.coordinates))
-        for row, drive in zip(self.driven, drives, strict=True):
+        self.driven = np.zeros((len(tree.drives), tree.coordinates))
+        for row, drive in zip(self.driven, tree.drives, strict=True):
             for column, sign in tree.turning(drive.first, drive.second).items():
                 row[self.address[column]] = sign
         self.joint_of = [self.joints[body] for body in range(len(mechanism.bodies))]
-        rows = sum(joint.size for joint in tree.loops) + len(drives)
+        rows = sum(joint.size for joint in tree.loops) + len(tree.drives)
         spatial = sum(6 if isinstance(joint, Weld) else 3 for joint in tree.loops)
         self.size = Size(len(mechanism.bodies), tree.coordinates, rows, spatial)
 

@@ -139,10 +139,21 @@ class Tree:
         return {link.body: link for link in self.links}
 
     @cached_property
+    def drives(self) -> tuple[Drive, ...]:
+        """The drives that the tree does not hold."""
+        return tuple(joint for joint in self.mechanism.joints if isinstance(joint, Drive) and joint not in self.kept)
+
+    @cached_property
     def geared(self) -> tuple[Drive, ...]:
         """The drives whose rotation is not that of a single coordinate."""
-        drives = [joint for joint in self.mechanism.joints if isinstance(joint, Drive) and joint not in self.kept]
-        return tuple(drive for drive in drives if len(self.turning(drive.first, drive.second)) != 1)
+        return tuple(drive for drive in self.drives if len(self.turning(drive.first, drive.second)) != 1)
+
+    @cached_property
+    def unit_twists(self) -> Array:
+        """The twists (coordinates, bodies * 3) of unit rates of single tree coordinates at the start."""
+        still = np.zeros(self.coordinates)
+        twists = [self.instant(still, unit)[1].ravel() for unit in np.eye(self.coordinates)]
+        return np.array(twists).reshape(self.coordinates, 3 * len(self.mechanism.bodies))
 
     def start_rates(self) -> Array:
         """The tree velocities (coordinates,) [m/s, rad/s] of the mechanism's start."""

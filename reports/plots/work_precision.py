@@ -212,6 +212,7 @@ ENGINE_NAMES = {
     "pinocchio": "Pinocchio",
     "mjx": "MJX",
     "bullet": "Bullet",
+    "drake": "Drake",
     EXACT_SOLVER: "plain code, exact multipliers",
 }
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, box2d, bullet, exudyn, lagrange, mjx, mujoco, pinocchio, pymunk
+from engines import Engine, box2d, bullet, drake, exudyn, lagrange, mjx, mujoco, pinocchio, pymunk
 from reference.checks import InvalidMechanism
 from reference.joints import Body
 from reference.mechanism import Mechanism
@@ -170,6 +170,7 @@ CONTROL_ENGINES: Mapping[str, tuple[Engine, ...]] = {
     "pinocchio": (pinocchio.TUNED,),
     "mjx": (mjx.TUNED,),
     "bullet": (bullet.EXTENDED,),
+    "drake": (drake.EXTENDED,),
 }
 CONTROL_SEED = 1
 CONTROL_CASES = 300

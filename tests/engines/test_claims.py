@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from engines import CLAIM, Engine, NotDeclared, Unsupported, bullet, exudyn, method_name, mujoco, pymunk
+from engines import CLAIM, Engine, NotDeclared, Unsupported, bullet, drake, exudyn, method_name, mujoco, pymunk
 from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts
 from engines.lagrange import TRUTH
 from engines.mujoco.solver_check import _remaining_error
@@ -129,8 +129,8 @@ def test_an_error_of_a_force_is_counted_in_the_largest_force_and_not_in_that_of_
 
 CLAIMING = pytest.mark.parametrize(
     "engine",
-    [pymunk.EXTENDED, mujoco.EXTENDED, exudyn.EXTENDED, bullet.EXTENDED],
-    ids=["pymunk", "mujoco", "exudyn", "bullet"],
+    [pymunk.EXTENDED, mujoco.EXTENDED, exudyn.EXTENDED, bullet.EXTENDED, drake.EXTENDED],
+    ids=["pymunk", "mujoco", "exudyn", "bullet", "drake"],
 )
 HELD = ("pin", "slot", "skate", "drive")
 STEP = 1e-3
@@ -266,6 +266,7 @@ DRAWN = {
     "bullet": ("pin", "weld", *ELEMENTS),
     **dict.fromkeys(("planck", "p2", "jolt"), ("pin", "drive", "rod", "weld")),
     "rapier": ("pin", "drive", "weld"),
+    "drake": ("pin", "weld", *ELEMENTS),
 }
 # Largest error relative to the displacement, by order, after 180 steps in a fifth of the time scale: measured with a
 # margin. Box2D's compliant joints have SOFT, the largest of thirty draws; a wrong lever arm or sign has an error of 1.

@@ -23,6 +23,7 @@ from engines.mjx import NO_VELOCITY_TERM
 from engines.mjx import TUNED as MJX_TUNED
 from engines.mjx import VARIANTS as MJX_VARIANTS
 from engines.pinocchio import PinocchioModel
+from engines.sampling import sampled_with_differences
 from engines.units import counted_in
 from reference.forces import Torque
 from reference.joints import Drive, Gear, Pin, Rod
@@ -96,6 +97,21 @@ def test_an_engine_without_finite_numbers_reports_when(sample):
     run = single_run.SingleRun(body, 0.5, Size(1, 3, 0, 0), lambda samples, every: recorded)(2, 1)
     assert run.warnings == (f"ours: at {0.5 * sample:g} s the engine holds no numbers any more",)
     np.testing.assert_array_equal(np.isnan(run.pose).all(axis=(1, 2)), np.arange(3) >= sample)
+
+
+def test_differences_of_a_run_that_ends_early_have_the_shape_of_its_samples():
+    for lost_after in range(1, 6):
+        steps = 0
+
+        def advance(count: int, lost_after: int = lost_after) -> bool:
+            nonlocal steps
+            steps += count
+            return steps >= lost_after
+
+        position, velocity, acceleration, _ = sampled_with_differences(
+            (2, 3), 1.0, advance, lambda: (np.zeros(2), np.zeros(2)), lambda: np.zeros(2)
+        )
+        assert position.shape == velocity.shape == acceleration.shape
 
 
 def test_exudyns_reactions_need_consistent_accelerations_at_the_start():

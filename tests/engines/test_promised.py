@@ -102,7 +102,7 @@ CONFIGURATIONS = {
     ),
 }
 MECHANISMS = {**ALONE, "all": ALL, "all damped": DAMPED, **CONFIGURATIONS}
-# What extras build.
+# What extras build, by engine, or by method where it builds less.
 PINNED = {
     *("torsion spring", "torsion damper", "torque", "force", "weld", "weld to the ground", "two forces on a body")
 }
@@ -112,6 +112,7 @@ UNFORCED = {"weld", "weld to the ground", "pendulum_2", "pendulum_10"}
 FLYING = {"faster than any usual limit", "too slow to stay awake"}
 GROUNDED_GEARS = {"gears on the ground", "gears on the ground, named the other way"}
 DRIVEN = {"a drive against its pin", "a held angle against its slot", "driven_slider_crank"}
+UNCONSTRAINED = PINNED | FLYING | {"spring", "damper", "a held angle against its slot"}
 BUILDS = {
     "exudyn": {*MECHANISMS},
     "box2d": PINNED | FLYING | LOOPS | DRIVEN | {"spring", "damper", "rod", "rod to the ground"},
@@ -119,6 +120,9 @@ BUILDS = {
     "bullet": PINNED | LOOPS | DRIVEN | GROUNDED_GEARS,
     **{name: UNFORCED | LOOPS | FLYING | DRIVEN | {"rod", "rod to the ground"} for name in ("planck", "p2", "jolt")},
     "rapier": (UNFORCED | LOOPS | FLYING | DRIVEN) - {"a held angle against its slot"},
+    "drake": {*MECHANISMS} - {"gear", "all", "all damped"},
+    "drake tuned": UNCONSTRAINED,
+    "drake cenic": UNCONSTRAINED | GROUNDED_GEARS,
 }
 SAMPLES, SPACING = 6, 0.05
 # Newton's tolerance as shipped; a drive held by an inertia of 1e8 times the mechanism's; single precision; rounding.
@@ -129,6 +133,7 @@ SMALL = {
     "bullet": 1e-8,
     "planck": 1e-8,
     **dict.fromkeys(("p2", "rapier", "jolt"), 1e-4),
+    "drake": 1e-8,
     "mujoco": 1e-9,
     "pymunk": 1e-11,
     "lagrange": 1e-11,
@@ -173,7 +178,7 @@ def label(value: Engine | str) -> str:
 def test_an_engine_moves_with_the_order_it_promises_or_refuses_by_name(engine: Engine, name: str) -> None:
     installed(engine)
     linkage = MECHANISMS[name]
-    if name not in BUILDS.get(engine.name, MECHANISMS):
+    if name not in BUILDS.get(method_name(engine), BUILDS.get(engine.name, MECHANISMS)):
         named = [repr(part.name) for part in (*linkage.joints, *linkage.bodies, *linkage.forces)]
         with pytest.raises(Unsupported) as refused:
             engine.build(linkage, 1e-3)
@@ -244,7 +249,7 @@ PINS = (Pin("A", None, "a", (0.0, 0.0), (0.0, 0.0)), Pin("B", None, "b", (1.0, 0
 WITH_BELT = Mechanism(PLATES, (*PINS, Belt("belt", "a", "b", 2.0)), (0.0, 0.0))
 WITH_BRAKE = Mechanism(PLATES, PINS, (0.0, 0.0), (Brake("brake", None, "a", 0.2),))
 EVERY_ENGINE = (*registry.ENGINES, *registry.OTHERS)
-OURS = ("lagrange", "box2d", "bullet", "pinocchio")  # they evaluate force elements by the elements' own law
+OURS = ("lagrange", "box2d", "bullet", "pinocchio", "drake")  # they evaluate force elements by the elements' own law
 
 
 REFUSED = [(engine, WITH_BELT, "Belt") for engine in EVERY_ENGINE if engine.name != "lagrange"]
