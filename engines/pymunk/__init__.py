@@ -1,25 +1,23 @@
-"""pymunk: impulses by Gauss-Seidel iterations, as shipped, well set, and extrapolated.
+"""The engine pymunk with its default settings, with better settings, and with extrapolation.
 
-All methods are in `engines.pymunk.methods`, the constructions of each joint in `engines.pymunk.joints`.
+A step of Chipmunk (cpSpaceStep.c) begins with a drift: the positions change by v dt with the old velocities v. At the
+new positions a kick adds the effect of the forces to the velocities. Then every joint corrects the velocities in turn,
+`iterations` times. The iterations start from the impulses of the previous step. After n steps the velocities contain
+the full kick at the positions p_n. They are read in one of two ways:
 
-A step of Chipmunk (its cpSpaceStep.c) first drifts, p += v dt, with the old velocity. Then, at the new positions, it
-adds the forces to the velocities (kick), and every joint corrects the velocities in turn, `iterations` times, starting
-from the impulses of the step before. After n steps it has the positions p_n, and velocities that include the forces at
-p_n in full. They can be read in two ways:
+- `leapfrog` False is how users read them: `body.velocity` is the velocity at t_n. The first drift uses the velocity at
+  0 and not at dt/2. Half a kick is missing, so errors are of first order. From rest, the positions are late by dt/2,
+  and only the velocities are of second order, since the kick of the last step compensates the delay.
+- `leapfrog` True begins with a kick of half a step without drift. The engine then has v at t_n + dt/2, and the velocity
+  at t_n is the mean of the velocities half a step before and after. Errors are of second order.
 
-- As a user reads them (`leapfrog` False): `body.velocity` is the velocity at t_n. As the first drift used the velocity
-  at 0 and not at dt/2, half a kick is missing: first order. (From rest this is a delay of dt/2, which the kick of the
-  last step compensates in the velocities: they alone are of second order.)
-- As a leapfrog (`leapfrog` True): a kick of half a step, without drift, comes before the first step. The engine then
-  has v at t_n + dt/2, and the velocity at t_n is the mean of the two around it: second order.
+The force of step n is evaluated at p_n. In both cases, the change of velocity over step n divided by dt is therefore
+the acceleration at t_n, with the constraint rows at p_n. `Mechanism.reaction` computes signed reactions from it, since
+`constraint.impulse` is only a magnitude. `PymunkRun` computes the reactions at the first sample.
 
-The force of step n is evaluated at p_n, so in both readings (change of velocity over step n) / dt is the acceleration
-at t_n, with the rows at p_n. `Mechanism.reaction` computes signed reactions from it (`constraint.impulse` is only a
-magnitude). For the first sample see `PymunkRun`.
-
-A joint corrects the fraction 1 - error_bias ** dt of its gap in a step. As shipped this is about 6.3 dt, so a gap of
-the order of dt remains. With error_bias 0 the whole gap is corrected in every step, and dt ** 2 remains. The iterations
-that this needs, and its limit of stability, are in `engines.pymunk.convergence`.
+A joint corrects the fraction 1 - error_bias ** dt of its gap in a step. With the default error_bias the fraction is
+about 6.3 dt, and a gap of the order of dt remains. With error_bias 0 a step corrects the whole gap, and a gap of the
+order of dt ** 2 remains. `engines.pymunk.convergence` computes the iterations that this needs, and the stability limit.
 """
 
 from __future__ import annotations
@@ -38,10 +36,9 @@ from reference.mechanism import Mechanism
 
 @validated
 def bare_loop(engine: Engine, mechanism: Mechanism, dt: Positive, steps: Count) -> float:
-    """CPU seconds of `steps` steps of dt [s] without recording: the lower bound of a run's `stepping`.
+    """CPU time [s] of `steps` steps of dt [s] without recording, a lower bound of the `stepping` of a run.
 
-    For each `level` of an extrapolation, `level` times as many steps of dt / level. Raises ValueError for an engine
-    that is not pymunk.
+    An extrapolation makes `level` times as many steps of dt / level at each level. Raises ValueError for other engines.
     """
     if isinstance(engine, Extended):
         engine = engine.chosen(mechanism)

@@ -1,21 +1,22 @@
-"""Convergence of pymunk's Gauss-Seidel iterations for a mechanism, and the stability of one of its steps.
+"""The convergence of pymunk's Gauss-Seidel iterations, and the stability of its steps.
 
-One iteration solves A x = b, A = J M^-1 J^T, joint by joint. It multiplies the residual of the slowest mode by rho, the
-spectral radius of S = 1 - L^-1 A, where L is the lower block triangle of A. rho is near 1 for long chains (N equal
-links: 1 - rho = pi^2/(4 N^2)) and for heavy bodies on light ones (mass ratio 100: 1 - rho = 1/100).
+The joints solve A x = b with A = J M^-1 J^T, one joint after the other. An iteration multiplies the residual of the
+slowest mode by rho, the spectral radius of S = 1 - L^-1 A, where L is the lower block triangle of A. rho is near 1 for
+long chains (1 - rho = pi^2/(4 N^2) for N equal links) and for heavy bodies that hang on light ones (1 - rho = 1/100 for
+a mass ratio of 100).
 
-A step starts from the impulses of the step before, including those that corrected a gap. With R = S^k after k
-iterations, and B the diagonal matrix with 1 for each row that corrects the fraction gamma of its gap, a step of length
-1 maps the rows' velocities u, impulses l and gaps g to
+A step starts from the impulses of the previous step, including those that corrected a gap. Let R = S^k after k
+iterations. Let B be the diagonal matrix with 1 for each row that corrects the fraction gamma of its gap. A step of
+length 1 maps the velocities u, impulses l and gaps g of the rows to
 
     g' = g + u,   l' = R l - (1 - R) A^-1 (u + gamma B g'),   u' = u + A l'
 
-`step_spectral_radius` is the spectral radius of this map. If B = 1, the modes decouple: a mode with the residual
-r = rho^k is stable up to gamma = (1 - r)/r, so the whole gap may be corrected if r < 1/2. Three or more joints have
-complex modes, with r = mu^3 / (3 mu^2 - 3 mu + 1) for an eigenvalue mu of the map. The limit of stability is
-mu = exp(i phi), phi from pi/3 to pi: there |r| falls from 1/2 (argument 0) to 1/7 (argument pi). A complex mode is
-replaced by the real one that needs as many iterations. If B is not 1 (a motor has no angle, a blade no gap), k is
-raised until the map with 2 R in place of R is stable, which is half of the stable residual.
+`step_spectral_radius` is the spectral radius of this map. If B = 1, the modes decouple, and a mode with the residual
+r = rho^k is stable up to gamma = (1 - r)/r. A step may then correct the whole gap if r < 1/2. Three or more joints can
+have complex modes, with r = mu^3 / (3 mu^2 - 3 mu + 1) for an eigenvalue mu of the map. The stability limit is
+mu = exp(i phi) with phi from pi/3 to pi. Along it, |r| falls from 1/2 (argument 0) to 1/7 (argument pi). A complex mode
+is replaced by the real mode that needs as many iterations. If B is not 1 (a motor holds no angle, a blade has no gap),
+k is increased until the map with 2 R in place of R is stable. The residual is then half of the stable one.
 """
 
 from __future__ import annotations
@@ -39,39 +40,40 @@ from reference.validators import Rule
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]  # eigenvalues of S
 
-# Residual of the slowest mode after the iterations of a step: half of the stable one, since rho changes with the pose.
+# Residual of the slowest mode after the iterations of a step. It is half of the stability limit, since rho changes with
+# the pose.
 RESIDUAL = 0.25
 MIN_ITERATIONS = 5
-# Up to this number of rows, and for dependent rows, all eigenvalues are computed; else only the smallest.
+# Number of rows up to which all eigenvalues are computed. For more rows only the smallest is, unless A is singular.
 DENSE = 100
 # Largest product of iterations and joints in one of the few start-up steps.
 STARTUP_WORK = 1_000_000
-# The largest rho that is returned.
 LARGEST_FACTOR = 1 - 1e-12
-# A spectral radius above 1 by more than this is no rounding of a mode.
+# A step is unstable if its spectral radius exceeds 1 by more than this, which is above the rounding of eigenvalues.
 UNSTABLE = 1e-6
-# Complex residuals at the limit of stability; the exponent by which the iterations must reduce a mode to reach half of
-# the stable residual; the mode's argument per unit of this exponent.
+# Complex residuals at the stability limit.
 _LIMIT = 1 / np.polyval([1, -3, 3, 0], np.exp(-1j * np.linspace(np.pi / 3, np.pi, 64)))
+# The iterations must multiply the mode by exp(-_EXPONENT) to reach half of the stable residual.
 _EXPONENT = -np.log(np.abs(_LIMIT) * RESIDUAL / 0.5)
+# The argument of the mode per unit of this exponent [rad].
 _ARGUMENT = np.abs(np.angle(_LIMIT)) / _EXPONENT
 
 Factor = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1")]
 
 
 class _System(NamedTuple):
-    """The matrix A of the rows that impulses enforce, without prescribed motions, at one or more poses."""
+    """The rows that impulses enforce, at one or more poses. Rows of prescribed motions are left out."""
 
-    matrix: Array  # (..., rows, rows)
+    matrix: Array  # A (..., rows, rows)
     starts: list[int]  # first row of the block of each pymunk constraint
     jacobian: Array  # (..., rows, 3 bodies), zero in prescribed coordinates
-    indices: list[int]  # of these rows among the mechanism's
+    indices: list[int]  # indices of these rows among the rows of the mechanism
 
 
 @by_identity()
 @validated
 def convergence_factor(mechanism: Mechanism) -> float:
-    """rho of the mechanism at its start; 0 if no joint acts on another. Dependent rows are left out."""
+    """rho at t = 0; it is 0 if no joint acts on another one. Modes of dependent rows are left out."""
     return convergence_factor_at(mechanism, mechanism.pose)
 
 
@@ -100,7 +102,7 @@ def convergence_factors(mechanism: Mechanism, poses: Numbers) -> Array:
 
 
 def equivalent_real(modes: Modes) -> Array:
-    """The real factors that need as many iterations as these, which may be complex; see the module."""
+    """The real factors that need as many iterations as the given factors, which may be complex."""
     with np.errstate(divide="ignore", invalid="ignore"):
         decay = -np.log(np.abs(modes))
         needed = np.interp(np.abs(np.angle(modes)) / decay, _ARGUMENT, _EXPONENT)
@@ -109,7 +111,7 @@ def equivalent_real(modes: Modes) -> Array:
 
 @validated
 def corrects_gap(mechanism: Mechanism, rolls_are_contacts: bool = False) -> Array:
-    """1 for the rows (rows,) that correct their gap, else 0. A contact corrects none of its gap here."""
+    """A mask (rows,), 1 for rows that correct their gap, else 0. A contact is taken to correct no gap."""
     uncorrected = (Drive, Skate, Roll) if rolls_are_contacts else (Drive, Skate)
     joints = [joint for joint in mechanism.joints for _ in range(joint.size)]
     return np.array([float(not isinstance(joint, uncorrected)) for joint in joints])
@@ -119,10 +121,10 @@ def corrects_gap(mechanism: Mechanism, rolls_are_contacts: bool = False) -> Arra
 def step_spectral_radius(
     mechanism: Mechanism, pose: Numbers, iterations: Count, corrected: Numbers, safety: Positive = 1.0
 ) -> float:
-    """The spectral radius of a step's map, see the module; at least 1, since an uncorrected gap stays.
+    """The spectral radius of the map of a step. It is at least 1, since a gap that is not corrected remains.
 
     `corrected` (rows,): the fraction of its gap that each row corrects in a step. `safety`: factor on the residual R.
-    Infinite for mass ratios beyond floating point.
+    The radius is infinite if the eigenvalues cannot be computed, as for extreme mass ratios.
     """
     system = _system(mechanism, pose)
     matrix = system.matrix
@@ -149,9 +151,10 @@ def step_spectral_radius(
 
 @validated
 def stable_factor(mechanism: Mechanism, poses: Numbers, rho: Factor, rolls_are_contacts: bool = False) -> float:
-    """The rho whose number of iterations makes the step stable at all `poses`, where not all rows correct gaps.
+    """`rho`, or a larger factor for which `iterations_for` gives enough iterations for stability at all `poses`.
 
-    LARGEST_FACTOR if that number exceeds STARTUP_WORK.
+    It is larger than `rho` only if some rows correct no gap. It is LARGEST_FACTOR if more than STARTUP_WORK iterations
+    are needed.
     """
     corrected, needed = corrects_gap(mechanism, rolls_are_contacts), iterations_for(rho)
     if corrected.all() or needed > STARTUP_WORK:
@@ -167,7 +170,7 @@ def stable_factor(mechanism: Mechanism, poses: Numbers, rho: Factor, rolls_are_c
 
 
 def iterations_for(rho: float, fewest: int = MIN_ITERATIONS) -> int:
-    """Iterations that reduce the slowest mode to RESIDUAL, at least `fewest`."""
+    """The number of iterations that reduce the slowest mode to RESIDUAL; at least `fewest`."""
     return max(fewest, ceil(log(RESIDUAL) / log(rho))) if rho > 0 else fewest
 
 
@@ -185,10 +188,10 @@ def _spectral_radius(system: _System, length: float) -> float:
 
 
 def _mode_factors(change: NDArray[np.floating[Any]], jacobian: Array, length: float) -> Modes:
-    """The eigenvalues of S (..., rows) from L^-1 A (..., rows, rows), with 0 for the modes of dependent rows.
+    """The eigenvalues (..., rows) of S from `change` = L^-1 A (..., rows, rows), with 0 for modes of dependent rows.
 
-    Their eigenvalue of A is zero. Extreme mass ratios have nearly zero eigenvalues too, so the rank of the Jacobian
-    decides how many are dependent.
+    Dependent rows give zero eigenvalues of A. Extreme mass ratios give eigenvalues near zero too, so the rank of the
+    Jacobian determines the number of dependent rows.
     """
     eigenvalues = np.linalg.eigvals(change).astype(np.complex128)
     size = np.abs(eigenvalues)
@@ -199,7 +202,6 @@ def _mode_factors(change: NDArray[np.floating[Any]], jacobian: Array, length: fl
 
 
 def _lower(system: _System) -> Array:
-    """The lower block triangles L (..., rows, rows)."""
     matrix, starts = system.matrix, system.starts
     lower = np.zeros_like(matrix)
     for start, end in zip(starts, [*starts[1:], matrix.shape[-1]], strict=True):
@@ -208,7 +210,6 @@ def _lower(system: _System) -> Array:
 
 
 def _system(mechanism: Mechanism, pose: Array) -> _System:
-    """The system at poses (..., bodies, 3)."""
     weights = 1 / mechanism.inertias
     for name in find_turned(mechanism):
         weights[mechanism.body_index(name), 2] = 0
@@ -228,7 +229,7 @@ def _system(mechanism: Mechanism, pose: Array) -> _System:
 
 
 def _block_sizes(joint: Joint) -> tuple[int, ...]:
-    """Numbers of rows that pymunk solves at once: a weld is a pivot and a gear."""
+    """The number of rows in each pymunk constraint of a joint. A weld is a pivot and a gear."""
     return (2, 1) if isinstance(joint, Weld) else (joint.size,)
 
 

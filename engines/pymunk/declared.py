@@ -1,8 +1,8 @@
-"""What pymunk declares of a mechanism: convergence orders, the enforcement of each joint, and the law of one step.
+"""The properties that pymunk declares: convergence orders, the enforcement of joints, and the law of a step.
 
-The law: the engine drifts before it solves, so the rows are those of the pose after the drift; a joint corrects a
-fraction of its gap; and the velocities after the step are the nearest, by mass, to the free ones that satisfy the rows.
-It holds for converged iterations, so `instants` makes as many as the poses need.
+The engine drifts before it solves, so the law uses the constraint rows at the pose after the drift. A joint corrects a
+fraction of its gap. Of all velocities that satisfy the rows, the law takes those with the smallest mass-weighted
+distance from the velocities without joints. It holds for converged iterations, and `instants` makes that many.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from engines.pymunk.convergence import (
 )
 from engines.pymunk.iterations import CONVERGED_RESIDUAL
 from engines.pymunk.joints.drive import find_cranks, find_turned
-from engines.pymunk.joints.slide import GROOVE_REACH, along_blade, groove_is_exact
+from engines.pymunk.joints.slide import GROOVE_HALF_LENGTH, along_blade, groove_is_exact
 from engines.pymunk.model import CONSTRAINT_ROWS, Model
 from engines.pymunk.running import Recording, record
 from reference.joints import Joint, Skate, Slot
@@ -41,45 +41,45 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-GROOVE_LAW = "as its groove pushes"  # the name of the check by the law that a groove joint obeys instead
-MOST_SWEEPS = 20_000
+GROOVE_LAW = "as its groove pushes"  # the name of the check by the law of Chipmunk's groove joint
+LAW_ITERATION_LIMIT = 20_000
 
 Kind = Literal[
     "contact", "set velocity", "single skate", "skate", "damper", "prescribed", "steady", "at rest", "moving"
 ]
 
-# Velocities are read at the ends of steps: all errors are of first order.
+# Velocities are read at the ends of steps, so all errors are of first order.
 FIRST_ORDER = ConvergenceOrder(1, differences=1)
-# A step corrects the whole gap, so that only the gap of one drift remains.
+# A step corrects the whole gap, so only the gap of one drift remains.
 WHOLE_GAP_ORDER = ConvergenceOrder(1, gap=2, differences=1)
-# One row at the pose after the drift is solved exactly, and a skate has no gap.
+# The iterations solve a single row at the pose after the drift exactly, and a skate has no gap.
 SINGLE_ROW = ConvergenceOrder(1, gap=2, slip=EXACT, differences=1)
-# A half kick ahead makes every step symmetric in time.
+# The initial half kick makes every step symmetric in time.
 SYMMETRIC_ORDER = ConvergenceOrder(2, differences=1)
-# The orders by kind of mechanism: if a step corrects a fraction of a gap; the whole gap; the whole gap in a leapfrog.
+# The orders if a step corrects a fraction of a gap, if it corrects the whole gap, and for a leapfrog, which does too.
 ORDERS: Mapping[Kind, tuple[ConvergenceOrder, ConvergenceOrder, ConvergenceOrder]] = {
     "contact": (FIRST_ORDER, FIRST_ORDER, FIRST_ORDER),
     "set velocity": (FIRST_ORDER, FIRST_ORDER, FIRST_ORDER),
     "single skate": (SINGLE_ROW, SINGLE_ROW, SINGLE_ROW),
-    # A row at the end of the step is of first order, in a leapfrog too.
+    # A row that holds at the end of the step is of first order, also in a leapfrog.
     "skate": (FIRST_ORDER, WHOLE_GAP_ORDER, WHOLE_GAP_ORDER),
     "damper": (FIRST_ORDER, WHOLE_GAP_ORDER, WHOLE_GAP_ORDER),
-    # A prescribed motion needs no kick: the error of a pose is its gap.
+    # No kick changes a prescribed motion, so the error of a pose is its gap.
     "prescribed": (
         FIRST_ORDER,
         ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1, differences=1),
         SYMMETRIC_ORDER,
     ),
-    # Only the pin acts: its kick is perpendicular to the path and keeps the energy.
+    # Only the force of the pin acts. Its kick is perpendicular to the path and keeps the energy.
     "steady": (FIRST_ORDER, ConvergenceOrder(2, rate=1, slip=1, reaction=1, differences=1), SYMMETRIC_ORDER),
-    # The missing half kick is a delay of dt/2, which the last step's kick compensates in the velocities.
+    # Without the half kick the motion is late by dt/2. The kick of the last step compensates this in the velocities.
     "at rest": (FIRST_ORDER, ConvergenceOrder(1, rate=2, gap=2, slip=1, differences=1), SYMMETRIC_ORDER),
     "moving": (FIRST_ORDER, WHOLE_GAP_ORDER, SYMMETRIC_ORDER),
 }
 
 
 def order(engine: Pymunk, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-    """The orders by `ORDERS`; NotDeclared for constructions whose error does not vanish with the step."""
+    """The orders of `ORDERS`; NotDeclared for constructions whose error does not vanish with the step size."""
     if engine.slot == "groove" and any(_is_link(joint, mechanism) for joint in mechanism.joints):
         return NotDeclared("a groove off the centre of mass of a body that turns has a wrong impulse at any step")
     if engine.skate in ("centre", "point") and any(_is_off_centre(joint) for joint in mechanism.joints):
@@ -112,9 +112,10 @@ def _kind(engine: Pymunk, mechanism: Mechanism) -> Kind:
 
 
 def _is_unstable(engine: Pymunk, mechanism: Mechanism, iterations: int) -> bool:
-    """Whether impulses grow from step to step, however short; not examined for more than DENSE rows.
+    """Whether impulses grow from step to step in the limit of short steps.
 
-    A short step corrects either the whole gap or nearly nothing of it.
+    In this limit a step corrects the whole gap (error_bias 0) or none of it. Returns False for more than DENSE rows,
+    for which it is not computed.
     """
     if mechanism.row_count > DENSE:
         return False
@@ -123,7 +124,7 @@ def _is_unstable(engine: Pymunk, mechanism: Mechanism, iterations: int) -> bool:
 
 
 def enforcement(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Enforcement:
-    """The engine's for its constraints, prescribed bodies and contacts; shared for joints placed before every step."""
+    """Who enforces a joint. The engine shares the work with our code for joints that are placed before every step."""
     match joint:
         case Slot() if engine.slot == "exact" and _is_link(joint, mechanism):
             return "engine, our rows"
@@ -135,12 +136,12 @@ def enforcement(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Enforceme
 
 
 def _is_off_centre(joint: Joint) -> bool:
-    """Whether a force at a skate's blade turns its body, by more than rounding."""
+    """Whether a force at the blade of a skate turns its body by more than rounding."""
     return isinstance(joint, Skate) and abs(along_blade(joint)) > 1e-12 * math.hypot(*joint.second_point)
 
 
 def _is_link(joint: Joint, mechanism: Mechanism) -> bool:
-    """Whether the exact construction of a slot is a `MovedPinJoint`, because a groove would not be exact."""
+    """Whether the construction "exact" of a slot is a `MovedPinJoint`, since a groove would not be exact."""
     if not isinstance(joint, Slot):
         return False
     cranks, turned = find_cranks(mechanism), find_turned(mechanism)
@@ -173,7 +174,7 @@ def instants(
 
 
 def first_law(engine: Pymunk, mechanism: Mechanism, dt: float) -> Array:
-    """Velocities (bodies, 3) after the first step by the law."""
+    """The velocities (bodies, 3) after the first step according to the law."""
     model = engine.model(mechanism, dt)
     return _law(model, mechanism, record(model, dt, 1, 1, raw=engine.leapfrog), 1, dt)[0]
 
@@ -181,19 +182,19 @@ def first_law(engine: Pymunk, mechanism: Mechanism, dt: float) -> Array:
 def _converged(
     engine: Pymunk, mechanism: Mechanism, dt: float, steps: int, built: Mechanism
 ) -> tuple[Model, Recording] | NotDeclared:
-    """The first steps, repeated until the iterations suffice for the worst of their poses."""
+    """The recording of the first steps. They are repeated until the iterations converge at all of their poses."""
     rho = convergence_factor(mechanism)
     while True:
         iterations = math.ceil(math.log(CONVERGED_RESIDUAL) / math.log(rho)) + 5 if rho > 0 else 5
-        if iterations > MOST_SWEEPS:
+        if iterations > LAW_ITERATION_LIMIT:
             return NotDeclared(f"an iteration leaves {rho:.6f} of the slowest mode, so that they do not converge")
-        if engine.slot == "groove":  # the convergence factor does not describe its impulses
-            iterations = MOST_SWEEPS
+        if engine.slot == "groove":  # the convergence factor does not describe the impulses of a groove joint
+            iterations = LAW_ITERATION_LIMIT
         model = engine.model_with(built, dt, replace(engine.plan(built, 0.0), iterations=iterations))
         recording = record(model, dt, steps, 1, raw=engine.leapfrog)
         if (
             engine.slot == "groove"
-            and not np.abs(recording.pose[..., :2]).max() < GROOVE_REACH * mechanism.length_scale
+            and not np.abs(recording.pose[..., :2]).max() < GROOVE_HALF_LENGTH * mechanism.length_scale
         ):
             return NotDeclared("the known defect of GrooveJoint moved the bodies beyond the groove's ends")
         if not (np.isfinite(recording.pose).all() and np.isfinite(recording.after).all()):
@@ -206,12 +207,13 @@ def _converged(
 def _law(
     model: Model, mechanism: Mechanism, recording: Recording, step: int, dt: float, with_grooves: bool = False
 ) -> tuple[Array, Array]:
-    """Velocities (bodies, 3) after a step by the law, and those without joints.
+    """The velocities (bodies, 3) after a step according to the law, and the velocities without joints.
 
-    `with_grooves`: with Chipmunk's groove joints for slots. They solve for both directions at the anchor and keep the
-    part along the normal n: with K the inverse mass at the anchor, n^T K^-1 times the anchors' velocity becomes zero.
+    `with_grooves`: slots are groove joints of Chipmunk. Such a joint solves for both directions at the anchor and keeps
+    the component along the normal n. The product of n^T K^-1 and the relative velocity at the anchor becomes zero,
+    where K is the inverse mass matrix there.
     """
-    # Springs are constraints too, with an error_bias that has no effect.
+    # In pymunk springs are constraints too, but their error_bias has no effect.
     joints = [constraint for constraint in model.space.constraints if type(constraint) in CONSTRAINT_ROWS]
     bias = min((constraint.error_bias for constraint in joints), default=0.0)
     corrected = corrects_gap(mechanism) * (1 - bias ** (dt / model.unit))
@@ -228,10 +230,10 @@ def _law(
 
 
 def _rows_of_grooves(mechanism: Mechanism, pose: Array, gap: Array, inverse_mass: Array) -> Array:
-    """The rows (rows, 3 bodies) of the velocities that are set; n^T K^-1 J / n^T K^-1 n for a groove.
+    """The rows (rows, 3 bodies) whose velocities a step sets. The row of a groove is n^T K^-1 J / n^T K^-1 n.
 
-    J (2, 3 bodies) is the velocity of the second body's point relative to the first body's material at the foot of the
-    perpendicular on the groove's middle line.
+    J (2, 3 bodies) maps the twists to the velocity of the anchor on the second body, relative to the point of the first
+    body at the foot of the perpendicular from the anchor on the groove.
     """
     out, row = mechanism.rows(pose), 0
     for joint in mechanism.joints:

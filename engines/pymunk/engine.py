@@ -1,4 +1,4 @@
-"""pymunk as an engine: its validated settings, and the models and runs that they give for a mechanism."""
+"""The engine pymunk: its settings, and the models and runs that it builds for a mechanism."""
 
 from __future__ import annotations
 
@@ -25,42 +25,37 @@ from reference.rolling.roll import Roll
 
 
 def _shipped() -> tuple[int, float]:
-    """A space's iterations and a joint's error_bias as pymunk sets them.
-
-    The objects end with this function: a space that still exists when Python ends can crash the process.
-    """
-    space = pymunk.Space()
+    """The default iterations of a space and the default error_bias of a joint."""
+    space = pymunk.Space()  # a local variable, since a space that still exists when Python ends can crash the process
     return space.iterations, PivotJoint(space.static_body, pymunk.Body(1, 1), (0, 0), (0, 0)).error_bias
 
 
-# 10, and 0.9 ** 60: a tenth of the gap is corrected in a sixtieth of a second.
+# 10 and 0.9 ** 60, with which a joint corrects a tenth of its gap in 1/60 s.
 SHIPPED_ITERATIONS, SHIPPED_ERROR_BIAS = _shipped()
 CONTRACTION = "contraction"
-# CPU time [s] of a step with three bodies, and of one joint in one iteration.
+# CPU time [s] of a step with three bodies, and of a joint in an iteration.
 STEP_COST, ITERATION_COST = 2e-6, 13e-9
-# Iterations of the start-up for contacts, whose points act on each other, which is not part of the convergence factor:
-# after five iterations half of a disc's force is missing.
+# Iterations of a start-up step with contacts. The convergence factor does not describe how contact points act on each
+# other: after five iterations half of the contact force of a disc is missing.
 CONTACT_ITERATIONS = 1000
 
 
 @dataclass(frozen=True)
 class Pymunk(Engine, Valid):
-    """An engine in the sense of `engines.Engine`.
+    """Settings of pymunk; raises ValueError for values with which pymunk would abort the process.
 
-    `iterations` over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left after one
-    second. Either may be "contraction": by the convergence of the iterations (`engines.pymunk.iterations`). Then a step
-    makes at least `min_iterations`, and more than `iterations.ITERATION_LIMIT` only while iterations times joints do
-    not exceed `max_work`. `startup_steps`: steps in each stage of the start-up, in which the iterations decrease from
-    converged; 0 for no start-up.
+    `iterations`: iterations over the joints in a step. `error_bias`: the fraction of its gap that a joint leaves after
+    one second, in [0, 1]. The value "contraction" of either follows from the convergence of the iterations
+    (`engines.pymunk.iterations`): a step then makes at least `min_iterations`. It makes more than ITERATION_LIMIT only
+    if the product of iterations and joints is at most `max_work`. `startup_steps`: the steps in each stage of the
+    start-up, during which the iterations decrease; 0 for no start-up.
 
-    `leapfrog`: start half a step ahead, average the velocities, and step without the checks of `Space.step`, which
-    concern changes of the model. `skate`, `roll` and `slot` name the construction of such a joint (`joints.slide`,
-    `joints.roll`), `contact` the settings of contact for a Roll.
+    `leapfrog`: start with half a kick and average the velocities. The steps then skip the checks of `Space.step`, which
+    concern changes of the model. `skate`, `roll` and `slot`: the construction of these joints (`joints.slide` and
+    `joints.roll`). `contact`: the settings of contact for a Roll.
 
-    A `gain` below 1 in every step would be an error_bias ** dt, which underflows to 0 (gain 1) at small steps. Models
-    with such a gain therefore use a unit of time in which the step is 1.
-
-    Raises ValueError for other values, for which pymunk would abort the process.
+    Models with a `gain` below 1 use a unit of time in which the step is 1. In seconds, the error_bias of such a gain
+    would underflow to 0 (gain 1) for small steps.
     """
 
     name = "pymunk"
@@ -70,8 +65,6 @@ class Pymunk(Engine, Valid):
     iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS
     error_bias: Fraction | Literal["contraction"] = SHIPPED_ERROR_BIAS
     leapfrog: bool = False
-    # pymunk has no joint for a skate. "centre" is what users try: after each step the velocity of the centre of mass
-    # across the blade is set to zero.
     skate: SkateConstruction = "centre"
     roll: RollConstruction = "contact"
     slot: SlotConstruction = "exact"
@@ -86,24 +79,21 @@ class Pymunk(Engine, Valid):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """See `engines.pymunk.declared`."""
         return declared.order(self, mechanism)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """The estimated CPU time of a step [s]."""
         iterations = ITERATION_COST * len(mechanism.joints) * self.plan(mechanism).iterations
         return STEP_COST * over_three(mechanism) + iterations
 
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
-        """See `engines.pymunk.declared`."""
         return declared.enforcement(self, joint, mechanism)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """The regularisation with steps of dt [s]; None if rows are at the pose after the drift and gaps are corrected.
+        """The regularisation for steps of dt [s]; None if all rows are at the pose after the drift and leave no gap.
 
-        A step removes all slip and corrects a fraction of a gap; rows at the pose before the drift lack J_dot v.
+        A step removes all slip and corrects a fraction of each gap. Rows at the pose before the drift lack J_dot v.
         """
         rows_before_drift = self.uses_contacts and any(isinstance(joint, Roll) for joint in mechanism.joints)
         corrected = 1.0 if isinstance(self.error_bias, str) else 1 - self.error_bias**dt
@@ -114,31 +104,33 @@ class Pymunk(Engine, Valid):
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
     ) -> tuple[Instant, ...] | NotDeclared:
-        """Velocities after each step; see `engines.pymunk.declared`."""
         return declared.instants(self, mechanism, dt, steps, built or mechanism)
 
     def stricter(self, mechanism: Mechanism) -> Pymunk | None:
-        """With ten times as many iterations, where their number is a setting."""
+        """The engine with ten times as many iterations; None if the convergence determines their number."""
         return replace(self, iterations=10 * self.iterations) if isinstance(self.iterations, int) else None
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> PymunkRun:
-        """A model of the mechanism at t = 0 for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
+        """Raises Unsupported for a mechanism that pymunk cannot represent, and ValueError for an invalid dt."""
         return PymunkRun(self, mechanism, dt)
 
     @validated
     def settled_for(self, steps: Count) -> Pymunk:
-        """This engine with `steps` steps in each start-up stage, if it has any; see `extrapolated.Settling`."""
+        """This engine with `steps` steps in each start-up stage, if it has a start-up; see `extrapolated.Settling`."""
         return replace(self, startup_steps=steps) if self.startup_steps else self
 
     @validated
     def iterations_of(self, mechanism: Mechanism) -> int:
-        """Iterations in a step for this mechanism, as it starts."""
+        """The iterations in a step, from the convergence at t = 0 if the settings do not give their number."""
         return self.plan(mechanism).iterations
 
     @validated
     def plan(self, mechanism: Mechanism, duration: NonNegative = 0.0) -> IterationPlan:
-        """The iterations for a motion of `duration` [s]: for its worst pose, if they follow from the convergence."""
+        """The plan of iterations for a motion of `duration` [s].
+
+        If `iterations` is "contraction", the pose of the motion with the slowest convergence determines their number.
+        """
         if isinstance(self.iterations, int) and self.error_bias != CONTRACTION:
             return IterationPlan(self.iterations)
         rho = worst_factor(mechanism, duration, self.uses_contacts)
@@ -151,12 +143,11 @@ class Pymunk(Engine, Valid):
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, duration: NonNegative = 0.0) -> Model:
-        """The engine's objects for steps of dt [s], not yet stepped, with the plan for `duration` [s]."""
+        """The model at t = 0 for steps of dt [s], with the plan for a motion of `duration` [s]."""
         return self.model_with(mechanism, dt, self.plan(mechanism, duration))
 
     @validated
     def model_with(self, mechanism: Mechanism, dt: Positive, plan: IterationPlan) -> Model:
-        """The engine's objects with a given plan."""
         bias, unit = self.error_bias, 1.0
         if isinstance(bias, str):
             bias, unit = 1 - plan.gain, (1.0 if plan.gain == 1 else dt)
@@ -166,9 +157,10 @@ class Pymunk(Engine, Valid):
 
 @dataclass(frozen=True)
 class Extended(EngineWrapper, Valid):
-    """Extrapolation with the powers of the step that the mechanism's error has.
+    """Extrapolation with the powers of the step size that occur in the error of the mechanism.
 
-    `skates`: for skates and dampers, which act at the end of a step and are of first order. `pins`: for all others.
+    `skates`: the extrapolation for mechanisms with skates or dampers. These act at the end of a step, so the error is
+    of first order. `pins`: the extrapolation for all other mechanisms.
     """
 
     variant: Name
@@ -191,5 +183,4 @@ class Extended(EngineWrapper, Valid):
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:
-        """Raises whatever the chosen engine raises."""
         return self.chosen(mechanism).build(mechanism, dt)

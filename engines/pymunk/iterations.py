@@ -1,6 +1,6 @@
-"""How many iterations a step of pymunk makes, and which fraction of a gap it corrects, for the worst pose of a motion.
+"""The iterations in a step of pymunk and the corrected fraction of a gap, for the worst pose of a motion.
 
-The poses come from a pilot run with soft joints and long steps, whose errors do not matter here.
+The poses come from a pilot run with soft joints and long steps, since approximate poses are sufficient.
 """
 
 from __future__ import annotations
@@ -33,23 +33,22 @@ from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.validators import from_to
 
-# Factor on the stable gain (1 - r)/r where the iterations do not reach RESIDUAL.
+# Factor on the largest stable gain (1 - r)/r, if the iterations do not reach RESIDUAL.
 SAFETY = 0.8
 # With more iterations, a step of a hundred links costs more than a smaller step gains.
 ITERATION_LIMIT = 300
-# Residual that counts as converged.
 CONVERGED_RESIDUAL = 1e-16
-# Stages of the start-up phase after the converged steps; the last one ends at the tenth step, often the first sample.
+# Stages of the start-up. The last one ends at the tenth step, which is often the first sample.
 STARTUP_STAGES = 6
 
-# Poses of the pilot run for up to DENSE rows, and for more: one pose costs as much as some hundred steps.
+# Number of poses of the pilot run, up to DENSE rows and above. There a pose costs as much as some hundred steps.
 PILOT_POSES, FEW_PILOT_POSES = 16, 2
-# Steps of the pilot run in one radian of the fastest motion.
+# Steps of the pilot run per radian of the fastest motion.
 PILOT_STEPS = 20
 MAX_PILOT_STEPS = 4096
-# A tenth of each gap is corrected in a step: no mechanism was found that is unstable with this.
+# A step of the pilot run corrects a tenth of each gap. No mechanism was found that is unstable with this fraction.
 PILOT = Settings(iterations=10, error_bias=0.9, unit=1.0, skate="groove", roll="pivot")
-# Gap, in the mechanism's length scale or rad, beyond which a pose of the pilot run is dropped.
+# Largest gap of a usable pose of the pilot run, in rad or relative to the mechanism's length scale.
 MAX_PILOT_GAP = 0.05
 
 Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
@@ -57,10 +56,10 @@ Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
 
 @dataclass(frozen=True)
 class IterationPlan:
-    """`iterations` of a step, their `residual` of the slowest mode, and the `gain`: the fraction of a gap to correct.
+    """The iterations in a step, the residual of the slowest mode after them, and the corrected fraction of a gap.
 
-    `converged` iterations reach CONVERGED_RESIDUAL as far as STARTUP_WORK allows; their residual is
-    `converged_residual`.
+    `converged`: the iterations that reach CONVERGED_RESIDUAL, or fewer if STARTUP_WORK limits them.
+    `converged_residual`: the residual after these.
     """
 
     iterations: int
@@ -70,10 +69,11 @@ class IterationPlan:
     converged_residual: float = 0.0
 
     def startup(self, steps: int) -> list[int]:
-        """Iterations of the first steps: converged, then decreasing in STARTUP_STAGES of `steps` steps each.
+        """The iterations of the first steps. They decrease from converged ones in stages of `steps` steps each.
 
-        The error has an expansion in the step only after a number of steps, which is no fixed time. With small
-        stages this hardly shows, and each stage ends at the same time in all runs of an extrapolation.
+        The iterations change after a number of steps and not at a fixed time. This disturbs the expansion of the error
+        in the step size, but small changes disturb it little. In an extrapolation, `steps` is such that each stage ends
+        at the same time in all runs.
         """
         first = [self.converged, *[ceil(self.converged / 2)] * (steps - 1)][:steps]
         if not 0 < self.residual <= RESIDUAL:
@@ -84,22 +84,20 @@ class IterationPlan:
 
 
 def plan_by_rule(rho: float, joints: int, fewest: int = MIN_ITERATIONS, work: int = 0) -> IterationPlan:
-    """The plan for `joints` joints with `iterations_in_step`."""
     iterations = iterations_in_step(rho, joints, fewest, work)
     needed = ceil(log(CONVERGED_RESIDUAL) / log(rho)) if rho > 0 else 1
     return plan_with(rho, iterations, max(iterations, min(needed, STARTUP_WORK // joints)))
 
 
 def plan_with(rho: float, iterations: int, converged: int = 1000) -> IterationPlan:
-    """The plan with a given number of iterations, whatever their residual."""
     return IterationPlan(iterations, stable_gain(rho, iterations), rho**iterations, converged, rho**converged)
 
 
 @validated
 def iterations_in_step(rho: Factor, joints: Count = 1, fewest: Count = MIN_ITERATIONS, work: Whole = 0) -> int:
-    """Iterations after which RESIDUAL of the slowest mode is left, at least `fewest`.
+    """The number of iterations that reduce the slowest mode to RESIDUAL; at least `fewest`.
 
-    More than ITERATION_LIMIT only if iterations times joints do not exceed `work`; else ITERATION_LIMIT.
+    If their product with the number of joints exceeds `work`, ITERATION_LIMIT is the upper limit.
     """
     needed = iterations_for(rho, fewest)
     return needed if needed * joints <= work else min(needed, max(ITERATION_LIMIT, fewest))
@@ -107,7 +105,7 @@ def iterations_in_step(rho: Factor, joints: Count = 1, fewest: Count = MIN_ITERA
 
 @validated
 def stable_gain(rho: Factor, iterations: Count) -> float:
-    """The fraction of a gap that a step may correct."""
+    """The largest fraction of a gap that a step may correct."""
     residual = rho**iterations
     return 1.0 if residual <= RESIDUAL else min(1.0, SAFETY * (1 - residual) / residual)
 
@@ -116,7 +114,7 @@ def stable_gain(rho: Factor, iterations: Count) -> float:
 def worst_factor(mechanism: Mechanism, duration: NonNegative, rolls_are_contacts: bool = False) -> float:
     """The largest convergence factor at the start and at the poses of a pilot run of `duration` [s].
 
-    Where not all rows correct gaps, the stable one: see `engines.pymunk.convergence.stable_factor`.
+    If some rows correct no gap, `engines.pymunk.convergence.stable_factor` increases it.
     """
     # Rounded, because the levels of an extrapolation compute the duration with different rounding.
     return _worst_factor(mechanism, float(f"{duration:.12g}"), rolls_are_contacts)
@@ -150,7 +148,7 @@ def _pilot_poses(mechanism: Mechanism, duration: float) -> list[np.ndarray]:
     except Unsupported:
         return []
     except (ValueError, ArithmeticError):
-        # The pilot run may reach a pose in which curves have no contact. Without curves the error is ours.
+        # In a pilot run, curves may reach a pose without contact. In a mechanism without curves the error is a bug.
         if not any(isinstance(joint, Roll) for joint in mechanism.joints):
             raise
         return []

@@ -1,4 +1,4 @@
-"""Every method of pymunk as a value: METHODS for every scene, then constructions of one joint for single pages."""
+"""The methods of pymunk: METHODS for all scenes, and methods that compare constructions of a joint."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from engines.pymunk.engine import Extended, Pymunk
 from engines.pymunk.joints.roll import ContactSettings
 
 DEFAULT = Pymunk("default")
-# Contact: no overlap is corrected (bias 1), because pushing bodies apart also rolls them. `slop` then has no effect.
+# With bias 1 the engine corrects no overlap, because pushing bodies apart also rolls them. `slop` then has no effect.
 UNCORRECTED_OVERLAP = ContactSettings(slop=1.0, bias=1.0, vertices=512)
 TUNED = Pymunk("tuned", "contraction", "contraction", skate="groove", contact=UNCORRECTED_OVERLAP)
 LEAPFROG = Pymunk("leapfrog", "contraction", "contraction", leapfrog=True, skate="groove", roll="pivot")
-# Extrapolation needs a stable method whose error is smooth in the step from the first sample on. This limits a step to
-# about two milliseconds for the few mechanisms with nearly dependent rows, where 300 iterations reduce little.
+# Extrapolation needs a stable method whose error is smooth in the step size from the first sample on. For a few
+# mechanisms with nearly dependent rows, 300 iterations converge too little. This limit allows them more, in about 2 ms.
 LARGEST_WORK = 200_000
 STARTED = replace(LEAPFROG, startup_steps=1, max_work=LARGEST_WORK)
-# Skates and hinges in one loop couple: with fewer iterations, their residual exceeds the step's error. Forty take as
-# long as placing one groove.
+# In a loop with skates and hinges, fewer iterations leave a residual above the error of the step. Forty iterations take
+# as long as placing one groove.
 WITH_GROOVES = replace(STARTED, variant="aimed", leapfrog=False, min_iterations=40)
-# The leapfrog's error has all powers of the step from the second on, not only even ones; with a skate from the first.
+# The error of the leapfrog contains all powers of the step size from the second on, with a skate from the first on.
 FIVE_LEVELS = (2, 3, 4, 6, 8)
 EXTENDED = Extended(
     "extended",
@@ -31,7 +31,6 @@ EXTENDED = Extended(
 VARIANTS: tuple[Engine, ...] = (DEFAULT, TUNED, EXTENDED)
 METHODS: tuple[Engine, ...] = (DEFAULT, TUNED, LEAPFROG, EXTENDED)
 
-# A skate as users try it, by an impulse, and by pymunk's own joint.
 SKATE_CENTRE = Pymunk("skate: centre's velocity zeroed", skate="centre")
 SKATE_POINT = Pymunk("skate: point's velocity zeroed", skate="point")
 SKATE_PROJECTED = Pymunk("skate: impulse at the blade", skate="projection")
@@ -45,7 +44,7 @@ SKATE_METHODS: tuple[Engine, ...] = (
     SKATE_GROOVE_EXTRAPOLATED,
 )
 
-# A round body is a circle shape without corners, so these are one method for it.
+# For a round body these methods are the same, since its shape is a circle.
 POLYGON_CORNERS = (8, 32, 128, 512)
 ROLL_FACETED = tuple(
     Pymunk(f"roll: contact, {corners} corners", roll="contact", contact=ContactSettings(1.0, 1.0, vertices=corners))

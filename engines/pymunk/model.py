@@ -1,9 +1,9 @@
-"""A mechanism as pymunk objects: a body for each body, one construction for each kind of joint and force element.
+"""The pymunk model of a mechanism, with one construction for each kind of joint and force element.
 
-A spring is a kick at the pose after the drift, like gravity, and does not lower the order. A damper is part of the
-iterations: it multiplies the current relative velocity by exp(-damping dt / effective mass) once, after the kicks,
-instead of half before and half after them. That is of first order. Chipmunk resets a body's force and torque in every
-step and applies them after the drift, so they are set for the pose after the next drift, which is known exactly.
+A spring acts at the pose after the drift, as gravity does, and does not lower the order of convergence. A damper is of
+first order: it multiplies the relative velocity by exp(-damping dt / effective mass) once, after the kick, instead of
+half before and half after it. Chipmunk applies the force and torque of a body after the drift, and resets them in every
+step. They are therefore set before each step for the pose after its drift, which is known exactly.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from reference.rolling.roll import Roll
 
 Pair = tuple[pymunk.Body, pymunk.Body]
 Constraints = list[constraints.Constraint]
-# Numbers of scalar rows of the pymunk constraints that joints become; springs have none.
+# Numbers of scalar rows of the pymunk constraints that represent joints. Springs have no rows.
 CONSTRAINT_ROWS: Mapping[type[constraints.Constraint], int] = {
     constraints.PivotJoint: 2,
     constraints.SimpleMotor: 1,
@@ -57,7 +57,7 @@ CONSTRAINT_ROWS: Mapping[type[constraints.Constraint], int] = {
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of a model; `error_bias` is per `unit` of time, which is the engine's second [s]."""
+    """Settings of a model. `unit` [s] is the model's unit of time, and `error_bias` is per unit."""
 
     iterations: int
     error_bias: float
@@ -70,10 +70,10 @@ class Settings:
 
 @dataclass(frozen=True)
 class Model:
-    """A space and its bodies in the mechanism's order; velocities are per `unit` [s] of time.
+    """A space and its bodies in the order of the mechanism. `unit` [s] is the unit of time of its velocities.
 
-    `origins` (bodies, 2) [m]: the origin of each engine body in the mechanism's body frame: the centre of mass, but the
-    pin of a crank.
+    `origins` (bodies, 2) [m]: the origin of each pymunk body in the body frame of the mechanism. It is the pin of a
+    crank, and the centre of mass of every other body.
     """
 
     space: pymunk.Space
@@ -85,7 +85,10 @@ class Model:
     after_step: tuple[AfterStep, ...] = ()
 
     def stepper(self, raw: bool) -> tuple[Callable[[Any, float], None], Any]:
-        """(step, space) for `step(space, dt)`: `Space.step`, or if `raw` Chipmunk's cpSpaceStep, with our updates."""
+        """A function and a space for calls `step(space, dt)`, which include the updates before and after a step.
+
+        The function is `Space.step`, or Chipmunk's cpSpaceStep if `raw`.
+        """
         step, space = (lib.cpSpaceStep, self.space._space) if raw else (pymunk.Space.step, self.space)
         before_step, after_step = self.before_step, self.after_step
         if not (before_step or after_step):
@@ -101,7 +104,7 @@ class Model:
         return step_with_updates, space
 
     def kick(self, dt: float) -> None:
-        """Change the velocities as a step of dt [units] does, without a drift."""
+        """Change the velocities by a step of dt [units] without its drift."""
         for update in self.before_step:
             update(0.0)
         for body in self.bodies:
@@ -114,18 +117,16 @@ class Model:
 
 
 def _no_drift(body: pymunk.Body, dt: float) -> None:
-    """A position function that moves nothing."""
+    """The position function of a step without drift."""
 
 
 def build_model(mechanism: Mechanism, settings: Settings) -> Model:
-    """The mechanism at t = 0; raises Unsupported."""
+    """The model of a mechanism at t = 0; raises Unsupported."""
     PYMUNK_CAPABILITY.require(mechanism)
     return _Builder(mechanism, settings).model()
 
 
 class _Builder:
-    """A model under construction."""
-
     def __init__(self, mechanism: Mechanism, settings: Settings) -> None:
         self.mechanism, self.settings = mechanism, settings
         self.space = pymunk.Space()
@@ -158,7 +159,7 @@ class _Builder:
     def model(self) -> Model:
         for joint in self.mechanism.joints:
             for constraint in self._constraints(joint):
-                # The gap of a blade that is placed before every step is rounding: correcting it would add noise.
+                # A groove that is placed before every step has only the gap of rounding, whose correction adds noise.
                 placed = isinstance(joint, Skate) and self.settings.skate == "groove"
                 constraint.error_bias = 1.0 if placed else self.settings.error_bias
                 self.space.add(constraint)
@@ -182,17 +183,17 @@ class _Builder:
         return self.cranks[name].own_point if name in self.cranks else (0.0, 0.0)
 
     def from_origin(self, name: str | None, point: Vector) -> Vector:
-        """A point of the mechanism's body frame [m], from the origin of the engine's body."""
+        """The vector [m] from the origin of a pymunk body to a point of the mechanism's body frame."""
         x, y = self.origin(name)
         return (point[0] - x, point[1] - y)
 
     def anchors(self, element: Any) -> tuple[Vector, Vector]:
-        """Both points of an element [m] from the engine's origins: two anchors, so that an open joint stays visible."""
+        """The points of an element [m] relative to the origins of its pymunk bodies."""
         first, second = (element.first, element.first_point), (element.second, element.second_point)
         return self.from_origin(*first), self.from_origin(*second)
 
     def _constraints(self, joint: Joint) -> Constraints:
-        """The constraints of one joint; none if a prescribed motion already contains it."""
+        """The constraints of a joint. There are none if a prescribed motion of its bodies implies the joint."""
         if any(joint in (crank.pin, crank.drive) for crank in self.cranks.values()) or joint in self.turned.values():
             return []
         pair = self._pair(joint)
@@ -239,7 +240,7 @@ class _Builder:
         rows, before_step, after_step = build_skate(joint, self.settings.skate, *pair, point, scale)
         self.before_step += before_step
         self.after_step += after_step
-        self.rows += 0 if rows else 1  # enforced by our code
+        self.rows += 0 if rows else 1  # a row that our code enforces
         return rows
 
     def roll(self, joint: Roll, pair: Pair) -> Constraints:
@@ -261,7 +262,7 @@ class _Builder:
         self.solver_rows += 2 if any(isinstance(shape, pymunk.Circle) for shape in shapes) else 4
         return []
 
-    # A body whose motion is prescribed feels no force, and a spring between two such bodies would divide by zero.
+    # Two bodies with prescribed motions get no spring, since pymunk would divide by zero.
 
     def spring(self, element: Spring, pair: Pair) -> None:
         if can_move(pair):
@@ -275,7 +276,7 @@ class _Builder:
 
     def torsion_spring(self, element: TorsionSpring, pair: Pair) -> None:
         if can_turn(pair[0]) or can_turn(pair[1]):
-            # Chipmunk's relative angle is that of the first against the second (cpDampedRotarySpring.c).
+            # Chipmunk's relative angle is that of the first body minus that of the second (cpDampedRotarySpring.c).
             stiffness = element.stiffness * self.settings.unit * self.settings.unit
             self.space.add(constraints.DampedRotarySpring(*pair, -element.rest_angle, stiffness, 0.0))
 
@@ -302,20 +303,18 @@ class _Builder:
 
 
 def can_move(pair: Pair) -> bool:
-    """Whether impulses can move one of two bodies."""
     return pymunk.Body.DYNAMIC in (pair[0].body_type, pair[1].body_type)
 
 
 def can_turn(body: pymunk.Body) -> bool:
-    """Whether impulses can turn a body."""
     return body.body_type == pymunk.Body.DYNAMIC and body.moment < float("inf")
 
 
 def _push(body: pymunk.Body, points: list[tuple[Vector, Vector]], torque: float) -> BeforeStep:
-    """The update that sets the constant forces (point, force) and the torque on a body for the pose after the drift."""
+    """The update that sets constant forces, as (point, force), and a torque on a body for the pose after the drift."""
     pointer = body._body
     x, y = sum(force[0] for _, force in points), sum(force[1] for _, force in points)
-    # The moment of all forces at the angle 0, and at a quarter turn.
+    # The moments of the forces at the angles 0 and pi/2.
     across = sum(point[0] * force[1] - point[1] * force[0] for point, force in points)
     along = -sum(point[0] * force[0] + point[1] * force[1] for point, force in points)
 
@@ -327,7 +326,7 @@ def _push(body: pymunk.Body, points: list[tuple[Vector, Vector]], torque: float)
     return push
 
 
-# The elements that this adapter builds, each with its construction; all others are refused.
+# The construction of each kind of joint. Other kinds of joints and forces are refused.
 CONSTRUCTIONS: Mapping[type, Callable[[_Builder, Any, Pair], Constraints]] = {
     Pin: _Builder.pin,
     Weld: _Builder.weld,

@@ -1,4 +1,4 @@
-"""Stepping a pymunk model, copying its states out in C, and computing poses, twists and reactions from them."""
+"""Runs of a pymunk model: the recording of states in C, and poses, twists and reactions from them."""
 
 from __future__ import annotations
 
@@ -27,16 +27,17 @@ Array = NDArray[np.float64]
 
 VELOCITIES = BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
 STATES = BodyFields.POSITION | BodyFields.ANGLE | VELOCITIES
-# pymunk's C code reallocates an array shortly before it is full, and this one is numpy's.
+# Free entries at the end of the array. pymunk's C code reallocates an array that is almost full, which numpy forbids.
 SPARE = 64
-# Residual of the slowest mode in the first reactions, from which on there is a warning.
+# Residual of the slowest mode in the reactions at t = 0, above which a run gets a warning.
 MAX_START_RESIDUAL = 1e-5
 
 
 class StateRecorder:
-    """Copies the bodies' states in C to the end of an array that is allocated before.
+    """Copies the states of bodies in C to an array that is allocated in advance.
 
-    `lib.cpSpaceEachBody(space, visitor, states)`, or with `velocities`, copies one record.
+    `lib.cpSpaceEachBody(space, visitor, states)` appends the states of all bodies, and with `velocities` in place of
+    `states` their velocities.
     """
 
     def __init__(self, model: Model, states: int, velocities: int) -> None:
@@ -49,7 +50,7 @@ class StateRecorder:
         floats = ffi.from_buffer("double[]", room)
         integers = ffi.new("pmIntArray *")
         target = ffi.new("pmFloatArray *", {"num": 0, "max": len(floats), "arr": floats})
-        self._owned = (floats, integers, target)  # C holds bare pointers to these
+        self._owned = (floats, integers, target)  # kept alive, since C has only pointers to these
         self.visitor = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
         self.states, self.velocities = (
             ffi.new("pmBatchedData *", {"intArray": integers, "floatArray": target, "fields": fields.value})
@@ -57,9 +58,10 @@ class StateRecorder:
         )
 
     def read(self, samples: int, with_velocities: bool) -> tuple[Array, Array]:
-        """States (samples + 1, bodies, 6) and the velocities one step before each sample (samples, bodies, 3).
+        """States (samples + 1, bodies, 6), and velocities (samples, bodies, 3) one step before each sample.
 
-        The array holds the first state, then for each sample the velocities (if `with_velocities`) and the state.
+        The array contains the first state. Then it contains, for each sample, the velocities before it (if
+        `with_velocities`) and the state.
         """
         first, rest = np.split(self._values, [6 * self._count])
         rest = rest.reshape(samples, -1)
@@ -70,7 +72,7 @@ class StateRecorder:
 
 
 def _visited_bodies(space: pymunk.Space) -> list[int]:
-    """The ids of a space's bodies in the order in which C visits them, which is not the order of adding."""
+    """The ids of the bodies of a space in the order in which C visits them. It differs from the order of addition."""
     buffer = Buffer()
     get_space_bodies(space, BodyFields.BODY_ID, buffer)
     return list(memoryview(buffer.int_buf()).cast("P"))
@@ -78,20 +80,20 @@ def _visited_bodies(space: pymunk.Space) -> list[int]:
 
 @dataclass(frozen=True)
 class Recording:
-    """The engine's states at the samples; bodies in the mechanism's order, at their centres of mass.
+    """The states of a run at its samples: poses and velocities of the centres of mass, in the mechanism's order.
 
-    The engine's velocities with the positions of t are those of t, or of t + dt/2 in a leapfrog.
+    The engine stores velocities together with the positions at t. They are those at t, or at t + dt/2 in a leapfrog.
     """
 
     pose: Array  # (times, bodies, 3) at t
-    after: Array  # (times, bodies, 3) velocities with the positions of t
-    before: Array  # (times - 1, bodies, 3) velocities one step earlier, from the second sample on
-    stepping: float  # s
-    stopped: RunWarning | None = None  # the reason if stepping ended early; all later values are NaN
+    after: Array  # velocities (times, bodies, 3) that the engine stores with the positions at t
+    before: Array  # velocities (times - 1, bodies, 3) one step earlier, from the second sample on
+    stepping: float  # CPU time [s]
+    stopped: RunWarning | None = None  # the reason why stepping ended early; all later values are NaN
 
 
 def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup: Sequence[int] = ()) -> Recording:
-    """Take samples * every steps and record every `every`-th state, with the velocities of the step before it.
+    """Make samples * every steps, and record every `every`-th state and the velocities one step before it.
 
     `startup`: the iterations of the first steps.
     """
@@ -102,7 +104,7 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup
     dt /= model.unit
     visitor, before, after = recorder.visitor, recorder.velocities, recorder.states
     stopped: RunWarning | None = None
-    # Popped from the end: the last value is the model's own.
+    # `pop` takes the last entry first. The first entry restores the iterations of the model.
     iterations = [model.space.iterations, *reversed(startup)] if startup else []
 
     def advance(count: int) -> bool:
@@ -112,7 +114,7 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup
                 if iterations:
                     lib.cpSpaceSetIterations(pointer, iterations.pop())
                 step(space, dt)
-        except (ValueError, ArithmeticError) as reason:  # an update before a step found no pose for its joint
+        except (ValueError, ArithmeticError) as reason:  # an update could not place its joint
             text = f"ours: stopped, as a joint could no longer be placed ({reason})"
             stopped = RunWarning(text, "lost", "adapter")
         return stopped is not None
@@ -124,14 +126,14 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup
         (lambda _: visit_each(pointer, visitor, before)) if with_velocities else None,
     )
     states, earlier = recorder.read(samples, with_velocities)
-    with np.errstate(all="ignore"):  # an unstable motion is a result
+    with np.errstate(all="ignore"):  # an unstable motion may overflow
         states[..., 3:] /= model.unit
         earlier = earlier / model.unit if with_velocities else states[:-1, :, 3:]
         return Recording(*_at_mass_centres(model, states, earlier), stepping, stopped)
 
 
 def _at_mass_centres(model: Model, states: Array, earlier: Array) -> tuple[Array, Array, Array]:
-    """Poses and both velocities at the centres of mass instead of the engine's origins, which differ for cranks."""
+    """Poses and velocities of the centres of mass, from those of the engine's origins. They differ only for cranks."""
     pose, after, before = states[..., :3].copy(), states[..., 3:].copy(), earlier.copy()
     for index in _cranks(model):
         x, y = -model.origins[index]
@@ -145,15 +147,14 @@ def _at_mass_centres(model: Model, states: Array, earlier: Array) -> tuple[Array
 
 
 def _cranks(model: Model) -> NDArray[np.intp]:
-    """Indices of the bodies whose origin is not the centre of mass."""
     return np.flatnonzero(np.any(model.origins != 0, axis=1))
 
 
 def accelerations(model: Model, recording: Recording, dt: float) -> Array:
-    """Accelerations (times - 1, bodies, 3) of the centres of mass at the samples after the first."""
+    """Accelerations (times - 1, bodies, 3) of the centres of mass, from the second sample on."""
     out = (recording.after[1:] - recording.before) / dt
     for index in _cranks(model):
-        # The rate is constant, and the centre of mass turns about the pin.
+        # The centre of mass of a crank turns about the pin at a constant rate.
         x, y = -model.origins[index]
         angle, rate = recording.pose[1:, index, 2], recording.after[1:, index, 2]
         out[:, index, 0] = -(rate**2) * (np.cos(angle) * x - np.sin(angle) * y)
@@ -163,27 +164,25 @@ def accelerations(model: Model, recording: Recording, dt: float) -> Array:
 
 
 def inertias_and_gravity(model: Model) -> tuple[Array, tuple[float, float]]:
-    """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity [m/s^2] of the engine's objects.
+    """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity [m/s^2] that pymunk uses.
 
-    NaN for a prescribed motion: all of a kinematic body, and the moment of inertia of a body that cannot turn.
+    All three are NaN for a kinematic body. The inertia is NaN for a body with an infinite moment.
     """
     inertias = np.full((len(model.bodies), 3), np.nan)
     for row, body in zip(inertias, model.bodies, strict=True):
         if body.body_type == pymunk.Body.DYNAMIC:
             row[:] = body.mass, body.mass, body.moment if np.isfinite(body.moment) else np.nan
     x, y = model.space.gravity
-    return inertias, (x / model.unit / model.unit, y / model.unit / model.unit)  # the unit's square may overflow
+    return inertias, (x / model.unit / model.unit, y / model.unit / model.unit)  # unit**2 may overflow or underflow
 
 
 class PymunkRun(OneShot):
-    """One model, ready to be stepped once; see `engines.Run`."""
-
     def __init__(self, engine: Pymunk, mechanism: Mechanism, dt: float) -> None:
         self._engine, self._mechanism, self._dt = engine, mechanism, dt
         self.size: Size = engine.model(mechanism, dt).size
 
     def _started(self, plan: IterationPlan) -> Model:
-        """The model, with a kick of half a step if the engine is a leapfrog."""
+        """The model, after a kick of half a step if the engine is a leapfrog."""
         model = self._engine.model_with(self._mechanism, self._dt, plan)
         if self._engine.leapfrog:
             if self._engine.startup_steps:
@@ -194,15 +193,15 @@ class PymunkRun(OneShot):
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
-        """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        """Raises ValueError for counts below one or not whole, and RuntimeError at the second call."""
         return self.watched(samples, every, 1)
 
     @validated
     def watched(self, samples: Count, every: Count, each: Count) -> Trajectory:
-        """The same, with reactions at every `each`-th sample alone, and NaN at the others."""
+        """The trajectory of a call, with reactions only at every `each`-th sample, and NaN between them."""
         self._mechanism.require_room(samples)
         self.begin()
-        # Not timed as stepping: all runs of a mechanism use the same plan.
+        # The plan is not timed as stepping, since all runs of a mechanism use the same one.
         plan = self._engine.plan(self._mechanism, samples * every * self._dt)
         model, startup = self._started(plan), plan.startup(self._engine.startup_steps)
         recording = record(model, self._dt, samples, every, raw=self._engine.leapfrog, startup=startup)
@@ -225,9 +224,9 @@ class PymunkRun(OneShot):
     def _start_reaction(self, plan: IterationPlan) -> Array:
         """The reactions (rows,) at t = 0, from the first steps of another model with converged iterations.
 
-        The first step's impulse contains a start-up position correction, up to half of the centripetal force; it falls
-        by one order of dt in each step. As a user reads velocities, the third step's force is returned: first order.
-        In a leapfrog the third and fourth steps are extrapolated to t = 0: second order.
+        The impulse of the first step contains a position correction of up to half the centripetal force. This part
+        falls by one order of dt in each step. The reaction of the third step is therefore returned, with an error of
+        first order. In a leapfrog the third and fourth steps are extrapolated to t = 0, with an error of second order.
         """
         model = self._started(replace(plan, iterations=plan.converged, gain=1.0))
         recording = record(model, self._dt, samples=4, every=1, raw=self._engine.leapfrog)

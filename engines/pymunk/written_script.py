@@ -1,4 +1,4 @@
-"""A pymunk space as a Python script that makes it without this package."""
+"""The writer of Python scripts that make a pymunk space and do not need this package."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _point(vector: Any) -> str:
     return repr(tuple(vector))
 
 
-# The arguments after the two bodies of each kind of constraint that is written; every other is refused.
+# The arguments of each kind of constraint after its two bodies. Other kinds of constraints are refused.
 ARGUMENTS: Mapping[type[constraints.Constraint], Callable[[Any], tuple[str, ...]]] = {
     constraints.PivotJoint: lambda joint: (_point(joint.anchor_a), _point(joint.anchor_b)),
     constraints.PinJoint: lambda joint: (_point(joint.anchor_a), _point(joint.anchor_b)),
@@ -39,7 +39,7 @@ ARGUMENTS: Mapping[type[constraints.Constraint], Callable[[Any], tuple[str, ...]
 
 
 def object_lines(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> list[str]:
-    """Lines that make bodies b0, b1, ... and constraints j0, j1, ... in `space`. Raises Unsupported for others."""
+    """Lines that make bodies b0, b1, ... and constraints j0, j1, ... in `space`; raises Unsupported."""
     lines = []
     for number, body in enumerate(bodies):
         kind = {0: "", 1: "body_type=pymunk.Body.KINEMATIC", 2: "body_type=pymunk.Body.STATIC"}[body.body_type]
@@ -112,7 +112,10 @@ if __name__ == "__main__":
 
 
 def _push_function(mechanism: Mechanism, forces: Sequence[Force | Torque], bodies: Sequence[pymunk.Body]) -> str:
-    """Lines of a function that sets the constant forces and torques, which pymunk resets in every step; or none."""
+    """The text of a function that sets the constant forces and torques, or "" if there are none.
+
+    The script calls it before every step, since pymunk resets the forces and torques in a step.
+    """
     pushed = np.zeros((len(bodies), 3))
     for force in forces:
         if isinstance(force, Force):
@@ -136,7 +139,7 @@ def _push_function(mechanism: Mechanism, forces: Sequence[Force | Torque], bodie
     entries = "\n".join(lines)
     return f"""
 
-# Forces [N] and torques [N m] by the body's name; pymunk takes them off after every step.
+# Forces [N] and torques [N m] by the name of the body. pymunk resets them in every step.
 PUSHED = {{
 {entries}
 }}
@@ -149,12 +152,10 @@ def push(space):
 
 
 class ScriptWriter:
-    """The script for `crosscheck export`."""
-
     suffix = ".py"
 
     def write(self, mechanism: Mechanism, dt: float, variant: str) -> str:
-        """The script. Raises Unsupported if none can be written, ValueError for an unknown variant."""
+        """Raises Unsupported for a mechanism or a variant without a script, and ValueError for an unknown variant."""
         from engines.pymunk.methods import METHODS
 
         methods = {engine.variant: engine for engine in METHODS}
@@ -163,7 +164,6 @@ class ScriptWriter:
         return script(methods[variant], mechanism, dt)
 
     def commented(self, text: str, lines: Sequence[str]) -> str:
-        """The text with a comment before it."""
         return "\n".join(f"# {line}".rstrip() for line in lines) + "\n" + text
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from engines import Engine, Unsupported
 from engines.lagrange import TRUTH
 from engines.mujoco.declared import NO_VELOCITY_TERMS, ROUNDING_TOLERANCE, DeclaredState
-from engines.pymunk.declared import MOST_SWEEPS, first_law
+from engines.pymunk.declared import LAW_ITERATION_LIMIT, first_law
 from engines.pymunk.written_script import object_lines
 from reference.forces import Force, Torque
 from reference.mechanism import Mechanism
@@ -121,7 +121,7 @@ def _of_velocities(engine: Any, mechanism: Mechanism) -> str:
     for update in model.before_step:
         update(dt / model.unit)
     expected = first_law(engine, mechanism, dt) * model.unit
-    lines = [*_pymunk_lines(model, MOST_SWEEPS), f"space.step({dt / model.unit!r})"]
+    lines = [*_pymunk_lines(model, LAW_ITERATION_LIMIT), f"space.step({dt / model.unit!r})"]
     read = f"[(*body.velocity, body.angular_velocity) for body in ({_bodies(model)},)]"
     return _render_script(engine, [Block("velocities after a step", lines, read, expected)], IMPULSE_LAW)
 

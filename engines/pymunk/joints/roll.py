@@ -1,8 +1,8 @@
 """Constructions of a Roll in pymunk, by `RollConstruction`.
 
 - "contact": two shapes with contact and friction, as a user would build them.
-- "pivot": a `PivotJoint`. Before every step its two anchors, one on each curve, are set to the points that will be in
-  contact after the step's drift. Arc lengths count from the start, so the joint corrects the gap since the start.
+- "pivot": a `PivotJoint`. Before every step its anchors are set to the two points of the curves that will be in contact
+  after the drift. Arc lengths are measured from t = 0, so the joint corrects the whole gap since then.
 """
 
 from __future__ import annotations
@@ -31,33 +31,34 @@ ToEngine = Callable[[Vector], Vector]  # converts a point of a body frame to the
 
 
 def _shipped() -> tuple[float, float]:
-    """A space's collision_slop and collision_bias; see `engines.pymunk.engine._shipped`."""
-    space = pymunk.Space()
+    """The default collision_slop and collision_bias of a space."""
+    space = pymunk.Space()  # a local variable, see `engines.pymunk.engine`
     return space.collision_slop, space.collision_bias
 
 
 SHIPPED_SLOP, SHIPPED_BIAS = _shipped()  # 0.1, 0.9 ** 60
-GROUND_REACH = 1e3  # half the length of flat ground, in multiples of `extent_of`
+GROUND_HALF_LENGTH = 1e3  # half the length of flat ground, in multiples of `extent_of`
 
 
 @dataclass(frozen=True)
 class ContactSettings(Valid):
-    """Settings of contact: the overlap `slop` [m] is not corrected; `bias` is the fraction of the rest after a second.
+    """Settings of contacts; raises ValueError for values with which pymunk aborts the process or returns NaN.
 
-    `friction` of each shape (the engine multiplies two); number of `vertices` of a body that is not round, at equal arc
-    lengths; `thickness` of flat ground in multiples of `extent_of`: the radius of a segment whose surface is the
-    ground. On a segment without thickness Chipmunk sometimes gives a polygon of some hundred corners a wrong normal: it
-    is thrown, or stops dead (`tests/engines/test_pymunk.py`). Raises ValueError for other values, with which the
-    engine aborts the process or returns NaN.
+    `slop`: the overlap [m] that is not corrected. `bias`: the fraction of the remaining overlap that is left after one
+    second. `friction`: the coefficient of each shape; pymunk multiplies the two coefficients of a contact. `vertices`:
+    the number of corners, at equal arc lengths, of a body that is not round. `thickness`: the radius of the segment
+    whose surface is the flat ground, in multiples of `extent_of`. For polygons of some hundred corners on a segment of
+    zero thickness, Chipmunk sometimes computes a wrong normal (`tests/engines/test_pymunk.py`).
 
-    As shipped, the motion of a contact depends on the unit of length: collision_slop is 0.1 of whatever unit the
-    positions have (pymunk 7.3.1, `Space.collision_slop`; Chipmunk's cpSpace.c). `rolling_ellipse` counted in
-    millimetres turns otherwise by 4e-3 rad, since overlaps there exceed 0.1 mm. With `slop` 0 or `bias` 1 it does not.
+    With the default settings the motion of a contact depends on the unit of length, since collision_slop is 0.1 of the
+    unit of the positions (pymunk 7.3.1, `Space.collision_slop`; Chipmunk's cpSpace.c). The final angle of
+    `rolling_ellipse` changes by 4e-3 rad with millimetres, since overlaps exceed 0.1 mm. With `slop` 0 or `bias` 1 it
+    does not change.
     """
 
     slop: NonNegative = SHIPPED_SLOP
     bias: Fraction = SHIPPED_BIAS
-    friction: NonNegative = 10.0  # the product of 100 exceeds the friction coefficient that any rolling here needs
+    friction: NonNegative = 10.0  # the product, 100, exceeds the coefficient that any rolling in the scenes needs
     vertices: Annotated[int, from_to(3, 10000)] = 64
     thickness: NonNegative = 0.1
 
@@ -66,7 +67,7 @@ SHIPPED_CONTACT = ContactSettings()
 
 
 def extent_of(mechanism: Mechanism) -> float:
-    """The size of a mechanism [m], rounded to a power of ten: equal to the last bit for mechanisms of similar size."""
+    """The size of a mechanism [m], rounded to a power of ten. Mechanisms of similar size then get the same shapes."""
     return 10.0 ** round(math.log10(2 * mechanism.length_scale))
 
 
@@ -77,10 +78,10 @@ def contact_shapes(
     index: int,
     sides: tuple[tuple[pymunk.Body, ToEngine], tuple[pymunk.Body, ToEngine]],
 ) -> list[pymunk.Shape]:
-    """The shapes of both curves, which collide with each other only.
+    """The shapes of both curves, which collide only with each other.
 
-    `extent` [m] by `extent_of`; `index` counts the mechanism's Rolls from 0. `sides`: the first and second body, each
-    with a function that converts a point [m] of the mechanism's body frame to the engine's.
+    `extent` [m]: the result of `extent_of`. `index`: the number of the Roll in the mechanism, from 0. `sides`: both
+    bodies, each with a function that converts a point [m] of the mechanism's body frame to that of pymunk.
     """
     if index >= 32:
         raise Unsupported(
@@ -110,10 +111,10 @@ def _shape(
         return pymunk.Circle(body, inner.radius, to_engine((centre.real, centre.imag)))
     if isinstance(inner, Line):
         along = rect(1.0, turn + inner.heading)
-        thickness, reach = contact.thickness * extent, GROUND_REACH * extent * along
+        thickness, half_length = contact.thickness * extent, GROUND_HALF_LENGTH * extent * along
         below = thickness * 1j * along  # material is to the left
         through = rect(1.0, turn) * complex(*inner.through) + shift + below
-        back, front = (to_engine((end.real, end.imag)) for end in (through - reach, through + reach))
+        back, front = (to_engine((end.real, end.imag)) for end in (through - half_length, through + half_length))
         return pymunk.Segment(body, back, front, thickness)
     if curve.curvature_range[0] < 0:
         raise Unsupported(
@@ -127,7 +128,7 @@ def _shape(
 
 
 class MovedPivot:
-    """The pivot of one Roll; `origins` [m] are the origins of the engine's bodies in the mechanism's body frames."""
+    """The pivot of a Roll. `origins` [m]: the origins of the pymunk bodies in the mechanism's body frames."""
 
     def __init__(self, joint: Roll, first: pymunk.Body, second: pymunk.Body, origins: tuple[Vector, Vector]) -> None:
         self._contact = rolled(joint.rolling).contact

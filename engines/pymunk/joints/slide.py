@@ -1,33 +1,31 @@
 """Constructions of a Slot and a Skate in pymunk: groove joints, pin joints across the line, corrected velocities.
 
-A slot, by `SlotConstruction`:
+`SlotConstruction` is the construction of a slot:
 
-- "exact": a `GrooveJoint` if the groove is in a body of known motion and the anchor is the centre of mass of the second
-  body, or that body cannot turn: only then does an impulse along the normal move the anchor along the normal. Otherwise
-  a `MovedPinJoint`.
-- "groove": always a `GrooveJoint`, as a user would build it. Off the centre of mass of a body that turns, its impulse
-  does not stop the motion across the groove, at any step, unless the arm from the centre of mass to the point is along
-  or across the groove. It solves for both directions and keeps the normal part (applyImpulse and grooveConstrain in
-  Chipmunk's cpGrooveJoint.c), which is the right impulse only if the normal is an eigenvector of the two bodies' 2 by 2
-  inverse mass at the anchor.
+- "exact": a `GrooveJoint` or a `MovedPinJoint`. The groove joint is exact if the motion of the first body is prescribed
+  and the anchor is the centre of mass of the second body, or impulses cannot turn that body. Only then does an impulse
+  along the normal move the anchor along the normal.
+- "groove": always a `GrooveJoint`, as a user would build it. It solves for the impulse in both directions and keeps the
+  normal component (applyImpulse and grooveConstrain in Chipmunk's cpGrooveJoint.c). This impulse is correct only if the
+  normal is an eigenvector of the 2 by 2 inverse mass matrix of both bodies at the anchor. Otherwise motion across the
+  groove remains with any step size.
 
-A blade constrains the same motion at every point of its axle, so all constructions place it at the foot of the
-perpendicular from the centre of mass: there the arm is along the blade, and a groove's impulse is the right one. By
-`SkateConstruction`:
+`SkateConstruction` is the construction of a skate. A blade constrains the same motion at every point of its axle. All
+constructions place it at the foot of the perpendicular from the centre of mass, where the impulse of a groove is
+correct.
 
-- "centre": after each step, the velocity of the centre of mass across the blade is set to zero. This is wrong unless
-  the blade is at the centre of mass: a force at the blade would turn the body.
-- "point": after each step, the whole velocity is shifted until the blade's point has none across. The slip is zero to
-  rounding, and the motion is wrong for the same reason.
-- "projection": the same by an impulse at the blade, with the body's inertia. First order.
-- "groove": a `GrooveJoint` in the ground, placed before each step at the pose after the step's drift. The drift is
-  explicit, so the pose is exact; the motion is of first order, and the slip is rounding. On another body than the
-  ground it is a `MovedPinJoint`. Contact with friction is no alternative: in the plane, nothing presses a blade on the
-  ice.
+- "centre", which users try first: after each step, the velocity of the centre of mass across the blade is set to zero.
+  This is wrong unless the blade is at the centre of mass, since a force at the blade also turns the body.
+- "point": after each step, the velocity of the body is shifted until the point of the blade has no velocity across it.
+  The slip is zero except for rounding. The motion is wrong for the same reason.
+- "projection": after each step, an impulse at the blade removes the slip. It is of first order.
+- "groove": a `GrooveJoint` in the ground, placed before each step at the pose after the drift. This pose is exact. The
+  motion is of first order, and the slip is rounding. Between two moving bodies it is a `MovedPinJoint`. Contact with
+  friction is no alternative, since no force in the plane presses a blade on the ice.
 
-A `MovedPinJoint` is a `PinJoint` that is placed before every step. It keeps the distance of two points, so its row is
-their relative velocity along the line between them. One end is the point; the other is a point of the first body
-straight across the line. So its row is that of a Slot or a Skate between any two bodies.
+A `MovedPinJoint` is a `PinJoint` that is placed before every step. Its row is the relative velocity of its two anchors
+along the line between them. One anchor is the point of the joint, and the other one is a point of the first body
+straight across the line. The row is therefore that of a Slot or a Skate between any two bodies.
 """
 
 from __future__ import annotations
@@ -45,15 +43,14 @@ from reference.joints import Skate, Slot, Vector
 
 SlotConstruction = Literal["exact", "groove"]
 SkateConstruction = Literal["centre", "point", "projection", "groove"]
-# Called with the length of the next drift [units of time] before each step; called after each step.
-BeforeStep = Callable[[float], None]
+BeforeStep = Callable[[float], None]  # its argument is the duration of the next drift [units of time]
 AfterStep = Callable[[], None]
 
-# Half the length of a groove, in the mechanism's length scale: a slot has no end. Rounding grows in proportion.
-GROOVE_REACH = 1e3
-# Length of a blade's pin joint, in the mechanism's length scale: long against the rotation in a step, and short enough
-# for rounding.
-LINK_REACH = 10.0
+# Half the length of a groove relative to the length scale. A slot has no ends, but rounding grows with the length.
+GROOVE_HALF_LENGTH = 1e3
+# Length of the pin joint of a blade relative to the length scale. A long joint turns little in a step, but its rounding
+# is larger.
+LINK_LENGTH = 10.0
 
 
 def build_slot(
@@ -65,28 +62,35 @@ def build_slot(
     second_point: Vector,
     length: float,
 ) -> tuple[list[Constraint], list[BeforeStep]]:
-    """The constraint and its update before each step. Points are from the engine's origins; `length` [m]: the scale."""
+    """The constraint and its updates before each step.
+
+    Both points [m] are relative to the origins of the pymunk bodies. `length` [m]: the length scale of the mechanism.
+    """
     is_prescribed = first.body_type != pymunk.Body.DYNAMIC
     if construction == "groove" or (is_prescribed and groove_is_exact(second_point, turns=not isinf(second.moment))):
-        cosine, sine, reach = cos(joint.line_angle), sin(joint.line_angle), GROOVE_REACH * length
+        cosine, sine, half_length = cos(joint.line_angle), sin(joint.line_angle), GROOVE_HALF_LENGTH * length
         x, y = first.world_to_local(second.local_to_world(second_point))
-        # The groove's middle is at the second body, which may be farther away than the mechanism is long.
+        # The middle of the groove is at the second body, which may be far from the first.
         along = cosine * (x - first_point[0]) + sine * (y - first_point[1])
         back, front = (
-            (first_point[0] + end * cosine, first_point[1] + end * sine) for end in (along - reach, along + reach)
+            (first_point[0] + end * cosine, first_point[1] + end * sine)
+            for end in (along - half_length, along + half_length)
         )
         return [GrooveJoint(first, second, back, front, second_point)], []
-    link = MovedPinJoint(joint, first, second, second_point, first_point, reach=length)
+    link = MovedPinJoint(joint, first, second, second_point, first_point, length=length)
     return [link.constraint], [link]
 
 
 def groove_is_exact(point: Vector, turns: bool) -> bool:
-    """Whether every normal is an eigenvector of a body's inverse mass at a point; `turns`: impulses turn the body."""
+    """Whether every normal is an eigenvector of the inverse mass matrix of a body at a point.
+
+    `turns`: whether impulses can turn the body.
+    """
     return point == (0.0, 0.0) or not turns
 
 
 class MovedPinJoint:
-    """The pin joint of one Slot or Skate; `reach` [m] is its length, points are from the engine's origins."""
+    """The pin joint of a Slot or a Skate. The points [m] are relative to the origins of the pymunk bodies."""
 
     def __init__(
         self,
@@ -96,13 +100,13 @@ class MovedPinJoint:
         second_point: Vector,
         first_point: Vector = (0.0, 0.0),
         *,
-        reach: float,
+        length: float,
     ) -> None:
-        self.constraint = PinJoint(first, second, (reach, reach), second_point)
-        self.constraint.distance = reach
+        self.constraint = PinJoint(first, second, (length, length), second_point)
+        self.constraint.distance = length
         self._bodies = (first._body, second._body)
-        self._point, self._line_point, self._reach = second_point, first_point, reach
-        # A slot's line turns with the first body and has a gap; a blade turns with the second and has none.
+        self._point, self._line_point, self._length = second_point, first_point, length
+        # The line of a slot turns with the first body, and a slot has a gap. A blade turns with the second body.
         self._is_slot = isinstance(joint, Slot)
         self._angle = joint.line_angle if isinstance(joint, Slot) else joint.angle
 
@@ -116,14 +120,14 @@ class MovedPinJoint:
         x, y = cosine * x + sine * y, cosine * y - sine * x  # the point in the first body
         line = self._angle if self._is_slot else self._angle + angle2 - angle1
         left_x, left_y = -sin(line), cos(line)
-        reach = self._reach
+        arm = self._length
         if self._is_slot:
-            reach -= left_x * (x - self._line_point[0]) + left_y * (y - self._line_point[1])
-        lib.cpPinJointSetAnchorA(self.constraint._constraint, (x + reach * left_x, y + reach * left_y))
+            arm -= left_x * (x - self._line_point[0]) + left_y * (y - self._line_point[1])
+        lib.cpPinJointSetAnchorA(self.constraint._constraint, (x + arm * left_x, y + arm * left_y))
 
 
 def drifted(body: object, ahead: float) -> tuple[float, float, float]:
-    """The pose of a body (a C pointer) after the drift of its next step, exactly as the engine computes it."""
+    """The pose of a body (a C pointer) after the next drift, with the rounding of the engine."""
     position, velocity = lib.cpBodyGetPosition(body), lib.cpBodyGetVelocity(body)
     angle = lib.cpBodyGetAngle(body) + lib.cpBodyGetAngularVelocity(body) * ahead
     return position.x + velocity.x * ahead, position.y + velocity.y * ahead, angle
@@ -134,10 +138,11 @@ def build_skate(
 ) -> tuple[list[Constraint], list[BeforeStep], list[AfterStep]]:
     """The constraints and their updates before and after each step; raises Unsupported.
 
-    `point` [m] is the blade's from the origin of the engine's second body; `length` [m] is the mechanism's scale.
+    `point` [m]: the point of the blade relative to the origin of the second pymunk body. `length` [m]: the length scale
+    of the mechanism.
     """
     if construction == "groove" and joint.first is not None:
-        link = MovedPinJoint(joint, first, second, point, reach=LINK_REACH * length)
+        link = MovedPinJoint(joint, first, second, point, length=LINK_LENGTH * length)
         return [link.constraint], [link], []
     if joint.first is not None:
         raise Unsupported(
@@ -151,12 +156,12 @@ def build_skate(
 
 
 def along_blade(joint: Skate) -> float:
-    """The coordinate along the blade [m] of the axle line, from the centre of mass."""
+    """The coordinate [m] along the blade of its point, from the centre of mass."""
     return joint.second_point[0] * cos(joint.angle) + joint.second_point[1] * sin(joint.angle)
 
 
 class AimedGroove:
-    """A groove in the ground under the blade, placed before every step."""
+    """A groove in the ground that is placed under the blade before every step."""
 
     def __init__(self, joint: Skate, ground: pymunk.Body, body: pymunk.Body, length: float) -> None:
         along = along_blade(joint)
@@ -164,8 +169,8 @@ class AimedGroove:
         self.constraint = GrooveJoint(ground, body, (-1.0, 0.0), (1.0, 0.0), anchor)
         self._pointer, self._body = self.constraint._constraint, body._body
         self._angle = joint.angle
-        # Ends of the groove [m], out of reach within a step. With a power of two, rounding is equal for mechanisms of
-        # nearly the same size, and for those whose sizes differ by such a power.
+        # The ends of the groove [m] are out of reach in a step. With a power of two, rounding is the same for similar
+        # mechanisms of nearly equal size, and for those whose sizes differ by a power of two.
         half = 2.0 ** (1 + round(log2(length))) + abs(along)
         self._back, self._front = along - half, along + half
 
@@ -178,12 +183,12 @@ class AimedGroove:
 
 
 class Zeroed:
-    """Sets the velocity across the blade to zero after every step, by its `SkateConstruction`."""
+    """The update after every step that sets the velocity across the blade to zero."""
 
     def __init__(self, joint: Skate, body: pymunk.Body, construction: SkateConstruction) -> None:
         self._body, self._angle = body._body, joint.angle
         along = along_blade(joint)
-        # Arm [m] of the measured point; changes of velocity and rate per m/s of velocity across.
+        # The arm [m] of the point whose velocity is measured, and the changes of velocity and rate per m/s across.
         self._arm, self._push, self._spin = 0.0 if construction == "centre" else along, 1.0, 0.0
         if construction == "projection":
             effective = 1 / (1 / body.mass + along**2 / body.moment)

@@ -1,4 +1,4 @@
-"""A user's pymunk space as a mechanism: `read` for a space, `READER` for a script that makes one."""
+"""The reader of users' pymunk spaces: `read` for a space, `READER` for a script that makes one."""
 
 from __future__ import annotations
 
@@ -17,8 +17,7 @@ from engines.pymunk.reading.script import rewritten, run_script
 from engines.reading import AS_IT_IS, Note, Reading, ReadingTerms, Source, refuse_at_start
 from reference.checks import InvalidMechanism
 
-# The step [s] of pymunk's own examples, for a space that has not been stepped.
-USUAL_STEP = 1 / 60
+ASSUMED_STEP = 1 / 60  # s, the step of pymunk's examples
 
 
 def read(
@@ -30,9 +29,9 @@ def read(
 ) -> Reading:
     """The mechanism of a space in its present state. Raises Unsupported for an element without an ideal counterpart.
 
-    `step` [s]: the user's, by default the last one of the space, or 1/60 s. `without`: kinds of elements to switch off
-    first, in a copy. `parts`: the steps that one call of the space's own `step` makes. `ahead`: the user's script
-    starts half a step ahead.
+    `step` [s]: the step of the user, by default the last step of the space, or else ASSUMED_STEP. `without`: kinds of
+    elements to switch off in a copy. `parts`: the number of steps that a call of `space.step` makes. `ahead`: whether
+    the user's script advances the velocities by half a step at the start.
     """
     if without:
         space = space.copy()
@@ -55,7 +54,7 @@ def read(
             raise
         cause = f"the space has been stepped by {last_step:g} s already, which opens joints"
         raise InvalidMechanism(f"{reason}; {cause}; give it before its first step") from None
-    dt = step or last_step or USUAL_STEP / parts
+    dt = step or last_step or ASSUMED_STEP / parts
     model = OwnPymunk(imported, mechanism, dt, step_is_assumed=not (step or last_step), ahead=ahead)
     refuse_at_start(model, mechanism)
     notes = [*start_notes, *imported.notes]
@@ -66,13 +65,10 @@ def read(
 
 
 def read_object(space: pymunk.Space, terms: ReadingTerms = AS_IT_IS) -> Reading:
-    """`read` with the terms of all engines."""
     return read(space, terms.step, terms.without)
 
 
 class SpaceReader:
-    """For `crosscheck check`: a variable of a script, or a function without arguments, that gives a space."""
-
     words = "a script with a pymunk space (path/to/script.py, or script.py:NAME)"
     elements: ClassVar[Mapping[str, str]] = {
         **READ_BODIES,
@@ -84,7 +80,7 @@ class SpaceReader:
         return (file or word).lower().endswith(".py")
 
     def read(self, word: str, folder: Path, terms: ReadingTerms) -> Reading:
-        """Raises ValueError for a script that gives no space, Unsupported for a space that is no mechanism."""
+        """Raises ValueError for a script without a space, and Unsupported for a space that is no mechanism."""
         if terms.key:
             raise ValueError(f"--key is {terms.key!r}; a space has no stored states")
         file, _, name = word.rpartition(":")
@@ -103,7 +99,7 @@ class SpaceReader:
         finally:
             for body in script.space.bodies:
                 if body.is_sleeping:
-                    body.activate()  # pymunk (7.3.1) ends the process when a space with a sleeping body is freed
+                    body.activate()  # pymunk (7.3.1) aborts the process when a space with a sleeping body is freed
         notes = [*reading.notes]
         if script.dt is not None:
             stopped = f"it steps its space by {step:.4g} s; it was stopped before the first step, which is the start"

@@ -21,7 +21,7 @@ from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Slot, Vector
 Array = NDArray[np.float64]
 LIMIT_JOINTS = (constraints.SlideJoint, constraints.RotaryLimitJoint)
 EQUALITY = "its min and max are equal, so it is taken as a {}; pymunk's {} holds from both sides at once"
-# Relative difference [rad, or of a length] of the ends of a limit that is rounding.
+# The ends of a limit count as equal up to this difference [rad], which for lengths above 1 m is relative.
 EQUAL_ENDS = 1e-12
 READ_BODIES = {
     "dynamic body": "a body; with an infinite moment, one that turns steadily",
@@ -32,27 +32,26 @@ READ_BODIES = {
 
 @dataclass(eq=False)
 class ImportedSpace:
-    """A space while it is read, and the elements of its mechanism. All bodies but `moving` belong to the ground."""
+    """A space, and the elements of its mechanism. All bodies except those in `moving` belong to the ground."""
 
     space: pymunk.Space
-    moving: list[pymunk.Body] = field(default_factory=list)  # in the mechanism's order
+    moving: list[pymunk.Body] = field(default_factory=list)  # in the order of the mechanism
     body_names: dict[pymunk.Body, str] = field(default_factory=dict)
     bodies: list[Body] = field(default_factory=list)
     joints: list[Joint] = field(default_factory=list)
     forces: list[ForceElement] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
     names: Names = field(default_factory=Names)
-    prescribed: list[str] = field(default_factory=list)  # joints of a prescribed motion
-    pushed: dict[int, tuple[Vector, float]] = field(default_factory=dict)  # force, torque by index in `moving`
-    suspects: dict[str, str] = field(default_factory=dict)  # joints that are not ideal at any step, with the reason
+    prescribed: list[str] = field(default_factory=list)  # names of the joints of prescribed motions
+    pushed: dict[int, tuple[Vector, float]] = field(default_factory=dict)  # force and torque by index in `moving`
+    suspects: dict[str, str] = field(default_factory=dict)  # reason why a joint is ideal with no step size, by name
     labels: dict[constraints.Constraint, str] = field(default_factory=dict)
 
     def name_of(self, body: pymunk.Body) -> str | None:
-        """The body's name in the mechanism; None for the ground."""
         return self.body_names.get(body)
 
     def local(self, body: pymunk.Body, point: Vector) -> Vector:
-        """A point of a pymunk body, from the centre of mass; for the ground, in the world."""
+        """A point of a pymunk body [m], relative to its centre of mass; for the ground, the point in the world."""
         if body in self.body_names:
             x, y = body.center_of_gravity
             return (float(point[0] - x), float(point[1] - y))
@@ -60,22 +59,21 @@ class ImportedSpace:
         return (float(world.x), float(world.y))
 
     def ends(self, constraint: Any) -> tuple[str | None, str | None, Vector, Vector]:
-        """Names and anchors of both bodies, for an element between two points."""
+        """The names of both bodies of a constraint, and its anchors."""
         a, b = constraint.a, constraint.b
         anchors = self.local(a, constraint.anchor_a), self.local(b, constraint.anchor_b)
         return self.name_of(a), self.name_of(b), *anchors
 
     def angle(self, body: pymunk.Body) -> float:
-        """The angle in the mechanism: 0 for the ground."""
         return float(body.angle) if body in self.body_names else 0.0
 
     def ground_angle(self, body: pymunk.Body) -> float:
-        """The angle in the world of a body that belongs to the ground; 0 for other bodies."""
+        """The angle in the world [rad] of a body that belongs to the ground; 0 for other bodies."""
         return 0.0 if body in self.body_names else float(body.angle)
 
 
 def import_space(space: pymunk.Space) -> ImportedSpace:
-    """All elements of a space. Raises Unsupported for one without an ideal counterpart."""
+    """The elements of a space. Raises Unsupported for an element without an ideal counterpart."""
     out = ImportedSpace(space)
     if space.damping != 1:
         raise refuse("space.damping", f"it is {space.damping:g}: a drag against nothing has no ideal counterpart here")
@@ -138,7 +136,7 @@ def _add_body(out: ImportedSpace, body: pymunk.Body) -> None:
 
 
 def _add_push(out: ImportedSpace, body: pymunk.Body) -> None:
-    """The force and the torque that are set on a body, as constant ones."""
+    """Add the force and the torque that are set on a body, as constant ones."""
     name, (x, y), torque = out.body_names[body], body.force, float(body.torque)
     if x or y:
         out.forces.append(Force(out.names.new(f"force on {name}"), name, (0.0, 0.0), (float(x), float(y))))
@@ -182,7 +180,7 @@ def _add_slot(out: ImportedSpace, groove: constraints.GrooveJoint, label: str) -
     if not line.length:
         raise refuse(label, "its groove has no length")
     point = out.local(b, groove.anchor_b)
-    # The slot's point on the line is the anchor's projection: an end of the groove may be far from all that moves.
+    # The point of the slot on its line is the projection of the anchor, since the ends of the groove may be far away.
     anchor = pymunk.Vec2d(*out.local(a, a.world_to_local(b.local_to_world(groove.anchor_b))))
     along = line.normalized() * (anchor - ends[0]).dot(line.normalized())
     on_line = (float(ends[0][0] + along.x), float(ends[0][1] + along.y))
@@ -218,20 +216,15 @@ def _add_drive(out: ImportedSpace, motor: constraints.SimpleMotor, label: str) -
 
 
 def _add_gear(out: ImportedSpace, gear: constraints.GearJoint, label: str) -> None:
-    out.joints.append(_gear(out, gear, label))
-
-
-def _gear(out: ImportedSpace, gear: constraints.GearJoint, label: str) -> Joint:
-    """angle of a = ratio times angle of b - phase (preStep in Chipmunk's cpGearJoint.c)."""
+    # In Chipmunk angle_a = ratio angle_b - phase (preStep in its cpGearJoint.c).
     ratio, a, b = float(gear.ratio), out.name_of(gear.a), out.name_of(gear.b)
     if not ratio:
         raise refuse(label, "its ratio is zero")
     phase = -float(gear.phase) + ratio * out.ground_angle(gear.b) - out.ground_angle(gear.a)
-    if b is None:
-        return Drive(label, None, a, 0.0, phase)
-    if a is None:
-        return Drive(label, None, b, 0.0, -phase / ratio)
-    return Gear(label, b, a, ratio, phase)
+    if a is None or b is None:
+        out.joints.append(Drive(label, None, a or b, 0.0, phase if b is None else -phase / ratio))
+    else:
+        out.joints.append(Gear(label, b, a, ratio, phase))
 
 
 def _add_spring(out: ImportedSpace, spring: constraints.DampedSpring, label: str) -> None:
@@ -243,7 +236,7 @@ def _add_spring(out: ImportedSpace, spring: constraints.DampedSpring, label: str
 def _add_torsion_spring(out: ImportedSpace, spring: constraints.DampedRotarySpring, label: str) -> None:
     if getattr(spring, "_torque_func", None):
         raise refuse(label, "its force is a function of its own")
-    # Chipmunk's relative angle is that of the first body against the second.
+    # Chipmunk's relative angle is that of the first body minus that of the second.
     ends = out.name_of(spring.b), out.name_of(spring.a)
     rest_angle = spring.rest_angle + out.ground_angle(spring.b) - out.ground_angle(spring.a)
     _add_elastic_and_viscous(out, spring, label, ends, (TorsionSpring, TorsionDamper), rest_angle)
@@ -260,13 +253,11 @@ def _add_elastic_and_viscous(
 
 
 class ConstraintEntry(NamedTuple):
-    """The description of a kind of constraint for the page, and the function that adds it to the mechanism."""
-
     read_as: str
     add: Callable[[ImportedSpace, Any, str], None]
 
 
-# The kinds of constraint that are read; every other is refused.
+# The ideal counterpart of each kind of constraint. Other kinds are refused.
 READ_CONSTRAINTS: Mapping[type[constraints.Constraint], ConstraintEntry] = {
     constraints.PivotJoint: ConstraintEntry("a pin", _add_pin),
     constraints.GrooveJoint: ConstraintEntry("a slot", _add_slot),
@@ -283,14 +274,14 @@ READ_CONSTRAINTS: Mapping[type[constraints.Constraint], ConstraintEntry] = {
 
 
 def is_equality(constraint: constraints.Constraint) -> bool:
-    """Whether it is a limit with equal ends, which acts as a joint."""
+    """Whether a constraint is a limit with equal ends, which acts as a joint."""
     if not isinstance(constraint, LIMIT_JOINTS):
         return False
     return constraint.max - constraint.min <= EQUAL_ENDS * max(1.0, abs(constraint.max))
 
 
 def both_sided(limit: Any) -> constraints.Constraint:
-    """The pymunk joint that an `is_equality` limit is equivalent to."""
+    """The pymunk joint that is equivalent to a limit with equal ends."""
     if isinstance(limit, constraints.SlideJoint):
         rod = constraints.PinJoint(limit.a, limit.b, limit.anchor_a, limit.anchor_b)
         rod.distance = limit.min
@@ -299,23 +290,23 @@ def both_sided(limit: Any) -> constraints.Constraint:
 
 
 def copy_space(imported: ImportedSpace) -> tuple[pymunk.Space, list[pymunk.Body]]:
-    """A copy of the space, and its bodies in the mechanism's order."""
+    """A copy of the space, and the bodies of the copy in the order of the mechanism."""
     original, space = imported.space, imported.space.copy()
-    # No body may sleep in a judged motion (`sleepers`), and pymunk (7.3.1) aborts after some copies in which bodies do.
+    # `sleepers` reports bodies that may sleep. In the copy none does, since pymunk (7.3.1) may then abort the process.
     space.sleep_time_threshold = inf
     copies = dict(zip(original.bodies, space.bodies, strict=True))
     for body, copy in copies.items():
         if body.center_of_gravity.length:
-            # pymunk (7.3.1) sets the position of a copy before its centre of mass, and so to another place.
+            # pymunk (7.3.1) sets the position of a copy before its centre of mass, which then displaces the body.
             copy.angle, copy.position = body.angle, body.position
     for copy, constraint in zip(space.constraints, original.constraints, strict=True):
         if isinstance(constraint, constraints.PinJoint):
-            copy.distance = constraint.distance  # a copy of pymunk (7.3.1) takes the present distance of its bodies
+            copy.distance = constraint.distance  # pymunk (7.3.1) gives a copy the present distance of the anchors
     return space, [copies[body] for body in imported.moving]
 
 
 def set_poses(bodies: Sequence[pymunk.Body], pose: Array) -> None:
-    """Put centres of mass and angles at a pose (bodies, 3)."""
+    """Move the centres of mass and the angles of bodies to a pose (bodies, 3)."""
     for body, (x, y, angle) in zip(bodies, pose.tolist(), strict=True):
         body.angle = angle
         body.position = pymunk.Vec2d(x, y) - body.center_of_gravity.rotated(angle)

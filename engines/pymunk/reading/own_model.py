@@ -1,6 +1,6 @@
-"""A user's pymunk space, copied and stepped with its own settings or with others that pymunk documents.
+"""Runs of a user's pymunk space with its own settings or with others that pymunk documents.
 
-Also the obstacles in its motion that the mechanism lacks: shapes in contact, limits that are reached, sleep.
+The module also finds obstacles in a motion that the mechanism does not have: contacts, limits and sleep.
 """
 
 from __future__ import annotations
@@ -33,20 +33,18 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 MOST_SHAPES = 400
-# Divisors of the user's step that `changes` offers.
-DIVISORS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
+DIVISORS = (1, 2, 4, 8, 16, 32, 64, 128, 256)  # of the user's step, for `changes`
 FURTHER_DIVISORS = (*DIVISORS, 512, 1024, 2048, 4096)
 MORE_ITERATIONS = 50
-# Duration of the pilot run for `changes`, in the mechanism's time scale.
+# Duration of the pilot run for `changes`, relative to the time scale of the mechanism.
 PILOT_DURATION = 10
-# Step for the accelerations at t = 0, in the mechanism's time scale; a second run takes half of it.
+# Step for the accelerations at t = 0, relative to the time scale of the mechanism.
 SMALL_STEP = 1e-4
-# Iterations of that step, so that impulses converge.
-CONVERGED_ITERATIONS = 20_000
+CONVERGED_ITERATIONS = 20_000  # of that step
 
 
 def switch_off(space: pymunk.Space, element: str) -> None:
-    """Change a space so that a kind of element no longer acts. Raises ValueError for an unknown kind."""
+    """Switch off a kind of element in a space. Raises ValueError for an unknown kind."""
     if element == "contact":
         for shape in space.shapes:
             shape.sensor = True
@@ -63,7 +61,7 @@ def switch_off(space: pymunk.Space, element: str) -> None:
 
 @dataclass(frozen=True, eq=False)
 class OwnPymunk:
-    """A space and its mechanism; see `engines.reading.OwnModel`. `dt` [s]: the user's step."""
+    """A space and its mechanism; see `engines.reading.OwnModel`. `dt` [s]: the step of the user."""
 
     imported: ImportedSpace
     mechanism: Mechanism
@@ -72,7 +70,7 @@ class OwnPymunk:
     ahead: bool = False  # the user's script advances the velocities by half a step before the first step
     engine: str = "pymunk"
     has_soft_joints: bool = False
-    # The violation of joints follows from steps and iterations: pymunk declares no law without them.
+    # The violation of joints depends on steps and iterations, and pymunk declares no law for it.
     declares: bool = False
     elements: Sequence[str] = ("contact", "limit")
 
@@ -105,7 +103,7 @@ class OwnPymunk:
         return self.without(None)
 
     def without(self, element: str | None) -> Array:
-        """Accelerations of small first steps, extrapolated to zero step, since a step drifts before it kicks."""
+        """The accelerations (bodies, 3) at t = 0, extrapolated to step size zero, since a drift precedes the kick."""
         steps = [SMALL_STEP * self.mechanism.time_scale, SMALL_STEP / 2 * self.mechanism.time_scale]
         first, second = (self._kicked(step, element) for step in steps)
         return 2 * second - first
@@ -115,7 +113,7 @@ class OwnPymunk:
         if element is not None:
             switch_off(space, element)
         for limit in [constraint for constraint in space.constraints if is_equality(constraint)]:
-            # A limit acts from the first step in which it is violated; the ideal joint acts at the start already.
+            # A limit acts only after a step that violates it, but the ideal joint acts from t = 0 on.
             space.remove(limit)
             space.add(both_sided(limit))
         space.iterations = max(space.iterations, CONVERGED_ITERATIONS)
@@ -133,7 +131,7 @@ class OwnPymunk:
         return sorted(met, key=lambda obstacle: obstacle.t)
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
-        """The whole gap is corrected only with iterations that are stable at all poses of the pilot run."""
+        """The changes to try. Steps correct the whole gap only if they are stable at all poses of the pilot run."""
         users, increased = self.imported.space.iterations, max(MORE_ITERATIONS, 2 * self.imported.space.iterations)
         rho = worst_factor(self.mechanism, PILOT_DURATION * self.mechanism.time_scale)
         enough = iterations_in_step(rho, max(1, len(self.mechanism.joints)), work=LARGEST_WORK)
@@ -185,7 +183,7 @@ class OwnPymunk:
             if sample == 0:
                 return False
             state, after = _poses(bodies), _twists(bodies)
-            # The kick of a step is at the pose after its drift, so this is the acceleration at the sample.
+            # The kick of a step acts at the pose after its drift, so this is the acceleration at the sample.
             acceleration[sample] = (after - before[sample]) / dt
             if np.isfinite(state).all():
                 pose[sample], twist[sample] = state, (before[sample] + after) / 2 if ahead else after
@@ -207,7 +205,7 @@ class OwnPymunk:
         return Trajectory(t, pose, twist, reaction, stepping)
 
     def _stepper(self, space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> Callable[[float], None]:
-        """The space's step, preceded by setting the constant forces on bodies."""
+        """A function that sets the constant forces and makes a step, which resets them."""
         pushed = [(bodies[index], *push) for index, push in self.imported.pushed.items()]
         if not pushed:
             return space.step
@@ -221,7 +219,7 @@ class OwnPymunk:
 
 
 def start_ahead(name: str, space: pymunk.Space, dt: float) -> list[str]:
-    """Lines that advance the velocities of a space, called `name`, by half a step of dt [s]."""
+    """Lines of a script that advance the velocities of the space `name` by half a step of dt [s]."""
     save, restore = list[str](), list[str]()
     if any(body.force.length or body.torque for body in space.bodies):  # a step resets them
         save = [f"pushed = [(body, body.force, body.torque) for body in {name}.bodies]"]
@@ -246,7 +244,10 @@ def _twists(bodies: Sequence[pymunk.Body]) -> Array:
 
 
 def contacts_and_limits(imported: ImportedSpace, t: Array, pose: Array) -> list[Obstacle]:
-    """The first obstacle of each kind on poses (times, bodies, 3). Raises Unsupported for too many shapes."""
+    """The first contact of each pair of shapes and the first reaching of each limit, for poses (times, bodies, 3).
+
+    Raises Unsupported for more than MOST_SHAPES shapes.
+    """
     space, bodies = copy_space(imported)
     first: dict[str, Obstacle] = {}
 
@@ -280,11 +281,11 @@ def contacts_and_limits(imported: ImportedSpace, t: Array, pose: Array) -> list[
 
 
 def sleepers(imported: ImportedSpace, step: float, t: Array, twist: Array) -> list[Obstacle]:
-    """Bodies that pymunk may put to sleep on twists (times, bodies, 3): idle for the space's threshold of time.
+    """Bodies that may sleep, for twists (times, bodies, 3): those that are idle for `sleep_time_threshold`.
 
-    A body is idle in Chipmunk (cpSpaceProcessComponents) if m v^2 + I w^2 is at most m times the square of the speed
-    threshold, or without one, of the speed that gravity adds in a step. It also requires idle neighbours; this does
-    not.
+    A body is idle in Chipmunk (cpSpaceProcessComponents) if m v^2 + I w^2 is at most m times the square of a speed. The
+    speed is `idle_speed_threshold`, or, if that is zero, the speed that gravity adds in a step. Chipmunk also requires
+    that the connected bodies are idle. This is not checked here, so more bodies are reported than Chipmunk lets sleep.
     """
     space = imported.space
     if isinf(space.sleep_time_threshold):
@@ -308,12 +309,11 @@ def sleepers(imported: ImportedSpace, step: float, t: Array, twist: Array) -> li
 def _touch(one: pymunk.Shape, other: pymunk.Shape) -> bool:
     try:
         return bool(one.shapes_collide(other).points)
-    except AssertionError:  # two shapes at exactly the same pose; pymunk's message calls this a likely bug of its own
+    except AssertionError:  # pymunk raises it for two shapes at exactly the same pose
         return True
 
 
 def _may_touch(one: pymunk.Shape, other: pymunk.Shape, in_space: set[constraints.Constraint]) -> bool:
-    """Whether pymunk would let these shapes collide."""
     if one.body is other.body or one.body is None or other.body is None:
         return False
     if pymunk.Body.DYNAMIC not in (one.body.body_type, other.body.body_type):
@@ -328,7 +328,7 @@ def _may_touch(one: pymunk.Shape, other: pymunk.Shape, in_space: set[constraints
 
 
 def _reached(limit: Any) -> bool:
-    """Whether a limit is at or beyond an end where its bodies are now."""
+    """Whether the bodies of a limit are now at one of its ends or beyond it."""
     a, b = limit.a, limit.b
     if isinstance(limit, constraints.SlideJoint):
         distance = a.local_to_world(limit.anchor_a).get_distance(b.local_to_world(limit.anchor_b))

@@ -1,4 +1,4 @@
-"""Scripts that make a pymunk space: run up to the space's first step, and rewritten with other settings."""
+"""Scripts that make a pymunk space: execution up to the first step of the space, and changes of its settings."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from engines.reading import Change, refuse
 
 SCRIPT_MODULE = "crosscheck_check"  # the script's __name__
 BEGIN, END = "# crosscheck check --apply: these lines are written anew each time", "# crosscheck check --apply: end"
-# Modules that a script must share with us, even if a file beside it has the same name.
+# Modules that a script shares with this process, even if a file in its folder has the same name.
 SHARED_MODULES = {"pymunk", "builtins", "sys", "os", "__main__"}
 STEP_IN_PARTS = '''
 def in_parts(dt, step={name}.step, space={name}):
-    """One step in {parts} equal ones; what pushes a body at its begin pushes it in each of them."""
+    """Make {parts} equal steps in place of one; the forces and torques set before it act in each of them."""
     pushed = [(body, body.force, body.torque) for body in space.bodies]
     for _ in range(in_parts.parts):
         for body, force, torque in pushed:
@@ -40,12 +40,13 @@ in_parts.parts = {parts}
 
 @dataclass(frozen=True, eq=False)
 class ScriptSpace:
-    """A space as a script makes it, before its first step.
+    """The space that a script makes, before its first step.
 
-    `dt` [s]: the script's step, or None; divided by `parts` if `rewritten` has divided the script's steps. Settings can
-    be inserted before `line`, or at the end if it is None; there `name` is the name of the space, or of the function
-    that makes it. `ahead`: the script advances the velocities by a first step of half the length; the space is in the
-    state before that.
+    `dt` [s]: the argument of the script's calls of `space.step`, or None if it makes none. Each call makes `parts`
+    steps, which is more than one after `rewritten` has divided the steps. `line`: the line before which settings can be
+    inserted; None for the end of the script. `name`: the name at this line of the space, or of the function that makes
+    it. `ahead`: whether the first step is a half step that advances the velocities. The space is in the state before
+    that step.
     """
 
     space: pymunk.Space
@@ -58,7 +59,7 @@ class ScriptSpace:
 
 
 class _SpaceStepped(BaseException):
-    """Stops a script at the first step of its space, or at the second one after half a step."""
+    """The exception that stops a script at the first step of its space, or at the step after a half step."""
 
     def __init__(self, space: Any, dt: float, ahead: bool = False) -> None:
         super().__init__("the script steps its space")
@@ -66,11 +67,11 @@ class _SpaceStepped(BaseException):
 
 
 def run_script(path: Path, file: str, name: str) -> ScriptSpace:
-    """The space that a script calls `name`, or that a function of this name returns; without a name, its only one.
+    """The space that a script calls `name`, or that a function of this name returns; "" for the only space.
 
-    The script is stopped before it steps that space; its output is dropped. Where joints correct their whole gap, the
-    first step may be a half step that advances the velocities: then the script is run again up to the second step,
-    which is twice as long. Raises ValueError in one line.
+    The script is stopped before it steps that space, and its output is discarded. If joints correct their whole gap,
+    the first step may be a half step that advances the velocities. The script is then run again, and the first step is
+    a half step if the second one is twice as long. Raises ValueError with a message of one line.
     """
     script = _run_script(path, file, name)
     if script.dt is None or not any(joint.error_bias == 0 for joint in script.space.constraints):
@@ -83,7 +84,7 @@ def run_script(path: Path, file: str, name: str) -> ScriptSpace:
 
 
 def _run_script(path: Path, file: str, name: str, half: float | None = None) -> ScriptSpace:
-    """Run a script once; `half`: the length [s] of a first step after which it continues."""
+    """Run a script once. With `half`, the script continues after its first step, whose length [s] is `half`."""
     module = types.ModuleType(SCRIPT_MODULE)
     module.__file__ = str(path)
     try:
@@ -91,7 +92,7 @@ def _run_script(path: Path, file: str, name: str, half: float | None = None) -> 
             _as_main_script(path, module),
             _stopped_at_step(lambda space: _is_wanted(space, module, name), half) as first,
         ):
-            # Without a name, a script may make its space only if it is the main program.
+            # Without a name, the space may be in the part of the script that runs only as the main program.
             for module_name in (SCRIPT_MODULE,) if name else (SCRIPT_MODULE, "__main__"):
                 module.__dict__["__name__"] = module_name
                 with _errors_in_one_line(path, file):
@@ -116,14 +117,14 @@ def _run_script(path: Path, file: str, name: str, half: float | None = None) -> 
 
 
 def _with_parts(script: ScriptSpace) -> ScriptSpace:
-    """Remove the script's own `step` from the space: a copy would have it too, and would step the original space."""
+    """Remove `step` from the attributes of the space, since in a copy of the space it would step the original."""
     step = vars(script.space).pop("step", None)
     return replace(script, parts=int(getattr(step, "parts", 1)))
 
 
 @contextlib.contextmanager
 def _errors_in_one_line(path: Path, file: str) -> Iterator[None]:
-    """Errors of the user's code, of any class, as a ValueError in one line."""
+    """Replace every error of the user's code by a ValueError with a message of one line."""
     try:
         yield
     except _SpaceStepped:
@@ -139,7 +140,7 @@ def _errors_in_one_line(path: Path, file: str) -> Iterator[None]:
 
 
 def _value_of(module: types.ModuleType, file: str, name: str) -> tuple[Any, str]:
-    """The value called `name`, or the only space, and its name."""
+    """The value with this name in a module, or its only space if `name` is empty; and the name of the value."""
     values = vars(module)
     if name:
         if name not in values:
@@ -161,9 +162,10 @@ def _spaces(module: types.ModuleType) -> dict[str, pymunk.Space]:
 
 @contextlib.contextmanager
 def _as_main_script(path: Path, module: types.ModuleType) -> Iterator[None]:
-    """The conditions of `python script.py` in the script's folder: working folder, arguments, import path, no output.
+    """Set the working folder, the arguments and the import path as `python script.py` does, and discard the output.
 
-    Imported modules with the name of a file beside the script are hidden, so that the script imports its own.
+    Modules with the same name as a file in the folder of the script are removed from sys.modules meanwhile, so that
+    the script imports that file.
     """
     folder, arguments, paths = os.getcwd(), sys.argv, list(sys.path)
     beside = {file.stem for file in path.parent.glob("*.py")} | {
@@ -188,33 +190,33 @@ def _as_main_script(path: Path, module: types.ModuleType) -> Iterator[None]:
 
 @dataclass
 class _FirstStep:
-    """The first step of a space, which may be the half step that advances the velocities."""
+    """The velocities before the first step of a space, which may be a half step that advances them."""
 
     space: Any = None
     velocities: tuple[tuple[Any, float], ...] = ()
-    by_lines: bool = False  # the calling code also moves the bodies back, or replaces their position function
+    by_lines: bool = False  # whether the calling code moves the bodies back, or replaces their position function
 
     def begin(self, space: Any, names: Sequence[str]) -> None:
-        """Remember the velocities before the step; `names` are those that the calling code uses."""
+        """Store the velocities. `names`: the attributes that the calling code uses."""
         self.space, bodies = space, list(space.bodies)
         self.velocities = tuple((body.velocity, body.angular_velocity) for body in bodies)
         without_drift = any(body._position_func is not None for body in bodies)
         self.by_lines = without_drift or {"position", "angle", "velocity", "angular_velocity"} <= {*names}
 
     def undo(self) -> None:
-        """Restore the velocities; the positions have not changed."""
+        """Restore the velocities. The positions need no change."""
         for body, (velocity, rate) in zip(self.space.bodies, self.velocities, strict=True):
             body.velocity, body.angular_velocity = velocity, rate
 
 
 @contextlib.contextmanager
 def _stopped_at_step(is_wanted: Callable[[Any], bool], half: float | None) -> Iterator[_FirstStep]:
-    """Let the first step of a wanted space raise _SpaceStepped; copies of a space step as usual.
+    """Make the first step of a wanted space raise _SpaceStepped. Copies of a space make their steps.
 
-    With `half`, the second step raises it. If the second is twice as long as the first, the first is undone.
+    With `half`, the second step raises it. If it is twice as long as the first one, the first one is undone.
     """
     original_step, original_copy = pymunk.Space.step, pymunk.Space.copy
-    copies: list[pymunk.Space] = []  # with which the script may try settings
+    copies: list[pymunk.Space] = []
     first = _FirstStep()
 
     def copy(self: pymunk.Space) -> pymunk.Space:
@@ -241,7 +243,7 @@ def _stopped_at_step(is_wanted: Callable[[Any], bool], half: float | None) -> It
 
 
 def _is_wanted(space: pymunk.Space, module: types.ModuleType, name: str) -> bool:
-    """Whether a space has this name, in the module or in a function that is running."""
+    """Whether a space has this name in the module or in a function on the call stack."""
     if not name:
         return True
     if name in vars(module):
@@ -255,9 +257,10 @@ def _is_wanted(space: pymunk.Space, module: types.ModuleType, name: str) -> bool
 
 
 def _name_and_line(path: Path, name: str, stop: _SpaceStepped) -> tuple[str, int | None]:
-    """The name of a stepped space, and the line of the statement that steps it.
+    """The name of the space that was stepped, and the line of the statement that steps it.
 
-    In the outermost running function that has a name for it; ("", None) if none has.
+    Both are those in the outermost function on the call stack that has a name for the space; ("", None) without such a
+    function.
     """
     trace: TracebackType | None = stop.__traceback__
     while trace is not None:
@@ -271,7 +274,7 @@ def _name_and_line(path: Path, name: str, stop: _SpaceStepped) -> tuple[str, int
 
 
 def _function_body(tree: ast.Module, function: str, line: int) -> list[ast.stmt]:
-    """The statements of the innermost function of this name around a line, or of the module without such a function."""
+    """The statements of the innermost function of this name that contains a line; without one, those of the module."""
     functions = [
         node
         for node in ast.walk(tree)
@@ -282,7 +285,7 @@ def _function_body(tree: ast.Module, function: str, line: int) -> list[ast.stmt]
 
 
 def _statement_line(body: list[ast.stmt], line: int) -> int | None:
-    """The first line of the statement around a line."""
+    """The first line of the statement that contains a line."""
     return next((node.lineno for node in body if node.lineno <= line <= (node.end_lineno or line)), None)
 
 
@@ -295,9 +298,10 @@ def _main_guard(path: Path) -> int | None:
 
 
 def rewritten(path: Path, script: ScriptSpace, step: float, change: Change) -> bytes:
-    """The script with other settings before the first step of its space; `step` [s] is its present one.
+    """The script with other settings, which are inserted before the first step of its space.
 
-    The lines of an earlier call are replaced. Raises Unsupported if the space has no name.
+    `step` [s]: the present step. Lines that an earlier call inserted are replaced. Raises Unsupported if the space has
+    no name, or if the user's own lines advance the velocities by half a step.
     """
     if not script.name:
         raise refuse("the script", "its space has no name of its own where it is stepped, so no line can change it")
@@ -325,7 +329,7 @@ def rewritten(path: Path, script: ScriptSpace, step: float, change: Change) -> b
 def _setting_lines(script: ScriptSpace, step: float, change: Change, has_earlier: bool) -> list[str]:
     options = dict(change.options)
     bias = options["bias"]
-    if has_earlier and bias is None:  # the present one may come from the lines that are replaced
+    if has_earlier and bias is None:  # the present error_bias may come from the lines that are replaced
         bias = next(iter({joint.error_bias for joint in script.space.constraints}), None)
     name = "space" if script.is_function else script.name
     settings = [f"{name}.iterations = {options['iterations']}"]
