@@ -1,8 +1,8 @@
 """Physics engines of the browser under test: planck and p2 in JavaScript, Rapier and Jolt as WebAssembly.
 
-A child process of Node steps them; `worlds.mjs` builds their joints. It lives as long as this process, so that the code
-which Node compiles while it runs is compiled once. The packages of npm are installed by `python -m engines.browser`
-into the user's cache folder.
+A child process of Node steps them; `worlds.mjs` builds their joints. Node compiles code while it runs. So the process
+lives as long as this one, and steps a trial world of each kind of mechanism before the first run, which is not timed.
+`python -m engines.browser` installs the packages of npm into the user's cache folder.
 
 All damping of bodies is off: planck has none; p2 removes 10 % and Jolt 5 % of the velocity per second as shipped. No
 body sleeps and none collides. A Pin is a revolute joint or a hinge, a Weld a fixed joint, a Rod a distance joint. A

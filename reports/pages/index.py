@@ -15,6 +15,7 @@ from reports.model.convergence import judged
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
+from reports.pages.at_a_glance import glance_table, sentences
 from reports.pages.findings import findings
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.plots.theme import svg
@@ -146,6 +147,7 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
         for page, material in pages.items()
     ]
     names = {page.name for page in pages}
+    lines = compared_lines(pages)
     text = (
         environment()
         .get_template("index.md")
@@ -156,7 +158,9 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
             symptoms=[
                 (symptom, link(symptom.page, symptom.heading, files)) for symptom in symptoms() if symptom.page in names
             ],
-            compared=compared_table(compared_lines(pages)),
+            compared=compared_table(lines),
+            glance=glance_table(pages, lines, COMPARED_SCENES),
+            absent_engines=sentences()["absent"],
             equal_cost=equal_cost(entries),
             equal_error=equal_error(entries),
             equal_step=equal_step(entries),
