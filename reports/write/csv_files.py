@@ -154,7 +154,9 @@ def as_published(rows: Mapping[Cell, Measurement], before: Published) -> dict[Ce
     published: dict[Cell, Measurement] = {}
     for cell, row in rows.items():
         identity = tuple(cell_text(row, column) for column in IDENTITY_COLUMNS)
-        published[cell] = with_published_numbers(row, before.rows.get(identity, {}), same_machine, _amplified(cell))
+        order = cell.engine.order(mechanism_of(cell.scene))
+        amplified = order.amplified if isinstance(order, ConvergenceOrder) else 1.0
+        published[cell] = with_published_numbers(row, before.rows.get(identity, {}), same_machine, amplified)
     return published
 
 
@@ -183,8 +185,3 @@ def with_published_numbers(
 def within_factor(now: float, before: float, factor: float) -> bool:
     """Whether two times agree within a factor, or are both NaN."""
     return before / factor <= now <= before * factor or (now != now and before != before)
-
-
-def _amplified(cell: Cell) -> float:
-    order = cell.engine.order(mechanism_of(cell.scene))
-    return order.amplified if isinstance(order, ConvergenceOrder) else 1.0

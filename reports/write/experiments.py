@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -40,6 +40,11 @@ class RenderedExperiment:
 
 def render_experiment(failure: Failure, material: Material) -> RenderedExperiment:
     rows = [without_incomparable_errors(cell, material.rows[cell]) for cell in failure.cells if cell in material.rows]
+    experiment = Rows(rows)
+
+    def at(method: str, step: float) -> Any:
+        return experiment.of(method=method, purpose="").near(step)
+
     observations = tuple(failure.observations(material)) if failure.observations else ()
     was_run = rows or any(task in material.answers for task in failure.tasks)
     lines = [[seen.method, seen.setting, seen.outcome] for seen in observations]
@@ -48,18 +53,9 @@ def render_experiment(failure: Failure, material: Material) -> RenderedExperimen
         template(failure.expected).render(**failure.context(material)),
         tables.markdown(["method", "setting", "outcome"], lines, left=3) if observations else "",
         (tables.cell_table(rows, failure.columns) if failure.columns else tables.outcome_grid(rows)) if rows else "",
-        _render_remark(failure, rows, material),
+        template(failure.remark).render(at=at, count=experiment.count, **failure.context(material)),
         unrun=not was_run and bool(failure.cells or failure.tasks),
     )
-
-
-def _render_remark(failure: Failure, rows: Sequence[Measurement], material: Material) -> str:
-    experiment = Rows(rows)
-
-    def at(method: str, step: float) -> Any:
-        return experiment.of(method=method, purpose="").near(step)
-
-    return template(failure.remark).render(at=at, count=experiment.count, **failure.context(material))
 
 
 def without_incomparable_errors(cell: Cell, row: Measurement) -> Measurement:
@@ -79,7 +75,12 @@ def observe(
     answer = material.answers.get(Motion(cell))
     if answer is None or answer.outcome == Outcome.UNSUPPORTED:
         return ()
-    outcome = _describe_finite(trajectory_of(answer), describe) if answer.finished else answer.told
+    outcome = answer.told
+    if answer.finished:
+        run = trajectory_of(answer)
+        count = usable_samples(run)
+        is_finite = count == len(run.t)
+        outcome = describe(run) if is_finite else f"**{Outcome.DIVERGED}**: not finite from {run.t[count]:.4g} s"
     method = f"{cell.engine.name} {displayed_variant(cell.scene, cell.engine)}"
     return (Observation(method, setting, outcome),)
 
@@ -93,10 +94,3 @@ def observe_each(
         for cell in cells
         for line in observe(material, cell, f"step {tables.number(cell.step)} s", partial(describe, cell))
     ]
-
-
-def _describe_finite(run: Trajectory, describe: Callable[[Trajectory], str]) -> str:
-    count = usable_samples(run)
-    if count < len(run.t):
-        return f"**{Outcome.DIVERGED}**: not finite from {run.t[count]:.4g} s"
-    return describe(run)

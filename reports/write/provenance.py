@@ -48,11 +48,7 @@ def still_installed(versions: str) -> bool:
     """
     python, *others = versions.split(", ")
     installed = [f"Python {platform.python_version()}", *(_version(line.split(" ", 1)[0]) for line in others)]
-    return [_minor(python), *others] == [_minor(installed[0]), *installed[1:]]
-
-
-def _minor(python: str) -> str:
-    return ".".join(python.split(".")[:2])
+    return others == installed[1:] and python.split(".")[:2] == installed[0].split(".")[:2]
 
 
 def machine() -> str:

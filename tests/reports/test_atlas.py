@@ -1,4 +1,4 @@
-"""The failure atlas: its columns, predictions against a second method, its file, its page, its command."""
+"""The failure atlas: its columns, predictions, file, page and command."""
 
 from __future__ import annotations
 
@@ -33,7 +33,15 @@ from reports.pages.atlas.columns import (
     tearing_step,
 )
 from reports.pages.atlas.page import atlas_map, edges
-from reports.pages.atlas.subjects import MAPS, StabilityMap, rocking, rod_rate, stiffest_hanging
+from reports.pages.atlas.subjects import (
+    MAPS,
+    StabilityMap,
+    ellipse,
+    near_the_largest_offset,
+    rocking,
+    rod_rate,
+    stiffest_hanging,
+)
 from reports.pages.rendering import render_page
 from reports.plots.looks import SHADES, outcome_colour, shade
 from reports.plots.theme import LIGHT
@@ -43,7 +51,7 @@ from tests.toys import Disc, FailingToy, Toy
 
 SHOWN = tuple(engine for engine in VARIANTS if engine.variant in ("default", "tuned"))
 TOYS = StabilityMap(
-    "toys", "Toys", "rate [rad/s]", lambda rate: Disc(rate=rate), (1.0, 100.0), lambda rate: rate, "the disc"
+    "toys", "Toys", "rate [rad/s]", lambda rate: Disc(rate=rate), (1.0, 100.0), lambda scene: scene.rate, "the disc"
 )
 
 
@@ -63,8 +71,7 @@ def test_every_map_has_scenes_steps_and_a_frequency_over_its_whole_range():
         assert all(np.diff(values) > 0)
         assert len({samples for samples, _ in steps}) <= 11
         for value in (values[0], values[-1]):
-            assert failure_map.make(value).mechanism().bodies
-            assert 0 < failure_map.frequency(value) < math.inf
+            assert 0 < failure_map.frequency(failure_map.make(value)) < math.inf
 
 
 def test_frequencies_of_maps_agree_with_closed_forms_and_fine_grids():
@@ -72,19 +79,18 @@ def test_frequencies_of_maps_agree_with_closed_forms_and_fine_grids():
     assert stiffest_hanging(LinkPendulum(links=1)) == pytest.approx(math.sqrt(1.5 * 9.81), rel=1e-12)
     two = LinkPendulum(links=2, length=0.7)
     assert stiffest_hanging(two) == pytest.approx(math.sqrt((3 + 6 / math.sqrt(7)) * 9.81 / 0.7), rel=1e-12)
-    scene = next(case_map for case_map in MAPS if case_map.name == "offset").make(1e-3)
+    scene = near_the_largest_offset(1e-3)
     angles = np.linspace(0, 2 * math.pi, 200_001)
-    largest = np.abs(scene.shape.rates(angles)[0]).max() * scene.rate  # type: ignore[attr-defined]
-    assert rod_rate(1e-3) == pytest.approx(largest, rel=1e-3)
-    # An ellipse rocks with omega^2 = m g (a^2/b - b) / (I + m b^2): its centre hangs below the middle of curvature.
+    assert rod_rate(scene) == pytest.approx(np.abs(scene.shape.rates(angles)[0]).max() * scene.rate, rel=1e-3)
+    # An ellipse oscillates with omega^2 = m g (a^2/b - b) / (I + m b^2), since its centre is below that of curvature.
     a, b = 0.5, 0.1
     inertia = (a**2 + b**2) / 4
-    assert rocking(b / a) == pytest.approx(math.sqrt(9.81 * (a**2 / b - b) / (inertia + b**2)), rel=1e-3)
+    assert rocking(ellipse(b / a)) == pytest.approx(math.sqrt(9.81 * (a**2 / b - b) / (inertia + b**2)), rel=1e-3)
 
 
 @dataclass
 class Soft:
-    """An engine with a declared softness: gravity opens a gap of compliance g / stiffness; `tied`: at a step of 1 s."""
+    """An engine with a regularisation. With `tied`, `stiffness` is that at a step of 1 s; it rises as 1/dt^2."""
 
     stiffness: float
     compliance: float = 0.1
@@ -96,8 +102,8 @@ class Soft:
         return Regularisation(stiffness, 1.0, self.compliance, (True,) * mechanism.row_count, self.complete)
 
 
-def test_the_tearing_step_is_where_the_weight_opens_the_joint_by_the_bound():
-    """The disc turns about its centre: the pin carries its weight, 10 m/s^2, and needs no other acceleration."""
+def test_at_the_tearing_step_the_weight_opens_the_joint_by_the_bound():
+    """The disc turns about its centre, so the pin carries only the weight: its acceleration is 10 m/s^2."""
     scene, mechanism = Disc(), Disc().mechanism()
     limit = 10 * 0.1 / (TORN * mechanism.length_scale)
 
@@ -105,14 +111,14 @@ def test_the_tearing_step_is_where_the_weight_opens_the_joint_by_the_bound():
         return tearing_step(scene, mechanism, soft, 1e-3, 1e-1)  # type: ignore[arg-type]
 
     assert [gives(Soft(limit * 0.99)), gives(Soft(limit * 1.01))] == [0.0, math.inf]
-    # Gives at a step of 1e-2 s, looked for at 81 steps over two decades.
+    # The tearing step is 1e-2 s; 81 steps over two decades are searched.
     assert gives(Soft(limit * 1e-4, tied=True)) == pytest.approx(1e-2, rel=0.07)
-    # The pin stays where it is, so that an engine without the velocity terms has no error.
+    # The pin does not move, so an engine without the velocity term has no error.
     assert gives(Soft(1.0, 0.0, complete=False)) == math.inf
 
 
 def test_without_the_velocity_term_the_centripetal_acceleration_determines_the_tearing_step():
-    """A bar turns about its pin; without gravity its middle has rate^2 l/2, which rows without the term lack."""
+    """A bar turns about its pin. Without gravity the acceleration of its middle is rate^2 l/2, the velocity term."""
     scene = BarPendulum(gravity=1e-9, angle=0.0, rate=2.0, duration=1.0)
     mechanism = scene.mechanism()
     limit = scene.rate**2 * scene.length / 2 / (TORN * mechanism.length_scale)
@@ -122,7 +128,7 @@ def test_without_the_velocity_term_the_centripetal_acceleration_determines_the_t
 
 
 def drawn_of(outcomes: str, stride: int) -> tuple[str, str]:
-    """(stored letters of a column with these outcomes, letters as they are drawn)."""
+    """(stored letters of a column with these outcomes, letters that are drawn)."""
     column = MapColumn(TOYS, 1.0, Disc(), Toy(), tuple((10, every) for every in range(1, len(outcomes) + 1)))
     run = lambda cells: {cell: SimpleNamespace(outcome=outcomes[cell.every - 1]) for cell in cells}  # noqa: E731
     rows: Any = run_columns([column], run, stride)[0]  # type: ignore[arg-type]
@@ -131,16 +137,16 @@ def drawn_of(outcomes: str, stride: int) -> tuple[str, str]:
     return stored, "".join(outcome.letter for outcome in line(1.0, stored).outcome_of_steps)
 
 
-def test_borders_are_as_sharp_as_if_every_point_had_been_run():
+def test_bisection_finds_each_border_of_regions_that_are_wider_than_the_stride():
     for border in range(1, 21):
         outcomes = "T" * border + "S" * 7 + "·" * (27 - border)
         stored, displayed = drawn_of(outcomes, 4)
         assert displayed == outcomes
         assert NOT_RUN in stored
         assert drawn_of(outcomes, 1) == (outcomes, outcomes)
-    # Only a region narrower than the stride may be missed.
-    assert drawn_of("····S····", 4) == ("·=··S··=·", "····S····")  # one that is run
-    assert drawn_of("··S······", 4) == ("·===·===·", "·········")  # one between two that are alike
+    # A narrower region is found only if one of its steps is run.
+    assert drawn_of("····S····", 4) == ("·=··S··=·", "····S····")
+    assert drawn_of("··S······", 4) == ("·===·===·", "·········")
     assert drawn_of("SS", 4) == ("SS", "SS")
     assert drawn_of("S", 4) == ("S", "S")
 
@@ -172,7 +178,7 @@ def test_the_file_is_read_as_it_was_written(tmp_path):
         read(tmp_path / "wrong.csv")
 
 
-def test_regions_lie_where_the_cells_of_their_outcome_are():
+def test_each_cell_is_painted_in_the_colour_of_its_region():
     figure = atlas_map(TOYS, LINES[:2])
     [panel] = [axes for axes in figure.axes if axes.get_visible()]
     across, up = edges([1.0, 10.0], False), edges([0.0125, 0.025, 0.05, 0.1], False)
@@ -185,12 +191,12 @@ def test_regions_lie_where_the_cells_of_their_outcome_are():
     assert edges([1.0, 2.0, 3.0], True).tolist() == [0.5, 1.5, 2.5, 3.5]
 
 
-def test_the_largest_step_is_below_its_bound_at_every_value_and_smaller_step():
+def test_at_the_largest_step_and_below_all_errors_are_within_the_bound():
     inf = float("inf")
     assert page.largest_step([line(1.0, "·S··"), line(2.0, "TTS·")], inf) == "12 ms"
     assert page.largest_step([line(1.0, "·S··")], inf) == "25 ms"
     assert page.largest_step([line(1.0, "···T")], inf) == "-"
-    # Errors of 0.1 and 0.01 rad, a step that was not run and counts as the step before it, and 0.001 rad.
+    # The errors are 0.1 and 0.01 rad, that of a step that was not run, which counts as 0.01 rad, and 0.001 rad.
     falling_line = replace(line(1.0, "··=·"), errors=(-1.0, -2.0, float("nan"), -3.0))
     largest = [page.largest_step([falling_line], bound) for bound in (inf, 0.011, 0.01, 1e-4)]
     assert largest == ["100 ms", "50 ms", "12 ms", "-"]

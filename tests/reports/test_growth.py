@@ -1,4 +1,4 @@
-"""Growth laws, times, steps and costs of cells by hand, and the page of scaling, whose chain linear algebra knows."""
+"""Steps and costs of cells, fits of power laws, and the page of scaling with its banded solver."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from tests.rows import row_of, table
 from tests.toys import Disc, Plain, Toy
 
 
-def test_the_forces_of_the_long_chain_agree_with_linear_algebra():
+def test_the_banded_solver_and_a_dense_solver_give_equal_forces():
     long, plain = LongPendulum(7, tip=3.0).mechanism(), LinkPendulum(7, tip=3.0).mechanism()
     assert long.degrees_of_freedom() == plain.degrees_of_freedom()
     truth = LongPendulum(7, tip=3.0)
     angle, rate = truth.states([0.2, 0.5])
     pose, _, acceleration = truth.chain.placement(angle, rate, truth.chain.accelerations(angle, rate))
-    # Forces of up to 1e3 N; the plain mechanism solves 14 rows of condition 1e3 for them.
+    # Forces are up to 1e3 N, and the matrix of the dense solver has a condition number of 1e3.
     assert long.reaction(pose, acceleration) == pytest.approx(plain.reaction(pose, acceleration), abs=1e-8)
     assert long.reaction(pose, acceleration) == pytest.approx(truth.motion([0.2, 0.5]).reaction, abs=1e-8)
 
 
-def test_the_reference_as_a_method_is_of_order_four():
+def test_the_banded_solver_with_rk4_has_order_four():
     scene = LongPendulum(5)
     errors = []
     for steps in (100, 200):
@@ -44,7 +44,7 @@ def test_the_reference_as_a_method_is_of_order_four():
     assert math.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
 
 
-def test_a_power_law_is_found_at_the_large_end_only():
+def test_an_exponent_is_fitted_to_the_largest_sizes():
     sizes = [1, 10, 100, 200, 400]
     assert exponent(sizes, [0.5 + 1e-3 * n**2.5 for n in sizes])[0] == pytest.approx(2.5, abs=0.05)
     assert exponent(sizes, [n**2 if n < 100 else 1e2 * n for n in sizes]) == (pytest.approx(1.0), 100, 400)
@@ -60,7 +60,7 @@ class ToyChain(Disc):
     links: int = 1
 
 
-def test_a_point_of_a_series_is_its_own_cell():
+def test_each_point_of_a_series_has_the_numbers_of_its_cell():
     def cell(links, duration=0.2, every=1, variant="tuned"):
         return Cell(ToyChain(links=links, duration=duration), Toy(variant), every, "growth", 10)
 
@@ -75,16 +75,16 @@ def test_a_point_of_a_series_is_its_own_cell():
     tuned, other = series_of(rows, 0.2)
     assert (tuned.method, other.method) == ("toy tuned", "toy other")
     assert [p.size for p in tuned.points] == [10, 50, 100, 1000, 2000]
-    # A step is 0.02 s, or 1e-3 s, or half of that: CPU seconds of a simulated second times the step.
+    # The CPU time of a step is the CPU time per simulated second times the step: 0.02 s, 1e-3 s or 5e-4 s.
     assert [p.step for p in tuned.points] == pytest.approx([6e-5, math.nan, 1.4e-4, 5e-6, 5.5e-6], nan_ok=True)
-    # A row that was run for its cost alone has no error, and neither has a failed row.
+    # Neither a row of a short run, which measures only the cost, nor a failed row has an error.
     assert [p.error for p in tuned.points] == pytest.approx([1.1e-3, math.nan, 1.3e-3, math.nan, math.nan], nan_ok=True)
     assert [p.outcome for p in tuned.points] == ["finished", "torn", "finished", "finished", "saturated"]
     assert (other.points[0].step, other.points[0].error) == (pytest.approx(3.4e-4), 1.9e-3)
 
 
 class ToyClock:
-    """A clock of process time that advances by given amounts."""
+    """A clock that replaces the process time."""
 
     def __init__(self, monkeypatch):
         self.now = 0.0
@@ -93,7 +93,7 @@ class ToyClock:
 
 @dataclass(frozen=True)
 class SlowToy(Plain):
-    """An engine whose builds and steps take the times in two lists."""
+    """An engine whose builds and runs take the times in two lists [s]."""
 
     clock: ToyClock
     builds: list
@@ -112,7 +112,7 @@ class SlowToy(Plain):
         return run
 
 
-def test_a_cost_is_the_least_of_several_runs_the_first_left_out_and_a_long_run_is_not_repeated(monkeypatch):
+def test_a_cost_is_the_least_of_several_runs_and_a_long_run_is_not_repeated(monkeypatch):
     clock = ToyClock(monkeypatch)
     engine = SlowToy(clock, [2e-3, 1e-3, 1.5e-3, 1.5e-3, 4.5e-3], [2e-3, 1e-3, 1.5e-3, 1.5e-3, 2.5e-3])
     result = repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3)
@@ -145,7 +145,7 @@ def test_a_step_must_divide_the_sampling_to_ten_digits():
 
 @dataclass(frozen=True)
 class Costly(Toy):
-    """An engine with a declared cost of a step [s]."""
+    """An engine that declares the cost of a step [s]."""
 
     cost: float = 3e-3
 
@@ -153,7 +153,7 @@ class Costly(Toy):
         return self.cost
 
 
-def test_a_cells_step_is_the_duration_over_its_samples_and_steps_and_its_cost_that_of_all_steps():
+def test_the_step_and_the_cost_of_a_cell_follow_from_its_number_of_steps():
     assert Cell(Disc(duration=0.3), Toy(), 7).step == pytest.approx(0.3 / 30 / 7)
     assert Cell(Disc(duration=0.3), Toy(), 7, samples=11).step == pytest.approx(0.3 / 11 / 7)
     assert Cell(Disc(), Toy("tuned"), 3).label == "disc / toy tuned / 3.3e-03 s"
@@ -161,14 +161,13 @@ def test_a_cells_step_is_the_duration_over_its_samples_and_steps_and_its_cost_th
     assert estimated_cost(Cell(Disc(), Costly(), 7, samples=5)) == pytest.approx(5 * 7 * 3e-3)
 
 
-def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
+def test_a_grid_has_each_step_below_the_cost_limit_and_always_the_largest_step():
     assert (QUICK, FULL) == ((1, 3, 10), (1, 3, 10, 30, 100, 300))
-    # 20 samples at 0.2 ms a step: 0.8 s are 200 steps a sample.
+    # With 20 samples and 0.2 ms for a step, the limit of 0.8 s allows 200 steps between samples.
     cells = sweep_cells((Disc(),), (Costly(cost=2e-4),), FULL)
     assert [cell.every for cell in cells] == [1, 3, 10, 30, 100]
     assert estimated_cost(cells[-1]) <= COST_LIMIT < estimated_cost(Cell(Disc(), Costly(cost=2e-4), 300))
-    dear = sweep_cells((Disc(),), (Costly(cost=10.0),), FULL)
-    assert [cell.every for cell in dear] == [1]
+    assert [cell.every for cell in sweep_cells((Disc(),), (Costly(cost=10.0),), FULL)] == [1]
 
 
 @pytest.mark.parametrize(
@@ -181,12 +180,12 @@ def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
         (NotDeclared("?"), 300),
     ],
 )
-def test_steps_end_where_the_promised_order_has_divided_the_error_by_1e8(order, finest, monkeypatch):
+def test_a_grid_ends_at_the_step_at_which_the_declared_order_has_divided_the_error_by_1e8(order, finest, monkeypatch):
     monkeypatch.setattr(Toy, "order", lambda toy, mechanism: order)
     assert max(cell.every for cell in sweep_cells((Disc(),), (Toy(f"of {order}"),), FULL)) == finest
 
 
-def test_a_cost_table_is_in_microseconds_and_a_crossing_is_where_the_first_becomes_the_dearer():
+def test_a_cost_table_is_in_microseconds_and_a_crossing_is_where_the_first_method_becomes_more_expensive():
     def line(*costs):
         return MethodSeries("e", "v", tuple(SizePoint(10**n, cost, 0.1, "torn") for n, cost in enumerate(costs)))
 

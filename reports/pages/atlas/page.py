@@ -258,7 +258,7 @@ def _draw_predictions(panel: Axes, columns: Sequence[StoredColumn], stability_ma
         panel.plot(x, y, color=getattr(LIGHT, role), linestyle=dashes, linewidth=1.8, clip_on=True)
         names.add(name)
 
-    fastest = np.array([2 / stability_map.frequency(value) for value in values])
+    fastest = np.array([2 / stability_map.frequency(stability_map.make(value)) for value in values])
     if np.any((fastest > low) & (fastest < high)):
         line("fastest", values, fastest)
     # If every step or no step tears a joint, the curve leaves the panel at the bottom or at the top.

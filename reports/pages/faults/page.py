@@ -154,12 +154,12 @@ def predicted_across(offset: Any) -> Any:
     return -square / (1 + 2 * square) * (1 + square)
 
 
-def draw_offsets(measured: np.ndarray) -> Figure:
+def draw_offsets(across: np.ndarray) -> Figure:
     with drawing(3.4, width=6.4) as figure:
         axes = figure.subplots()
         fine = np.geomspace(OFFSETS.offsets[0], OFFSETS.offsets[-1], 200)
         axes.loglog(fine, -predicted_across(fine), color=LIGHT.first, linewidth=2, label="the wrong formula")
-        axes.loglog(OFFSETS.offsets, -measured, "o", color=LIGHT.ink, markersize=5, label="pymunk, measured")
+        axes.loglog(OFFSETS.offsets, -across, "o", color=LIGHT.ink, markersize=5, label="pymunk, measured")
         axes.set_xlabel("anchor's distance from the centre of mass [m]")
         axes.set_ylabel("velocity across the groove\nafter a step, should be 0 [m/s]")
         style_axes(axes)

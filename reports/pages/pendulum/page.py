@@ -17,6 +17,7 @@ from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, SpinningRing, TenLinks
 from reports.model.page import FEATURED, Failure, Material, Observation
 from reports.model.tasks import Task, Values
+from reports.pages.atlas.subjects import stiffest_hanging
 from reports.pages.common import MAIN_METHODS, PUBLIC, cells, described, scene_page, sweeps
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
@@ -93,16 +94,11 @@ def beyond_the_horizon(material: Material) -> dict[str, Any]:
     return {"worst": np.max([row.angle for row in rows]) if rows else UNMEASURED}
 
 
-def fastest(scene: LinkPendulum) -> float:
-    """The highest frequency of small oscillations about the hanging equilibrium [rad/s]."""
-    return float(scene.chain.modes()[0][-1])
-
-
 def opened_joints(material: Material) -> dict[str, Any]:
     """`opened`: the largest gap in pymunk, in lengths of a link. `fastest`: the chain's highest frequency [rad/s]."""
     rows = material.of(cell for cell in LARGE_STEPS if cell.engine in (pymunk.DEFAULT, pymunk.TUNED))
     opened = np.max([row.gap for row in rows]) / HundredLinks().length if rows else UNMEASURED
-    return {"opened": opened, "fastest": fastest(HundredLinks())}
+    return {"opened": opened, "fastest": stiffest_hanging(HundredLinks())}
 
 
 PERIOD = PointPendulum().pendulum.period  # s
@@ -176,7 +172,7 @@ PAGE = scene_page(
         Failure("A hundred links at large steps", cells=LARGE_STEPS, context=opened_joints),
         period=f"{PERIOD:.7f}",
         swings=f"{PointPendulum().duration / PERIOD:.1f}",
-        oscillates=number(fastest(tip(1e4))),
+        oscillates=number(stiffest_hanging(tip(1e4))),
     ),
     featured=lambda row: row.variant in FEATURED_VARIANTS,
     figures=figures,

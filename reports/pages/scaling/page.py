@@ -259,12 +259,11 @@ def error_table(all_series: tuple[MethodSeries, ...]) -> str:
 
 
 def _table(all_series: Iterable[MethodSeries], sizes: Sequence[int], value: Callable[[SizePoint], float]) -> str:
-    body = [[series.method, *(_words(series.at(size), value) for size in sizes)] for series in all_series]
+    def cell_text(point: Any) -> str:
+        return "" if not point else f"**{point.outcome}**" if math.isnan(value(point)) else number(value(point))
+
+    body = [[series.method, *(cell_text(series.at(size)) for size in sizes)] for series in all_series]
     return markdown(["method", *map(str, sizes)], body)
-
-
-def _words(point: Any, value: Callable[[SizePoint], float]) -> str:
-    return "" if not point else f"**{point.outcome}**" if math.isnan(value(point)) else number(value(point))
 
 
 def context(material: Material) -> Mapping[str, Any]:

@@ -90,7 +90,8 @@ def table(material: Material, cases: tuple[PastedCase, ...]) -> str:
     body = []
     for case in cases:
         rows = [material.rows.get(cell(case, engine)) for engine in case.engines]
-        spreads = [spread_words(material, task) for task in case.fresh]
+        texts = [[number(value, infinite="gave up") for value in spread(material, task)] for task in case.fresh]
+        spreads = [DASH if median == DASH else f"{median} ({least} to {most})" for median, least, most in texts]
         if case.before is None:
             spreads.insert(0, "*no such joint*")
         example = " → ".join(error_words(row, case.quantity) for row in rows)
@@ -108,12 +109,6 @@ def spread(material: Material, task: Fresh) -> list[float]:
         return [UNMEASURED] * 3
     error = answer.array("error")
     return [float(np.median(error)), float(error.min()), float(error.max())]
-
-
-def spread_words(material: Material, task: Fresh) -> str:
-    """The `spread` as '1e-3 (1e-5 to 0.2)'; a dash if it is unmeasured."""
-    median, least, largest = (number(value, infinite="gave up") for value in spread(material, task))
-    return DASH if median == DASH else f"{median} ({least} to {largest})"
 
 
 def before_and_after(material: Material) -> str:
