@@ -1,4 +1,4 @@
-"""Findings, symptoms and guides from the committed rows: a claim that rows contradict or lack is left out."""
+"""Findings, symptoms and guides from the committed rows."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ from tests.rows import falling
 
 TAUGHT = tuple(page for page in PAGES if page.name in ("four_bar", "pendulum", "person", "skate", "rolling"))
 FAULTS, VERSIONS = (next(page for page in PAGES if page.name == name) for name in ("faults", "versions"))
-OF_RELEASES = {"faults", "releases", "trees"}  # the first from answers, the others from the file of releases
+OF_RELEASES = {"faults", "releases", "trees"}  # findings without rows of scenes
 
 
 def changed(change):
-    """The material of the pages with each row replaced by `change(row)`; None removes the row."""
+    """The material of the pages, with `change(row)` in place of each row; None removes the row."""
     pages = {
         FAULTS: Material({}, {task: answer_to(task) for task in (OFFSETS, *SCRIPTS.values())}),
         VERSIONS: Material({}),
@@ -66,17 +66,17 @@ def sources() -> Sources:
 
 
 def times(factor, step, name, row):
-    """The row with an error multiplied, at one step [s] or at all."""
+    """The row with an error multiplied by a factor, if it has this step [s] or if no step is given."""
     return replace(row, **{name: factor * getattr(row, name)}) if step is None or is_step(row.step, step) else row
 
 
 def falls(name, row):
-    """The row with its error set to its step."""
+    """The row with an error equal to its step."""
     return replace(row, **{name: row.step})
 
 
 def changes(names):
-    """Possible errors in the rows of one method."""
+    """Functions that change the rows of one method."""
     yield lambda rows: rows[:1]
     for name in names:
         yield partial(map, partial(falls, name))
@@ -100,23 +100,23 @@ def test_every_claim_of_a_finding_can_be_contradicted_by_the_rows_of_one_method(
     assert not unharmed
 
 
-def test_without_rows_findings_are_dropped_and_those_of_other_sources_stay():
-    rest = findings(changed(lambda row: None if row.scene == "free_four_bar" else row))
-    assert {item.name for item in rest} == set(FINDING_PLANS) - {"spring", "start", "exact"}
-    assert all(UNKNOWN_MARK not in item.title + item.text for item in rest)
+def test_a_finding_without_its_rows_is_left_out():
+    sound = findings(changed(lambda row: None if row.scene == "free_four_bar" else row))
+    assert {item.name for item in sound} == set(FINDING_PLANS) - {"spring", "start", "exact"}
+    assert all(UNKNOWN_MARK not in item.title + item.text for item in sound)
     assert findings({}) == []
     assert {item.name for item in findings({VERSIONS: Material({})})} == OF_RELEASES - {"faults"}
     failed = findings(changed(lambda row: replace(row, outcome=Outcome.TORN)))
-    # The energy error of a failed run may be used: a pendulum with an angle error of a radian has lost energy too.
+    # The finding "energy" uses failed runs too.
     assert {item.name for item in failed} - OF_RELEASES <= {"energy"}
 
 
-def test_findings_that_the_releases_contradict_are_dropped(monkeypatch):
+def test_a_finding_that_the_releases_contradict_is_left_out(monkeypatch):
     total = released()
 
     def entries(chosen, **changes):
-        mended = tuple(replace(entry, **changes) if chosen(entry) else entry for entry in total.entries)
-        monkeypatch.setattr(module, "released", lambda: replace(total, entries=mended))
+        replaced = tuple(replace(entry, **changes) if chosen(entry) else entry for entry in total.entries)
+        monkeypatch.setattr(module, "released", lambda: replace(total, entries=replaced))
 
     entries(lambda entry: (entry.version, entry.variant) == ("3.7.0", "tuned"), error=4e-3)
     assert not finding("releases", Sources(Rows())).is_sound
@@ -141,8 +141,8 @@ def test_a_findings_picture_has_its_points_and_its_lines_differ_without_colours(
     assert len({line.get_color() for line in axes.lines}) == 1  # one engine, one colour
     with pytest.raises(ValueError, match="5 lines"):
         draw([*steps, PlottedLine("e", "pymunk", ())], STEP_AXIS, "error")
-    dear = of_rows("a", Rows(falling("pymunk a", (1e-2, 1e-3))), "angle", CPU_AXIS)
-    assert [x for x, _ in dear.points] == pytest.approx([1.0, 10.0])  # ms a simulated second: `falling` costs step^-1
+    against_cpu = of_rows("a", Rows(falling("pymunk a", (1e-2, 1e-3))), "angle", CPU_AXIS)
+    assert [x for x, _ in against_cpu.points] == pytest.approx([1.0, 10.0])  # ms per simulated second
 
 
 def test_every_symptom_has_a_link_to_an_existing_section():

@@ -1,4 +1,4 @@
-"""What commands print in their three forms, what they leave out and say so, and the pages that a small store gives."""
+"""The three forms of a command's output, cells that are left out, and the pages of a small store."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def printed(capsys, **form) -> str:
     return capsys.readouterr().out
 
 
-def test_one_table_is_text_or_markdown_or_a_document_and_progress_goes_elsewhere(capsys):
+def test_a_table_is_text_markdown_or_json_and_progress_is_only_in_text(capsys):
     text = printed(capsys)
     assert "on the way" in text
     assert re.search(r"^disc \| a +│ +1\.2e-4 +│ +10$", text, re.MULTILINE)
@@ -43,7 +43,7 @@ def test_one_table_is_text_or_markdown_or_a_document_and_progress_goes_elsewhere
     assert (document["sentences"], document["status"], document["message"]) == (["Two of them."], 0, "")
 
 
-def test_a_document_tells_what_is_broken_and_two_forms_at_once_are_refused(capsys):
+def test_a_document_has_the_error_message_and_two_forms_at_once_are_refused(capsys):
     with pytest.raises(Broken), telling(140, True, False):
         raise Broken("the second is worse")
     document = json.loads(capsys.readouterr().out)
@@ -53,7 +53,7 @@ def test_a_document_tells_what_is_broken_and_two_forms_at_once_are_refused(capsy
 
 
 class Slow(Lagrange):
-    """By its own formula a step takes a second."""
+    """An engine that declares a cost of 1 s for a step."""
 
     name = "slow"
 
@@ -61,19 +61,19 @@ class Slow(Lagrange):
         return 1.0
 
 
-def test_a_slow_engine_that_is_named_runs_its_shortest_step_and_the_others_are_told_with_the_reason():
+def test_a_slow_engine_that_is_named_runs_the_largest_step_and_other_steps_are_reported_with_the_reason():
     scene, slow = Disc(), Slow("rk4", "projection")
     pages = with_scenes((), (scene,), (slow,))
     assert choose_cells([scene], [slow], pages, full=False) == ()
     named = choose_cells([scene], [slow], pages, full=False, named=True)
     assert [cell.every for cell in named] == [QUICK[0]]
-    rest = left_out([scene], [slow], pages, False, named)
-    assert [cell.every for cell, _ in rest] == list(QUICK[1:])
-    for cell, reason in rest:
+    omitted = left_out([scene], [slow], pages, False, named)
+    assert [cell.every for cell, _ in omitted] == list(QUICK[1:])
+    for cell, reason in omitted:
         assert re.fullmatch(rf"step_cost says {scene.samples * cell.every} s, and a run may take 0\.8 s", reason)
 
 
-def test_a_small_store_gives_the_pages_that_it_has_rows_of_and_no_link_leads_nowhere(tmp_path, capfd):
+def test_a_small_store_gives_only_pages_with_rows_and_no_dead_links(tmp_path, capfd):
     options = ["--results", str(tmp_path)]
     assert invoke(["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--every", "1", *options]) == 0
     assert invoke(["report", *options]) == 0
@@ -89,7 +89,7 @@ def test_a_small_store_gives_the_pages_that_it_has_rows_of_and_no_link_leads_now
     assert (row["method"] if "method" in row else row["engine"], row["every"]) == ("pymunk", 1)
 
 
-def test_a_link_to_a_page_that_is_not_there_becomes_its_words():
+def test_a_link_to_a_missing_page_is_replaced_by_its_text():
     text = "see [the\npage](skate.md#a), [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"
     reported = without_dead_links(text, lambda name: name == "wheels.md")
     assert reported == "see the\npage, [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"

@@ -51,7 +51,7 @@ def row(scene, engine, every: int, samples: int | None = None) -> Measurement:
     return measure(Cell(scene, engine, every, "failure", samples), repeat=False)
 
 
-# --- the truth of scenes made for failure ---
+# --- reference motions of the scenes of experiments ---
 
 
 def test_an_impossible_scene_is_refused():
@@ -60,7 +60,7 @@ def test_an_impossible_scene_is_refused():
         ("links is 2", lambda: SpinningRing(links=2)),
         ("skate_on_slope", lambda: SkateOnSlope().motion([-1.0])),
         ("2 points and 3 angles", lambda: HeldBySkates(points=two)),
-        # Two skates never hold a body, and three do not whose axles all go through one point: it turns about it.
+        # Two skates never fix a body. Neither do three skates whose axles meet in one point, about which it turns.
         ("leave 1 freedom", lambda: HeldBySkates(points=two, angles=(0.5, -0.5))),
         ("leave 1 freedom", lambda: HeldBySkates(points=(*two, (0.0, 0.4)), angles=(math.pi / 2, math.pi / 2, 0.0))),
     ):
@@ -68,13 +68,13 @@ def test_an_impossible_scene_is_refused():
             build()
 
 
-def test_a_square_reaches_its_corner_at_the_time_of_energy_conservation_and_methods_stop_there():
+def test_a_square_reaches_its_corner_at_the_time_that_energy_determines_and_methods_stop_there():
     scene = SquareOnCatenaries()
-    # A stage of the last step lies beyond the corner: that step is taken shorter.
+    # The last step is shortened, because one of its stages would be beyond the corner.
     corner = scene.motion([scene.corner * (1 - 1e-9)])
     assert corner.pose[0, 0, 2] == pytest.approx(math.pi / 4, abs=1e-8)
     np.testing.assert_allclose(corner.pose[0, 0, 1], 0.0, atol=1e-12)
-    assert abs(corner.reaction[0, 0]) < corner.reaction[0, 1]  # what `comparable_until` of the scene relies on
+    assert abs(corner.reaction[0, 0]) < corner.reaction[0, 1]  # `comparable_until` of the scene assumes this
     with pytest.raises(ValueError, match="can't turn to"):
         scene.motion([scene.corner * 1.01])
     for engine in (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED, Lagrange("rk4", "projection")):
@@ -91,29 +91,29 @@ def test_errors_of_the_gears_leave_out_undetermined_forces():
 
 def test_round_trip_and_rate_of_centrodes_are_exact_for_the_right_curves_only():
     _, curves = centrodes.exact()
-    # Splines of degree 7 at 400 points over 2 rad: the error of the curves is 1e-10, that of the motion below 1e-8.
+    # With splines of degree 7 at 400 points over 2 rad, the error of the curves is 1e-10, that of the motion 1e-8.
     assert max(centrodes.round_trip(curves), centrodes.agreement(curves)) < 1e-8
     wrong = replace(curves, body=curves.body * 1.001)
     assert min(centrodes.round_trip(wrong), centrodes.agreement(wrong)) > 1e-5
 
 
-# --- what engines do there ---
+# --- engines in these scenes ---
 
 
 SKATE = (Path(skate.__file__).parent / "page.md").read_text(encoding="utf-8")
 
 
-# The order of each program at its step of 1e-3 s: second and fourth, as a power of the step.
+# The programs have orders 2 and 4. With a step of 1e-3 s, their errors are about these bounds.
 @pytest.mark.parametrize(
     ("program", "bound"), list(zip(re.findall(r"```python\n(.*?)```", SKATE, re.DOTALL), (1e-6, 1e-10), strict=True))
 )
 def test_programs_of_the_skate_have_the_accuracy_that_the_page_states(program, bound):
     names: dict = {}
     exec(compile(program, "skate.md", "exec"), names)
-    pose = names["data"].qpos + np.array([0.5, 0.0, 0.0])  # coordinates count from where the body starts
+    pose = names["data"].qpos + np.array([0.5, 0.0, 0.0])  # coordinates are relative to the initial position
     error = np.abs(pose - ChaplyginSleigh().motion([3.0]).pose[0, 0]).max()
-    assert error < 3 * bound  # of the 3 s and 2.6 J / 2 kg of the motion
-    assert error > bound / 100 or bound == 1e-10  # the exact one ends in rounding
+    assert error < 3 * bound
+    assert error > bound / 100 or bound == 1e-10  # the program of order 4 reaches rounding
 
 
 def test_a_comparison_ends_with_ideal_rolling_and_ignores_a_later_reset():
@@ -134,11 +134,11 @@ def test_a_contact_is_absent_at_samples_without_a_normal_force():
     cell = Cell(RollingOnCircle(), mujoco.EXTENDED, 10)
     truth = cell.scene.motion(np.linspace(0, cell.scene.comparable_until, 11))
     assert rolling.absent_contact(cell, truth) == 0.0
-    reaction = truth.reaction * (np.arange(11) % 2)[:, None]  # of the ten samples after the start five carry something
+    reaction = truth.reaction * (np.arange(11) % 2)[:, None]  # zero at five of the ten samples after t = 0
     assert rolling.absent_contact(cell, replace(truth, reaction=reaction)) == 0.5
 
 
-# --- what observations and remarks read ---
+# --- observations and claims ---
 
 
 @pytest.mark.parametrize("page", [four_bar, slider_crank, n_four_bar], ids=lambda page: page.PAGE.name)
@@ -153,7 +153,7 @@ def test_observations_on_skates_and_wheels_agree_with_the_reference():
     scene = SleighBackwards()
     t = np.linspace(0, scene.duration, scene.samples + 1)
     rate = scene.motion(t).twist[:, 0, 2]
-    # The linear motion neglects the square of 0.04 over the largest rate 1.6.
+    # The linearised motion has a relative error of (0.04 / 1.6)^2: 0.04 is in LINEAR_GROWTH, 1.6 is the largest rate.
     assert skate.growth_of(t, rate) == pytest.approx(scene.growth_rate(), rel=1e-3)
     assert math.isnan(skate.growth_of(t, np.full_like(t, 1e-3)))
     lines = {seen.method: seen.outcome for seen in skate.counting(Material({}))}
@@ -191,7 +191,7 @@ FAIL = (
 )
 
 
-def test_a_claim_that_rows_contradict_or_lack_is_reported():
+def test_a_claim_that_rows_contradict_or_that_lacks_rows_is_reported():
     cells = [replace(SETS, every=every) for every in range(1, 7)]
     failure = Failure("Falls", cells=tuple(cells), claims=(*HOLD, *FAIL), context=lambda material: {"times": 4e-2})
     page = replace(four_bar.PAGE, name="toy", failures=(failure,))
@@ -199,7 +199,7 @@ def test_a_claim_that_rows_contradict_or_lack_is_reported():
     assert wrong == [f"toy, Falls: {claim}" for claim in FAIL]
 
 
-def test_a_known_deviation_of_rounding_is_read_as_such():
+def test_known_deviations_are_read_with_their_kind():
     expected = common.deviations("n_four_bar")
     assert expected["n_four_bar_2", "lagrange rk4 projection", "error"].rounding
     assert not expected["n_four_bar_2", "mujoco tuned", "reaction"].rounding

@@ -1,4 +1,4 @@
-"""Every cheapest setting on a page is a program that runs as it is printed and gives the error that the row says."""
+"""The programs of recommended settings run as they are printed, and have the errors of the rows."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_a_program_has_the_motion_of_its_method_and_at_most_the_error_of_its_row
         body, *end = re.findall(r"^(.*): x = (\S+) m, y = (\S+) m, angle = (\S+) rad$", message)[0]
         reported = re.findall(rf"^# Exact: {body}: x = (\S+) m, y = (\S+) m, angle = (\S+) rad$", item.text, re.M)[0]
         index = scene.mechanism().body_index(body)
-        # Programs have twelve digits of the scene's numbers; a motion of some seconds makes that a few 1e-11.
+        # Programs have the scene's numbers with twelve digits; in some seconds the difference grows to a few 1e-11.
         assert np.asarray(names["end"]) == pytest.approx(trajectory.pose[-1, index], abs=1e-9), item.file
         assert [float(value) for value in end] == pytest.approx(names["end"], abs=1e-10)
         exact = scene.motion([duration]).pose[0, index]

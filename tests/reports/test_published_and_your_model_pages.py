@@ -1,4 +1,4 @@
-"""Published problems and a user's own model: numbers agree with an independent computation or with the check."""
+"""The pages of published problems and of a user's own model: numbers agree with independent computations."""
 
 from __future__ import annotations
 
@@ -36,7 +36,6 @@ from tests.reports.models_of_others import models, spaces, unpacked
 
 @pytest.fixture(scope="module")
 def answers():
-    """The answers of RK4 without an engine and of three methods."""
     methods = (DEFAULT, TUNED, PYMUNK)
     tasks = (DirectRK4(), *map(Acrobot, methods), *map(Newton, methods))
     return {task: answered(task) for task in tasks}
@@ -47,16 +46,16 @@ def test_the_start_of_acrobot_reproduces_the_first_published_drift():
     assert rk4_drift(ACROBOT_START + 1e-3, ACROBOT_STEPS[0]) != pytest.approx(PUBLISHED[0], rel=1e-3)
 
 
-def test_the_second_published_number_follows_and_the_third_is_rounding(answers):
+def test_rk4_predicts_the_second_published_number_and_its_states_in_32_bits_the_third(answers):
     hand = answers[DirectRK4()]
     assert hand.array("drift")[1] == pytest.approx(PUBLISHED[1], rel=0.1)
     assert hand.array("drift")[2] < PUBLISHED[2] / 10
-    # The rounding of states in 32 bits is 2^-24 = 6e-8; relative to the first energy it is smaller.
+    # The rounding of states in 32 bits is 2^-24 = 6e-8; relative to the initial energy it is smaller.
     assert PUBLISHED[2] / 3 < hand.array("rounded")[2] < 3 * PUBLISHED[2]
 
 
-def test_mujocos_rk4_is_gymnasiums_method(answers):
-    """Its hinges are the same two angles; a step of 0.2 s is sampled at every step, the smaller ones at some."""
+def test_mujocos_rk4_has_the_drift_of_gymnasiums_method(answers):
+    """Only the step of 0.2 s is sampled at every step, so only its drift agrees closely."""
     ours, theirs = answers[DirectRK4()].array("drift"), answers[Acrobot(TUNED)].array("drift")
     assert theirs[0] == pytest.approx(ours[0], rel=1e-9)
     np.testing.assert_allclose(theirs, ours, rtol=1e-2)
@@ -72,7 +71,7 @@ def test_the_rocker_by_freudensteins_equation_agrees_with_the_scene():
 def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none():
     reported = answered(Newton(TRUTH))
     assert all(largest_step(reported, name) == max(NEWTON_STEPS) for name in NEWTON_BOUNDS)
-    # The cosine alone causes this error of the period: a swing by 0.05 rad is slower by 0.05^2/16 than a small one.
+    # The cosine causes this error: a pendulum that swings by 0.05 rad is slower by 0.05^2/16 than a cosine.
     assert reported.array("period") == pytest.approx(1.1e-3, rel=0.05)
     wrong = np.degrees(freudenstein(np.zeros(1)) - NEWTON_FOUR_BAR.motion([0.0]).pose[0, 2, 2] + 0.01)
     assert np.abs(wrong) > NEWTON_BOUNDS["angle"]
@@ -85,7 +84,7 @@ def test_the_bounds_distinguish_default_and_tuned(answers):
     assert largest_step(replace(loose, values={"gap": np.full(len(NEWTON_STEPS), 1.0)}), "gap") is None
 
 
-def test_the_page_has_a_line_for_each_method_and_leaves_out_what_was_not_run(answers):
+def test_the_page_has_a_line_for_each_method_that_was_run(answers):
     missing = {Acrobot(PYMUNK): replace(answers[Acrobot(PYMUNK)], values={"drift": np.full(3, np.inf)})}
     text = render_page(PAGE, Material({}, {**answers, **missing}), "the command")["published.md"]
     assert "| published | 3.55e-3 | 4.19e-6 | 1.52e-8 |" in text
@@ -97,7 +96,7 @@ def test_the_page_has_a_line_for_each_method_and_leaves_out_what_was_not_run(ans
 
 @pytest.fixture(scope="module")
 def checks():
-    """Checks of shorter motions, which are quick, under the names of the page's checks."""
+    """The checks of the page, with shorter motions."""
     return {walk: answered(replace(walk, duration=0.3)) for walk in MODEL_CHECKS}
 
 

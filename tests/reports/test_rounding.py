@@ -1,5 +1,4 @@
-"""Rounding of another processor is no change of a number, and a number that rounding or noise moves is published as it
-was."""
+"""Numbers that differ only by rounding or timing noise keep their published text."""
 
 from __future__ import annotations
 
@@ -36,8 +35,7 @@ CELL = Cell(Disc(), Toy(), 1)
 
 
 @cache
-def told() -> list[dict[str, str]]:
-    """Numbers that two processors gave; the file says which."""
+def numbers_of_two_processors() -> list[dict[str, str]]:
     text = Path(__file__).with_name("two_processors.csv").read_text(encoding="utf-8")
     return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
 
@@ -47,13 +45,13 @@ def amplified() -> dict[tuple[str, str], float]:
     return {(case.scene.name, case.method): case.amplified for case in cases(PAGES)}
 
 
-def test_the_numbers_that_two_processors_give_agree_whichever_is_the_baseline():
-    assert {line["quantity"] for line in told()} == {*NAMES}
-    for line in told():
-        name, carried = line["quantity"], amplified()[line["scene"], line["method"]]
+def test_the_numbers_of_two_processors_agree_with_either_as_the_baseline():
+    assert {line["quantity"] for line in numbers_of_two_processors()} == {*NAMES}
+    for line in numbers_of_two_processors():
+        name, factor = line["quantity"], amplified()[line["scene"], line["method"]]
         first, second = float(line["one"]), float(line["other"])
-        assert agrees(name, first, second, carried), line
-        assert agrees(name, second, first, carried), line
+        assert agrees(name, first, second, factor), line
+        assert agrees(name, second, first, factor), line
 
 
 @pytest.fixture
@@ -68,7 +66,7 @@ def before(tmp_path: Path) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("name", ERROR_COLUMNS)
-def test_an_error_keeps_its_text_within_rounding_alone(name, before):
+def test_an_error_keeps_its_published_text_only_within_rounding(name, before):
     published, rounding = getattr(ROW, name), quantity(OF.get(name, name)).rounding
     assert (
         getattr(with_published_numbers(replace(ROW, **{name: published + 0.9 * rounding}), before, True), name)
@@ -88,14 +86,14 @@ def test_a_time_is_kept_within_noise_and_on_the_same_machine(name, noise, before
     assert getattr(with_published_numbers(beyond, before, True), name) != published
 
 
-def test_nothing_is_kept_of_another_outcome_or_of_a_row_that_is_new(before):
+def test_a_new_row_or_another_outcome_keeps_no_published_number(before):
     moved = replace(ROW, position=ROW.position * (1 + 1e-12), cpu=1.01 * ROW.cpu)
     torn = with_published_numbers(replace(moved, outcome=Outcome.TORN), before, True)
     assert torn.cpu == with_published_numbers(moved, {}, True).cpu == float(f"{1.01 * ROW.cpu:.4g}")
     assert torn.outcome == Outcome.TORN
 
 
-def test_a_file_that_is_no_table_of_rows_is_named(tmp_path):
+def test_a_file_without_the_columns_of_rows_is_refused_by_name(tmp_path):
     (tmp_path / "errors.csv").write_text("scene,engine\na,b\n")
     with pytest.raises(BadInput, match=r"errors\.csv has no column 'variant'"):
         read_published(tmp_path)

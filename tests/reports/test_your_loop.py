@@ -1,4 +1,4 @@
-"""The lines to paste, pasted into models as shipped: the errors are those on the page."""
+"""The lines of the page `your_loop` give the errors of the page if they are pasted into models as shipped."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -42,7 +42,7 @@ def lines(name: str) -> str:
 
 
 def error_of(scene: Scene, poses: Callable[[], list[tuple[float, float, float]]], advance: Callable[[], None]) -> float:
-    """The largest angle error [rad] of a model that `advance` takes from sample to sample."""
+    """The largest angle error [rad] of a model that `advance` moves from sample to sample."""
     truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
     worst = 0.0
     for exact in truth[1:]:
@@ -99,7 +99,7 @@ CASES = {case.scene.name: (case, other) for case, other in zip(MUJOCO_CASES, PYM
 def test_the_lines_for_a_compiled_model_of_mujoco_give_the_error_of_the_page(scene):
     case, _ = CASES[scene.name]
     shipped = MJCF.write(scene.mechanism(), STEP, "default")
-    # The error of RK4, with all digits in the file: the solver's tolerance and the rounding of the file are far below.
+    # The solver's tolerance and the rounding of numbers in the file are far below the error of RK4.
     assert in_mujoco(scene, shipped, lines("compiled")) == pytest.approx(row(case, case.after), rel=0.02)
 
 
@@ -124,7 +124,7 @@ def test_the_pair_of_a_rolling_disc_gives_the_error_of_the_page():
 def test_the_lines_for_pymunk_give_the_error_of_the_page(scene):
     _, case = CASES[scene.name]
     shipped, closed = in_pymunk(scene, ""), in_pymunk(scene, PYMUNK_LINES)
-    # The row finds iterations from the contraction, `choose` by trial; each residual is a part of the error.
+    # The row's iterations follow from the convergence factor, those of `choose` from trials: residuals differ.
     assert closed == pytest.approx(row(case, case.after), rel=0.2)
     assert closed < shipped / 8
 
@@ -151,7 +151,7 @@ def test_with_the_lines_no_linkage_opens_more_than_as_shipped(linkage, step):
     if names["choose"](make(), step) is None:
         assert state(space) == state(make())
     else:
-        # A longer motion than `choose` has tried; within the tried motion the ratio to as shipped is below a quarter.
+        # This motion is longer than the trials of `choose`, so gaps may be more than a quarter of those as shipped.
         assert worst_gap(space, names["gaps"], step) < worst_gap(make(), names["gaps"], step)
 
 
@@ -167,7 +167,7 @@ def test_eight_iterations_tear_a_walking_linkage_and_the_lines_avoid_them():
     assert worst_gap(chosen, names["gaps"], step, 1.0) < shipped / 4
 
 
-def test_a_linkage_that_starts_open_or_can_not_be_copied_is_left_as_it_is():
+def test_a_linkage_that_starts_open_or_cannot_be_copied_is_not_changed():
     class Picture:
         def __deepcopy__(self, memo):
             raise TypeError("a picture of the screen")
@@ -196,7 +196,7 @@ def test_limits_and_bodies_with_another_centre_of_gravity_are_not_changed():
     assert (*body.position, body.angle) == pytest.approx((5, 2, 0.7), abs=1e-14)
 
 
-def test_fresh_mechanisms_are_the_same_each_time_and_differ():
+def test_a_random_mechanism_depends_only_on_its_number():
     first, again, other = draw(LOOP, 0), draw(LOOP, 0), draw(LOOP, 1)
     assert first == again != other
     earlier, later = PYMUNK_CASES[0].engines

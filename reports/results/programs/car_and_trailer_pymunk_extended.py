@@ -1,4 +1,4 @@
-"""A car and its trailer in pymunk, seen from above, as the method *extended* does it: each axle is a skate."""
+"""A car and its trailer in pymunk, seen from above by the method *extended*: each axle is a skate."""
 
 import math
 
@@ -15,12 +15,12 @@ BODIES = {
     "trailer": (1, 0.2, (-0.43553254041, -0.605825405879), 1.2, (0.270980326317, 0.198869311048), -1.2033494578),
 }
 HITCH = (-0.6, 0), (0.65, 0)  # m, on the car and on the trailer
-# Body, place [m] and steering angle [rad] of an axle, both on the body.
+# Body of an axle, its point [m] and steering angle [rad] in the body's frame.
 AXLES = [("car", (0.6, 0), 0.4), ("car", (-0.4, 0), 0), ("trailer", (-0.15, 0), 0)]
 
 
 def run(dt):
-    """Place and angle of the trailer after `duration` in steps of dt."""
+    """Return the position [m] and angle [rad] of the trailer after `duration` with the step dt."""
     space = pymunk.Space()
     space.iterations = 40
     bodies = {}
@@ -30,7 +30,7 @@ def run(dt):
         space.add(body)
     grooves, joints = [], []
     for name, (x, y), steering in AXLES:
-        # A wheel may stand anywhere on its axle: here at the foot of the perpendicular from the centre of mass.
+        # A wheel may be anywhere on its axle; here it is at the foot of the perpendicular from the centre of mass.
         along = x * math.cos(steering) + y * math.sin(steering)
         foot = along * math.cos(steering), along * math.sin(steering)
         groove = pymunk.GrooveJoint(space.static_body, bodies[name], (-1, 0), (1, 0), foot)
@@ -38,11 +38,11 @@ def run(dt):
         joints.append(groove)
     joints.insert(1, pymunk.PivotJoint(bodies["car"], bodies["trailer"], *HITCH))
     for joint in joints:
-        joint.error_bias = 0  # close the whole gap in every step
+        joint.error_bias = 0  # each step closes the whole gap
         space.add(joint)
     for _ in range(round(duration / dt)):
         for groove, body, steering, along in grooves:
-            # Along the blade, where it will be after the step's drift: pymunk drifts first, then joints act.
+            # The groove has the direction of the blade after this step: pymunk moves bodies before it applies joints.
             heading = pymunk.Vec2d(1, 0).rotated(body.angle + body.angular_velocity * dt + steering)
             middle = body.position + body.velocity * dt + along * heading
             groove.groove_a, groove.groove_b = middle - 2 * heading, middle + 2 * heading
@@ -51,7 +51,7 @@ def run(dt):
     return body.position.x, body.position.y, body.angle
 
 
-# The error is a series in dt, dt^2, dt^3, dt^4: five runs remove these four.
+# The error is a series in dt, dt^2, dt^3, dt^4, so five runs remove these four terms.
 LEVELS = (2, 3, 4, 6, 8)
 powers = [[(2 / level) ** power for level in LEVELS] for power in (0, 1, 2, 3, 4)]
 weights = np.linalg.solve(powers, [1, 0, 0, 0, 0])

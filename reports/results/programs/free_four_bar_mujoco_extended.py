@@ -1,11 +1,11 @@
-"""Free four bar in MuJoCo, as the method *extended* does it."""
+"""Free four bar in MuJoCo by the method *extended*."""
 
 import mujoco
 
 duration = 1.0  # s
 steps = 3000
 dt = duration / steps  # s
-constant = max(5 * dt, 0.0679200480357)  # s: the loop's spring may be slow, a fifth of the motion's time scale
+constant = max(5 * dt, 0.0679200480357)  # s, of the loop's spring: at least a fifth of the motion's time scale
 solref = f"{-1 / constant**2} {-2 / constant}"
 
 model = mujoco.MjModel.from_xml_string(f"""
@@ -33,10 +33,10 @@ model = mujoco.MjModel.from_xml_string(f"""
   </equality>
 </mujoco>""")
 for scale in (model.body_invweight0, model.dof_invweight0):
-    scale[:] *= 1e-8  # MuJoCo makes a constraint softer in proportion to these
+    scale[:] *= 1e-8  # the regularisation of a constraint is proportional to these
 data = mujoco.MjData(model)
 mujoco.mj_step(model, data, nstep=steps)
-mujoco.mj_forward(model, data)  # places of the bodies at the end, not in the last stage of RK4
+mujoco.mj_forward(model, data)  # positions at the end of the step, not in the last stage of RK4
 end = (*data.body("rocker").xpos[:2], 2.35619449019 + data.joint("rocker").qpos[0])
 print("rocker: x = {:.10f} m, y = {:.10f} m, angle = {:.10f} rad".format(*end))
 # Exact: rocker: x = 0.8234486517 m, y = 0.4221481755 m, angle = 2.2991675519 rad

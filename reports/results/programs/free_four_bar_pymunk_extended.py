@@ -1,4 +1,4 @@
-"""Free four bar in pymunk, as the method *extended* does it."""
+"""Free four bar in pymunk by the method *extended*."""
 
 import numpy as np
 import pymunk
@@ -13,7 +13,7 @@ BODIES = {
     "coupler": (0.565685424949, 0.0150849446653, (0.2, 0.6), 0.785398163397, (0, 0), 0),
     "rocker": (1.1313708499, 0.120679557323, (0.8, 0.4), 2.35619449019, (0, 0), 0),
 }
-# Two points [m] that are one, each from the centre of mass of its body; None is the ground.
+# Points [m] that coincide, relative to the centres of mass of their bodies; None is the ground.
 PINS = [
     (None, (0, 0), "crank", (-0.2, 0)),
     ("crank", (0.2, 0), "coupler", (-0.282842712475, 0)),
@@ -23,10 +23,10 @@ PINS = [
 
 
 def run(dt):
-    """Place and angle of the rocker after `duration` in steps of dt."""
+    """Return the position [m] and angle [rad] of the rocker after `duration` with the step dt."""
     space = pymunk.Space()
     space.gravity = (0, -9.81)
-    space.iterations = 192  # impulses begin at zero: the first steps are solved to rounding
+    space.iterations = 192  # the first impulses start from zero, so they need many iterations
     bodies = {None: space.static_body}
     for name, (mass, moment, place, angle, velocity, rate) in BODIES.items():
         body = bodies[name] = pymunk.Body(mass, moment)
@@ -34,9 +34,9 @@ def run(dt):
         space.add(body)
     joints = [pymunk.PivotJoint(bodies[a], bodies[b], one, other) for a, one, b, other in PINS]
     for joint in joints:
-        joint.error_bias = 0  # close the whole gap in every step
+        joint.error_bias = 0  # each step closes the whole gap
         space.add(joint)
-    # Half a step of forces without drift: from here on velocities are half a step ahead of places.
+    # Apply forces for half a step without moving bodies: velocities are then half a step ahead of positions.
     for name in BODIES:
         bodies[name].position_func = lambda body, dt: None
     space.step(dt / 2)
@@ -49,7 +49,7 @@ def run(dt):
     return body.position.x, body.position.y, body.angle
 
 
-# The error is a series in dt^2, dt^3, dt^4, dt^5: five runs remove these four.
+# The error is a series in dt^2, dt^3, dt^4, dt^5, so five runs remove these four terms.
 LEVELS = (2, 3, 4, 6, 8)
 powers = [[(2 / level) ** power for level in LEVELS] for power in (0, 2, 3, 4, 5)]
 weights = np.linalg.solve(powers, [1, 0, 0, 0, 0])

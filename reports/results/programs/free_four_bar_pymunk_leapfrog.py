@@ -1,4 +1,4 @@
-"""Free four bar in pymunk, as the method *leapfrog* does it."""
+"""Free four bar in pymunk by the method *leapfrog*."""
 
 import pymunk
 
@@ -12,7 +12,7 @@ BODIES = {
     "coupler": (0.565685424949, 0.0150849446653, (0.2, 0.6), 0.785398163397, (0, 0), 0),
     "rocker": (1.1313708499, 0.120679557323, (0.8, 0.4), 2.35619449019, (0, 0), 0),
 }
-# Two points [m] that are one, each from the centre of mass of its body; None is the ground.
+# Points [m] that coincide, relative to the centres of mass of their bodies; None is the ground.
 PINS = [
     (None, (0, 0), "crank", (-0.2, 0)),
     ("crank", (0.2, 0), "coupler", (-0.282842712475, 0)),
@@ -22,7 +22,7 @@ PINS = [
 
 
 def run(dt):
-    """Place and angle of the rocker after `duration` in steps of dt."""
+    """Return the position [m] and angle [rad] of the rocker after `duration` with the step dt."""
     space = pymunk.Space()
     space.gravity = (0, -9.81)
     space.iterations = 8
@@ -33,9 +33,9 @@ def run(dt):
         space.add(body)
     joints = [pymunk.PivotJoint(bodies[a], bodies[b], one, other) for a, one, b, other in PINS]
     for joint in joints:
-        joint.error_bias = 0  # close the whole gap in every step
+        joint.error_bias = 0  # each step closes the whole gap
         space.add(joint)
-    # Half a step of forces without drift: from here on velocities are half a step ahead of places.
+    # Apply forces for half a step without moving bodies: velocities are then half a step ahead of positions.
     for name in BODIES:
         bodies[name].position_func = lambda body, dt: None
     space.step(dt / 2)

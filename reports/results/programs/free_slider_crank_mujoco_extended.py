@@ -1,11 +1,11 @@
-"""Free slider crank in MuJoCo, as the method *extended* does it."""
+"""Free slider crank in MuJoCo by the method *extended*."""
 
 import mujoco
 
 duration = 2.0  # s
 steps = 6000  # 6000: below 1e-6; 20000: below 1e-9
 dt = duration / steps  # s
-constant = max(5 * dt, 0.02)  # s: the loop's spring may be slow, a fifth of the motion's time scale
+constant = max(5 * dt, 0.02)  # s, of the loop's spring: at least a fifth of the motion's time scale
 solref = f"{-1 / constant**2} {-2 / constant}"
 
 model = mujoco.MjModel.from_xml_string(f"""
@@ -33,13 +33,13 @@ model = mujoco.MjModel.from_xml_string(f"""
   </equality>
 </mujoco>""")
 for scale in (model.body_invweight0, model.dof_invweight0):
-    scale[:] *= 1e-8  # MuJoCo makes a constraint softer in proportion to these
+    scale[:] *= 1e-8  # the regularisation of a constraint is proportional to these
 data = mujoco.MjData(model)
 data.joint("crank").qvel = 10
 data.joint("slider along").qvel = -1.82091696617
 data.joint("rod").qvel = -12.6604086179
 mujoco.mj_step(model, data, nstep=steps)
-mujoco.mj_forward(model, data)  # places of the bodies at the end, not in the last stage of RK4
+mujoco.mj_forward(model, data)  # positions at the end of the step, not in the last stage of RK4
 end = (*data.body("rod").xpos[:2], -0.144328214646 + data.joint("crank").qpos[0] + data.joint("rod").qpos[0])
 print("rod: x = {:.10f} m, y = {:.10f} m, angle = {:.10f} rad".format(*end))
 # Exact: rod: x = 0.5738685427 m, y = 0.1423535788 m, angle = -0.2887009293 rad

@@ -1,4 +1,4 @@
-"""Free slider crank in pymunk, as the method *extended* does it."""
+"""Free slider crank in pymunk by the method *extended*."""
 
 import numpy as np
 import pymunk
@@ -20,7 +20,7 @@ BODIES = {
     ),
     "slider": (0.5, float("inf"), (1.25287751905, 0), 0, (-1.82091696617, 0), 0),
 }
-# Two points [m] that are one, each from the centre of mass of its body; None is the ground.
+# Points [m] that coincide, relative to the centres of mass of their bodies; None is the ground.
 PINS = [
     (None, (0, 0), "crank", (-0.15, 0)),
     ("crank", (0.15, 0), "rod", (-0.5, 0)),
@@ -29,22 +29,22 @@ PINS = [
 
 
 def run(dt):
-    """Place and angle of the rod after `duration` in steps of dt."""
+    """Return the position [m] and angle [rad] of the rod after `duration` with the step dt."""
     space = pymunk.Space()
     space.gravity = (0, -9.81)
-    space.iterations = 200  # impulses begin at zero: the first steps are solved to rounding
+    space.iterations = 200  # the first impulses start from zero, so they need many iterations
     bodies = {None: space.static_body}
     for name, (mass, moment, place, angle, velocity, rate) in BODIES.items():
         body = bodies[name] = pymunk.Body(mass, moment)
         body.position, body.angle, body.velocity, body.angular_velocity = place, angle, velocity, rate
         space.add(body)
     joints = [pymunk.PivotJoint(bodies[a], bodies[b], one, other) for a, one, b, other in PINS]
-    # A straight guide: exact, since its point is the centre of mass. A groove ends, so this one is long.
+    # A GrooveJoint is exact here, because its anchor is a centre of mass. It has two ends, so it is long.
     joints.append(pymunk.GrooveJoint(space.static_body, bodies["slider"], (-1000, 0), (1000, 0), (0, 0)))
     for joint in joints:
-        joint.error_bias = 0  # close the whole gap in every step
+        joint.error_bias = 0  # each step closes the whole gap
         space.add(joint)
-    # Half a step of forces without drift: from here on velocities are half a step ahead of places.
+    # Apply forces for half a step without moving bodies: velocities are then half a step ahead of positions.
     for name in BODIES:
         bodies[name].position_func = lambda body, dt: None
     space.step(dt / 2)
@@ -57,7 +57,7 @@ def run(dt):
     return body.position.x, body.position.y, body.angle
 
 
-# The error is a series in dt^2, dt^3, dt^4, dt^5: five runs remove these four.
+# The error is a series in dt^2, dt^3, dt^4, dt^5, so five runs remove these four terms.
 LEVELS = (2, 3, 4, 6, 8)
 powers = [[(2 / level) ** power for level in LEVELS] for power in (0, 2, 3, 4, 5)]
 weights = np.linalg.solve(powers, [1, 0, 0, 0, 0])

@@ -1,4 +1,4 @@
-"""Pendulum 2 in pymunk, as the method *extended* does it."""
+"""Pendulum 2 in pymunk by the method *extended*."""
 
 import numpy as np
 import pymunk
@@ -12,7 +12,7 @@ BODIES = {
     "link 1": (1, 0.0833333333333, (0.5, 0), 0, (0, 0), 0),
     "link 2": (1, 0.0833333333333, (1.5, 0), 0, (0, 0), 0),
 }
-# Two points [m] that are one, each from the centre of mass of its body; None is the ground.
+# Points [m] that coincide, relative to the centres of mass of their bodies; None is the ground.
 PINS = [
     (None, (0, 0), "link 1", (-0.5, 0)),
     ("link 1", (0.5, 0), "link 2", (-0.5, 0)),
@@ -20,7 +20,7 @@ PINS = [
 
 
 def run(dt):
-    """Place and angle of the link 2 after `duration` in steps of dt."""
+    """Return the position [m] and angle [rad] of the link 2 after `duration` with the step dt."""
     space = pymunk.Space()
     space.gravity = (0, -9.81)
     space.iterations = 5
@@ -31,9 +31,9 @@ def run(dt):
         space.add(body)
     joints = [pymunk.PivotJoint(bodies[a], bodies[b], one, other) for a, one, b, other in PINS]
     for joint in joints:
-        joint.error_bias = 0  # close the whole gap in every step
+        joint.error_bias = 0  # each step closes the whole gap
         space.add(joint)
-    # Half a step of forces without drift: from here on velocities are half a step ahead of places.
+    # Apply forces for half a step without moving bodies: velocities are then half a step ahead of positions.
     for name in BODIES:
         bodies[name].position_func = lambda body, dt: None
     space.step(dt / 2)
@@ -45,7 +45,7 @@ def run(dt):
     return body.position.x, body.position.y, body.angle
 
 
-# The error is a series in dt^2, dt^3, dt^4, dt^5: five runs remove these four.
+# The error is a series in dt^2, dt^3, dt^4, dt^5, so five runs remove these four terms.
 LEVELS = (2, 3, 4, 6, 8)
 powers = [[(2 / level) ** power for level in LEVELS] for power in (0, 2, 3, 4, 5)]
 weights = np.linalg.solve(powers, [1, 0, 0, 0, 0])

@@ -1,11 +1,11 @@
-"""Person two feet in MuJoCo, as the method *extended* does it."""
+"""Person two feet in MuJoCo by the method *extended*."""
 
 import mujoco
 
 duration = 0.3  # s
 steps = 300
 dt = duration / steps  # s
-constant = max(5 * dt, 0.0418969173324)  # s: the loop's spring may be slow, a fifth of the motion's time scale
+constant = max(5 * dt, 0.0418969173324)  # s, of the loop's spring: at least a fifth of the motion's time scale
 solref = f"{-1 / constant**2} {-2 / constant}"
 
 model = mujoco.MjModel.from_xml_string(f"""
@@ -41,10 +41,10 @@ model = mujoco.MjModel.from_xml_string(f"""
   </equality>
 </mujoco>""")
 for scale in (model.body_invweight0, model.dof_invweight0):
-    scale[:] *= 1e-8  # MuJoCo makes a constraint softer in proportion to these
+    scale[:] *= 1e-8  # the regularisation of a constraint is proportional to these
 data = mujoco.MjData(model)
 mujoco.mj_step(model, data, nstep=steps)
-mujoco.mj_forward(model, data)  # places of the bodies at the end, not in the last stage of RK4
+mujoco.mj_forward(model, data)  # positions at the end of the step, not in the last stage of RK4
 end = (
     *data.body("trunk").xpos[:2],
     1.47079632679 + data.joint("left shank").qpos[0] + data.joint("left thigh").qpos[0] + data.joint("trunk").qpos[0],

@@ -1,4 +1,4 @@
-"""Rolling ellipse in MuJoCo, as the method *contact, stiff Euler* does it: a contact as stiff as the step allows."""
+"""Rolling ellipse in MuJoCo by the method *contact, stiff Euler*: a contact as stiff as the step allows."""
 
 import mujoco
 

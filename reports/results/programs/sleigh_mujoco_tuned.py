@@ -1,4 +1,4 @@
-"""Sleigh in MuJoCo, as the method *tuned* does it: a tendon whose coefficients our code writes before each step."""
+"""Sleigh in MuJoCo by the method *tuned*: a tendon whose coefficients our code writes before each step."""
 
 import math
 
@@ -7,7 +7,7 @@ import mujoco
 duration = 3.0  # s
 steps = 300
 dt = duration / steps  # s
-BLADE = -0.5  # m, its place along the body's own x axis, behind the centre of mass
+BLADE = -0.5  # m, position on the body's x axis, behind the centre of mass
 
 model = mujoco.MjModel.from_xml_string(f"""
 <mujoco>
@@ -32,7 +32,7 @@ data.qvel[:] = 1, 1, 2
 
 
 def aim():
-    """The row of a skate at the heading to which the step leads; only the tendon's rate is held, not its length."""
+    """Write a skate's row at the heading after this step; only the tendon's rate is constrained, not its length."""
     angle = data.qpos[2] + dt * data.qvel[2]
     model.wrap_prm[:] = -math.sin(angle), math.cos(angle), BLADE
 

@@ -1,4 +1,4 @@
-"""Sleigh in pymunk, as the method *tuned* does it: a groove that our code lays anew before each step."""
+"""Sleigh in pymunk by the method *tuned*: a groove that our code sets before each step."""
 
 import math
 
@@ -7,19 +7,19 @@ import pymunk
 duration = 3.0  # s
 steps = 300
 dt = duration / steps  # s
-BLADE = -0.5  # m, its place along the body's own x axis, behind the centre of mass
+BLADE = -0.5  # m, position on the body's x axis, behind the centre of mass
 
 space = pymunk.Space()
 space.iterations = 5
 body = pymunk.Body(mass=2, moment=0.3)
 body.position, body.velocity, body.angular_velocity = (0.5, 0), (1, 1), 2
 groove = pymunk.GrooveJoint(space.static_body, body, (-1, 0), (1, 0), (BLADE, 0))
-groove.error_bias = 0  # close the whole gap in every step
+groove.error_bias = 0  # each step closes the whole gap
 space.add(body, groove)
 
 
 def aim():
-    """Lay the groove where the step's drift will take the blade: pymunk drifts first, then lets the joints act."""
+    """Set the groove to the direction of the blade after this step: pymunk moves bodies before it applies joints."""
     angle = body.angle + body.angular_velocity * dt
     centre = body.position + body.velocity * dt
     along = pymunk.Vec2d(math.cos(angle), math.sin(angle))
