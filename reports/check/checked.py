@@ -44,24 +44,24 @@ from reports.write.tables import number
 SWEEP_BUDGET = 5.0  # s of CPU time for all settings together
 COMPILING_NOTE = "compiling the judge's machine code, once for this installation: up to two minutes"
 SEARCH_BUDGET = 60.0  # s of CPU time to look for settings that reach a goal
-READER_MEMBERS = ("words", "elements", "reads", "read")  # of a reader
+READER_MEMBERS = ("words", "elements", "reads", "read")  # that every reader must have
 NAMES_LISTED = 6  # elements in a sentence
-COMPARED_SAMPLES = 200  # about so many instants are compared
-OBSTACLE_CHECKS = 10  # largest number of obstacle checks between two samples; an engine checks once in each step
-APPLY_MARGIN = 1.1  # times the expected error: with a larger one not all settings have reached the model
-QUICK_TOLERANCE = 1e-9  # of the declared motion with --quick: enough for errors of two digits
+COMPARED_SAMPLES = 200  # approximate number of compared instants
+OBSTACLE_CHECKS = 10  # largest number of obstacle checks between two samples
+APPLY_MARGIN = 1.1  # times the expected error: a larger error shows that some settings did not reach the model
+QUICK_TOLERANCE = 1e-9  # relative tolerance of the declared motion with --quick: enough for errors of two digits
 Array = NDArray[np.float64]
 
 
 def readers() -> dict[str, Reader]:
-    """The readers of users' models, by the keys of the entry point group `crosscheck.readers`."""
+    """Readers of users' models, by their names in the entry point group `crosscheck.readers`."""
     lacking = f"it lacks one of {', '.join(READER_MEMBERS)}"
     kind = Kind("reader", lambda value: "" if all(hasattr(value, name) for name in READER_MEMBERS) else lacking)
     return registered_by_key("crosscheck.readers", kind)
 
 
 def read_user_model(word: str, folder: Path, terms: ReadingTerms = AS_IT_IS) -> Reading:
-    """A user's model by the first reader that knows its kind. Raises ValueError and Unsupported."""
+    """Read a user's model with the first reader that accepts it. Raises ValueError and Unsupported."""
     all_readers = readers().values()
     for reader in all_readers:
         if reader.reads(word):
@@ -71,19 +71,14 @@ def read_user_model(word: str, folder: Path, terms: ReadingTerms = AS_IT_IS) -> 
 
 @dataclass(frozen=True)
 class ErrorParts:
-    """Causes of the error: largest pose distances (`judging.pose_distance`); NaN where a cause is unknown.
+    """Contributions to the error as largest pose distances (`judging.pose_distance`); an unknown one is NaN."""
 
-    `softness`: between the motion that the engine declares and the ideal one; `step`: between the user's run and the
-    declared motion; `rest`: the residual of `step` at the smallest step of the sweep, `smallest` [s]. If it is still
-    `falling` there, it is an upper bound and no sign of a third cause.
-    """
-
-    softness: float
-    step: float
-    rest: float
-    smallest: float
-    falling: bool
-    divided: bool = True  # False: the engine declares no law whose motion can be worked out
+    softness: float  # between the motion of the engine's declared soft joints and the ideal motion
+    step: float  # between the user's run and the declared motion
+    rest: float  # between the run at the smallest step of the sweep and the declared motion
+    smallest: float  # s; the smallest step of the sweep
+    falling: bool  # whether the error still decreases at the smallest step, so that `rest` is only an upper bound
+    divided: bool = True  # False: the engine declares no law of its joints, so softness and step are not separated
 
 
 def split_error(
@@ -94,9 +89,9 @@ def split_error(
     tolerance: float = SOFT_TOLERANCE,
     horizon: float = np.inf,
 ) -> ErrorParts:
-    """Split the error of the user's run by the runs of the same settings at `smaller` steps, the largest step first.
+    """Split the error of the user's run; `smaller`: runs of the same settings at smaller steps, the largest first.
 
-    `tolerance`: of the integration of the declared motion; `horizon` [s]: end of the compared time.
+    `tolerance` is the relative tolerance for integrating the declared motion. Samples after `horizon` [s] do not count.
     """
     mechanism, model = reading.mechanism, reading.model
     declared, softness = truth.pose, 0.0 if model.declares else float("nan")
@@ -126,24 +121,24 @@ def _largest(values: Array) -> float:
 
 @dataclass(frozen=True)
 class Applied:
-    """The file that --apply has written, its largest error, the CPU time of stepping [s], and notes on the file."""
+    """The file that --apply has written, and a run of it."""
 
     file: str
-    words: str
-    error: float
-    cpu: float
+    words: str  # its settings
+    error: float  # largest error of the run
+    cpu: float  # s of stepping
     notes: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class CheckResult:
-    """The result of a check; errors are angles [rad] and positions in lengths of the mechanism."""
+    """The result of a check. An error is an angle [rad], or a distance divided by the length of the mechanism."""
 
     name: str
     reading: Reading
     duration: float
     tolerance: float
-    agreement: float  # of the accelerations at t = 0
+    agreement: float  # relative difference of the accelerations at t = 0
     facts: Facts
     judge: IdealMotion
     judge_errors: Errors
@@ -163,12 +158,10 @@ class CheckResult:
 
     @property
     def met(self) -> bool:
-        """Whether the user's own settings are within the tolerance."""
         return self.own_errors.largest <= self.tolerance
 
     @property
     def verdict(self) -> str:
-        """The answer in one sentence."""
         assumed, engine = self.reading.model.assumed, self.reading.model.engine
         start = f"With {assumed}, {self.name} in {engine}" if assumed else f"{self.name} in {engine}"
         end = (
@@ -184,7 +177,7 @@ class CheckResult:
 
     @property
     def _hinges_instead(self) -> str:
-        """For a mechanism that is locked by welds: the joint that was perhaps meant."""
+        """A hint for a mechanism that is locked by welds: the joint that the user perhaps meant."""
         if not (welds := self.facts.locking_welds):
             return ""
         hinge = "connect, which holds a point and no angle," if self.reading.model.engine == "MuJoCo" else "a hinge"
@@ -197,25 +190,24 @@ class CheckResult:
 
     @property
     def decade(self) -> SettingRun | None:
-        """The cheapest setting with a tenth of the error of the one that is advised."""
+        """The cheapest setting whose error is at most a tenth of the advised setting's error."""
         return None if self.advised is None else cheapest(self.table, self.advised.error / 10)
 
     @property
     def chaotic(self) -> bool:
-        """Whether neighbouring starts part exponentially within the motion."""
+        """Whether neighbouring motions diverge exponentially before the end."""
         return self.judge.horizon < self.duration
 
     def until_horizon(self, each: Errors) -> float:
-        """The largest error before neighbouring starts part exponentially."""
-        early = each.whole[each.t <= self.judge.horizon]
-        return _largest(early)
+        """The largest error before neighbouring motions diverge exponentially."""
+        return _largest(each.whole[each.t <= self.judge.horizon])
 
     @property
     def error_until_horizon(self) -> float:
         return self.until_horizon(self.own_errors)
 
     def rerun(self, reading: Reading) -> tuple[float, float]:
-        """(error, CPU time [s]) of the same motion with the model of another reading."""
+        """(largest error, CPU time [s]) of a run of another reading over the same time."""
         spacing = float(self.judge.trajectory.t[1])
         run = reading.model.run(len(self.judge.trajectory.t) - 1, max(1, round(spacing / reading.model.dt)))
         return measure_errors(reading.mechanism, self.judge.trajectory, run).largest, run.stepping
@@ -230,10 +222,10 @@ def check(
     plan: SweepPlan | None = None,
     has_tolerance: bool = True,
 ) -> CheckResult:
-    """Check a model for a motion of `duration` [s]; `on_progress` is called with a few words before each stage.
+    """Check a model for a motion of `duration` [s]; `on_progress` is called with the name of each stage.
 
-    Raises Unsupported where the motion meets an obstacle that no ideal joint has, and InvalidMechanism where the ideal
-    motion can't be computed.
+    Raises Unsupported if the motion meets an obstacle that is no part of an ideal mechanism, such as a joint limit,
+    and InvalidMechanism if the ideal motion can't be computed.
     """
     mechanism, model, plan = reading.mechanism, reading.model, plan or SweepPlan(SWEEP_BUDGET)
     if not 0 < model.dt < float("inf"):
@@ -285,7 +277,7 @@ def check(
 
 
 def _below(at: float) -> float:
-    """The next smaller time with two digits [s]."""
+    """A slightly smaller time [s], rounded down to two digits."""
     size = 10.0 ** np.floor(np.log10(at) - 1)
     return float(np.floor(at * 0.999 / size) * size)
 
@@ -313,7 +305,7 @@ def apply_advised(result: CheckResult, target: Path) -> Applied:
     )
     text = source.path.read_bytes() if result.met else source.changed(change)
     try:
-        # Beside the target, where the files that the model names are looked for.
+        # In the target's folder, since the model may name files by paths relative to it.
         aside = target.with_name(f".{target.stem}.crosscheck{target.suffix}")
         aside.write_bytes(text)
         try:
@@ -334,7 +326,7 @@ def apply_advised(result: CheckResult, target: Path) -> Applied:
 
 
 def resample(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:
-    """Times, poses and twists of a motion at `parts` times as many instants, by cubic Hermite interpolation."""
+    """Times, poses and twists with `parts` instants per sample interval, by cubic Hermite interpolation."""
     spline = CubicHermiteSpline(motion.t, motion.pose, motion.twist)
     t = np.linspace(motion.t[0], motion.t[-1], parts * (len(motion.t) - 1) + 1)
     return t, spline(t), spline(t, 1)

@@ -1,4 +1,4 @@
-"""A mechanism in an engine beside exact multipliers, to be looked at in a notebook."""
+"""Comparison of an engine's run with the ideal motion, with tables and figures for a notebook."""
 
 from __future__ import annotations
 
@@ -32,27 +32,22 @@ class Picture:
         return self.svg
 
     def save(self, path: str | Path) -> None:
-        """Write it."""
         Path(path).write_text(self.svg, encoding="utf-8")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
-    """A run of an engine at a step `dt` [s], the truth at the same times, and the run's errors.
-
-    `judge`: the ideal motion, and how fast neighbouring starts part. `print` shows a table, a notebook figures too.
-    """
+    """A run of an engine and its errors; `print` shows a table, a notebook also shows figures."""
 
     mechanism: Mechanism
     engine: Engine
-    dt: float
+    dt: float  # s
     judge: IdealMotion
     run: Trajectory
     errors: Errors
 
     @property
     def truth(self) -> Trajectory:
-        """The ideal motion at the times of the run."""
         return self.judge.trajectory
 
     @property
@@ -60,13 +55,13 @@ class Comparison:
         return f"{method_name(self.engine)} at {self.dt * 1e3:g} ms"
 
     def frame(self) -> Any:
-        """The errors over time as a pandas.DataFrame, an instant a row. Raises ImportError without pandas."""
+        """The errors as a pandas.DataFrame with a row for each instant. Raises ImportError without pandas."""
         import pandas  # type: ignore[import-not-found]
 
         return pandas.DataFrame(dict(self.errors.of), index=pandas.Index(self.errors.t, name="t"))
 
     def figures(self) -> dict[str, Picture]:
-        """`measure_errors`: over time; `worst`: the mechanism where the run is most wrong, beside the truth there."""
+        """Figures by name. `errors`: the errors over time; `worst`: both poses at the time of the largest error."""
         judge = measure_errors(self.mechanism, self.truth, self.judge.looser)
         displayed = picture_data(self.mechanism, self.judge, judge, self.run, self.errors, label=self.title)
         return {name: Picture(*drawing) for name, drawing in render_pictures(displayed).items()}
@@ -103,7 +98,7 @@ def compare_with_ideal(mechanism: Mechanism, engine: Engine | str, dt: float, du
 
 
 def _engine_named(name: str) -> Engine:
-    """By "engine" or "engine variant". Raises ValueError."""
+    """The engine with the name "engine" or "engine variant". Raises ValueError."""
     engines = {method_name(engine): engine for engine in registry.ENGINES}
     engine = engines.get(name) or engines.get(f"{name} default")
     if engine is None:

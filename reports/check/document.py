@@ -1,4 +1,4 @@
-"""What `crosscheck check --json` prints, and the same as a JSON Schema: both are made from one table of the members."""
+"""The JSON document of `crosscheck check --json` and its JSON Schema; both follow from the table OBJECTS."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any
 from reports.check.checked import CheckResult
 
 TYPES = {"number": "number", "integer": "integer", "text": "string", "flag": "boolean", "object": "object"}
-# A line a member: its name (and where it is found, unless under this name), its type ("?": or null, which is also any
-# number that is not finite; "[...]": a list; a name in capitals: an object of these) and words.
+# Each line is a member, "name: type: description", or "name = attribute path: type: description". A type ends in "?" if
+# the value may be null, as it is for a number that is not finite. "[...]" is a list. Capitals name an object.
 OBJECTS = {
     "MODEL": """
 name: text: the model
@@ -113,12 +113,12 @@ notes: [text]: what was done to a script, and what did not take
 
 
 def check_data(found: CheckResult) -> dict[str, Any]:
-    """All numbers of a check, for other programs: `schema` describes each."""
+    """The document of a check, which `schema` describes."""
     return _plain("MODEL", found)
 
 
 def schema() -> dict[str, Any]:
-    """A JSON Schema of one model's answer; of a folder, of a list of them with the models that were refused."""
+    """The JSON Schema of the document of a model, and of the list of documents of a folder."""
     model = {"$ref": "#/$defs/MODEL"}
     refused = {"type": ["string", "null"], "description": "why there is no answer"}
     entry = {"model": {"type": "string"}, "refused": refused, "found": {"anyOf": [model, {"type": "null"}]}}
@@ -132,7 +132,7 @@ def schema() -> dict[str, Any]:
 
 
 def _members(kind: str) -> Iterator[tuple[str, str, str, str]]:
-    """(name, where it is found, type, words) of an object of OBJECTS."""
+    """(name, attribute path, type, description) of each member of an object of OBJECTS."""
     for line in OBJECTS[kind].strip().splitlines():
         name, its_kind, description = line.split(": ", 2)
         name, _, path = name.partition(" = ")

@@ -1,4 +1,4 @@
-"""Facts of a mechanism that no engine changes: freedoms, redundant rows, singular positions, time scales."""
+"""Facts of a mechanism that do not depend on an engine: freedoms, redundant rows, singular positions, time scales."""
 
 from __future__ import annotations
 
@@ -14,36 +14,36 @@ from reference.trajectory import Trajectory
 from reports.check.judging import accelerations
 
 Array = NDArray[np.float64]
-# The least singular value beside the largest below which rows nearly depend on one another.
-NEARLY_SINGULAR = 1e-2
-RANK_TOLERANCE = 1e-9
-SVD_NUMBERS = 2e7  # numbers in the rows of all samples whose singular values are computed
-DIFFERENCE_STEP = 1e-6  # step of finite differences, in units of length and time
+NEARLY_SINGULAR = 1e-2  # ratio of the smallest to the largest singular value below which a position is near-singular
+RANK_TOLERANCE = 1e-9  # ratio of a singular value to the largest below which it counts as zero
+SVD_NUMBERS = 2e7  # largest number of matrix elements, all samples together, whose singular values are computed
+DIFFERENCE_STEP = 1e-6  # step of finite differences, relative to the length and the time of the mechanism
+MOST_DIRECTIONS = 60  # free directions for which the eigenvalues are computed
 
 
 @dataclass(frozen=True)
 class Facts:
-    """Counts and instants [s]; rates in rad/s and 1/s."""
+    """Facts of a mechanism and of its ideal motion."""
 
     bodies: int
     joints: int
     forces: int
     rows: int
-    freedoms: tuple[int, int]  # of configuration, of velocity
+    freedoms: tuple[int, int]  # numbers of degrees of freedom of configuration and of velocity
     redundant: int
     undetermined: tuple[str, ...]  # rows whose reactions are not unique
-    singular: tuple[tuple[float, float], ...]  # (time, least singular value beside the largest)
-    dead_centres: tuple[tuple[float, str], ...]
-    fastest_rotation: float
-    stiffest_mode: float  # rad/s or 1/s, at the start
-    length: float
-    time: float
+    singular: tuple[tuple[float, float], ...]  # (time [s], smallest singular value divided by the largest)
+    dead_centres: tuple[tuple[float, str], ...]  # (time [s], body)
+    fastest_rotation: float  # rad/s
+    stiffest_mode: float  # 1/s, at the start
+    length: float  # m
+    time: float  # s
     locked: bool = False  # the joints leave no freedom, and none prescribes a motion
     locking_welds: tuple[str, ...] = ()  # of a locked mechanism: welds that as hinges would leave a freedom
 
 
 def compute_facts(mechanism: Mechanism, motion: Trajectory) -> Facts:
-    """From the mechanism and the judge's motion of it."""
+    """Compute the facts; `motion` is the ideal motion."""
     freedoms = mechanism.degrees_of_freedom()
     independent = 3 * len(mechanism.bodies) - freedoms[1]
     rows = mechanism.rows(mechanism.pose) if mechanism.row_count else np.zeros((0, 3 * len(mechanism.bodies)))
@@ -82,7 +82,7 @@ def _locking_welds(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def _singular_instants(mechanism: Mechanism, motion: Trajectory, independent: int) -> tuple[tuple[float, float], ...]:
-    """The instants at which the independent rows come near to depending on one another."""
+    """(time [s], ratio of singular values) of each near-singular position: a local minimum below NEARLY_SINGULAR."""
     if independent < 2:
         return ()
     stride = max(1, int(len(motion.t) * mechanism.row_count * 3 * len(mechanism.bodies) / SVD_NUMBERS))
@@ -100,7 +100,10 @@ def _singular_instants(mechanism: Mechanism, motion: Trajectory, independent: in
 
 
 def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tuple[tuple[float, str], ...]:
-    """Instants at which a body on the ground reverses while the mechanism moves on; for one freedom only."""
+    """(time [s], body) of each reversal of a body that is jointed to the ground, while another body moves.
+
+    Empty for more than one freedom and for mechanisms without loops.
+    """
     loops = mechanism.row_count > 2 * len(mechanism.bodies)
     if freedoms > 1 or not loops:
         return ()
@@ -124,27 +127,31 @@ def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tu
 
 
 def _stiffest_mode(mechanism: Mechanism) -> float:
-    """The largest eigenvalue of small motions about the start, at rest [1/s]; 0 where nothing can move."""
+    """Largest absolute eigenvalue [1/s] of the equations of motion, linearised at the initial pose at rest.
+
+    0 if the joints leave no freedom or more than MOST_DIRECTIONS freedoms; NaN if an acceleration is not finite.
+    """
     count = mechanism.pose.size
     unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     rows = mechanism.rows(mechanism.pose) if mechanism.row_count else np.zeros((0, count))
     _, sizes, right = np.linalg.svd(rows * unit, full_matrices=True)
     rank = int(np.sum(sizes > RANK_TOLERANCE * sizes[0])) if len(sizes) else 0
-    free = right[rank:].T  # directions without units that the joints allow
-    if free.shape[1] == 0 or free.shape[1] > 60:
+    free = right[rank:].T  # dimensionless directions that the joints allow
+    if free.shape[1] == 0 or free.shape[1] > MOST_DIRECTIONS:
         return 0.0
 
-    def of(pose: Array, twist: Array) -> Array:
+    def scaled_acceleration(pose: Array, twist: Array) -> Array:
         return accelerations(mechanism, pose, twist, 0.0).reshape(-1) / unit
 
-    rest, slope = np.zeros_like(mechanism.pose), DIFFERENCE_STEP / mechanism.time_scale
-    by_place, by_speed = np.zeros((2, count, free.shape[1]))
+    pose, at_rest, slope = mechanism.pose, np.zeros_like(mechanism.pose), DIFFERENCE_STEP / mechanism.time_scale
+    by_pose, by_twist = np.zeros((2, count, free.shape[1]))
     for column in range(free.shape[1]):
-        way = (unit * free[:, column]).reshape(-1, 3)
-        by_place[:, column] = of(mechanism.pose + DIFFERENCE_STEP * way, rest) - of(
-            mechanism.pose - DIFFERENCE_STEP * way, rest
+        direction = (unit * free[:, column]).reshape(-1, 3)
+        ahead, behind = (pose + sign * DIFFERENCE_STEP * direction for sign in (1, -1))
+        by_pose[:, column] = scaled_acceleration(ahead, at_rest) - scaled_acceleration(behind, at_rest)
+        by_twist[:, column] = scaled_acceleration(pose, slope * direction) - scaled_acceleration(
+            pose, -slope * direction
         )
-        by_speed[:, column] = of(mechanism.pose, slope * way) - of(mechanism.pose, -slope * way)
-    stiffness, damping = free.T @ by_place / (2 * DIFFERENCE_STEP), free.T @ by_speed / (2 * slope)
+    stiffness, damping = free.T @ by_pose / (2 * DIFFERENCE_STEP), free.T @ by_twist / (2 * slope)
     values = np.linalg.eigvals(np.block([[np.zeros_like(stiffness), np.eye(len(stiffness))], [stiffness, damping]]))
     return float(np.abs(values).max()) if np.isfinite(values).all() else float("nan")

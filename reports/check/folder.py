@@ -1,4 +1,4 @@
-"""Many models at once: which files of a folder are models, and their answers as one table, for people and for JUnit."""
+"""Checks of all models in a folder: finding the files, and their answers as a table, as data and as JUnit XML."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Answers = Sequence[tuple[CheckRequest, CheckReport | Refused]]
 
 
 def find_models(folder: Path) -> list[Path]:
-    """Files below a folder that are models or scripts with a space, in the order of their names."""
+    """Files below a folder that are MuJoCo or URDF models or scripts that import pymunk, sorted by name."""
     kinds = {".xml": MODEL_TAG, ".mjcf": MODEL_TAG, ".urdf": MODEL_TAG, ".py": PYMUNK_IMPORT}
     paths = []
     for path in sorted(folder.rglob("*")):
@@ -33,7 +33,7 @@ def find_models(folder: Path) -> list[Path]:
 
 
 def rows(answers: Answers) -> list[tuple[str, ...]]:
-    """Under FOLDER_HEADER, a model each."""
+    """The table with the columns FOLDER_HEADER and a row for each model."""
     return [
         (request.word, "-", f"refused: {_short(request, answer)}", "-", "-", "-")
         if isinstance(answer, Refused)
@@ -43,7 +43,7 @@ def rows(answers: Answers) -> list[tuple[str, ...]]:
 
 
 def document(answers: Answers) -> list[dict[str, Any]]:
-    """The data of each model, or why it was refused: see `reports.check.document.schema`."""
+    """The document of each model, or the reason of its refusal (`reports.check.document.schema`)."""
     return [
         {"model": request.word, "refused": answer.sentence, "found": None}
         if isinstance(answer, Refused)

@@ -23,13 +23,13 @@ from reports.check.one_freedom import has_one_freedom, motion_along_curve
 
 Array = NDArray[np.float64]
 DIVERGED = 1e12  # m, rad, m/s or rad/s: a state with a larger component has diverged
-SOFT_TOLERANCE = 1e-10  # relative: far below the truncation error of an engine, far above rounding
+SOFT_TOLERANCE = 1e-10  # relative; well below the truncation error of an engine and well above rounding
 
 
 def accelerations(
     mechanism: Mechanism, pose: Array, twist: Array, t: float, give: RowRegularisation | None = None
 ) -> Array:
-    """(bodies, 3) [m/s^2, rad/s^2] at pose and twist (bodies, 3), with joints that are ideal or as soft as `give`.
+    """Accelerations (bodies, 3) [m/s^2, rad/s^2]; the joints are ideal, or soft with the regularisation `give`.
 
     Soft rows: J a = bias - damping slip - stiffness gap - compliance F, with `give.initial_bias` in place of the bias.
     """
@@ -49,17 +49,17 @@ def soft_motion(
     tolerance: float = SOFT_TOLERANCE,
     twist: Array | None = None,
 ) -> Array:
-    """Poses (times, bodies, 3) of soft joints; NaN from where the equations can't be integrated.
+    """Poses (times, bodies, 3) of soft joints; NaN after the time at which the integration fails.
 
-    give(gap, pose): the softness. twist (bodies, 3): velocities at t = 0, the mechanism's unless passed.
-    By LSODA: dampers of light bodies, and stiff joints, are much faster than the motion.
+    give(gap, pose): the regularisation of the rows. twist (bodies, 3): initial velocities, the mechanism's if None.
+    LSODA integrates, since the equations are stiff.
     """
     count = mechanism.pose.size
     lengths = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     allowed = tolerance * np.concatenate([lengths, lengths / mechanism.time_scale])
 
     def rates(at: float, state: Array) -> Array:
-        if not np.abs(state).max() < DIVERGED:  # a step that was far too long: it is taken again, shorter
+        if not np.abs(state).max() < DIVERGED:  # NaN makes LSODA repeat the step with a smaller size
             return np.full_like(state, np.nan)
         pose, twist = state[:count].reshape(-1, 3), state[count:].reshape(-1, 3)
         gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(at)))
@@ -73,39 +73,35 @@ def soft_motion(
     return out
 
 
-LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # the difference to the judge estimates the judge's error
-JUDGE_SHARE = 0.1  # of a user's tolerance: the largest estimated error of the reference motion
+LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # its difference from the reference motion estimates the error of that motion
+JUDGE_SHARE = 0.1  # largest estimated error of the reference motion, relative to the user's tolerance
 ALONG_CURVE_TOLERANCE = 1e-12  # relative error of a step along the curve of one freedom
-LOOSER_CURVE_TOLERANCE = 1e-11  # of the second run, whose difference estimates the error
-DISTURBANCE = 1e-7  # relative to length and speed: small enough to be linear, far above the judge's error
+LOOSER_CURVE_TOLERANCE = 1e-11  # of a second run along the curve, whose difference estimates the error
+DISTURBANCE = 1e-7  # relative to length and speed: its growth is linear, and it is well above the judge's error
 LINEAR_LIMIT = 1e-2  # relative to length and speed: a larger disturbance does not grow linearly
 DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))  # (seed, size): chaos is reported if both grow exponentially
-REMAINING_SHARE = 1e-3  # of a disturbance: if the projection onto the joints leaves less, they allow no such motion
-# A disturbance of a regular motion grows about linearly in time; this many times that counts as exponential.
+REMAINING_SHARE = 1e-3  # of a disturbance: if the projection onto the joints leaves less, the joints do not allow it
+# A disturbance of a regular motion grows about linearly in time. Growth by this factor more counts as exponential.
 EXPONENTIAL_GROWTH = 100.0
 
 
 @dataclass(frozen=True, eq=False)
 class IdealMotion:
-    """The ideal motion, and the same motion at a `looser` tolerance; their difference estimates the error.
-
-    `cut`: the motion ends early, since the estimated error exceeds JUDGE_SHARE of the tolerance after its last sample.
-    """
+    """The ideal motion and its sensitivity to the initial state."""
 
     trajectory: Trajectory
-    looser: Trajectory
-    growth: Array  # (times,) how many times a small disturbance of the start has grown
-    horizon: float  # s; the duration unless two disturbances both grow exponentially from here to its end
-    cut: bool = False
+    looser: Trajectory  # the same motion with a larger tolerance; the difference estimates the error
+    growth: Array  # (times,) growth factor of a small disturbance of the initial state
+    horizon: float  # s; two small disturbances grow exponentially after this time; the duration if they do not
+    cut: bool = False  # whether the motion ends early, since the estimated error becomes too large
 
     @property
     def grown(self) -> float:
-        """The growth at the end."""
         return float(self.growth[-1])
 
     @property
     def tenfold(self) -> float:
-        """Mean time [s] in which a small disturbance of the start grows tenfold; infinite if it does not grow."""
+        """Mean time [s] in which a small disturbance grows tenfold; infinite if it does not grow."""
         small = self.growth * DISTURBANCE < LINEAR_LIMIT
         last = len(small) - 1 if small.all() else max(int(np.argmin(small)) - 1, 0)
         tens = float(np.log10(max(self.growth[last], 1.0)))
@@ -115,7 +111,7 @@ class IdealMotion:
 def reference_motion(mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf) -> IdealMotion:
     """The motion of ideal joints, truncated where its estimated error exceeds JUDGE_SHARE of the tolerance.
 
-    Raises InvalidMechanism if it can't be integrated to the end, or is inaccurate from the first sample on.
+    Raises InvalidMechanism if the integration fails, or if already the first sample after the start is inaccurate.
     """
 
     def by_multipliers(other: Mechanism) -> Trajectory:
@@ -158,7 +154,7 @@ def reference_motion(mechanism: Mechanism, samples: int, spacing: float, toleran
 
 
 def _is_accurate(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> NDArray[np.bool_]:
-    """Whether the estimated error and the joints' gaps are below JUDGE_SHARE of a tolerance, by sample (times,)."""
+    """Whether the estimated error and the gaps of the joints are below JUDGE_SHARE of the tolerance (times,)."""
     off = pose_distance(mechanism, motion.pose + np.asarray(motion.estimate), motion.pose)
     if mechanism.row_count:
         gap = np.abs(np.nan_to_num(mechanism.joint_rows.gap(motion.pose, motion.t)))
@@ -167,9 +163,9 @@ def _is_accurate(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> 
 
 
 def _first_exponential(growth: Array, expected: Array, size: float) -> int:
-    """The first sample from which on a disturbance of this size has grown by more than expected; their count if none.
+    """Index of the first sample at which a disturbance exceeds the expected growth; the number of samples if none.
 
-    A disturbance above LINEAR_LIMIT counts as grown to the end.
+    Growth that has receded by the end counts only if the disturbance exceeded LINEAR_LIMIT meanwhile.
     """
     beyond = growth > expected
     stays = beyond[-1] or np.any(beyond & (growth * size > LINEAR_LIMIT))
@@ -177,7 +173,7 @@ def _first_exponential(growth: Array, expected: Array, size: float) -> int:
 
 
 def pose_distance(mechanism: Mechanism, pose: Array, other: Array) -> Array:
-    """Distance (times,) of poses (times, bodies, 3): the largest of angles [rad] and positions in lengths."""
+    """Largest difference (times,) of two poses (times, bodies, 3): of angles [rad] and of positions / length."""
     difference = np.abs(pose - other)
     places = np.hypot(difference[..., 0], difference[..., 1]) / mechanism.length_scale
     return np.maximum(places, difference[..., 2]).max(axis=1)
@@ -191,7 +187,7 @@ def _growth(
     seed: int,
     nudge: float,
 ) -> Array:
-    """Growth factor (times,) of a disturbance of the start; 1 where the error of the reference motion explains it."""
+    """Growth factor (times,) of a random initial disturbance; 1 where the reference's own error could explain it."""
     dynamics, random = Dynamics(mechanism), np.random.default_rng(seed)
     unit = mechanism.pose_unit
     none = np.ones(len(motion.t))
@@ -204,7 +200,7 @@ def _growth(
     bodies = tuple(replace(body, pose=tuple(at), twist=tuple(rate)) for body, at, rate in states)
     try:
         disturbed = run(replace(mechanism, bodies=bodies))
-    except InvalidMechanism:  # a position in which nothing small is allowed
+    except InvalidMechanism:  # the disturbed mechanism can't be assembled or integrated
         return none
 
     def size(other: Trajectory) -> Array:
@@ -218,29 +214,29 @@ def _growth(
     return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
-START_AGREEMENT = 1e-6  # of the largest acceleration: rounding of two solutions, also of badly scaled masses
-# Accuracy of the reference motion, relative to the mechanism's speed and its largest force. Less counts as zero.
+START_AGREEMENT = 1e-6  # of the largest acceleration: rounding of two solutions, also with badly scaled masses
+# Accuracy of the reference motion, relative to the mechanism's speed and largest force; smaller values count as zero.
 ZERO_SHARE = 1e-9
 ERROR_UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
 
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """Errors of a run at its samples (times,); NaN after the run has diverged, or where nothing can be compared."""
+    """Errors of a run at its samples (times,); NaN after the run has diverged, and for values that are not compared."""
 
     t: Array
-    of: dict[str, Array]  # by ERROR_UNITS
-    whole: Array  # the larger of angles [rad] and positions in lengths; compared with the tolerance
+    of: dict[str, Array]  # keys of ERROR_UNITS -> (times,)
+    whole: Array  # `pose_distance` from the ideal motion; its maximum is compared with the tolerance
     finished: bool
 
     @property
     def largest(self) -> float:
-        """Infinite for a run that gave up."""
+        """The largest `whole`; infinite for a run that gave up."""
         return float(np.nanmax(self.whole)) if self.finished else float("inf")
 
     @property
     def worst(self) -> dict[str, float]:
-        """Of each quantity; NaN where it is not known."""
+        """The largest error of each quantity; NaN if it is unknown."""
         return {name: float(np.fmax.reduce(values)) for name, values in self.of.items()}
 
     @property
@@ -251,8 +247,8 @@ class Errors:
 def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jumps: bool = False) -> Errors:
     """Errors of a run at the samples of the reference motion.
 
-    jumps: the run starts with velocities that its joints do not allow. The ideal motion changes them at once by an
-    impulse, a run in one or more steps; so forces and energy at the first two samples are not compared.
+    jumps: the run starts with velocities that its joints do not allow. The ideal motion changes them by an impulse at
+    t = 0, but a run needs one or more steps. So forces and energy at the first two samples are not compared.
     """
     difference = run.pose - truth.pose
     angle = np.abs(difference[..., 2]).max(axis=1)
@@ -260,7 +256,7 @@ def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jum
     kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1))
     span = float(kinetic.max())
     fast = mechanism.length_scale / mechanism.time_scale
-    # At rest but for rounding, an energy that is lost is no part of any other.
+    # A mechanism that is at rest except for rounding has no kinetic energy to which a loss could be related.
     moves = span > 0.5 * float(mechanism.inertias[:, 0].max()) * (ZERO_SHARE * fast) ** 2
     drift = np.abs(energy(mechanism, run) - energy(mechanism, truth)) / span if moves else np.full_like(angle, np.nan)
     reaction = _reaction(mechanism, truth, run)
@@ -272,11 +268,11 @@ def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jum
 
 
 def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array:
-    """The largest error of the joints' forces and moments that rigid bodies determine (times,), in the largest true one
-    of its kind; NaN where it is not known.
+    """The largest relative error (times,) of the unique joint reactions; NaN where the run has none.
 
-    The rows of a joint that hold a point are one vector: the error does not depend on the axes. Where all true ones of
-    a kind are rounding beside the largest acting force (for moments: times the length), that force is the measure.
+    Forces and moments are two kinds, each relative to its largest ideal reaction, or to the largest acting force (times
+    the length for moments) if all ideal reactions of the kind are rounding. The force of a joint is compared as a
+    vector, so that the error does not depend on the axes.
     """
     out = np.full(len(run.t), np.nan)
     if not mechanism.row_count:
@@ -296,7 +292,7 @@ def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array
         scale = scale if scale > ZERO_SHARE * largest_force * arm else largest_force * arm
         if scale > 0:
             off = [np.linalg.norm(run.reaction[:, row] - truth.reaction[:, row], axis=1) / scale for row in rows]
-            # A joint whose force an engine does not know, such as that of a prescribed crank, hides no other.
+            # fmax ignores NaN, the force of a joint that the engine does not report, such as a prescribed crank.
             out = np.fmax(out, np.fmax.reduce(off, axis=0))
     return out
 
@@ -323,10 +319,10 @@ def find_opening(mechanism: Mechanism, run: Trajectory) -> Opening | None:
 
 
 def refuse_disagreement(reading: Reading) -> float:
-    """The start's accelerations in the engine and by the judge, relative to the largest, if they agree.
+    """Relative difference of the accelerations at t = 0 between the engine and the judge.
 
-    The engine's declared softness is part of the comparison. Raises Unsupported, with the element that explains a
-    disagreement if one does.
+    The judge includes the engine's declared softness. Raises Unsupported if the difference exceeds START_AGREEMENT; the
+    message names an element of the model if removing it restores agreement.
     """
     mechanism, model = reading.mechanism, reading.model
     give = model.regularisation(np.zeros(mechanism.row_count), mechanism.pose) if model.has_soft_joints else None

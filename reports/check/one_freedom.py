@@ -1,10 +1,10 @@
-"""The ideal motion of a mechanism of one freedom along its own curve, which goes on through singular positions.
+"""The ideal motion of a mechanism of one freedom along its configuration curve, also through singular positions.
 
-With the arc s of the curve in the metric of the mass matrix, q' = tau(q) v and v' = tau . f, where v = s', tau spans
-the null space of the rows with tau^T M tau = 1, and f are the applied forces: ideal joints do no work along tau.
-Multipliers do not occur, so nothing is divided by a singular value. Where two rows become dependent (a dead centre of
-a parallelogram), the null space has more directions, and velocities, which no finite force makes jump, pick the one
-in which the motion arrives.
+With the arc length s of the curve in the metric of the mass matrix, q' = tau(q) v and v' = tau . f, where v = s'. tau
+spans the null space of the rows, with tau^T M tau = 1. f are the applied forces; ideal joints do no work along tau.
+The equations contain no multipliers, so that no small singular value is a divisor. If two rows become dependent, as at
+a dead centre of a parallelogram, the null space has further directions. Finite forces leave the velocity continuous, so
+tau is then the direction of the null space that is closest to the previous one.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-# Singular values of the scaled rows, beside the largest, below which directions count as allowed. Where curves cross, a
-# drift d off the curve leads to the other one unless this is well above the root of d, which is 1e-12 or less of the
-# length here; and a direction may turn by about this much on a way as short, so the square of it, 1e-8, is the error
-# there, and it dies out as the curves part. Measured on parallelograms: right to 1e-9 with 1e-5, 1e-4 and 1e-3.
+# Ratio to the largest singular value of the scaled rows below which a direction counts as allowed. Where two curves
+# cross, a drift d off the curve leads to the other curve unless this ratio is well above the root of d; d is at most
+# 1e-12 of the length. The direction of motion may turn by about this ratio near a crossing, so the error there is about
+# its square, 1e-8, and it decreases afterwards. On parallelograms errors were below 1e-9 with 1e-5, 1e-4 and 1e-3.
 NULL_SPACE_TOLERANCE = 1e-4
-CURVE_BODY_LIMIT = 40  # a singular value decomposition of all rows in every evaluation
+CURVE_BODY_LIMIT = 40  # since every evaluation needs a singular value decomposition of all rows
 
 
 def has_one_freedom(mechanism: Mechanism) -> bool:
-    """Whether one freedom is left and no joint prescribes a rate or holds velocities alone."""
+    """Whether the mechanism has one freedom, only holonomic joints, and no prescribed rate."""
     return (
         0 < len(mechanism.bodies) <= CURVE_BODY_LIMIT
         and mechanism.degrees_of_freedom() == (1, 1)
@@ -38,9 +38,9 @@ def has_one_freedom(mechanism: Mechanism) -> bool:
 
 
 def motion_along_curve(mechanism: Mechanism, t: Array, tolerance: float) -> Trajectory:
-    """The motion at times t (times,) [s]; NaN from where it is not known. `tolerance`: relative, of a step.
+    """The motion at times t (times,) [s] of a mechanism for which `has_one_freedom`; NaN after the integration fails.
 
-    The mechanism has one freedom (`has_one_freedom`).
+    `tolerance` is the relative error of a step.
     """
     states, tangent, count = _states(mechanism, t, tolerance), _Tangent(mechanism), mechanism.pose.size
     pose, twist, acceleration = (np.full((len(t), *mechanism.pose.shape), np.nan) for _ in range(3))
@@ -55,7 +55,7 @@ def motion_along_curve(mechanism: Mechanism, t: Array, tolerance: float) -> Traj
 
 
 class _Tangent:
-    """tau (3 bodies,) at a pose (3 bodies,), with the direction of the previous evaluation."""
+    """tau (3 bodies,) at a pose (3 bodies,), without a change of sign from the previous evaluation."""
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism, self.root = mechanism, np.sqrt(mechanism.inertias.reshape(-1))
@@ -71,7 +71,7 @@ class _Tangent:
         return self.last
 
     def _allowed(self, pose: Array) -> Array:
-        """(directions, 3 bodies), orthonormal in coordinates that are multiplied by the roots of the inertias."""
+        """Basis (directions, 3 bodies) of the null space, orthonormal after scaling by the roots of the inertias."""
         rows = self.mechanism.joint_rows.dense(pose) / self.root
         sizes = np.linalg.norm(rows, axis=1, keepdims=True)
         _, values, right = np.linalg.svd(rows / np.where(sizes > 0, sizes, 1.0), full_matrices=True)
@@ -80,7 +80,7 @@ class _Tangent:
 
 
 def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
-    """q and v (times, 3 bodies + 1); NaN from where they are not known."""
+    """q and v (times, 3 bodies + 1); NaN after the integration fails."""
     tangent, count = _Tangent(mechanism), mechanism.pose.size
     unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     start = float(tangent.last @ (mechanism.inertias.reshape(-1) * mechanism.twist.reshape(-1)))
@@ -104,7 +104,7 @@ def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
 
 
 def _acceleration(mechanism: Mechanism, pose: Array, twist: Array, along: Array) -> Array:
-    """(bodies, 3): along the curve by the forces, across it as far as the rows bend it."""
+    """Acceleration (bodies, 3): the forces determine the part along the curve, the rows' bias the part across it."""
     rows = mechanism.joint_rows.dense(pose)
     bias = mechanism.bias(pose, twist)
     root = np.sqrt(mechanism.inertias.reshape(-1))

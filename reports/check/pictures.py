@@ -1,4 +1,4 @@
-"""Two pictures of a check, from plain data: errors over time, and the mechanism at the moment when it is most wrong."""
+"""Two pictures of a check: the errors over time, and the mechanism at the time of its largest error."""
 
 from __future__ import annotations
 
@@ -19,55 +19,50 @@ from reports.check.judging import ERROR_UNITS, Errors, IdealMotion
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 
 Array = NDArray[np.float64]
-Lines = list[list[list[float]]]  # lines of points of two coordinates [m]
+Lines = list[list[list[float]]]  # (line, point, coordinate) [m]
 Curves = dict[str, list[float]]  # errors over time by quantity, in its unit
-SMALLEST_DRAWN = 1e-16  # of an error on a logarithmic axis
+SMALLEST_DRAWN = 1e-16  # smaller errors are drawn with this value on a logarithmic axis
 BAR_STYLE: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
 
 
 @dataclass(frozen=True)
 class Pose:
-    """One pose: bars through the joints of each body, rods and springs, rails on which something slides [m]."""
+    """The lines of a drawn pose."""
 
-    bars: Lines
-    links: Lines
-    rails: Lines
+    bars: Lines  # a polygon for each body through its joints
+    links: Lines  # rods and springs
+    rails: Lines  # guides of slides on the ground
 
 
 @dataclass(frozen=True)
 class PictureData:
-    """Errors over the times t [s] of three runs, those of quantities that are known, and a moment [s] in two poses.
+    """The numbers of both pictures."""
 
-    `advised` is None where the user's own settings are enough; `horizon` [s] where errors do not grow exponentially;
-    `label`: the name of the first run.
-    """
-
-    t: list[float]
-    own: Curves
+    t: list[float]  # s
+    own: Curves  # errors of the user's settings at `t`
     judge_t: list[float]
-    judge: Curves
+    judge: Curves  # errors of the judge at `judge_t`
     advised_t: list[float]
-    advised: Curves | None
-    horizon: float | None
-    moment: float
-    ground: list[list[float]]
-    ideal: Pose
-    found: Pose
+    advised: Curves | None  # errors of other settings at `advised_t`; None if the user's settings meet the tolerance
+    horizon: float | None  # s from which on errors grow exponentially; None if they do not
+    moment: float  # s; time of the largest error of the user's settings
+    ground: list[list[float]]  # ground points (points, 2) [m]
+    ideal: Pose  # at `moment`, with ideal joints
+    found: Pose  # at `moment`, with the user's settings
     label: str = "your settings"
 
     def as_text(self) -> str:
-        """The data as JSON with NaN."""
         return json.dumps(asdict(self), sort_keys=True)
 
 
 def picture_data_from_text(text: str) -> PictureData:
-    """Back from `PictureData.as_text`."""
+    """The inverse of `PictureData.as_text`."""
     data = json.loads(text)
     return PictureData(**{**data, "ideal": Pose(**data["ideal"]), "found": Pose(**data["found"])})
 
 
 def picture_data_of(result: CheckResult, advised: SettingRun | None = None) -> PictureData:
-    """The data of a check; `advised`: the settings beside the user's own, if not those that it advises."""
+    """The data of a check; `advised`: the second settings in the picture, the check's advised ones if None."""
     advised = advised or result.advised
     other = None if advised is None or result.met else advised.errors
     mechanism = result.reading.mechanism
@@ -83,7 +78,7 @@ def picture_data(
     other: Errors | None = None,
     label: str = PictureData.label,
 ) -> PictureData:
-    """Picture data of a run: its errors, the ideal motion, the judge's errors, and errors of another run."""
+    """The data of a run with the errors `own`; `other`: errors of a run with advised settings."""
     quantities = [quantity for quantity in ERROR_UNITS if np.isfinite(own.of[quantity]).any()]
     sample = int(np.argmax(np.where(np.isfinite(own.whole), own.whole, -1.0)))
 
@@ -107,7 +102,7 @@ def picture_data(
 
 
 def pose_lines(mechanism: Mechanism, pose: Array) -> Pose:
-    """The lines of a pose (bodies, 3) [m, m, rad]: a body with a single joint reaches to its centre of mass."""
+    """The lines of a pose (bodies, 3) [m, m, rad]; the line of a body with one joint ends at its centre of mass."""
 
     def point(name: str | None, local: tuple[float, float]) -> Array:
         if name is None:
@@ -115,17 +110,17 @@ def pose_lines(mechanism: Mechanism, pose: Array) -> Pose:
         x, y, angle = pose[mechanism.body_index(name)]
         return np.array([x, y]) + rotated(angle, np.array(local))
 
-    reach = 2 * max(mechanism.length_scale, float(np.ptp(mechanism.pose[:, :2], axis=0).max()))
+    extent = 2 * max(mechanism.length_scale, float(np.ptp(mechanism.pose[:, :2], axis=0).max()))
     rails, links, bars = [], [], []
     for joint in mechanism.joints:
         if isinstance(joint, Slot) and joint.first is None:
-            way = 0.5 * reach * np.array([np.cos(joint.line_angle), np.sin(joint.line_angle)])
+            half = 0.5 * extent * np.array([np.cos(joint.line_angle), np.sin(joint.line_angle)])
             middle = point(joint.second, joint.second_point)
-            rails.append([(middle - way).tolist(), (middle + way).tolist()])
+            rails.append([(middle - half).tolist(), (middle + half).tolist()])
     for link in (*mechanism.joints, *mechanism.forces):
         if link.acts_along_line:
             first, second = (point(*end) for end in link.points)
-            if np.linalg.norm(second - first) < 3 * reach:  # a longer one represents a spring along a slide
+            if np.linalg.norm(second - first) < 3 * extent:  # a longer one represents a spring along a slide
                 links.append([first.tolist(), second.tolist()])
     for name, points in body_points(mechanism, pose).items():
         centre = pose[mechanism.body_index(name)][:2]
@@ -134,7 +129,7 @@ def pose_lines(mechanism: Mechanism, pose: Array) -> Pose:
 
 
 def render_pictures(shown: PictureData) -> dict[str, tuple[str, str]]:
-    """By 'errors' and 'worst': the title of a picture, and the SVG."""
+    """(title, SVG) of the pictures 'errors' and 'worst'."""
     named = {
         "errors": (f"Errors of {shown.label} over time, beside the judge's own error", _errors(shown)),
         "worst": (f"The mechanism at {shown.moment:.3g} s, where the error of {shown.label} is largest", _worst(shown)),
@@ -189,7 +184,7 @@ def _legend(figure: Figure, theme: Theme, columns: int, *entries: Any) -> None:
 
 
 def draw_plane(panel: Any, theme: Theme, ground: Any, label: str | None = None) -> None:
-    """An empty plane of motion, with the points that are held to the ground (points, 2) [m]."""
+    """Draw the axes and the ground points (points, 2) [m]."""
     style_axes(panel, theme)
     panel.set_aspect("equal", adjustable="datalim")
     panel.set_xlabel("x in the plane of motion, m")
@@ -199,7 +194,7 @@ def draw_plane(panel: Any, theme: Theme, ground: Any, label: str | None = None) 
 
 
 def draw_ideal(panel: Any, theme: Theme, pose: Pose, label: str | None = None) -> None:
-    """The pose of ideal joints: full lines."""
+    """Draw the pose of ideal joints with solid lines."""
     _draw(panel, pose.rails, linewidth=0.6, color=theme.ink, alpha=0.5)
     _draw(panel, pose.links, linewidth=1.0, color=theme.ink)
     _draw(panel, pose.bars, label, color=theme.ink, linewidth=3.0, markersize=6, **BAR_STYLE)

@@ -1,4 +1,4 @@
-"""Sections of a check as plain text, as Markdown with its pictures beside it, and as one HTML file."""
+"""The report of a check as plain text, as Markdown with picture files, and as one HTML file."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ img { max-width: 100%; height: auto }
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the report. facts: (label, sentence) pairs; code: lines to copy; picture: (title, SVG)."""
+    """A part of the report."""
 
     title: str
     sentences: tuple[str, ...] = ()
-    facts: tuple[tuple[str, str], ...] = ()
-    code: tuple[str, ...] = ()
+    facts: tuple[tuple[str, str], ...] = ()  # (label, sentence)
+    code: tuple[str, ...] = ()  # lines that the user can copy
     header: tuple[str, ...] = ()
     rows: tuple[tuple[str, ...], ...] = ()
-    picture: tuple[str, str] | None = None
+    picture: tuple[str, str] | None = None  # (title, SVG)
 
 
 def plain(sections: Sequence[Section], width: int = 120) -> str:
-    """For a terminal of so many columns."""
+    """The report for a terminal with `width` columns."""
     lines: list[str] = []
     for section in sections:
         lines += [section.title] if section.title else []
@@ -67,7 +67,7 @@ def markdown(name: str, sections: Sequence[Section], files: dict[str, str]) -> s
 
 
 def html(name: str, sections: Sequence[Section]) -> str:
-    """One file with everything in it."""
+    """The report as one self-contained HTML page."""
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(name)}</title>'
         f"<style>{STYLE}</style></head><body>\n{body(name, sections)}\n</body></html>\n"
@@ -75,7 +75,7 @@ def html(name: str, sections: Sequence[Section]) -> str:
 
 
 def body(name: str, sections: Sequence[Section]) -> str:
-    """The content of the HTML page, which a notebook can show too."""
+    """The body of the HTML page, also for a notebook."""
     lines = [f"<h1>{escape(' '.join(name.split()))}</h1>"]
     for section in sections:
         lines += [f"<h2>{escape(section.title)}</h2>"] if section.title else []
@@ -92,7 +92,7 @@ def body(name: str, sections: Sequence[Section]) -> str:
             table = "".join(f"<tr>{row}</tr>\n" for row in rows)
             lines.append(f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{table}</tbody>\n</table>")
         if section.picture is not None:
-            # An image of its own: as elements of this page two drawings would share the names of their clips.
+            # As <img>, since identifiers of clip paths in two inline SVG elements would collide.
             title, svg = section.picture
             source = f"data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}"
             lines.append(f'<p><img src="{source}" alt="{escape(title)}" /></p>')

@@ -1,6 +1,6 @@
-"""A check as work for a supervised process: request and report are plain enough to be sent to it and back.
+"""The request and the report of a check; both can be pickled, since a check runs in a supervised process.
 
-A user's script is run in that process: the command goes on if the script raises, ends its process or never ends.
+That process runs the user's script, so that the command continues if the script raises, exits or never ends.
 """
 
 from __future__ import annotations
@@ -23,27 +23,25 @@ MAX_DURATION = 1000.0  # s of motion
 class CheckRequest:
     """The options of `crosscheck check` and of `planar_crosscheck.check`.
 
-    word: the model as on the command line, relative to `folder`; tolerance: None if not given; quick,
-    everything: see `SweepPlan`; search: try settings until one meets the tolerance; apply: path of the file to write
-    with the advised settings; notes: path of a file to which the progress is written.
+    `without`, `key` and `step` are described in `ReadingTerms`, `quick` and `everything` in `SweepPlan`.
     """
 
-    word: str
+    word: str  # the model as on the command line, relative to `folder`
     folder: str
-    duration: float = 2.0
-    tolerance: float | None = None
+    duration: float = 2.0  # s
+    tolerance: float | None = None  # None: not given
     without: tuple[str, ...] = ()
     key: str = ""
     step: float | None = None
     pictures: bool = False
     quick: bool = False
     everything: bool = False
-    search: bool = False
-    apply: str = ""
-    notes: str = ""
+    search: bool = False  # try smaller steps until a setting meets the tolerance
+    apply: str = ""  # path of the file to write with the advised settings
+    notes: str = ""  # path of the file to which the progress is written
 
     def refuse_bad(self) -> CheckRequest:
-        """The request itself. Raises BadInput for a number out of its range."""
+        """Return the request itself. Raises BadInput for a number out of its range."""
         tolerance = "fix-to" if self.search else "tolerance"
         for name, value, most in (("duration", self.duration, MAX_DURATION), (tolerance, self.tolerance, 1.0)):
             if value is not None and not 0 < value <= most:
@@ -68,15 +66,15 @@ class CheckRequest:
 
 @dataclass(frozen=True, repr=False)
 class CheckReport:
-    """First screen, all sections, a line of a table and plain data; trouble: why --apply wrote nothing."""
+    """The report of a check in all its forms."""
 
     request: CheckRequest
     verdict: str
-    answer: Section
+    answer: Section  # the first screen
     sections: tuple[Section, ...]
-    line: tuple[str, ...]
-    data: dict[str, Any]
-    trouble: str = ""
+    line: tuple[str, ...]  # the row in the table of a folder
+    data: dict[str, Any]  # the JSON document
+    trouble: str = ""  # why --apply wrote nothing
 
     @property
     def fine(self) -> bool:
@@ -97,14 +95,14 @@ class CheckReport:
 
 @dataclass(frozen=True)
 class Refused:
-    """One sentence with the reason why there is no answer."""
+    """The reason why a model was not checked."""
 
     sentence: str
 
 
 def run_check(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
-    """Run the check in this process; `model`: an engine's object in place of a file."""
-    # Imported here: a command that only makes requests starts sooner.
+    """Run the check in this process; `model`: an object of an engine instead of a file."""
+    # Imported here, since a command that only makes requests does not need them.
     from engines import Unsupported
     from engines.importers import read_object
     from engines.reading import ReadingTerms

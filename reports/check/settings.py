@@ -1,4 +1,4 @@
-"""The sweep over documented settings: which are tried within a budget, and the cheapest that is enough."""
+"""The sweep over documented settings within a budget of CPU time, and the choice of the cheapest sufficient one."""
 
 from __future__ import annotations
 
@@ -13,36 +13,32 @@ from engines.reading import Change, Reading
 from reference.trajectory import Trajectory
 from reports.check.judging import Errors, measure_errors
 
-MAX_RUN_TIME = 1.0  # s of CPU time for one run: smaller steps are left out
-HELPFUL_RATIO = 0.75  # of the error at the larger step: below it a smaller step counts as helpful
-SATURATED_ERROR = 1.0  # rad, or lengths of the mechanism: a larger error does not reveal its causes
-# Relative change of a saturated error: two coarse steps seldom agree so well by chance, and still less twice in a row.
+MAX_RUN_TIME = 1.0  # s of CPU time for one run; smaller steps are left out
+HELPFUL_RATIO = 0.75  # a smaller step is helpful if it reduces the error below this share of the previous error
+SATURATED_ERROR = 1.0  # rad, or lengths of the mechanism: the causes of a larger error can't be separated
+# Relative change below which a saturated error counts as constant: two coarse steps seldom agree so well by chance.
 SATURATED_CHANGE = 0.01
-SMALLER_STEPS = 4  # runs of the user's settings at smaller steps, from which the causes of the error are separated
+SMALLER_STEPS = 4  # number of smaller steps at which the user's settings run to separate the causes of the error
 
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """Which documented settings are tried: those that may be advised, within `patience` [s of CPU time].
+    """The choice of documented settings that are tried."""
 
-    goal: an error; ever smaller steps are tried until a setting is within it. quick: four settings, and rougher parts.
-    everything: also settings that cost more than one with a tenth of the tolerance.
-    """
-
-    patience: float
-    goal: float | None = None
-    quick: bool = False
-    everything: bool = False
+    patience: float  # s of CPU time for all settings
+    goal: float | None = None  # try smaller steps until the error of a setting is at most this value
+    quick: bool = False  # try four settings, and integrate the declared motion with a larger tolerance
+    everything: bool = False  # also try settings that are too expensive to be advised
 
 
 @dataclass(frozen=True, eq=False)
 class SettingRun:
-    """One setting: its largest error in the measure of a tolerance, and the CPU time of stepping [s]."""
+    """The run of one setting."""
 
     change: Change
     errors: Errors
     run: Trajectory
-    front: bool = False  # no other that was tried is both cheaper and better
+    front: bool = False  # whether no other setting in the table is both cheaper and more accurate
 
     @property
     def error(self) -> float:
@@ -50,11 +46,11 @@ class SettingRun:
 
     @property
     def cost(self) -> float:
+        """CPU time of stepping [s]."""
         return self.run.stepping
 
     @property
     def reaction(self) -> float:
-        """Largest error of the reactions, relative to the largest true one of its kind."""
         return self.errors.worst["reaction"]
 
 
@@ -68,9 +64,9 @@ def run_settings_sweep(
     plan: SweepPlan,
     tolerance: float,
 ) -> list[SettingRun]:
-    """Runs at the documented settings, coarse steps first; the user's own settings come first in the result.
+    """Run the documented settings, those with large steps first; return the user's settings first.
 
-    A setting is left out where it would take too long, by the number of its steps and the CPU time of a step so far.
+    A setting is left out if its estimated CPU time is too long: the number of steps times the measured time of a step.
     """
     model = reading.model
 
@@ -109,14 +105,14 @@ def run_settings_sweep(
 
 
 def _cost_limit(table: list[SettingRun], tolerance: float) -> float:
-    """CPU time [s] of a setting with a tenth of the advised one's error: a setting that takes longer is not advised."""
+    """CPU time [s] of the cheapest setting with a tenth of the advised setting's error; infinite without one."""
     advised = cheapest(table, tolerance)
     decade = None if advised is None else cheapest(table, advised.error / 10)
     return float("inf") if decade is None else decade.cost
 
 
 def _quick_choice(changes: list[Change]) -> list[int]:
-    """The user's own settings at a quarter of the step, and the last kind at that step, a quarter and a sixteenth."""
+    """Indices of four settings: the user's options with dt / 4, and the last options with dt, dt / 4 and dt / 16."""
     user, last = changes[0], changes[-1].options
     wanted = [(user.options, 4), (last, 1), (last, 4), (last, 16)]
     places = {(change.options, round(user.dt / change.dt)): index for index, change in enumerate(changes)}
@@ -124,10 +120,7 @@ def _quick_choice(changes: list[Change]) -> list[int]:
 
 
 def _has_plateaued(table: list[SettingRun]) -> bool:
-    """Whether the last two reductions of the step each reduced the error by less than a quarter.
-
-    For an error above SATURATED_ERROR: whether they hardly changed it.
-    """
+    """Whether the last two reductions of the step were not helpful: see HELPFUL_RATIO and SATURATED_CHANGE."""
 
     def stays(before: float, after: float) -> bool:
         return (
@@ -141,14 +134,14 @@ def _has_plateaued(table: list[SettingRun]) -> bool:
 
 
 def cheapest(table: list[SettingRun], tolerance: float) -> SettingRun | None:
-    """The setting of the least cost whose error is within a tolerance, if there is one."""
+    """The cheapest setting whose error is within the tolerance; None without one."""
     return min(
         (setting for setting in table if setting.error <= tolerance), key=lambda setting: setting.cost, default=None
     )
 
 
 def pareto_front(table: list[SettingRun]) -> list[SettingRun]:
-    """The settings that no other beats in both error and cost, the cheapest first."""
+    """The settings for which no other is both cheaper and more accurate, the cheapest first."""
     out: list[SettingRun] = []
     for setting in sorted(table, key=lambda setting: (setting.cost, setting.error)):
         if np.isfinite(setting.error) and (not out or setting.error < out[-1].error):

@@ -1,4 +1,4 @@
-"""The report of a check: sections of sentences and tables for a reader."""
+"""The sections of a check's report: sentences and tables."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from reports.check.settings import SATURATED_ERROR, SettingRun, pareto_front
 from reports.write import tables
 
 NOTES_LISTED = 4  # notes on elements in the short report
-CHEAPER_COST = 0.9  # of the user's CPU time: a smaller difference may be the clock's noise
-BETTER_ERROR = 0.9  # of an error: a setting that takes less away is not shown on the first screen
+CHEAPER_COST = 0.9  # of the user's CPU time; a cost above it may differ from the user's only by noise of the clock
+BETTER_ERROR = 0.9  # of the previous row's error; the first screen leaves out a setting with a larger error
 CUT_NOTE = (
     "; beyond {:.3g} s the judge itself does not know it to a tenth of the tolerance, so nothing is compared there"
 )
-ROUNDING_ERROR = 1e-12  # of a radian, and of the mechanism's length
+ROUNDING_ERROR = 1e-12  # rad, or lengths of the mechanism; smaller errors are rounding
 SETTINGS_HEADER = ("setting", "largest error", "reaction error", "CPU, ms", "")
-number = partial(tables.number, infinite="gave up")  # two digits, or a word
+number = partial(tables.number, infinite="gave up")
 
 
 def answer_section(result: CheckResult) -> Section:
-    """The first screen: size of the error, cause, place, assumptions, advice and cost."""
+    """The first screen of the report."""
     size = f"{result.facts.length:.3g} m, the length of the mechanism"
     cost = f"{number(1e3 * result.own.stepping)} ms of CPU time for {result.duration:g} s"
     facts = (
@@ -47,7 +47,7 @@ def answer_section(result: CheckResult) -> Section:
 
 
 def report_sections(result: CheckResult, pictures: dict[str, tuple[str, str]] | None = None) -> tuple[Section, ...]:
-    """The whole report, the answer first."""
+    """All sections of the report."""
     pictures = pictures or {}
     return (
         replace(answer_section(result), title="Answer"),
@@ -58,7 +58,7 @@ def report_sections(result: CheckResult, pictures: dict[str, tuple[str, str]] | 
 
 
 def summary_row(result: CheckResult) -> tuple[str, ...]:
-    """In a table of many models: error, cause, advice, its error, and its CPU time relative to the user's."""
+    """The row in the table of a folder: error, cause, advised settings, their error, and their relative CPU time."""
     user, advised = result.table[0], result.advised
     advice = ("none that was tried", "-", "-")
     if advised is not None:
@@ -68,7 +68,7 @@ def summary_row(result: CheckResult) -> tuple[str, ...]:
 
 
 def _cause(parts: ErrorParts) -> str:
-    """The largest part of the error."""
+    """The main cause of the error."""
     if parts.step == 0 or math.isinf(parts.step):
         return "-" if parts.step == 0 else "gave up"
     if not parts.divided:
@@ -79,7 +79,6 @@ def _cause(parts: ErrorParts) -> str:
 
 
 def _why(result: CheckResult) -> str:
-    """Softness, step or neither, in a line."""
     parts, model = result.parts, result.reading.model
     at_smallest, rest = f"at {parts.smallest * 1e3:.3g} ms", number(parts.rest)
     if parts.rest > SATURATED_ERROR:
@@ -116,14 +115,14 @@ def _forces(result: CheckResult) -> str:
         ("energy", "energy (kinetic, and of gravity and springs) by", "of the largest kinetic one"),
     ):
         if not math.isnan(worst := errors.worst[name]):
-            # After a start that jumps, an engine takes some steps to make the impulse: a reader has to see that.
+            # An engine needs some steps for an initial impulse, so the time of the largest error is printed too.
             when = f", at {errors.t[int(np.nanargmax(errors.of[name]))]:.3g} s" if result.reading.jumps else ""
             sentences.append(f"{start} {number(worst)} {end}{when}")
     return "; ".join(sentences)
 
 
 def _sensitivity(result: CheckResult) -> str:
-    """How fast neighbouring starts part, and what follows for the error."""
+    """How fast neighbouring motions diverge, and the consequence for the error."""
     judge = result.judge
     if result.facts.locked:
         return "nothing can move: the joints leave no freedom, and the error is how far they give way"
@@ -173,7 +172,6 @@ def _advice(result: CheckResult) -> tuple[str, ...]:
 
 
 def _cost_ratio(setting: SettingRun, other: SettingRun) -> float:
-    """The CPU time of a setting relative to another's."""
     return setting.cost / other.cost if other.cost > 0 else float("nan")
 
 
@@ -186,7 +184,7 @@ def _written(result: CheckResult) -> str:
 
 
 def _front(result: CheckResult) -> tuple[tuple[str, ...], ...]:
-    """The user's own settings, and those that none beats in both error and cost."""
+    """Rows of the user's settings and of the Pareto front."""
     rows_shown = [result.table[0]]
     for setting in pareto_front(result.table):
         if setting is not result.table[0] and not setting.error > BETTER_ERROR * rows_shown[-1].error:
@@ -265,7 +263,7 @@ def _opening(result: CheckResult) -> str:
 
 
 def _table(result: CheckResult) -> Section:
-    """Every setting that was tried; of those with the same errors the cheapest, or the user's."""
+    """All settings that were tried; of settings with equal errors only the cheapest, or the user's."""
     groups: dict[tuple[str, str], list[SettingRun]] = {}
     for setting in result.table:
         groups.setdefault((number(setting.error), number(setting.reaction)), []).append(setting)

@@ -1,1 +1,1 @@
-"""Cells and tasks are run by supervised workers or a cluster, and stored."""
+"""Running cells and tasks in supervised workers or on a cluster, and storing their results."""

@@ -1,8 +1,8 @@
-"""Workers here, or a Dask cluster, which gives the same answers as `supervise`.
+"""Running items on a Dask cluster, with the same results as `supervise` on this machine.
 
-A Dask task is a chunk of items, which a Dask worker runs in supervised processes of its own: an engine that aborts
-ends a cell and no worker. Items travel as bytes, so that no scheduler imports an engine, and with their keys: where a
-process makes another key of an item, it has other versions or files, and nothing is run.
+A Dask task is a chunk of items, which a Dask worker runs in supervised processes, so that an engine that aborts does
+not end the Dask worker. Items are sent pickled, so that the scheduler does not import engines. Each item is sent with
+its key: a process that computes another key has other versions or files, and does not run the item.
 """
 
 from __future__ import annotations
@@ -32,21 +32,21 @@ from reports.run.worker import process_start
 WORDS = re.compile(r"(?:tcp|tls)://\S+:\d+|local:([1-9]\d{0,2})")
 FORMS = "tcp://HOST:PORT of a Dask scheduler, or local:N for N workers here"
 ANSWERS_WITHIN = 10.0  # s for a scheduler to answer
-WORKERS_WITHIN = 120.0  # s for a first worker to be there
-CHUNK = 2.0  # s that a chunk is expected to take: much more than to send it and to start its processes
-_closing = threading.Event()  # the client is gone: threads of local workers end what they supervise
+WORKERS_WITHIN = 120.0  # s for the first worker to connect
+CHUNK = 2.0  # expected time of a chunk [s], much longer than sending it and starting its processes
+_closing = threading.Event()  # set when the client has ended: threads of local workers then end their processes
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """An item that was not run, since its key is another one there; `versions`: see `versions_of`."""
+    """An item that was not run, since the worker computes another key; `versions`: the worker's `versions_of`."""
 
     versions: dict[str, str]
 
 
 @dataclass(frozen=True)
 class Workforce:
-    """The function that runs items, `supervise` here or on a cluster, and how many items run at a time."""
+    """The function that runs items, here or on a cluster, and the number of items that run at the same time."""
 
     threads: int
     supervise: Supervise = supervise
@@ -72,7 +72,7 @@ def chunks(items: Iterable[Any]) -> list[list[Any]]:
 
 
 def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_key: bytes) -> Any:
-    """In a process of a worker: the result of a pickled (item, key), or Refusal; `paths`: the client's module path."""
+    """In a worker process: the result of a pickled (item, key), or a Refusal; `paths`: the client's sys.path."""
     sys.path += [path for path in paths if path not in sys.path and Path(path).exists()]
     try:
         item, key = pickle.loads(item_and_key)
@@ -84,14 +84,14 @@ def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_ke
 
 
 def run_chunk(data: bytes) -> bytes:
-    """In a Dask worker: the pickled answers (place of the item, result or Loss, note) to a pickled chunk."""
+    """In a Dask worker: the pickled answers (index of the item, result or Loss, note) to a pickled chunk."""
 
     def end_when_closing(running: list[Any]) -> None:
         if _closing.is_set():
             raise WorkersLost("the client is gone")
 
     job, items, limit, wall = pickle.loads(data)
-    # Dask starts its workers as processes that may have no children, unless its settings say so (`worker.daemon`).
+    # By default Dask starts workers as daemon processes, which may not have children.
     vars(multiprocessing.current_process())["_config"]["daemon"] = False
     places = {item: index for index, item in enumerate(items)}
     answers = supervise(job, items, limit, 1, watch=end_when_closing, wall=wall)
@@ -113,11 +113,11 @@ def connect_cluster(scheduler: str | None) -> Iterator[Workforce | None]:
         raise BadInput(
             f"--scheduler is {scheduler!r}, which needs Dask, and it is not installed: pip install '.[cluster]'"
         ) from None
-    for name in ("distributed", "tornado"):  # rows say what became of workers, not their logs
+    for name in ("distributed", "tornado"):  # errors of workers are reported in rows, so their logs are not needed
         logging.getLogger(name).setLevel(logging.CRITICAL)
     with ExitStack() as stack:
         try:
-            with process_start():  # Ctrl-C reaches every process of a terminal; what starts here leaves it to this one
+            with process_start():  # the started processes ignore Ctrl-C; this process handles it
                 where: Any = scheduler
                 if local_cluster[1]:  # threads: cells have processes of their own, all by one fork server
                     folder = str(stack.enter_context(temporary_folder()))
@@ -148,7 +148,7 @@ def _supervise(
 ) -> Iterator[Answer]:
     """Yield (item, result or Loss, note) as `supervise` does; the cluster has its own `workers`.
 
-    Raises BadInput if a worker has other versions, WorkersLost where the scheduler is gone.
+    Raises BadInput if a worker has other versions, WorkersLost if no worker is connected for WORKERS_WITHIN seconds.
     """
     parts = chunks(items)
     job = partial(run_item, function, tuple(filter(None, sys.path)))
@@ -174,19 +174,19 @@ def _supervise(
             if not done:
                 time.sleep(TICK)
     finally:
-        with suppress(Exception):  # this side is done, whatever the scheduler makes of it
+        with suppress(Exception):  # nothing more is needed from the scheduler, so its errors do not matter
             client.cancel(futures, force=True)
 
 
 def _threads(client: Any) -> int:
-    """How many chunks run at a time, on the workers that are there."""
+    """Number of threads of all connected workers, each of which runs one chunk at a time."""
     with suppress(OSError, ValueError):
         return sum(client.nthreads().values()) if client.status == "running" else 0
     return 0
 
 
 def _answers(future: Any, count: int, scheduler: str) -> list[tuple[int, Any, str]]:
-    """The answers to a chunk of so many items. Raises BadInput where a worker lacks this program."""
+    """The answers to a chunk of `count` items. Raises BadInput if a worker lacks this program."""
     try:
         return pickle.loads(future.result(timeout=ANSWERS_WITHIN))
     except (ImportError, AttributeError) as error:
@@ -199,7 +199,7 @@ def _answers(future: Any, count: int, scheduler: str) -> list[tuple[int, Any, st
 
 
 def _refused(refusal: Refusal, item: Any, scheduler: str) -> BadInput:
-    """The line about a worker that would run something else."""
+    """The error message about a worker with other versions or files."""
     local, remote = versions_of(item), refusal.versions
     names = sorted(name for name in {*local, *remote} if local.get(name) != remote.get(name))
     differences = "; ".join(

@@ -1,4 +1,4 @@
-"""Files written whole or not at all, and temporary folders that an interruption removes too."""
+"""Writing files all or none, and temporary folders that are also removed after an interruption."""
 
 from __future__ import annotations
 
@@ -14,18 +14,15 @@ from pathlib import Path
 from reports.model.ending import FileTrouble
 
 PREFIX = ".crosscheck_"
-SOCKET_PATH = 104  # bytes of the path of a socket that every system takes
-TRIES = 20  # to remove a folder into which a process writes that is just being ended
+SOCKET_PATH = 104  # bytes; every system accepts a shorter path of a socket
+TRIES = 20  # of removing a folder, since a process that is being killed may still write into it
 
-_folders: list[Path] = []  # the temporary folders that this process has made and not removed yet
+_folders: list[Path] = []  # the existing temporary folders of this process
 
 
 @contextmanager
 def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
-    """A new folder in `parent`, in the system's folder for temporary files if None, removed afterwards.
-
-    Raises OSError.
-    """
+    """A new folder in `parent`, or in the system's temporary folder, which is removed at the end. Raises OSError."""
     folder = _new_folder(parent)
     try:
         yield folder
@@ -35,7 +32,7 @@ def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
 
 @cache
 def socket_folder() -> Path:
-    """A folder for sockets, removed at the end: in /tmp where the path of the system's folder is too long."""
+    """A temporary folder for sockets; it is in /tmp if the path of the system's temporary folder is too long."""
     atexit.register(remove_all)
     folder = Path(tempfile.gettempdir())
     too_long = len(os.fsencode(folder)) + len(f"/{PREFIX}12345678.part/listener-12345678") >= SOCKET_PATH
@@ -43,7 +40,7 @@ def socket_folder() -> Path:
 
 
 def remove_all() -> None:
-    """Remove every temporary folder of this process; for a process that ends at once."""
+    """Remove every temporary folder of this process, before a process exit that runs no cleanup."""
     for folder in tuple(_folders):
         _remove(folder)
 
@@ -63,7 +60,7 @@ def _remove(folder: Path) -> None:
 
 
 def folder_for(path: Path, remedy: str) -> Path:
-    """Make the folder `path` and those above it unless they are there. Raises FileTrouble, ending in the remedy."""
+    """Create the folder `path` and its parents, and return it. Raises FileTrouble, whose message ends in `remedy`."""
     try:
         path.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
@@ -74,16 +71,16 @@ def folder_for(path: Path, remedy: str) -> Path:
 
 
 def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
-    """Write all files, each under its name only when all are complete on disk; links are replaced, never followed.
+    """Write all files or none; symbolic links are replaced by files.
 
-    All are written aside first, so that a full disk or an error leaves every old file as it was. A kill while they get
-    their names leaves some old and some new ones, each of them whole. Devices and pipes such as /dev/stdout
-    are written at the end. Raises FileTrouble, ending in the remedy.
+    The files are first written under temporary names, so that an error, such as a full disk, changes no old file. Only
+    a process killed during the renaming leaves a mixture of old and new files, all complete. Devices and pipes such as
+    /dev/stdout are written last. Raises FileTrouble, whose message ends in `remedy`.
     """
     path = Path()
     try:
         with ExitStack() as stack:
-            asides: dict[Path, Path] = {}  # folder -> a folder in it, hence on the same disk
+            asides: dict[Path, Path] = {}  # folder -> a temporary folder in it, so that renaming stays on one disk
             streams = [path for path in texts if is_stream(path)]
             for path in texts:
                 if path in streams:
@@ -101,13 +98,13 @@ def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
                 if path not in streams:
                     (asides[path.parent] / path.name).replace(path)
                     continue
-                with path.open("a", encoding="utf-8", newline="\n") as file:  # /dev/stdout may lead to a file
+                with path.open("a", encoding="utf-8", newline="\n") as file:  # append: /dev/stdout may be a file
                     file.write(texts[path])
     except OSError as reason:
         raise FileTrouble(f"{path} can't be written ({reason.strerror or reason}): {remedy}") from None
 
 
 def is_stream(path: Path) -> bool:
-    """Whether it is a device, a pipe or a link in /dev: a file put in its place would be there for every program."""
-    link = path.is_symlink() and path.absolute().is_relative_to("/dev")  # /dev/stdout may lead to a file
+    """Whether it is a device, a pipe or a link in /dev, which must be written to and not be replaced by a file."""
+    link = path.is_symlink() and path.absolute().is_relative_to("/dev")  # /dev/stdout may link to a file
     return link or (path.exists() and not path.is_file() and not path.is_dir())

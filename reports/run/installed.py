@@ -1,9 +1,9 @@
-"""One version of an engine's package, or a build of it, in a folder of its own that is put before all others.
+"""Installs one version or build of an engine's package into a folder in the user's cache, outside this environment.
 
     folder = installed(("mujoco-core", "mujoco"), "3.6.0")
     subprocess.run([sys.executable, "program.py"], env=environment(folder))
 
-pip installs it without its dependencies, once, below the user's cache folder: never into this environment or checkout.
+The program then imports the package from that folder first. pip installs each version once, without its dependencies.
 """
 
 from __future__ import annotations
@@ -25,31 +25,29 @@ from reports.model.ending import BadInput
 from reports.model.fingerprint import digest
 from reports.run.files import folder_for, temporary_folder
 
-# The name of the folder itself: modules in such a folder count by their version (`reports.model.fingerprint`).
+# With this name of the folder, `reports.model.fingerprint` identifies the modules in it by their version.
 PACKAGES = "site-packages"
 VERSION = re.compile(r"[0-9][0-9A-Za-z.!+_-]*")
 OFFERED = re.compile(r"from versions: ([^)]*)\)")
 UNCONNECTED = ("NewConnectionError", "Name or service not known", "Failed to establish a new connection")
 OFFLINE = "no connection to a package index; with network it is installed once and kept"
-MOST_INSTALLED = 60  # installed versions and builds; more than any command uses at once
-SHOWN = 6  # versions that a refusal lists
-# Older MuJoCo imports its viewer at once, and so packages that are not needed here.
+MOST_INSTALLED = 60  # versions and builds that stay installed; no command uses more at once
+MOST_SUGGESTED = 6  # existing versions that an error message lists
+# Without it, older versions of MuJoCo import their viewer, which needs further packages.
 WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
 
 
 def environment(folder: Path, further: Sequence[Path] = ()) -> dict[str, str]:
-    """The environment variables of a process that imports from `folder` first, then from the further folders, and not
-    from its working folder.
-    """
+    """Environment variables for a process that imports from `folder`, then `further`, and not from its own folder."""
     paths = os.pathsep.join(str(path) for path in (folder, *further))
     switches = {"PYTHONPATH": paths, "PYTHONSAFEPATH": "1", "PYTHONDONTWRITEBYTECODE": "1"}
     return {**os.environ, **WITHOUT_WINDOWS, **switches}
 
 
 def installed(names: Sequence[str], version: str) -> Path:
-    """The folder with this version of the first of these distributions that has it; installed unless it is there.
+    """Install the version of the first distribution in `names` that has it, unless it is installed; its folder.
 
-    Raises BadInput, in one line: the version does not exist, or has no wheel for this Python, or there is no network.
+    Raises BadInput if the version does not exist or has no wheel for this Python, or if there is no network.
     """
     if not VERSION.fullmatch(version):
         raise BadInput(f"{version!r} is no version; give one like 3.6.0")
@@ -66,10 +64,10 @@ def installed(names: Sequence[str], version: str) -> Path:
 
 
 def built(path: Path) -> Path:
-    """The folder with a build: of a wheel, of a folder of sources (pip builds them), or that folder itself.
+    """Install a wheel or a folder of sources, which pip builds; return the folder of the installation.
 
-    A folder without pyproject.toml and setup.py is used directly, like one that `pip install --target` wrote. A wheel
-    is installed again when its content has changed, a folder of sources every time. Raises BadInput, in one line.
+    A folder without pyproject.toml and setup.py, such as one that `pip install --target` wrote, is returned itself. A
+    wheel is installed again if its content has changed, a folder of sources every time. Raises BadInput.
     """
     path = path.absolute()
     if path.is_dir():
@@ -88,10 +86,7 @@ def built(path: Path) -> Path:
 
 
 def sources(name: str, version: str, folder: Path, *options: str) -> Path:
-    """The unpacked source package of a version, below `folder`, which pip fetches with these options of its own.
-
-    Raises BadInput, in one line.
-    """
+    """Download and unpack the source package of a version in `folder`; `options` of pip. Raises BadInput."""
     command = [sys.executable, "-P", "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
     command += ["--no-binary", name, f"{name}=={version}", "--dest", str(folder), *options]
     ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", check=False)
@@ -110,7 +105,7 @@ def _place(name: str) -> Path:
 
 
 def _used(folder: Path) -> Path:
-    """The folder, marked as used now; only the MOST_INSTALLED that were used last stay installed."""
+    """Mark the folder as used now and return it; delete all but the MOST_INSTALLED most recently used versions."""
     with suppress(OSError):
         os.utime(folder.parent)
         others = [each for each in (cache_folder() / "versions").glob("*/*") if not each.name.startswith(".")]
@@ -120,7 +115,7 @@ def _used(folder: Path) -> Path:
 
 
 def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
-    """Install into the folder, which gets its name when it is whole; pip's words if it failed, empty if it did not."""
+    """Install into a temporary folder and rename it to `folder`. Returns pip's error output, empty after success."""
     remedy = f"set {CACHE} to a folder that can be written"
     folder_for(folder.parent, remedy)
     try:
@@ -129,7 +124,7 @@ def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
             command = [sys.executable, "-P", "-m", "pip", "install", "--no-deps", "--no-compile", "--retries", "2"]
             command += ["--disable-pip-version-check", "--no-input", "--target", str(target)]
             command += ["--only-binary", ":all:"] if wheels_only else []
-            # From another folder: pip may leave something where it is started.
+            # Run in a temporary folder, since pip may leave files in its working folder.
             run = subprocess.run(
                 [*command, "--", what], capture_output=True, text=True, errors="replace", cwd=aside, check=False
             )
@@ -143,7 +138,7 @@ def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
     except OSError as error:
         raise BadInput(f"{folder} can't be written ({error.strerror or error}): {remedy}") from None
     finally:
-        with suppress(OSError):  # it is not empty: it has the installed folder, or that of another process
+        with suppress(OSError):  # it is not empty if this or another process has installed the version
             folder.parent.rmdir()
     return ""
 
@@ -158,7 +153,7 @@ def _reason(text: str) -> str:
 
 
 def _refusal(version: str, texts: Mapping[str, str]) -> BadInput:
-    """One line on why no distribution has the version, and the nearest that exist; `texts`: pip's words, by name."""
+    """The error that no distribution has the version, with the nearest versions; `texts`: pip's output by name."""
     names, reasons = " or ".join(texts), {name: _reason(text) for name, text in texts.items()}
     if set(reasons.values()) == {OFFLINE}:
         return BadInput(f"{names} {version} can't be fetched: {OFFLINE}")
@@ -172,26 +167,22 @@ def _refusal(version: str, texts: Mapping[str, str]) -> BadInput:
 
 
 def nearest_versions(version: str, offered: Sequence[str]) -> list[str]:
-    """SHOWN of the offered versions, or fewer, with numbers around this one, in ascending order."""
+    """At most MOST_SUGGESTED of the offered versions, those around this one, in ascending order."""
     ordered = sorted(offered, key=numbers)
     index = sum(numbers(other) < numbers(version) for other in ordered)
-    low = max(0, min(index - SHOWN // 2, len(ordered) - SHOWN))
-    return ordered[low : low + SHOWN]
+    low = max(0, min(index - MOST_SUGGESTED // 2, len(ordered) - MOST_SUGGESTED))
+    return ordered[low : low + MOST_SUGGESTED]
 
 
 def numbers(version: str) -> tuple[int, ...]:
-    """The sort key of a version: 3.10.0 comes after 3.9.0."""
+    """Sort key of a version: 3.10.0 follows 3.9.0."""
     return tuple(int(part) for part in re.findall(r"\d+", version))
 
 
 def distributions_in(folder: Path) -> Mapping[str, str]:
-    """Name -> version of the distributions that lie in a folder, by their metadata.
+    """Name -> version of the distributions in a folder, from their metadata.
 
-    The version in a module is not used: pymunk 7.0.0 has 2.0.0 there.
+    The modules' own versions are not reliable: pymunk 7.0.0 reports 2.0.0.
     """
-    versions = {}
-    for distribution in metadata.distributions(path=[str(folder)]):
-        name = distribution.metadata["Name"]
-        if name:
-            versions[name] = distribution.version
-    return versions
+    found = metadata.distributions(path=[str(folder)])
+    return {name: distribution.version for distribution in found if (name := distribution.metadata["Name"])}

@@ -1,4 +1,4 @@
-"""Cells and tasks through supervised workers: one answer for every one, stored as soon as it is there."""
+"""Runs cells and tasks in supervised workers, and stores each result as soon as it arrives."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from reports.run.files import folder_for
 from reports.run.store import ELSEWHERE, Store
 from reports.run.supervisor import Supervise, Watch, WorkersLost, supervise
 
-TIME_LIMIT = 60.0  # s of CPU time for one cell: far above the cost limit of the grid, so only a hang meets it
+TIME_LIMIT = 60.0  # s of CPU time for one cell; far above the cost limit of the grid, so only a hang reaches it
 LEAST = 3e-3  # s that a cell takes besides stepping
 
 Item = TypeVar("Item", bound=Cell | Task)
@@ -29,12 +29,12 @@ def work(timed: bool, truths: Path | None, item: Cell | Task) -> Measurement | A
 
 
 def worker_count() -> int:
-    """How many workers run at the same time: one on each processor that this process may use."""
+    """Number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def expected_seconds(item: Any) -> float:
-    """CPU seconds of one run, by the engine's own formula or the task's."""
+    """CPU seconds of one run, estimated by the formula of the engine or of the task."""
     return LEAST + (estimated_cost(item) if isinstance(item, Cell) else float(getattr(item, "cost", 0.0)))
 
 
@@ -61,12 +61,11 @@ def run_items(
     supervised: Supervise = supervise,
     truths: Path | None = None,
 ) -> Iterator[tuple[Item, Any]]:
-    """Yield every cell with its Measurement and every task with its Answer as they are done, the longest begun first.
+    """Yield each cell with its Measurement and each task with its Answer; they start in the order `longest_first`.
 
-    A lost one has its outcome and no numbers. `limit`: CPU seconds for one; `wall`: seconds for one that sleeps.
-    `workers`: `worker_count` if None. `timed`: whether a cell is run again for the least of several times.
-    `supervised`: by which function. `truths`: a folder of exact motions that workers share (`reports.model.measure`).
-    Raises WorkersLost (`supervise`).
+    A lost item has an outcome and no numbers. `limit`, `wall` and WorkersLost: see `supervise`. `workers` is
+    `worker_count` if None. `timed`: repeat a cell for the smallest CPU time. `supervised`: the function that runs the
+    items. `truths`: a folder of exact motions that workers share (`reports.model.measure`).
     """
     items = tuple(items)
     for (
@@ -79,7 +78,7 @@ def run_items(
 
 
 def _result(item: Cell | Task, result: Any, note: str, limit: float) -> Measurement | Answer:
-    """The row or answer to store, also of an item without a result."""
+    """The row or answer to store, also for an item without a result."""
     if not isinstance(result, Loss):
         retried = f"the first try {note}, the second went through" if note else ""
         return replace(result, sentence="; ".join(filter(None, (result.sentence, retried))))
@@ -90,13 +89,13 @@ def _result(item: Cell | Task, result: Any, note: str, limit: float) -> Measurem
 
 
 def run_cells(cells: Iterable[Cell], **terms: Any) -> Iterator[Measurement]:
-    """Yield the measurement of every cell as it is done; terms: those of `run_items`, by their names."""
+    """Yield the measurement of each cell; `terms` are keyword arguments of `run_items`."""
     for _, row in run_items(cells, **terms):
         yield row
 
 
 def missing(items: Iterable[Item], store: Store, limit: float = TIME_LIMIT) -> tuple[Item, ...]:
-    """The cells and tasks without an answer to a run with this limit [s]: not stored, or timed out within a smaller."""
+    """The cells and tasks that are not stored, or that timed out with a smaller limit [s]."""
     items = tuple(items)
     cells = [item for item in items if isinstance(item, Cell)]
     tasks = [item for item in items if isinstance(item, Task)]
@@ -120,10 +119,10 @@ def run_into(
     timed: bool = True,
     supervised: Supervise = supervise,
 ) -> int:
-    """Run the missing items (all if fresh), longest first, and store each result as it arrives; return their number.
+    """Run the missing items (all if fresh) and store each result as it arrives; return the number of items run.
 
-    An interruption passes through, with the results so far stored. An item whose process was killed from outside is
-    not stored; WorkersLost is raised when all others are done.
+    After an interruption the results so far are stored. If another program killed the process of an item, the item is
+    not stored, and WorkersLost is raised after all other items.
     """
     waiting = tuple(items) if fresh else missing(items, store, limit)  # an old row stays until the new one replaces it
     lost: list[str] = []
@@ -143,7 +142,7 @@ def run_into(
 
 
 def support_of(cell: Cell) -> str:
-    """Why an engine can't build a scene's mechanism, in its own words; empty if it can."""
+    """The engine's reason why it can't build a scene's mechanism; empty if it can."""
     from engines import Unsupported
 
     try:
@@ -154,7 +153,7 @@ def support_of(cell: Cell) -> str:
 
 
 def support(cells: Sequence[Cell]) -> dict[Cell, str]:
-    """Cell -> why it can't be built, in supervised processes; empty if it can. Raises WorkersLost."""
+    """Cell -> `support_of`, computed in supervised processes. Raises WorkersLost."""
     reasons: dict[Cell, str] = {}
     for cell, result, _ in supervise(support_of, cells, TIME_LIMIT, worker_count()):
         if isinstance(result, Loss) and result.outcome == Outcome.LOST:

@@ -1,4 +1,4 @@
-"""Results stored as they arrive, as JSON in one SQLite file: a run that was killed continues where it stopped."""
+"""An SQLite file of results as JSON. Each result is stored as it arrives, so that a killed run can be continued."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ from reports.run.files import folder_for, temporary_folder
 
 SCHEMA = 2  # the file's `user_version`
 TABLES = {"results": "(key text primary key, row text not null)", "given": "(words text primary key)"}
-SQLITE_SUFFIXES = ("-wal", "-shm")  # of SQLite's files beside the store: the first holds rows until they move into it
+SQLITE_SUFFIXES = ("-wal", "-shm")  # of SQLite's files beside the store; recent rows are only in the first
 WAIT = 30.0  # s for another process that is writing
 COPIES = 100  # tries to copy a store while another process writes it
 ELSEWHERE = "give another folder with --results"
 PUT_ASIDE = "crosscheck run puts it aside and begins anew"
 IN_USE = f"another process is using it; wait for its end, or {ELSEWHERE}"
-# SQLite's own codes (the low byte), with what to do.
+# What the user can do, by the low byte of SQLite's error code.
 REMEDIES = {
     sqlite3.SQLITE_BUSY: IN_USE,
     sqlite3.SQLITE_LOCKED: IN_USE,
     sqlite3.SQLITE_FULL: "what it holds is kept; make room on the disk, then run again",
     sqlite3.SQLITE_IOERR: "what it holds is kept; see whether the disk is full or failing, then run again",
 }
-# SQLITE_ERROR: every statement here is valid, so that the file's own schema must be damaged.
+# SQLITE_ERROR is included: every statement here is valid, so that the schema in the file must be damaged.
 DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_TOOBIG)
 
 Keyed = TypeVar("Keyed", Cell, Task)
@@ -51,11 +51,10 @@ class Damaged(Exception):
 
 
 class Store:
-    """Measurements by the key of their cell, answers by that of their task; a context manager.
+    """Measurements by the keys of their cells, and answers by the keys of their tasks; a context manager.
 
-    A row is on disk when `put` returns, however the program ends. A damaged file is renamed, and a new one
-    begun; `notice` says so (empty otherwise). Raises FileTrouble, here and in every method, where the file can't be
-    used.
+    A row survives the end of the program once `put` has returned. A damaged file is renamed and replaced by a new one;
+    `notice` then has a sentence about it. The constructor and all methods raise FileTrouble if the file can't be used.
     """
 
     def __init__(self, path: Path) -> None:
@@ -73,10 +72,7 @@ class Store:
     @classmethod
     @contextmanager
     def read(cls, path: Path) -> Iterator[Store]:
-        """A store that is only read: from a copy, so that nothing is written beside it.
-
-        Raises FileTrouble if the file does not exist or can't be read.
-        """
+        """Open a copy of a store for reading, since SQLite would write files beside the store. Raises FileTrouble."""
         with temporary_folder() as folder:
             copy = folder / "copy.sqlite"
             store = cls.__new__(cls)
@@ -96,7 +92,7 @@ class Store:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with suppress(sqlite3.Error):  # should the disk be full, the last rows stay in the file beside
+        with suppress(sqlite3.Error):  # if the disk is full, the last rows stay in the -wal file
             self._connection.close()
 
     def put(self, row: Measurement) -> None:
@@ -115,25 +111,25 @@ class Store:
         with suppress(OSError):
             if os.path.samestat(self._file, self.path.stat()):
                 return
-        # SQLite would write on, into a file without a name.
+        # SQLite would continue to write into the deleted file.
         raise FileTrouble(f"{self.path} was removed or replaced while it was written; run again, or {ELSEWHERE}")
 
     def save_references(self, words: Iterable[str]) -> None:
-        """Store references to scenes and engines that are not registered, so that a report shows them too."""
+        """Store references to scenes and engines that are not registered, for a report."""
         with _file_trouble(self.path), self._connection:
             self._connection.executemany("insert or ignore into given values (?)", [(each,) for each in words])
 
     def load_references(self) -> tuple[str, ...]:
-        """The references that were passed to `save_references`, in that order."""
+        """The stored references, in the order of `save_references`."""
         with _file_trouble(self.path):
             return tuple(words for (words,) in self._connection.execute("select words from given order by rowid"))
 
     def get(self, cells: Iterable[Cell]) -> dict[Cell, Measurement]:
-        """The stored rows of these cells; those that were never run, are stale or can't be read are left out."""
+        """The stored rows of these cells, without those that were not run, are stale or can't be read."""
         return {cell: replace(row, purpose=cell.purpose) for cell, row in self._read(cells, row_of)}
 
     def answers(self, tasks: Iterable[Task]) -> dict[Task, Answer]:
-        """The stored answers to these tasks, left out as rows are."""
+        """The stored answers to these tasks, without those that were not run, are stale or can't be read."""
         return dict(self._read(tasks, answer_of))
 
     def _read(self, items: Iterable[Keyed], parse: Callable[[str], Result | None]) -> Iterator[tuple[Keyed, Result]]:
@@ -146,7 +142,7 @@ class Store:
 
 @contextmanager
 def _file_trouble(path: Path) -> Iterator[None]:
-    """Raise errors of SQLite and of the system as FileTrouble, with what to do."""
+    """Raise errors of SQLite and of the system as FileTrouble with a remedy."""
     try:
         yield
     except sqlite3.Error as error:
@@ -158,14 +154,14 @@ def _file_trouble(path: Path) -> Iterator[None]:
 
 
 def _connected(path: Path) -> sqlite3.Connection:
-    """A connection to a store, created if missing. Raises Damaged, FileTrouble and what SQLite raises."""
+    """A connection to a store, which is created if missing. Raises Damaged, FileTrouble and errors of SQLite."""
     beside = path.with_name(path.name + "-wal")
     if path.is_file() and not path.stat().st_size and beside.is_file() and beside.stat().st_size:
         raise Damaged("it is empty, while rows lie beside it")  # SQLite would delete them
     connection = sqlite3.connect(path, timeout=WAIT)
     connection.text_factory = lambda raw: raw.decode(errors="replace")
     try:
-        # Waiting for the disk at every row took 5 to 10 ms, during which no worker got a job.
+        # With synchronous=full each row waits 5 to 10 ms for the disk, and meanwhile no worker gets a job.
         connection.execute("pragma synchronous=normal")
         wrong = connection.execute("pragma integrity_check(1)").fetchone()[0]
         if wrong != "ok":
@@ -194,12 +190,12 @@ def _connected(path: Path) -> sqlite3.Connection:
 
 
 def _copy(path: Path, copy: Path) -> None:
-    """Copy a store and the rows beside it, as they were at one moment. Raises FileTrouble, and OSError."""
+    """Copy a store and its -wal file as a consistent snapshot. Raises FileTrouble and OSError."""
     for _ in range(COPIES):
         before = path.stat()
         shutil.copyfile(path, copy)
-        # Rows are only ever added to the file beside, so its complete part counts; when they move into the main file
-        # while it is being copied, its time or size changes.
+        # The -wal file only grows, and SQLite ignores an incomplete end of it. If SQLite moves rows from it into the
+        # store during the copy, the time or the size of the store changes.
         with suppress(FileNotFoundError):
             shutil.copyfile(f"{path}-wal", f"{copy}-wal")
         after = path.stat()
@@ -209,18 +205,18 @@ def _copy(path: Path, copy: Path) -> None:
 
 
 def _put_aside(path: Path) -> Path:
-    """Give a damaged file, and the files beside it, a name that is free; the new name."""
+    """Rename a damaged store and SQLite's files beside it; return the new path."""
     number = 1
     while any(path.with_name(f"{path.name}.damaged-{number}{end}").exists() for end in ("", *SQLITE_SUFFIXES)):
         number += 1
     aside = path.with_name(f"{path.name}.damaged-{number}")
-    for end in (*SQLITE_SUFFIXES, ""):  # the main file last: without it SQLite would delete the rows that lie beside
+    for end in (*SQLITE_SUFFIXES, ""):  # the store last, since SQLite deletes a -wal file that has no store
         with suppress(FileNotFoundError):
             path.with_name(path.name + end).rename(f"{aside}{end}")
     return aside
 
 
-@lru_cache(maxsize=8192)  # a command reads a row several times: for missing cells, tables and pages
+@lru_cache(maxsize=8192)  # a command reads a row several times, for missing cells, tables and pages
 def row_of(text: str) -> Measurement | None:
     """A stored row, None if it can't be read."""
     try:

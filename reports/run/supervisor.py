@@ -1,15 +1,15 @@
-"""Work supervised from outside: each item in a worker process, so that a crash in native code is a result too.
+"""Supervision of worker processes, so that a crash in native code is a result of one item and nothing more.
 
-The pools of pebble, loky and concurrent.futures share a queue and its lock: a worker killed while it
-holds the lock, or while it starts, stops the others, and limits count wall time only. Here every worker has a
-connection of its own, and a job counts as run only once its answer is whole.
+In pebble, loky and concurrent.futures the workers share a queue with a lock: a worker that is killed while it holds the
+lock stops all workers, and limits count wall time only. Here each worker has its own connection, and a job counts as
+run only if its complete answer has arrived.
 
-* A worker that ends while it starts costs no item anything; after several in a row `WorkersLost` is raised.
-* An item whose worker ended is tried once more, in a worker that has run nothing else before, and the outcome of this
-  second try is its answer. So damage that another item left in a process does not count.
-* An item that uses up its CPU time is ended by this process, which reads the worker's clock, or, where the system does
-  not have it, by a thread in the worker. An item that sleeps is ended after a much longer wall time, counted
-  only while this process is awake: neither a loaded machine nor a stopped terminal changes a result.
+* If a worker ends while it starts, no item is affected; after several such failures in a row `WorkersLost` is raised.
+* If a worker ends during an item, the item is tried once more in a new worker, and the outcome of the second try is its
+  answer. So an item is not blamed for damage by an earlier item in the same process.
+* This process ends an item that exceeds its CPU time, by the clock of the worker; a thread in the worker does it if the
+  system does not provide that clock. An item that sleeps is ended after a much longer wall time, which counts only
+  while this process is awake. So neither a loaded machine nor a stopped terminal changes a result.
 """
 
 from __future__ import annotations
@@ -39,33 +39,33 @@ from reports.run.worker import (
     start_worker,
 )
 
-TICK = 0.2  # s between two looks at the clock
+TICK = 0.2  # s between two readings of the clock
 IMPORTS = 2.0  # s of CPU time for importing an engine, which a worker does when it gets its first job
 START_LIMIT = 120.0  # s of wall time until a worker is ready
-MOST_FAILED_STARTS = 5  # one after the other
-PAUSE = 0.1  # s after a failed start, and as much more after each further one
-MOST_WORKERS = 60  # Windows waits for 63 things at most
+MOST_FAILED_STARTS = 5  # in a row
+PAUSE = 0.1  # s after a failed start, times the number of failed starts in a row
+MOST_WORKERS = 60  # since Windows can wait for at most 63 handles
 
 Watch = Callable[[list[Any]], None]
 Answer = tuple[Any, Any, str]
-Supervise = Callable[..., Iterator[Answer]]  # `supervise`, and what does the same with workers elsewhere
+Supervise = Callable[..., Iterator[Answer]]  # `supervise`, or the same with workers of a cluster
 
 
 class WorkersLost(Broken):
-    """Something outside kills the workers: work is left that can be done at another time."""
+    """Another program killed the workers; the remaining items can be run later."""
 
 
 @dataclass
 class Job:
-    """An item to be worked on; `earlier`: how its first worker ended, empty if it was not tried before."""
+    """An item to be run."""
 
     item: Any
-    earlier: str = ""
-    earlier_outside: bool = False
+    earlier: str = ""  # how the worker of the first try ended; empty before a second try
+    earlier_outside: bool = False  # whether another program killed that worker
 
 
 def wall_limit(limit: float) -> float:
-    """Seconds of wall time for `limit` seconds of CPU time: a machine ten times overloaded is still waited for."""
+    """Wall time [s] for `limit` seconds of CPU time; it allows for a machine that is ten times overloaded."""
     return 10 * limit + 60
 
 
@@ -77,11 +77,11 @@ def supervise(
     watch: Watch | None = None,
     wall: float | None = None,
 ) -> Iterator[Answer]:
-    """Yield (item, result or Loss, note) as they are done, in no order; note: how an earlier try of it aborted.
+    """Yield (item, result or Loss, note) in the order of completion; note: how the first try aborted.
 
-    `function` must be importable by its name. `limit`: CPU seconds for one item, all threads together; `wall`: seconds
-    for one that does not use its CPU time, `wall_limit` if None. `watch` is called a few times a second with the items
-    that are running. Raises WorkersLost when no worker can be started. Leaving the iterator ends the workers.
+    `function` must be importable. `limit`: CPU seconds for an item, the sum over all threads; `wall`: seconds for an
+    item that sleeps, `wall_limit` if None. `watch` is called a few times a second with the running items. Raises
+    WorkersLost if no worker can be started. Closing the iterator ends the workers.
     """
     one_thread_each()
     with temporary_folder() as folder:
@@ -94,20 +94,19 @@ def supervise(
 
 
 class Pool:
-    """Workers, and the jobs that they have not answered yet; `terms`: folder, CPU and wall seconds of a job."""
+    """Workers, and the jobs without an answer; `terms`: folder, CPU seconds and wall seconds of a job."""
 
     def __init__(
         self, function: Callable[[Any], Any], items: Iterable[Any], terms: tuple[str, float, float], most: int
     ) -> None:
         self._function, self._terms, self._most = function, terms, most
         self._waiting = deque(Job(item) for item in items)
-        self._retries: deque[Job] = deque()  # each for a worker that has run nothing yet
+        self._retries: deque[Job] = deque()  # each is assigned to a new worker
         self._workers: list[Worker] = []
         self._failed_starts = 0
         self._context = start_method()
 
     def results(self, watch: Watch | None) -> Iterator[Answer]:
-        """The answer to every item."""
         before = time.monotonic()
         while self._waiting or self._retries or self._busy():
             self._start_workers()
@@ -127,7 +126,6 @@ class Pool:
                 watch([worker.job.item for worker in self._busy() if worker.job])
 
     def close(self) -> None:
-        """End all workers."""
         for worker in list(self._workers):
             self._terminate(worker)
 
@@ -135,7 +133,6 @@ class Pool:
         return [worker for worker in self._workers if worker.job is not None]
 
     def _start_workers(self) -> None:
-        """Start workers up to the number of jobs."""
         wanted = min(self._most, len(self._waiting) + len(self._retries) + len(self._busy()))
         while len(self._workers) < wanted:
             try:
@@ -148,7 +145,7 @@ class Pool:
         self._failed_starts += 1
         if self._failed_starts >= MOST_FAILED_STARTS:
             raise WorkersLost(f"{self._failed_starts} worker processes in a row ended while they started: {words}")
-        # A fork server that was killed is replaced only when it is quite gone; a full system may have room again.
+        # A killed fork server is replaced only after its process has ended; a full system may have room later.
         time.sleep(PAUSE * self._failed_starts)
 
     def _assign_job(self, worker: Worker) -> Iterator[Answer]:
@@ -167,11 +164,11 @@ class Pool:
             return
         worker.job, worker.used, worker.awake = job, True, 0.0
         worker.cpu = cpu_time(worker.process.pid or 0)
-        with contextlib.suppress(OSError):  # its end is the next message
+        with contextlib.suppress(OSError):  # the worker has ended: `_on_message` handles it
             worker.connection.send_bytes(data)
 
     def _on_message(self, worker: Worker) -> Iterator[Answer]:
-        """A worker is ready, has an answer, or has ended."""
+        """Handle a worker that is ready, has an answer, or has ended."""
         try:
             message = worker.connection.recv_bytes()
         except (EOFError, OSError):
@@ -192,7 +189,7 @@ class Pool:
         yield job.item, result, "" if job.earlier_outside else job.earlier
 
     def _on_exit(self, worker: Worker) -> Iterator[Answer]:
-        """A worker has ended: its job is tried again, unless it was the second time or its CPU time was used up."""
+        """Handle a worker that has ended: try its job again unless this was the second try or the CPU time is spent."""
         code, pid, job = worker.exit_code(), worker.process.pid, worker.job
         self._terminate(worker)
         folder, limit, _ = self._terms

@@ -1,7 +1,7 @@
-"""A worker: a process that runs one job after another, each within its CPU time, until one leaves something behind.
+"""A worker: a process that runs jobs one after another, until a job changes the state of the process.
 
-The first part runs in the parent: a worker is started and ended. The second, from `work` on, runs in the worker. No
-engine is imported here, so that a worker that has to start from nothing is there at once.
+The functions before `work` run in the parent, `work` and the functions after it in the worker. This module imports no
+engine, so that workers start quickly also without a fork server.
 """
 
 from __future__ import annotations
@@ -30,29 +30,27 @@ from reports.model.ending import describe
 from reports.model.outcomes import Loss, Outcome, failure, out_of_time
 from reports.run.files import socket_folder
 
-# Rows depend on the files that this module imports, and on no engine but their own. So these, which look at all engines
-# and packages, are imported by their names.
+# The keys of rows depend on the files that this module imports, and must not depend on all engines. So these two
+# modules, which import all engines, are imported by name at run time.
 GUARD, REGISTRY = "planar_crosscheck", "engines.registry"
 IMPORTED_ONCE = ("reports.model.measure", REGISTRY)  # by the fork server, for all workers
-PATIENCE = 30.0  # s for a process that has ended to be gone: its memory may have to be written first
+PATIENCE = 30.0  # s to wait until a killed process has ended, which may have to write a core dump
 READY = b"ready"
-SPENT = 152  # exit code of a worker whose job has used up its CPU time, where the parent can't see that: 128 + SIGXCPU
-SAFE_PATH = "PYTHONSAFEPATH"  # any value keeps the current folder off the path of a Python that starts
-OURS = (
-    "crosscheck"  # the value that is set here; workers remove it, so that processes started by a job do not inherit it
-)
+SPENT = 152  # 128 + SIGXCPU: exit code of a worker that ends itself since its job has used up its CPU time
+SAFE_PATH = "PYTHONSAFEPATH"  # any value keeps Python from adding the current folder to sys.path
+OURS = "crosscheck"  # the value set here; workers remove it, so that processes started by a job do not inherit it
 PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
-CHECK_INTERVAL = 0.2  # s between two readings of its own CPU time
+CHECK_INTERVAL = 0.2  # s between two readings of the worker's own CPU time
 # Starting a process polls all child processes and consumes the exit code of one that has ended. If several threads
 # supervise workers, it may be a worker of another thread.
 _reading = threading.Lock()
 
 
 def cpu_time(process: int) -> float | None:
-    """CPU seconds of a process, all threads together; None if the system does not report those of another process.
+    """CPU seconds of all threads of a process; None if the system does not report them for another process.
 
-    On Linux by the process's clock, whose number clock_getcpuclockid(3) makes in this way. While a timer for the CPU
-    time is set (ITIMER_PROF, RLIMIT_CPU), that clock, by which stepping is timed, moves in jumps of 4 ms only.
+    The number of the clock on Linux is that of clock_getcpuclockid(3). A CPU timer (ITIMER_PROF, RLIMIT_CPU) would
+    reduce the resolution of this clock to 4 ms, and it also times the stepping, so none is set.
     """
     try:
         return time.clock_gettime((~process << 3) | 2)
@@ -61,7 +59,7 @@ def cpu_time(process: int) -> float | None:
 
 
 def stop_all() -> None:
-    """End every worker of this process; for a process that ends at once."""
+    """Kill every worker of this process, before a process exit that runs no cleanup."""
     for child in multiprocessing.active_children():
         _kill(child)
 
@@ -80,25 +78,24 @@ class Worker:
     connection: Connection
     ready: bool = False
     used: bool = False
-    job: Any = None  # of `supervisor.Job`; None: it waits for one
-    awake: float = 0.0  # s since it was started or given its job, as far as the parent was awake
-    cpu: float | None = None  # s of CPU time when it was given its job; None if the system does not report it
+    job: Any = None  # a `supervisor.Job`; None while the worker is idle
+    awake: float = 0.0  # s since its start or the start of its job, without times at which the parent was asleep
+    cpu: float | None = None  # s of CPU time at the start of its job; None if the system does not report it
 
     def used_cpu(self) -> float:
-        """CPU seconds that its job has used so far; zero if the system does not report them."""
+        """CPU seconds of the current job; zero if the system does not report them."""
         now = cpu_time(self.process.pid or 0)
         return 0.0 if now is None or self.cpu is None else now - self.cpu
 
     def exit_code(self) -> int | None:
-        """Once the process has ended; None if it can't be known, or it is still there after PATIENCE."""
+        """The exit code; waits up to PATIENCE for the end. None if it is unknown or the process has not ended."""
         ended = wait([self.process.sentinel], PATIENCE)
         with _reading:
-            if ended:  # the sentinel of a spawned process is a pipe, closed a moment before the exit code is there
+            if ended:  # the sentinel of a spawned process is closed before the exit code is available
                 self.process.join(PATIENCE)
             return self.process.exitcode
 
     def stop(self) -> None:
-        """Kill the process and the processes that it has started."""
         _kill(self.process)
         self.connection.close()
         if self.exit_code() is not None:
@@ -106,20 +103,20 @@ class Worker:
 
 
 def start_method(*modules: str) -> Any:
-    """How worker processes start: by a fork server, which imports these modules once for all, where there is one."""
+    """The multiprocessing context: a fork server that imports these modules once, or spawn on other systems."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    # The standard library's own folder would be left behind by an interruption.
+    # An interruption would not remove the standard library's own temporary folder.
     vars(multiprocessing.current_process())["_config"].setdefault("tempdir", str(socket_folder()))
     context.set_forkserver_preload([*IMPORTED_ONCE, *modules])
     return context
 
 
 def start_early(*modules: str) -> None:
-    """Have the fork server import these modules too, while the caller does something else.
+    """Start the fork server, which imports these modules too, without waiting for it.
 
-    Without a fork server, or if it can't be started now, each worker imports them: only time is lost.
+    Without a fork server each worker imports them, which is only slower.
     """
     if start_method(*modules).get_start_method() == "forkserver":
         from multiprocessing import forkserver
@@ -130,7 +127,7 @@ def start_early(*modules: str) -> None:
 
 
 def one_thread_each() -> None:
-    """CPU time is counted over all threads of a process: a threaded BLAS would be charged for waiting."""
+    """Set BLAS to one thread: CPU time is the sum over all threads, and a waiting BLAS thread consumes CPU time."""
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
 
@@ -152,17 +149,16 @@ def start_worker(context: Any, folder: str, limit: float, wall: float) -> Worker
 
 @contextmanager
 def process_start() -> Iterator[None]:
-    """Ctrl-C waits until a process has started: it would print a traceback there, and leave it without a parent here.
+    """Block Ctrl-C while a process starts, since it would print a traceback there and leave the process unsupervised.
 
-    Processes started meanwhile inherit this: a worker ignores Ctrl-C from then on, the fork server as long as it lives.
-    They are started by `python -c`, which would import files of the current folder in place of any module, so that
-    this folder is removed from their path.
+    The started processes inherit the blocked signal. They are started by `python -c`, which would import modules from
+    the current folder first, so that PYTHONSAFEPATH is set.
     """
     is_set = SAFE_PATH in os.environ
     os.environ.setdefault(SAFE_PATH, OURS)
     before = None
     if hasattr(signal, "pthread_sigmask"):
-        # Starting the resource tracker unblocks Ctrl-C, so it comes first. It warns when the old tracker was killed.
+        # Starting the resource tracker unblocks Ctrl-C, so it is started before. It warns if the old one was killed.
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             resource_tracker.ensure_running()
@@ -177,7 +173,7 @@ def process_start() -> Iterator[None]:
 
 
 def last_words(folder: Path, pid: int | None) -> str:
-    """The reason that native code printed before it aborted, if it did."""
+    """The reason that native code printed before it aborted, or an empty text."""
     with suppress(OSError):
         text = (folder / f"{pid}.log").read_text(encoding="utf-8", errors="replace")
         lines = [line.strip() for line in text.splitlines() if line.strip()]
@@ -188,22 +184,22 @@ def last_words(folder: Path, pid: int | None) -> str:
     return ""
 
 
-PARENT_SEES_CPU = cpu_time(os.getpid()) is not None  # whether the parent sees when a job has used up its CPU time
+PARENT_SEES_CPU = cpu_time(os.getpid()) is not None  # whether the parent can read the CPU time of a worker
 
 
 class CpuDeadline:
-    """The CPU time at which the present job is ended; infinite between jobs."""
+    """The CPU time at which the current job is ended; infinite between jobs."""
 
     def __init__(self) -> None:
         self.end = float("inf")
 
 
 def work(connection: Connection, folder: str, limit: float, wall: float) -> None:
-    """Answer jobs until the connection ends, or until a job leaves the process changed.
+    """Answer jobs until the connection is closed, or until a job has changed the state of the process.
 
-    A job is a pickled (function, item); its answer is a pickled (whether this worker takes another job, the pickled
-    result or Loss). `limit`: CPU seconds of one job, `wall`: seconds after which the parent ends it; after twice as
-    many it ends itself, should the parent be gone.
+    A job is a pickled (function, item). The answer is a pickled (whether this worker accepts another job, the pickled
+    result or Loss). `limit`: CPU seconds of one job. `wall`: seconds after which the parent ends the job; after twice
+    that time the worker ends itself, since the parent must have ended.
     """
     # Ctrl-C reaches every process of a terminal; only the parent handles it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -212,13 +208,13 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
     if os.environ.get(SAFE_PATH) == OURS:
         del os.environ[SAFE_PATH]
     if hasattr(os, "setpgid"):
-        os.setpgid(0, 0)  # with all that jobs start, so that it can be ended as one
+        os.setpgid(0, 0)  # so that the worker and the processes of its jobs can be killed together
     _end_with_the_parent()
     try:
         _redirect(Path(folder))
-    except FileNotFoundError:  # the command was interrupted meanwhile, and has taken its folder away
+    except FileNotFoundError:  # the command was interrupted and has removed the folder
         os._exit(1)
-    # The path came from the parent: a folder before ours may have appeared since.
+    # A folder that hides this package may have appeared since the parent's check.
     if hidden := import_module(GUARD).clash():
         print(hidden, file=sys.stderr, flush=True)
         os._exit(1)
@@ -231,19 +227,19 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
             job = connection.recv_bytes()
         except (EOFError, OSError):
             break
-        os.ftruncate(2, 0)  # what native code prints last is then about this job
+        os.ftruncate(2, 0)  # so that the log has only the output of this job
         stays, answer = _answer(job, clock, limit, wall)
-        if os.getpid() != number:  # a child that a job has forked: its parent answers
+        if os.getpid() != number:  # this is a process that the job has forked; the worker itself answers
             os._exit(0)
         connection.send_bytes(pickle.dumps((stays, answer)))
-    os._exit(0)  # not sys.exit: threads that a job has left running must not keep the process
+    os._exit(0)  # sys.exit would wait for threads that a job has left running
 
 
 def _end_with_the_parent() -> None:
-    """Ask Linux to end this process with the one that started it, the fork server.
+    """Ask Linux to kill this process when its parent, the fork server, ends.
 
-    Native code that holds the interpreter keeps the thread that looks after the parent from running. The fork server
-    ends with the command, once its workers have closed the pipe that keeps it running.
+    The thread `_watch` is not enough, since native code may hold the interpreter lock. The fork server ends with the
+    command if its workers have closed the pipe that keeps it running.
     """
     with suppress(ImportError, AttributeError, KeyError, OSError, TypeError):
         ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)
@@ -255,7 +251,7 @@ def _end_with_the_parent() -> None:
 
 
 def _redirect(folder: Path) -> None:
-    """Engines write logs into the working folder and to the standard streams; both go where the parent can look."""
+    """Change the working folder, and redirect the standard streams to a log, for the output of engines."""
     os.chdir(folder)
     log = os.open(f"{os.getpid()}.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
     tempfile.tempdir = os.environ["TMPDIR"] = str(folder)  # temporary files of engines are deleted with this folder
@@ -265,8 +261,7 @@ def _redirect(folder: Path) -> None:
 
 
 def _watch(clock: CpuDeadline) -> None:
-    """In a thread: end the process when its parent is gone, or when its CPU time is used up and the parent can't see
-    that."""
+    """In a thread: end the process after its parent, or at the CPU deadline if the parent can't read the CPU time."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     while parent.is_alive():
@@ -277,9 +272,9 @@ def _watch(clock: CpuDeadline) -> None:
 
 
 def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[bool, bytes]:
-    """(whether the process is as it was before, the pickled result or Loss)."""
+    """(whether the state of the process is unchanged, the pickled result or Loss)."""
     try:
-        # Imports an engine for the first time, which is no part of the job's CPU time, and may change the process.
+        # This may import an engine, which does not count as CPU time or as a change of the process by the job.
         function, item = pickle.loads(job)
     except BaseException as error:  # nothing was run
         return False, pickle.dumps(Loss(Outcome.LOST, f"a worker can't read it: {describe(error)}"))
@@ -289,22 +284,22 @@ def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[
             result = function(item)
         if time.process_time() - start > limit:
             result = out_of_time(limit)
-        # A build that `compare` runs may lie elsewhere.
+        # elsewhere=False: `compare` runs builds in other folders.
         if sentence := import_module(REGISTRY).mislabelled(elsewhere=False):
             result = Loss(Outcome.LOST, sentence)
         return _process_state() == before, pickle.dumps(result)
-    except BaseException as error:  # any exception of an engine is a result, also SystemExit and KeyboardInterrupt
-        # The engine may have left its library in an inconsistent state, so this process gets no other job.
+    except BaseException as error:  # an exception of an engine is a result, also SystemExit and KeyboardInterrupt
+        # The library of the engine may be in an inconsistent state, so this process gets no other job.
         return False, pickle.dumps(failure(error))
 
 
 @contextmanager
 def _timers(clock: CpuDeadline, limit: float, wall: float) -> Iterator[None]:
-    """A timer of the system ends the process even inside native code that never returns to the interpreter."""
+    """Set a system timer, which ends the process even in native code that never returns to the interpreter."""
     clock.end = time.process_time() + limit
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.setitimer(signal.ITIMER_REAL, 2 * wall)  # the parent is gone, or it would have ended this by now
+        signal.setitimer(signal.ITIMER_REAL, 2 * wall)  # only if the parent has ended, which acts after `wall`
     try:
         yield
     finally:
@@ -315,7 +310,7 @@ def _timers(clock: CpuDeadline, limit: float, wall: float) -> Iterator[None]:
 
 
 def _process_state() -> tuple[Any, ...]:
-    """Process state that a job could change for the next one; a worker with a changed state is replaced."""
+    """The part of the process's state that a job may change; a worker with a changed state is replaced."""
     try:
         folder = os.getcwd()
         streams = [(os.fstat(number).st_dev, os.fstat(number).st_ino) for number in (1, 2)]
