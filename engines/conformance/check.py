@@ -1,4 +1,4 @@
-"""A check: a named function that tests an engine alone, or in one small mechanism."""
+"""A check: a named function that tests an engine, with or without one small mechanism."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from reference.trajectory import Trajectory
 Array = NDArray[np.float64]
 Status = Literal["holds", "fails", "not supported", "not asked"]
 
-STEP = 0.01  # s, the step of most runs: a sixth of a radian of the fastest motion
-SAMPLES = 8
-FEWEST_WORDS = 4  # in a reason
+CHECK_STEP = 0.01  # step of most runs [s]
+CHECK_SAMPLES = 8  # samples of most runs
+FEWEST_WORDS = 4  # least number of words in a reason
 
 
 class Fails(AssertionError):
-    """The engine breaks the contract: the finding, the expectation, and the usual cause of the difference."""
+    """The engine violates the contract. The message has the finding, the expectation and the usual cause."""
 
     def __init__(self, found: str, expected: str, means: str) -> None:
         super().__init__(f"found {found}; expected {expected}. Usually: {means}")
 
 
-class NotAsked(Exception):
+class NotApplicable(Exception):
     """The check does not apply to this case; the message says why."""
 
 
@@ -40,18 +40,18 @@ def require(holds: bool | np.bool_, found: str, expected: str, means: str) -> No
         raise Fails(found, expected, means)
 
 
-def require_a_sentence(text: str, what: str) -> None:
-    """Raises Fails unless the text is one line of FEWEST_WORDS words."""
+def require_a_sentence(text: str, subject: str) -> None:
+    """Raises Fails unless the text is one line of at least FEWEST_WORDS words."""
     require(
         len(text.split()) >= FEWEST_WORDS and text.isprintable(),
-        f"{text!r} for {what}",
+        f"{text!r} for {subject}",
         f"one line of at least {FEWEST_WORDS} words",
-        "it is raised without the sentence that a reader of the report gets to see",
+        "it lacks the sentence that the report prints",
     )
 
 
-class Subject:
-    """An engine that is being checked, with the runs that it has made."""
+class CheckedEngine:
+    """An engine that is checked, with a cache of its runs."""
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
@@ -60,28 +60,26 @@ class Subject:
     def __str__(self) -> str:
         return method_name(self.engine)
 
-    def build(self, mechanism: Mechanism, dt: float = STEP) -> Run:
+    def build(self, mechanism: Mechanism, dt: float = CHECK_STEP) -> Run:
         """Raises Unsupported if the engine does, Fails for any other exception."""
         try:
-            return self.engine.build(copy.deepcopy(mechanism), dt)  # an engine may write into it
+            return self.engine.build(copy.deepcopy(mechanism), dt)  # an engine may change the mechanism
         except Unsupported:
             raise
         except Exception as error:
             raise Fails(
                 f"{type(error).__name__}: {error} from build",
                 "a run, or Unsupported with a sentence",
-                "a mechanism that can't be built is not looked for before it is built",
+                "the engine does not refuse a mechanism before it builds it",
             ) from error
 
-    def fresh(self, mechanism: Mechanism, dt: float = STEP, samples: int = SAMPLES, every: int = 1) -> Trajectory:
-        """A run of a new model."""
-        return stepped(self.build(mechanism, dt), samples, every)
-
-    def run(self, mechanism: Mechanism, dt: float = STEP, samples: int = SAMPLES, every: int = 1) -> Trajectory:
-        """The run of these numbers, made once."""
+    def run(
+        self, mechanism: Mechanism, dt: float = CHECK_STEP, samples: int = CHECK_SAMPLES, every: int = 1
+    ) -> Trajectory:
+        """The cached run of a mechanism."""
         key = (mechanism, dt, samples, every)
         if key not in self._runs:
-            self._runs[key] = self.fresh(mechanism, dt, samples, every)
+            self._runs[key] = stepped(self.build(mechanism, dt), samples, every)
         return self._runs[key]
 
 
@@ -93,21 +91,29 @@ def stepped(run: Run, samples: int, every: int) -> Trajectory:
         raise Fails(
             f"{type(error).__name__}: {error} from a run",
             "a Trajectory",
-            "what a run can't go on from is an exception instead of NaN from that sample on",
+            "a diverged run raises an exception; its states have to be NaN from that sample on",
         ) from error
 
 
 def finite(run: Trajectory) -> Trajectory:
     """Return the trajectory unchanged. Raises Fails if a pose or a twist is not finite."""
     for name, values in (("pose", run.pose), ("twist", run.twist)):
-        sound = np.isfinite(values).all(axis=(1, 2))
-        where = int(np.argmin(sound))
-        require(sound.all(), f"a {name} that is not finite at sample {where}", "numbers", "the motion has blown up")
+        valid = np.isfinite(values).all(axis=(1, 2))
+        sample = int(np.argmin(valid))
+        require(valid.all(), f"a {name} that is not finite at sample {sample}", "numbers", "the motion has diverged")
     return run
 
 
+def projection(mechanism: Mechanism) -> Callable[[Array], Array]:
+    """The projection of velocities (bodies, 3) on those that the joints allow, in the norm of the masses."""
+    root = np.sqrt(mechanism.inertias.reshape(-1))
+    _, sizes, directions = np.linalg.svd(mechanism.rows(mechanism.pose) / root)
+    free = directions[np.sum(sizes > 1e-9 * sizes[0]) :]
+    return lambda velocities: free.T @ (free @ (root * velocities.reshape(-1)))
+
+
 @dataclass(frozen=True)
-class Motion:
+class WorldMotion:
     """Poses, twists and accelerations (times, bodies, 3), and reactions (times, rows)."""
 
     pose: Array
@@ -122,7 +128,7 @@ class World:
 
     name: str
     mechanism: Mechanism
-    exact: Callable[[Array], Motion]
+    exact: Callable[[Array], WorldMotion]
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -131,8 +137,8 @@ class World:
 
 
 @dataclass(frozen=True)
-class Check:
-    """A function whose docstring begins with the requirement. `worlds`: its mechanisms, () for none."""
+class ConformanceCheck:
+    """A check function and its mechanisms (`worlds`). The docstring of the function begins with the requirement."""
 
     function: Callable[..., None]
     worlds: tuple[World, ...] = ()
@@ -142,41 +148,40 @@ class Check:
         return self.function.__name__
 
     @property
-    def asks(self) -> str:
-        """One sentence."""
+    def requirement(self) -> str:
         return (inspect.getdoc(self.function) or "").splitlines()[0]
 
 
 @dataclass(frozen=True)
-class Result:
-    """The status of a case, and the reason where it does not hold."""
+class ConformanceResult:
+    """The status of a case, and the reason if the status is not "holds"."""
 
     status: Status
     sentence: str = ""
 
 
 @dataclass(frozen=True)
-class Case:
-    """One check of one engine, in one world or in none."""
+class ConformanceCase:
+    """One check of one engine, with or without a mechanism (`world`)."""
 
-    subject: Subject
-    check: Check
+    subject: CheckedEngine
+    check: ConformanceCheck
     world: World | None = None
 
     def __str__(self) -> str:
         parts = (str(self.subject), self.check.name, *(() if self.world is None else (self.world.name,)))
         return ": ".join(parts)
 
-    def result(self) -> Result:
-        """Run the check. Never raises: an exception within a check is its failure."""
+    def result(self) -> ConformanceResult:
+        """The result of the check; an exception in the check is a failure."""
         try:
             self.check.function(self.subject, *(() if self.world is None else (self.world,)))
         except Unsupported as reason:
-            return Result("not supported", str(reason))
-        except NotAsked as reason:
-            return Result("not asked", str(reason))
+            return ConformanceResult("not supported", str(reason))
+        except NotApplicable as reason:
+            return ConformanceResult("not asked", str(reason))
         except Fails as failure:
-            return Result("fails", f"{self.check.name}: {self.check.asks} It {failure}")
+            return ConformanceResult("fails", f"{self.check.name}: {self.check.requirement} It {failure}")
         except Exception as error:
-            return Result("fails", f"{self.check.name}: {self.check.asks} Looking at it raised {error!r}")
-        return Result("holds")
+            return ConformanceResult("fails", f"{self.check.name}: {self.check.requirement} Its check raised {error!r}")
+        return ConformanceResult("holds")

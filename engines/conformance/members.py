@@ -1,6 +1,6 @@
-"""Checks of an engine's answers about itself (name, settings, packages, promises, costs, holders) and of its refusals.
+"""Checks of an engine's declarations (name, settings, packages, orders, costs, enforcement) and of its refusals.
 
-Mechanisms are refused by Unsupported with a sentence, values by a ValueError that names them.
+An engine refuses a mechanism by Unsupported with a sentence, and a value by a ValueError that names it.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ import numpy as np
 
 from engines import ConvergenceOrder, Enforcement, NotDeclared, Regularisation, Size, Unsupported
 from engines.conformance.check import (
-    SAMPLES,
-    STEP,
-    Check,
+    CHECK_SAMPLES,
+    CHECK_STEP,
+    CheckedEngine,
+    ConformanceCheck,
     Fails,
-    NotAsked,
-    Subject,
+    NotApplicable,
     require,
     require_a_sentence,
     stepped,
@@ -35,40 +35,40 @@ from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Line
 from reference.rolling.roll import Roll
 
-SAME = 1e-9  # whether two runs agree to the last bit is another check's
+COPY_TOLERANCE = 1e-9  # for equal motions; `gives_the_same_bits` checks that they are equal to the last bit
 ADDRESS = re.compile(r" at 0x[0-9a-f]+", re.IGNORECASE)
 BAD_STEPS: tuple[Any, ...] = (0.0, -0.01, math.nan, math.inf, "0.01", None, True)
 BAD_COUNTS: tuple[Any, ...] = (0, -1, 1.5, math.nan, "2", None, True)
 
 
-def has_a_name(subject: Subject) -> None:
-    """`name`, `variant` and `family` are words that can be printed in one line."""
+def has_a_name(subject: CheckedEngine) -> None:
+    """`name`, `variant` and `family` are strings that can be printed in one line."""
     for name in ("name", "variant", "family"):
         value = getattr(subject.engine, name, None)
-        sound = isinstance(value, str) and bool(value.strip()) and value.isprintable()
+        valid = isinstance(value, str) and bool(value.strip()) and value.isprintable()
         expected = "a string that is not empty and can be printed"
-        require(sound, f"{name} = {value!r}", expected, "it is made from a setting")
+        require(valid, f"{name} = {value!r}", expected, "it is made from a setting")
 
 
-def is_a_frozen_dataclass(subject: Subject) -> None:
+def is_a_frozen_dataclass(subject: CheckedEngine) -> None:
     """An engine is a frozen dataclass whose repr shows all its settings, in one line and without addresses."""
     engine: Any = subject.engine
     frozen = dataclasses.is_dataclass(engine) and type(engine).__dataclass_params__.frozen  # type: ignore[attr-defined]
     found = f"a {type(engine).__name__} that can be changed"
     require(frozen, found, "a frozen dataclass", "frozen=True is left out")
-    shown = repr(engine)
+    representation = repr(engine)
     settings = {field.name: getattr(engine, field.name) for field in dataclasses.fields(engine)}
-    hidden = [name for name, value in settings.items() if f"{name}={value!r}" not in shown]
+    hidden = [name for name, value in settings.items() if f"{name}={value!r}" not in representation]
     require(
-        not hidden and shown.isprintable() and not ADDRESS.search(shown),
-        f"the repr {shown!r}" + (f" without {', '.join(hidden)}" if hidden else ""),
+        not hidden and representation.isprintable() and not ADDRESS.search(representation),
+        f"the repr {representation!r}" + (f" without {', '.join(hidden)}" if hidden else ""),
         "every setting, so that equal reprs are equal engines",
-        "a setting is an object without a repr of its own, or is kept out of it",
+        "a setting is an object without a repr of its own, or has repr=False",
     )
 
 
-def can_be_hashed(subject: Subject) -> None:
-    """An engine can be hashed, and equals itself."""
+def can_be_hashed(subject: CheckedEngine) -> None:
+    """An engine has a hash and equals itself."""
     try:
         hash(subject.engine)
     except TypeError as error:
@@ -77,8 +77,8 @@ def can_be_hashed(subject: Subject) -> None:
     require(equal, "an engine that differs from itself", "equality", "a setting is NaN")
 
 
-def can_be_pickled(subject: Subject) -> None:
-    """An engine can be pickled, and is then the same: equal, with the same repr and the same motion."""
+def can_be_pickled(subject: CheckedEngine) -> None:
+    """The copy of an engine by pickle is equal to it, with the same repr and the same motion."""
     try:
         copy = pickle.loads(pickle.dumps(subject.engine))
     except Exception as error:
@@ -87,17 +87,17 @@ def can_be_pickled(subject: Subject) -> None:
             "a copy by pickle",
             "its class is defined in a function, or a setting is a function or holds an object of the engine",
         ) from error
-    means = "state beside the fields is lost, or made anew with other values"
+    means = "state that is not in the fields is lost, or is created with other values"
     equal = copy == subject.engine and repr(copy) == repr(subject.engine)
     require(equal, f"a copy {copy!r}", repr(subject.engine), means)
     mechanism = any_built(subject)
-    here, there = (stepped(each.build(mechanism), 3, 1) for each in (subject, Subject(copy)))
-    same = np.allclose(here.pose, there.pose, rtol=0, atol=SAME)
+    original, copied = (stepped(checked.build(mechanism), 3, 1) for checked in (subject, CheckedEngine(copy)))
+    same = np.allclose(original.pose, copied.pose, rtol=0, atol=COPY_TOLERANCE)
     require(same, "another motion of the copy", "the same one", means)
 
 
-def names_its_packages(subject: Subject) -> None:
-    """`packages` is a tuple of installed packages, of Python or npm, whose versions are printed under the numbers."""
+def names_its_packages(subject: CheckedEngine) -> None:
+    """`packages` is a tuple of the names of installed packages of Python or npm."""
     packages = getattr(subject.engine, "packages", None)
     if not (isinstance(packages, tuple) and all(isinstance(name, str) for name in packages)):
         raise Fails(f"packages = {packages!r}", "a tuple of strings", "a comma is missing in a tuple of one")
@@ -109,23 +109,23 @@ def names_its_packages(subject: Subject) -> None:
             raise Fails(f"{name!r}, which is not installed", expected, means) from error
 
 
-def has_the_right_shapes(subject: Subject, world: World) -> None:
-    """A run gives a Trajectory of samples + 1 poses, twists and reactions, in the order of bodies and rows."""
-    if flaw := flaw_of_shapes(subject.run(world.mechanism), world.mechanism, SAMPLES):
-        raise Fails(*flaw, "the start is left out or counted twice, or a field is filled by place")
+def has_the_right_shapes(subject: CheckedEngine, world: World) -> None:
+    """A run returns a Trajectory of samples + 1 states with the shapes of bodies and rows."""
+    if flaw := flaw_of_shapes(subject.run(world.mechanism), world.mechanism, CHECK_SAMPLES):
+        raise Fails(*flaw, "the start is missing or counted twice, or an argument is at the wrong position")
 
 
-def tells_the_size_of_its_model(subject: Subject, world: World) -> None:
-    """A built model says how large it is, by a Size of counts that are not below zero."""
+def tells_the_size_of_its_model(subject: CheckedEngine, world: World) -> None:
+    """The `size` of a model is a Size of counts that are not below zero."""
     size = getattr(subject.build(world.mechanism), "size", None)
     require(isinstance(size, Size), f"size = {size!r}", "a Size", "the run has no property of that name")
     for name, value in vars(size).items():
-        sound = type(value) is int and value >= 0
-        require(sound, f"size.{name} = {value!r}", "a count", "it is taken from an array of the engine as it is")
+        valid = type(value) is int and value >= 0
+        require(valid, f"size.{name} = {value!r}", "a count", "it is not converted from a type of the engine")
 
 
-def promises_an_order(subject: Subject, world: World) -> None:
-    """`order` gives a ConvergenceOrder, or NotDeclared with one sentence that says why."""
+def promises_an_order(subject: CheckedEngine, world: World) -> None:
+    """`order` returns a ConvergenceOrder, or NotDeclared with one sentence that says why."""
     subject.build(world.mechanism)
     order = subject.engine.order(world.mechanism)
     if isinstance(order, NotDeclared):
@@ -138,8 +138,8 @@ def promises_an_order(subject: Subject, world: World) -> None:
     require(order.order > 0, f"an order of {order.order!r}", "more than 0", means)
 
 
-def tells_what_a_step_costs(subject: Subject, world: World) -> None:
-    """`step_cost` is a finite time above zero [s], and the same each time that it is asked."""
+def tells_what_a_step_costs(subject: CheckedEngine, world: World) -> None:
+    """`step_cost` is a finite time above zero [s] and the same in each call."""
     subject.build(world.mechanism)
     costs = [subject.engine.step_cost(world.mechanism) for _ in range(2)]
     usable = all(isinstance(cost, int | float) and math.isfinite(cost) and cost > 0 for cost in costs)
@@ -147,43 +147,44 @@ def tells_what_a_step_costs(subject: Subject, world: World) -> None:
     require(usable and costs[0] == costs[1], found, "one finite time above zero", "it is measured")
 
 
-def tells_who_holds_a_joint(subject: Subject, world: World) -> None:
-    """`holder` says of every joint who holds it, in the words of the contract."""
+def tells_who_holds_a_joint(subject: CheckedEngine, world: World) -> None:
+    """`enforcement` of each joint is one of the values in the contract."""
     subject.build(world.mechanism)
     expected = " or ".join(repr(word) for word in get_args(Enforcement))
     for joint in world.mechanism.joints:
-        holder = subject.engine.enforcement(joint, world.mechanism)
-        found = f"{holder!r} for a {type(joint).__name__}"
-        require(holder in get_args(Enforcement), found, expected, "a kind of joint is forgotten")
+        enforcement = subject.engine.enforcement(joint, world.mechanism)
+        found = f"{enforcement!r} for a {type(joint).__name__}"
+        require(enforcement in get_args(Enforcement), found, expected, "a kind of joint is forgotten")
 
 
-def tells_how_joints_give_way(subject: Subject, world: World) -> None:
-    """`softness` gives None, or a Regularisation of finite numbers for every row of the mechanism."""
+def tells_how_joints_give_way(subject: CheckedEngine, world: World) -> None:
+    """`regularisation` returns None, or a Regularisation of finite numbers with a flag for each row."""
     subject.build(world.mechanism)
-    soft = subject.engine.regularisation(world.mechanism, STEP)
-    if soft is None:
+    regularisation = subject.engine.regularisation(world.mechanism, CHECK_STEP)
+    if regularisation is None:
         return
-    if not isinstance(soft, Regularisation):
-        raise Fails(f"softness = {soft!r}", "a Regularisation or None", "it is the engine's own setting")
+    if not isinstance(regularisation, Regularisation):
+        found = f"regularisation = {regularisation!r}"
+        raise Fails(found, "a Regularisation or None", "it is the engine's own setting")
     for name, least in (("stiffness", 0.0), ("damping", 0.0), ("compliance", -math.inf)):
-        value = getattr(soft, name)
-        sound = math.isfinite(value) and value > least and value >= 0
-        expected = "a finite number, above zero but for the compliance"
-        require(sound, f"{name} = {value!r}", expected, "units are mixed up")
-    count, rows = len(soft.rows), world.mechanism.row_count
+        value = getattr(regularisation, name)
+        valid = math.isfinite(value) and value > least and value >= 0
+        expected = "a finite number above zero; a compliance may be zero"
+        require(valid, f"{name} = {value!r}", expected, "units are confused")
+    count, rows = len(regularisation.rows), world.mechanism.row_count
     require(count == rows, f"{count} rows", f"{rows}", "it counts joints")
 
 
-def tells_the_steps_of_its_runs(subject: Subject, world: World) -> None:
-    """`inner_steps` gives the step of each run, in parts of dt: above zero, and finite."""
+def tells_the_steps_of_its_runs(subject: CheckedEngine, world: World) -> None:
+    """`inner_steps` returns the step of each run as a fraction of dt, finite and above zero."""
     subject.build(world.mechanism)
     steps = subject.engine.inner_steps(world.mechanism)
-    sound = isinstance(steps, tuple) and steps and all(math.isfinite(step) and step > 0 for step in steps)
-    require(bool(sound), f"steps of runs {steps!r}", "a tuple of parts of dt", "it counts runs")
+    valid = isinstance(steps, tuple) and steps and all(math.isfinite(step) and step > 0 for step in steps)
+    require(bool(valid), f"inner_steps = {steps!r}", "a tuple of fractions of dt", "it counts runs")
 
 
-def builds_or_refuses(subject: Subject, world: World) -> None:
-    """A mechanism is built, or refused by Unsupported with one sentence that says why."""
+def builds_or_refuses(subject: CheckedEngine, world: World) -> None:
+    """A mechanism is built, or Unsupported is raised with one sentence that says why."""
     try:
         subject.build(world.mechanism)
     except Unsupported as reason:
@@ -191,18 +192,18 @@ def builds_or_refuses(subject: Subject, world: World) -> None:
         raise
 
 
-def builds_at_least_one(subject: Subject) -> None:
-    """At least one of the mechanisms of these checks is built, or nothing is checked at all."""
+def builds_at_least_one(subject: CheckedEngine) -> None:
+    """At least one mechanism of these checks is built, since otherwise no motion is checked."""
     require(
         _first_built(subject) is not None,
-        "a refusal of every one of them",
+        "a refusal of all mechanisms",
         "a run of one",
-        "a package that the engine needs is not installed, or it is made for mechanisms of another kind",
+        "a package that the engine needs is not installed, or the engine is for mechanisms of another kind",
     )
 
 
-def refuses_odd_mechanisms(subject: Subject) -> None:
-    """Joints that hold twice, bodies that nothing holds and joints between moving bodies are built or refused too."""
+def refuses_odd_mechanisms(subject: CheckedEngine) -> None:
+    """Redundant joints, free bodies and joints between moving bodies are built or refused by Unsupported."""
     for name, mechanism in ODD.items():
         try:
             stepped(subject.build(mechanism), 2, 1)
@@ -212,19 +213,19 @@ def refuses_odd_mechanisms(subject: Subject) -> None:
             raise Fails(
                 f"with {name}: {failure.__cause__!r}",
                 "a run, or Unsupported with a sentence",
-                "a mechanism that can't be built is not looked for before it is built",
+                "the engine does not refuse a mechanism before it builds it",
             ) from failure
 
 
-def refuses_bad_steps(subject: Subject) -> None:
-    """A step that is not a finite time above zero is a ValueError that names dt."""
+def refuses_bad_steps(subject: CheckedEngine) -> None:
+    """A step that is not a finite time above zero raises a ValueError that names dt."""
     mechanism = any_built(subject)
     for value in BAD_STEPS:
         _refused("dt", value, lambda value=value: subject.engine.build(mechanism, value))
 
 
-def refuses_bad_counts(subject: Subject) -> None:
-    """Counts of samples and of steps that are not whole numbers above zero are a ValueError that names them."""
+def refuses_bad_counts(subject: CheckedEngine) -> None:
+    """A count of samples or steps that is not a whole number above zero raises a ValueError that names it."""
     mechanism = any_built(subject)
     for value in BAD_COUNTS:
         for name, counts in (("samples", (value, 1)), ("every", (2, value))):
@@ -233,7 +234,7 @@ def refuses_bad_counts(subject: Subject) -> None:
 
 
 def _refused(name: str, value: Any, call: Callable[[], Any]) -> None:
-    means = "the value is not looked at, or by the engine's own code, which may abort the process for others"
+    means = "the value is not checked before the engine's code gets it, which may abort the process"
     try:
         call()
     except ValueError as error:
@@ -242,28 +243,28 @@ def _refused(name: str, value: Any, call: Callable[[], Any]) -> None:
     except Exception as error:
         raise Fails(f"{type(error).__name__}: {error} for {name} = {value!r}", "a ValueError", means) from error
     else:
-        raise Fails(f"{name} = {value!r} taken", "a ValueError", means)
+        raise Fails(f"{name} = {value!r} accepted", "a ValueError", means)
 
 
-def _first_built(subject: Subject) -> Mechanism | None:
+def _first_built(subject: CheckedEngine) -> Mechanism | None:
     """The first mechanism that the engine builds; None if it builds none."""
     for world in (*MOVING, *WORLDS):
-        with suppress(Unsupported, Fails):  # how it fails is another check's
+        with suppress(Unsupported, Fails):
             subject.build(world.mechanism)
             return world.mechanism
     return None
 
 
-def any_built(subject: Subject) -> Mechanism:
-    """The same; raises NotAsked if it builds none."""
+def any_built(subject: CheckedEngine) -> Mechanism:
+    """The first mechanism that the engine builds; raises NotApplicable if it builds none."""
     mechanism = _first_built(subject)
     if mechanism is None:
-        raise NotAsked("the engine builds none of the mechanisms of these checks")
+        raise NotApplicable("the engine builds none of the mechanisms of these checks")
     return mechanism
 
 
-def refuses_a_second_call(subject: Subject) -> None:
-    """A run is one shot: a second call is refused, not continued from where the first one ended."""
+def refuses_a_second_call(subject: CheckedEngine) -> None:
+    """A second call of a run raises an exception."""
     run = subject.build(any_built(subject))
     first = stepped(run, 2, 1)
     try:
@@ -272,14 +273,14 @@ def refuses_a_second_call(subject: Subject) -> None:
         return
     same = (second.pose == first.pose).all()
     raise Fails(
-        f"a second call that {'starts anew' if same else 'goes on'}",
+        f"a second call that {'repeats the motion' if same else 'continues the motion'}",
         "an exception that says to build again",
-        "the model keeps its state after a run, and what calls it twice takes the end of one motion for a start",
+        "the model has the final state of the first run, which the caller would take for a start",
     )
 
 
 def _odd() -> dict[str, Mechanism]:
-    """Mechanisms that are valid and that an engine may not have thought of."""
+    """Valid mechanisms for which an adapter may have no code."""
     nowhere = (0.0, 0.0)
     left, right, still = (
         Body(name, 1.0, 0.1, (x, 0.0, 0.0), (0.0, 0.0, spin))
@@ -324,22 +325,22 @@ def _odd() -> dict[str, Mechanism]:
 
 ODD = _odd()
 CHECKS = (
-    Check(builds_or_refuses, (*WORLDS, SPINNING)),
-    Check(builds_at_least_one),
-    Check(refuses_odd_mechanisms),
-    Check(refuses_bad_steps),
-    Check(refuses_bad_counts),
-    Check(refuses_a_second_call),
-    Check(has_a_name),
-    Check(is_a_frozen_dataclass),
-    Check(can_be_hashed),
-    Check(can_be_pickled),
-    Check(names_its_packages),
-    Check(has_the_right_shapes, WORLDS),
-    Check(tells_the_size_of_its_model, WORLDS),
-    Check(promises_an_order, WORLDS),
-    Check(tells_what_a_step_costs, WORLDS),
-    Check(tells_who_holds_a_joint, WORLDS),
-    Check(tells_how_joints_give_way, WORLDS),
-    Check(tells_the_steps_of_its_runs, WORLDS),
+    ConformanceCheck(builds_or_refuses, (*WORLDS, SPINNING)),
+    ConformanceCheck(builds_at_least_one),
+    ConformanceCheck(refuses_odd_mechanisms),
+    ConformanceCheck(refuses_bad_steps),
+    ConformanceCheck(refuses_bad_counts),
+    ConformanceCheck(refuses_a_second_call),
+    ConformanceCheck(has_a_name),
+    ConformanceCheck(is_a_frozen_dataclass),
+    ConformanceCheck(can_be_hashed),
+    ConformanceCheck(can_be_pickled),
+    ConformanceCheck(names_its_packages),
+    ConformanceCheck(has_the_right_shapes, WORLDS),
+    ConformanceCheck(tells_the_size_of_its_model, WORLDS),
+    ConformanceCheck(promises_an_order, WORLDS),
+    ConformanceCheck(tells_what_a_step_costs, WORLDS),
+    ConformanceCheck(tells_who_holds_a_joint, WORLDS),
+    ConformanceCheck(tells_how_joints_give_way, WORLDS),
+    ConformanceCheck(tells_the_steps_of_its_runs, WORLDS),
 )

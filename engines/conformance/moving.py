@@ -1,7 +1,7 @@
-"""Checks of a run: its start, shapes, instants and cost, that the same run gives the same bits, and the exact motion.
+"""Checks of a run: start, instants, CPU time, repeatability, and comparison with the exact motion.
 
-Against the exact motion: which instant a state belongs to, its order, the size of reactions, and whether forces act. An
-engine that does not look at them moves as if there were none, without a warning.
+The comparison shows the instant to which a state belongs, the convergence order, the size of reactions, and whether
+forces act. An engine that ignores force elements has no other symptom.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ import copy
 import math
 import os
 import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,14 +17,15 @@ from scipy.integrate import solve_ivp
 
 from engines import ConvergenceOrder, NotDeclared, Unsupported
 from engines.conformance.check import (
-    SAMPLES,
-    STEP,
+    CHECK_SAMPLES,
+    CHECK_STEP,
     Array,
-    Check,
+    CheckedEngine,
+    ConformanceCheck,
     Fails,
-    NotAsked,
-    Subject,
+    NotApplicable,
     finite,
+    projection,
     require,
     require_a_sentence,
     stepped,
@@ -36,263 +36,249 @@ from reference.forces import Damper, Force, ForceElement, Spring, Torque, Torsio
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 
-# Of a coordinate's size: what placing a body, and taking its place back from the engine's own coordinates, may take.
-PLACING = 1e-12
-GRAIN = 1e-4  # s, of another clock of CPU time than ours
-SELDOM = (2, 3)  # samples, and steps between them
-# The same steps are taken, so rounding is all that may differ; extrapolation weighs it with up to a hundred.
-SAMPLED = 1e-9
-# A solver that ends by a tolerance may read the same state from another guess, and a change of velocity over a step is
-# what single precision rounds; divided by three times that step it is wrong by two thirds.
-READ = 1e-3
+# Relative rounding of the start, which is converted to the engine's coordinates and back.
+START_ROUNDING = 1e-12
+CLOCK_RESOLUTION = 1e-4  # resolution of an engine's clock of CPU time [s]
+COARSE_SAMPLING = (2, 3)  # samples, and steps between them
+# Relative difference of runs with the same steps: rounding, which extrapolation multiplies by up to 100.
+SAMPLING_TOLERANCE = 1e-9
+# Relative difference of reactions: an iterative solver begins with another guess, and single precision rounds the
+# changes of velocities. A reaction that is divided by a wrong time differs by two thirds.
+REACTION_TOLERANCE = 1e-3
 
 
 def _largest(values: Array) -> float:
     return float(np.max(np.abs(values), initial=0.0))
 
 
-def samples_at_the_right_times(subject: Subject, world: World) -> None:
-    """Sample k stands at k times `every` times dt, beginning with t = 0."""
-    for samples, every in ((SAMPLES, 1), SELDOM):
-        run = subject.run(world.mechanism, STEP, samples, every)
-        if flaw := flaw_of_times(run, STEP, samples, every):
-            raise Fails(*flaw, "`every` is left out, or time is counted from the first step on")
+def samples_at_the_right_times(subject: CheckedEngine, world: World) -> None:
+    """The time of sample k is k * every * dt, beginning with t = 0."""
+    for samples, every in ((CHECK_SAMPLES, 1), COARSE_SAMPLING):
+        run = subject.run(world.mechanism, CHECK_STEP, samples, every)
+        if flaw := flaw_of_times(run, CHECK_STEP, samples, every):
+            raise Fails(*flaw, "`every` is ignored, or time begins after the first step")
 
 
-def tells_the_cpu_time_of_stepping(subject: Subject, world: World) -> None:
-    """`stepping` is CPU time: not below zero, and not more than was used during the run.
+def tells_the_cpu_time_of_stepping(subject: CheckedEngine, world: World) -> None:
+    """`stepping` is CPU time from 0 to the CPU time of the whole run.
 
-    The CPU time of a child process cannot be read here. It is below the time that passed, times the processors.
+    The CPU time of a child process is unknown here, but at most the elapsed time times the number of processors.
     """
     run = subject.build(world.mechanism)
-    if subject.engine.steps_in_child:
-        clock, processors = time.monotonic, os.cpu_count() or 1
-    else:
-        clock, processors = time.process_time, 1
+    in_child = subject.engine.steps_in_child
+    clock, processors = (time.monotonic, os.cpu_count() or 1) if in_child else (time.process_time, 1)
     begin = clock()
-    told = stepped(run, SAMPLES, 1)
+    stepping = stepped(run, CHECK_SAMPLES, 1).stepping
     used = (clock() - begin) * processors
     require(
-        math.isfinite(told.stepping) and 0 <= told.stepping <= used + GRAIN,
-        f"stepping = {told.stepping!r} s",
+        math.isfinite(stepping) and 0 <= stepping <= used + CLOCK_RESOLUTION,
+        f"stepping = {stepping!r} s",
         f"from 0 to the {used:.3g} s of CPU time that the whole call took",
-        "the wall's clock is read, or milliseconds, or nothing",
+        "it is elapsed time, in milliseconds, or not measured",
     )
 
 
-def first_pose_is_the_start(subject: Subject, world: World) -> None:
-    """The first sample's poses are the mechanism's start."""
+def first_pose_is_the_start(subject: CheckedEngine, world: World) -> None:
+    """The poses of the first sample are those of the mechanism at t = 0."""
     _starts(subject, world, "pose")
 
 
-def first_twist_is_the_start(subject: Subject, world: World) -> None:
-    """The first sample's twists are the mechanism's start."""
+def first_twist_is_the_start(subject: CheckedEngine, world: World) -> None:
+    """The twists of the first sample are those of the mechanism at t = 0."""
     _starts(subject, world, "twist")
 
 
-def _starts(subject: Subject, world: World, what: str) -> None:
-    found, start = getattr(subject.run(world.mechanism), what)[0], getattr(world.mechanism, what)
-    off = _largest(found - start)
-    body, place = np.unravel_index(int(np.argmax(np.abs(found - start))), start.shape)
+def _starts(subject: CheckedEngine, world: World, name: str) -> None:
+    first, start = getattr(subject.run(world.mechanism), name)[0], getattr(world.mechanism, name)
+    error = _largest(first - start)
+    body, coordinate = np.unravel_index(int(np.argmax(np.abs(first - start))), start.shape)
     require(
-        off <= PLACING * (1 + _largest(start)),
-        f"a {what} that is {off:.3g} off in {('x', 'y', 'the angle')[place]} of body {body}",
-        f"the start to {PLACING:g} of its size",
-        "the first sample is taken after the first step, or the engine's own frame is not the centre of mass",
+        error <= START_ROUNDING * (1 + _largest(start)),
+        f"a {name} that is {error:.3g} off in {('x', 'y', 'the angle')[coordinate]} of body {body}",
+        f"the start to {START_ROUNDING:g} of its size",
+        "the first sample is taken after the first step, or the origin of the engine's frame is not the centre of mass",
     )
 
 
-def gives_the_same_bits(subject: Subject, world: World) -> None:
-    """Two builds, both made before either is run, give the same bits."""
+def gives_the_same_bits(subject: CheckedEngine, world: World) -> None:
+    """The runs of two models are equal to the last bit, if both are built before either is run."""
     runs = [subject.build(world.mechanism), subject.build(world.mechanism)]
-    first, second = (stepped(run, SAMPLES, 1) for run in runs)
+    first, second = (stepped(run, CHECK_SAMPLES, 1) for run in runs)
     for name in ("t", "pose", "twist", "reaction"):
-        one, other = getattr(first, name), getattr(second, name)
+        values, others = getattr(first, name), getattr(second, name)
         require(
-            np.array_equal(one, other, equal_nan=True),
-            f"a {name} that differs by {_largest(np.nan_to_num(one - other)):.3g}",
+            np.array_equal(values, others, equal_nan=True),
+            f"a {name} that differs by {_largest(np.nan_to_num(values - others)):.3g}",
             "the same bits",
-            "two models share something, or a solver begins with random numbers or with what was left before",
+            "two models share state, or a solver begins with random numbers or with the result of an earlier run",
         )
 
 
-def leaves_the_mechanism_alone(subject: Subject, world: World) -> None:
-    """Building and running change nothing in the mechanism that was given."""
-    given = copy.deepcopy(world.mechanism)
+def leaves_the_mechanism_alone(subject: CheckedEngine, world: World) -> None:
+    """Building and running do not change the mechanism."""
+    mechanism = copy.deepcopy(world.mechanism)
 
-    def numbers() -> dict[str, Any]:
-        arrays = {name: getattr(given, name).copy() for name in ("pose", "twist", "inertias", "rate")}
-        return {"description": repr(given), **arrays}
+    def contents() -> dict[str, Any]:
+        names = ("pose", "twist", "inertias", "rate")
+        return {"description": repr(mechanism)} | {name: getattr(mechanism, name).copy() for name in names}
 
-    before = numbers()
-    stepped(subject.engine.build(given, STEP), SAMPLES, 1)
-    for name, now in numbers().items():
-        same = np.array_equal(before[name], now)
-        require(same, f"another {name}", "the mechanism as it was", "an array of it is written into without a copy")
+    original = contents()
+    stepped(subject.engine.build(mechanism, CHECK_STEP), CHECK_SAMPLES, 1)
+    for name, value in contents().items():
+        same = np.array_equal(original[name], value)
+        require(same, f"another {name}", "an unchanged mechanism", "an array of it is changed without a copy")
 
 
-def sampling_changes_nothing(subject: Subject, world: World) -> None:
-    """Every third state of a run is that of a run sampled a third as often, to rounding."""
-    samples, every = SELDOM
-    often, seldom = subject.run(world.mechanism), subject.run(world.mechanism, STEP, samples, every)
-    # From there on a run claims nothing, and at which of its samples it notices depends on where they are.
-    unresolved = min(math.inf if run.unresolved_at is None else run.unresolved_at for run in (often, seldom))
-    claimed = seldom.t < unresolved
-    for name, allowed in (("pose", SAMPLED), ("twist", SAMPLED), ("reaction", READ)):
-        whole, other = getattr(often, name), getattr(seldom, name)[claimed]
-        same = whole[: samples * every + 1 : every][claimed]
-        off = _largest(np.nan_to_num(other) - np.nan_to_num(same))
-        within = off <= allowed * (1 + _largest(np.nan_to_num(whole)))
+def sampling_changes_nothing(subject: CheckedEngine, world: World) -> None:
+    """A run that records each third state has the same states as a run that records all, to rounding."""
+    samples, every = COARSE_SAMPLING
+    dense, sparse = subject.run(world.mechanism), subject.run(world.mechanism, CHECK_STEP, samples, every)
+    # A run claims no accuracy after `unresolved_at`, which may differ between the two.
+    unresolved = min(math.inf if run.unresolved_at is None else run.unresolved_at for run in (dense, sparse))
+    claimed = sparse.t < unresolved
+    for name in ("pose", "twist", "reaction"):
+        tolerance = REACTION_TOLERANCE if name == "reaction" else SAMPLING_TOLERANCE
+        all_values, values = getattr(dense, name), getattr(sparse, name)[claimed]
+        expected = all_values[: samples * every + 1 : every][claimed]
+        difference = _largest(np.nan_to_num(values) - np.nan_to_num(expected))
+        within = difference <= tolerance * (1 + _largest(np.nan_to_num(all_values)))
         require(
-            within and np.array_equal(np.isnan(other), np.isnan(same)),
-            f"a {name} that differs by {off:.3g}",
-            f"at most {allowed:g} of its size",
-            "`every` changes the step, or a change of velocity is divided by another time than it took, "
-            "or sampling disturbs what the engine goes on from",
+            within and np.array_equal(np.isnan(values), np.isnan(expected)),
+            f"a {name} that differs by {difference:.3g}",
+            f"at most {tolerance:g} of its size",
+            "`every` changes the step, or a change of velocity is divided by the wrong time, "
+            "or recording a state changes the state of the engine",
         )
 
 
-def does_not_wrap_angles(subject: Subject, world: World) -> None:
-    """An angle goes on beyond a whole turn, and starts where the mechanism says though that is several turns."""
+def does_not_wrap_angles(subject: CheckedEngine, world: World) -> None:
+    """Angles are not wrapped: they continue beyond a whole turn and may start several turns from zero."""
     run = finite(subject.run(world.mechanism))
-    off = _largest(run.pose[..., 2] - world.exact(run.t).pose[..., 2])
-    # A turn is 6.3 rad, and a step 0.6 rad of it.
-    require(
-        off <= 1.0, f"an angle that is {off:.3g} rad off", "at most 1 rad", "angles are those of a sine and a cosine"
-    )
+    error = _largest(run.pose[..., 2] - world.exact(run.t).pose[..., 2])  # 6.3 rad if an angle is wrapped
+    means = "angles are those of a sine and a cosine"
+    require(error <= 1.0, f"an angle that is {error:.3g} rad off", "at most 1 rad", means)
 
 
-SHORT = 1e-3  # s: within three of these a motion of some radians a second is a parabola to a percent
-EARLY = 3  # steps
-# Of a step. A state of another instant is half a step off at least; a parabola leaves a hundredth of one.
-OFF = 0.1
-SIZE = 0.25  # of the largest reaction: a flipped sign is wrong by 2, a method of first order by less than 0.1
+SMALL_STEP = 1e-3  # [s] motions of a few rad/s are parabolas to within a percent over a few of these steps
+FIRST_STEPS = 3
+# In steps. The states of another instant are off by at least half a step, and the parabola by a hundredth.
+MAX_DELAY = 0.1
+# Relative to the largest reaction. The error of a wrong sign is 2, that of a first-order method is below 0.1.
+REACTION_ERROR = 0.25
 
 
-def poses_stand_at_their_instants(subject: Subject, world: World) -> None:
-    """The first poses after the start lie on the exact motion at their own instants, not half a step or a step off."""
+def poses_stand_at_their_instants(subject: CheckedEngine, world: World) -> None:
+    """The first poses after the start belong to the times of their samples, not to times half a step away or more."""
     _at_their_instants(subject, world, "pose", "twist")
 
 
-def twists_stand_at_their_instants(subject: Subject, world: World) -> None:
-    """The first twists after the start belong to their own instants, not half a step later or the step before."""
+def twists_stand_at_their_instants(subject: CheckedEngine, world: World) -> None:
+    """The first twists after the start belong to the times of their samples, not to times half a step away or more."""
     _at_their_instants(subject, world, "twist", "acceleration")
 
 
-def _at_their_instants(subject: Subject, world: World, what: str, derivative: str) -> None:
-    """The error is the derivative times (delay + share times t); Fails unless the delay is below OFF.
+def _at_their_instants(subject: CheckedEngine, world: World, name: str, derivative: str) -> None:
+    """Fails if the delay exceeds MAX_DELAY, with the error fitted by derivative * (delay + constant * t).
 
-    Only what the joints leave free is looked at. There a method of any order, even the first, has taken n kicks and n
-    drifts after n steps. Across the joints a method of the first order may be off by as much as half a step.
+    The error is projected on the motions that the joints allow: elsewhere it may be half a step in first order.
     """
-    _promise(subject, world)
-    run = finite(subject.run(world.mechanism, SHORT, EARLY))
+    _declared_order(subject, world)
+    run = finite(subject.run(world.mechanism, SMALL_STEP, FIRST_STEPS))
     exact = world.exact(run.t)
-    error, free = getattr(run, what) - getattr(exact, what), _free(world.mechanism)
-    moving = free(getattr(exact, derivative)[0])
-    along = [np.vdot(free(each), moving) / np.vdot(moving, moving) / SHORT for each in error[1:]]
-    _, delay = np.polyfit(np.arange(1, EARLY + 1), along, 1)
+    errors, project = getattr(run, name) - getattr(exact, name), projection(world.mechanism)
+    direction = project(getattr(exact, derivative)[0])
+    delays = [np.vdot(project(error), direction) / np.vdot(direction, direction) / SMALL_STEP for error in errors[1:]]
+    _, delay = np.polyfit(np.arange(1, FIRST_STEPS + 1), delays, 1)
     require(
-        abs(delay) <= OFF,
-        f"a {what} that is {abs(delay):.2f} steps {'ahead of' if delay > 0 else 'behind'} its instant",
-        f"at most {OFF:g} steps",
-        "a leapfrog's velocities, half a step later, or those of the step before stand with the poses",
+        abs(delay) <= MAX_DELAY,
+        f"a {name} that is {abs(delay):.2f} steps {'ahead of' if delay > 0 else 'behind'} its instant",
+        f"at most {MAX_DELAY:g} steps",
+        "the velocities of a leapfrog method, half a step later, or of the step before are recorded with the poses",
     )
 
 
-def _free(mechanism: Mechanism) -> Callable[[Array], Array]:
-    """What takes from velocities (bodies, 3) the part that does work against no joint, in the metric of the masses."""
-    root = np.sqrt(mechanism.inertias.reshape(-1))
-    _, sizes, directions = np.linalg.svd(mechanism.rows(mechanism.pose) / root)
-    free = directions[np.sum(sizes > 1e-9 * sizes[0]) :]
-    return lambda velocities: free.T @ (free @ (root * velocities.reshape(-1)))
-
-
-def poses_have_their_order(subject: Subject, world: World) -> None:
-    """Errors of poses fall at least as fast with the step as `order` promises, until rounding is left."""
+def poses_have_their_order(subject: CheckedEngine, world: World) -> None:
+    """The errors of poses fall with the step at least at the declared order, down to rounding."""
     _has_its_order(subject, world, "pose", "angle")
 
 
-def twists_have_their_order(subject: Subject, world: World) -> None:
-    """Errors of twists fall at least as fast with the step as `order` promises, until rounding is left."""
+def twists_have_their_order(subject: CheckedEngine, world: World) -> None:
+    """The errors of twists fall with the step at least at the declared order, down to rounding."""
     _has_its_order(subject, world, "twist", "rate")
 
 
-def _promise(subject: Subject, world: World) -> ConvergenceOrder:
-    """The engine's promise; raises NotAsked where there is none."""
-    subject.run(world.mechanism)  # where it builds nothing it need not promise anything
-    if isinstance(promise := subject.engine.order(world.mechanism), NotDeclared):
-        raise NotAsked(f"no order is promised: {promise.reason}")
-    return promise
+def _declared_order(subject: CheckedEngine, world: World) -> ConvergenceOrder:
+    """The declared order; raises NotApplicable if there is none."""
+    subject.run(world.mechanism)  # raises Unsupported, since an engine declares no order of such a mechanism
+    if isinstance(order := subject.engine.order(world.mechanism), NotDeclared):
+        raise NotApplicable(f"no order is declared: {order.reason}")
+    return order
 
 
-REFINED = (1, 3, 9)  # times as many steps as of the others: between them an order shows as a factor of 3^order
-SPAN, WHOLE = 0.06, 3  # s, and samples in it
-# Room above what the promised order lets expect of the coarser steps: the next power of the step, and samples.
-ROOM = 2.5
-# Relative to the motion, an error of this size is rounding, or that of a drive whose rate is held by an inertia of a
-# hundred million times the mechanism's.
-LEAST = 1e-8
-# s^2: with it, an acceleration of 10 m/s^2 opens a joint by a nanometre, which is less than LEAST.
-HARD = 1e-10
+STEP_DIVISORS = (1, 3, 9)
+ORDER_SPACING, ORDER_SAMPLES = 0.02, 3  # [s] between samples, and their number
+# Factor on the error that the order predicts from larger steps, for the next power of the step and the sampling.
+ORDER_MARGIN = 2.5
+# Relative error by rounding, or of a drive whose rate is held by an inertia 10^8 times the mechanism's.
+SMALLEST_ERROR = 1e-8
+# Gap over acceleration [s^2] of joints that count as rigid: at 10 m/s^2 the gap is 1 nm, below SMALLEST_ERROR.
+RIGID = 1e-10
 
 
-def _has_its_order(subject: Subject, world: World, name: str, quantity: str) -> None:
-    order = _promise(subject, world).of(quantity)
-    if _gives_way_for_good(subject, world):
-        raise NotAsked("joints give way as the engine says, by the same at every step")
+def _has_its_order(subject: CheckedEngine, world: World, name: str, quantity: str) -> None:
+    order = _declared_order(subject, world).of(quantity)
+    if _has_constant_gap(subject, world):
+        raise NotApplicable("by the declared regularisation, joints have a gap that does not depend on the step")
     errors = []
-    for every in REFINED:
-        run = finite(subject.run(world.mechanism, SPAN / WHOLE / every, WHOLE, every))
-        errors.append(float(np.max(np.abs(getattr(run, name) - getattr(world.exact(run.t), name)))))
-    steps = [f"{SPAN / WHOLE / every:.2g}" for every in REFINED]
-    expected = max(error * (every / REFINED[-1]) ** order for error, every in zip(errors, REFINED[:-1], strict=False))
-    bound = max(ROOM * expected, LEAST * (1 + float(np.max(np.abs(world.mechanism.twist)))))
+    for every in STEP_DIVISORS:
+        run = finite(subject.run(world.mechanism, ORDER_SPACING / every, ORDER_SAMPLES, every))
+        errors.append(_largest(getattr(run, name) - getattr(world.exact(run.t), name)))
+    steps = [f"{ORDER_SPACING / every:.2g}" for every in STEP_DIVISORS]
+    ratios = [(every / STEP_DIVISORS[-1]) ** order for every in STEP_DIVISORS[:-1]]
+    expected = max(error * ratio for error, ratio in zip(errors, ratios, strict=False))
+    bound = max(ORDER_MARGIN * expected, SMALLEST_ERROR * (1 + _largest(world.mechanism.twist)))
     require(
         errors[-1] <= bound,
         f"errors of {', '.join(f'{error:.2g}' for error in errors)} at steps of {', '.join(steps)} s",
         f"at most {bound:.2g} at the last, by order {order:g}",
-        f"the {name} is of another instant than the method's own, or the engine is not of this order",
+        f"the {name} belongs to another instant, or the engine is not of this order",
     )
 
 
-def _gives_way_for_good(subject: Subject, world: World) -> bool:
-    """Whether joints give way visibly under a force, and at the smallest step nearly as much as at the one before.
-
-    Compared is the way that a joint gives, over the acceleration that it should prevent [s^2].
-    """
-    softness = [subject.engine.regularisation(world.mechanism, SPAN / WHOLE / every) for every in REFINED[-2:]]
-    coarse, fine = (0.0 if soft is None else soft.compliance / soft.stiffness for soft in softness)
-    return fine > HARD and fine * (REFINED[-1] / REFINED[-2]) > ROOM * coarse
+def _has_constant_gap(subject: CheckedEngine, world: World) -> bool:
+    """Whether the declared gap of a joint, over the acceleration that it prevents, is not small and hardly falls."""
+    laws = [subject.engine.regularisation(world.mechanism, ORDER_SPACING / every) for every in STEP_DIVISORS[-2:]]
+    coarse, fine = (0.0 if law is None else law.compliance / law.stiffness for law in laws)
+    return fine > RIGID and fine * (STEP_DIVISORS[-1] / STEP_DIVISORS[-2]) > ORDER_MARGIN * coarse
 
 
-def reactions_have_sign_and_size(subject: Subject, world: World) -> None:
-    """Reactions are forces on the second body: up where it hangs, and of the size of its weight and m a."""
-    _promise(subject, world)  # a method without one holds another motion, with other forces
+def reactions_have_sign_and_size(subject: CheckedEngine, world: World) -> None:
+    """Reactions are forces on the second body, with the sign and size of the exact ones."""
+    _declared_order(subject, world)  # a method that does not converge has another motion with other forces
     run = finite(subject.run(world.mechanism))
     exact = world.exact(run.t).reaction
     turning = world.mechanism.is_angular
     known = ~np.isnan(run.reaction).all(axis=0)
     if not known.any():
-        raise NotAsked("the engine tells no reactions here")
+        raise NotApplicable("the engine provides no reactions here")
     for row in np.flatnonzero(known):
         largest = np.max(np.abs(exact[:, turning == turning[row]]))
-        # The median over the samples: a new contact may need some steps until it carries the weight.
-        off = np.nanmedian((run.reaction[:, row] - exact[:, row]) / largest)
+        # The median, since a new contact may need some steps until it carries the weight.
+        error = np.nanmedian((run.reaction[:, row] - exact[:, row]) / largest)
         require(
-            abs(off) <= SIZE,
+            abs(error) <= REACTION_ERROR,
             f"{np.nanmedian(run.reaction[:, row]):.4g} {'N m' if turning[row] else 'N'} in row "
             f"{world.mechanism.row_names[row]!r}",
             f"about {np.median(exact[:, row]):.4g}",
-            "it is the force on the first body, or an impulse is divided by another step",
+            "it is the force on the first body, or an impulse is divided by the wrong step",
         )
 
 
-# Of a plate on a pin: each element alone, as strong as to change the rate much within the samples of a check.
+# Each force element acts alone on a plate on a pin, and changes its angular velocity much during the samples.
 _PLATE = Body("plate", 2.0, 0.1, (0.0, 0.0, 0.3), (0.0, 0.0, 2.0))
 _HINGE = Pin("hinge", None, "plate", (0.0, 0.0), (0.0, 0.0))
 _FAR = ((1.0, -0.5), (0.2, 0.1))
-FORCES: tuple[ForceElement, ...] = (
+FORCE_EXAMPLES: tuple[ForceElement, ...] = (
     Torque("torque", None, "plate", 3.0),
     Force("force", "plate", (0.2, 0.1), (10.0, -5.0)),
     Spring("spring", None, "plate", *_FAR, 20.0, 0.2),
@@ -300,13 +286,13 @@ FORCES: tuple[ForceElement, ...] = (
     TorsionSpring("torsion spring", None, "plate", 5.0, -1.0),
     TorsionDamper("torsion damper", None, "plate", 0.5),
 )
-FELT = 0.2  # of what a force does to the rate: far above what a method of first order misses at these steps
+FORCE_MARGIN = 0.2  # relative error of the change of the angular velocity; a first-order method has far less
 
 
-def feels_forces_or_refuses_them(subject: Subject) -> None:
-    """Each kind of force changes the motion as it should, or is refused by Unsupported with one sentence."""
+def feels_forces_or_refuses_them(subject: CheckedEngine) -> None:
+    """Each kind of force element changes the motion by its law, or is refused by Unsupported with one sentence."""
     refused: list[str] = []
-    for force in FORCES:
+    for force in FORCE_EXAMPLES:
         mechanism = Mechanism((_PLATE,), (_HINGE,), (0.0, 0.0), (force,))
         try:
             run = finite(subject.run(mechanism))
@@ -314,19 +300,20 @@ def feels_forces_or_refuses_them(subject: Subject) -> None:
             require_a_sentence(str(reason), f"a {type(force).__name__}")
             refused.append(str(reason))
             continue
-        found, expected = float(run.twist[-1, 0, 2]) - 2.0, _gained(mechanism, STEP * SAMPLES)
+        found = float(run.twist[-1, 0, 2]) - _PLATE.twist[2]
+        expected = _change_of_rate(mechanism, CHECK_STEP * CHECK_SAMPLES)
         require(
-            abs(found - expected) < FELT * abs(expected),
+            abs(found - expected) < FORCE_MARGIN * abs(expected),
             f"a rate that changes by {found:.3g} rad/s under a {type(force).__name__}",
             f"{expected:.3g} rad/s, or Unsupported",
-            "the mechanism's forces are not looked at when it is built, or one has another sign or unit",
+            "the adapter ignores the mechanism's forces, or one has the wrong sign or unit",
         )
-    if len(refused) == len(FORCES):
+    if len(refused) == len(FORCE_EXAMPLES):
         raise Unsupported(refused[0])
 
 
-def _gained(mechanism: Mechanism, until: float) -> float:
-    """The change of the plate's rate by then [rad/s], from its one equation of motion."""
+def _change_of_rate(mechanism: Mechanism, until: float) -> float:
+    """The change of the plate's angular velocity up to the time `until` [rad/s], from its equation of motion."""
     pose, twist = np.zeros((1, 3)), np.zeros((1, 3))
 
     def derivative(_: float, state: Array) -> list[float]:
@@ -337,22 +324,23 @@ def _gained(mechanism: Mechanism, until: float) -> float:
     return float(states[1, -1] - _PLATE.twist[2])
 
 
-# Where the joints leave something free, and where gravity changes that.
-FREE = tuple(world for world in MOVING if world.name != "driven crank")
-PULLED = tuple(world for world in FREE if world.name != "sleigh")
-CHECKS = (
-    Check(samples_at_the_right_times, MOVING),
-    Check(tells_the_cpu_time_of_stepping, MOVING),
-    Check(first_pose_is_the_start, (*WORLDS, SPINNING)),
-    Check(first_twist_is_the_start, (*WORLDS, SPINNING)),
-    Check(gives_the_same_bits, MOVING),
-    Check(leaves_the_mechanism_alone, MOVING),
-    Check(sampling_changes_nothing, MOVING),
-    Check(does_not_wrap_angles, (SPINNING,)),
-    Check(reactions_have_sign_and_size, WORLDS),
-    Check(poses_stand_at_their_instants, FREE),
-    Check(twists_stand_at_their_instants, PULLED),
-    Check(poses_have_their_order, MOVING),
-    Check(twists_have_their_order, MOVING),
-    Check(feels_forces_or_refuses_them),
+# Mechanisms with a degree of freedom, and those of them that gravity accelerates.
+WITH_FREEDOM = tuple(world for world in MOVING if world.name != "driven crank")
+UNDER_GRAVITY = tuple(world for world in WITH_FREEDOM if world.name != "sleigh")
+CHECKS = tuple(
+    ConformanceCheck(function, worlds)
+    for worlds, functions in (
+        (MOVING, (samples_at_the_right_times, tells_the_cpu_time_of_stepping, gives_the_same_bits)),
+        (
+            MOVING,
+            (leaves_the_mechanism_alone, sampling_changes_nothing, poses_have_their_order, twists_have_their_order),
+        ),
+        ((*WORLDS, SPINNING), (first_pose_is_the_start, first_twist_is_the_start)),
+        ((SPINNING,), (does_not_wrap_angles,)),
+        (WORLDS, (reactions_have_sign_and_size,)),
+        (WITH_FREEDOM, (poses_stand_at_their_instants,)),
+        (UNDER_GRAVITY, (twists_stand_at_their_instants,)),
+        ((), (feels_forces_or_refuses_them,)),
+    )
+    for function in functions
 )

@@ -1,7 +1,7 @@
-"""Checks that a motion does not depend on how it is described.
+"""Checks that a motion does not depend on the description of the mechanism.
 
-The same mechanism is turned, shifted, mirrored, relabelled and reordered, and its joints are named from the other side.
-What an engine gives must be the same, described back.
+A mechanism is rotated, shifted, mirrored, relabelled or reordered, or the bodies of its joints are swapped. The results
+must be the same after the change is undone.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Unsupported
-from engines.conformance.check import Check, Fails, Subject, finite, require
+from engines.conformance.check import CheckedEngine, ConformanceCheck, Fails, finite, require
 from engines.conformance.worlds import MOVING, World
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
@@ -51,7 +51,7 @@ class Isometry:
         return float(new[0]), float(new[1])
 
     def _inside(self, point: Vector) -> Vector:
-        """A point in a body's own frame, which a mirror mirrors as well, and nothing else moves."""
+        """A point in a body's frame, which only the mirror image changes."""
         return (-point[0], point[1]) if self.mirrored else point
 
     def _angle(self, angle: float) -> float:
@@ -79,12 +79,12 @@ class Isometry:
             row = 0
             for joint in mechanism.joints:
                 own = reaction[:, row : row + joint.size]
-                if isinstance(joint, Pin | Weld):  # a force in the world's directions, and a weld's torque
+                if isinstance(joint, Pin | Weld):  # a force along the world's axes, and the torque of a weld
                     own[:, :2] = own[:, :2] @ self._matrix
                     own[:, 2:] *= sense
                 elif isinstance(joint, Drive | Gear):
                     own *= sense
-                elif isinstance(joint, Roll):  # a boundary keeps its material on the left, so its direction turns round
+                elif isinstance(joint, Roll):  # its boundaries are traversed the other way
                     own[:, 0] *= sense
                 row += joint.size
             return pose, twist, reaction
@@ -92,7 +92,7 @@ class Isometry:
         return changed, back
 
     def _joint(self, joint: Joint) -> Joint:
-        """The joint in the new world; what belongs to the first body is the world's where that is the ground."""
+        """The transformed joint. If the first body is the ground, its points and lines are transformed as well."""
         ground = joint.first is None
         sense = -1.0 if self.mirrored else 1.0
         own_angle = self._angle if ground else (lambda angle: sense * angle)
@@ -117,7 +117,6 @@ class Isometry:
                 raise TypeError(f"no isometry of a {type(joint).__name__} is defined here")
 
     def _force(self, force: ForceElement) -> ForceElement:
-        """The force element in the new world."""
         match force:
             case Spring() | Damper():
                 return replace(force, **self._points(force))
@@ -134,12 +133,11 @@ class Isometry:
                 raise TypeError(f"no isometry of a {type(force).__name__} is defined here")
 
     def _between(self, pair: Weld | TorsionSpring, angle: float) -> float:
-        """An angle of the second body against the first, where the ground's stays zero."""
+        """A transformed angle of the second body relative to the first; the angle of the ground stays zero."""
         turned = float(pair.second is not None) - float(pair.first is not None)
         return (-angle if self.mirrored else angle) + self.turn * turned
 
     def _points(self, joint: Pin | Slot | Rod | Weld | Spring | Damper) -> dict[str, Any]:
-        """Both points where they are now."""
         points = {"first_point": (joint.first, joint.first_point), "second_point": (joint.second, joint.second_point)}
         return {
             name: self._place(*point) if body is None else self._inside(point) for name, (body, point) in points.items()
@@ -157,7 +155,7 @@ class Isometry:
 
 
 def _mirrored(curve: Curve, arc: float) -> tuple[Curve, float]:
-    """The curve after x -> -x, again with its material on the left, and the arc of the same place."""
+    """The curve after x -> -x, with its material on the left, and the arc length of the same point."""
     match curve:
         case Circle() | Ring():
             x, y = curve.centre
@@ -172,7 +170,7 @@ def _mirrored(curve: Curve, arc: float) -> tuple[Curve, float]:
 
 
 def relabelled(mechanism: Mechanism) -> Described:
-    """Names with spaces and letters of another alphabet, against the order in which the bodies and joints stand."""
+    """Names with spaces and Cyrillic letters, whose alphabetical order is not that of the bodies and joints."""
     names: dict[str | None, str] = {body.name: _named("тело", i) for i, body in enumerate(mechanism.bodies)}
     bodies = tuple(replace(body, name=names[body.name]) for body in mechanism.bodies)
     joints = tuple(
@@ -189,27 +187,27 @@ def relabelled(mechanism: Mechanism) -> Described:
     return changed, lambda run: (run.pose, run.twist, run.reaction)
 
 
-def _named(what: str, index: int) -> str:
-    return f"{what} {1000 - index} / {index}"
+def _named(kind: str, index: int) -> str:
+    return f"{kind} {1000 - index} / {index}"
 
 
 def bodies_reordered(mechanism: Mechanism) -> Described:
-    """The last body comes first."""
+    """Bodies in reverse order."""
     changed = replace(mechanism, bodies=mechanism.bodies[::-1])
     return changed, lambda run: (run.pose[:, ::-1], run.twist[:, ::-1], run.reaction)
 
 
 def joints_reordered(mechanism: Mechanism) -> Described:
-    """The last joint comes first; reactions stand in the order of the joints."""
+    """Joints in reverse order, and with them the reactions."""
     changed = replace(mechanism, joints=mechanism.joints[::-1])
     place = [changed.row_names.index(name) for name in mechanism.row_names]
     return changed, lambda run: (run.pose, run.twist, run.reaction[:, place])
 
 
 def joints_swapped(mechanism: Mechanism) -> Described:
-    """Pins and drives with their bodies swapped: what is told is then the force on the other body.
+    """Pins and drives with their bodies swapped, so that reactions have the other sign.
 
-    A slot's line, a skate's ground and a roll's outer side belong to the first body, so these have no other side.
+    The bodies of a slot, a skate or a roll have different roles and cannot be swapped.
     """
 
     def swapped(joint: Any) -> Joint:
@@ -226,81 +224,89 @@ def joints_swapped(mechanism: Mechanism) -> Described:
     return changed, lambda run: (run.pose, run.twist, run.reaction * signs)
 
 
-# Below these, relative to the largest value, only rounding differs: a solver that ends by a tolerance lets some more
-# through than the 1e-13 of a direct one, and reactions are differences of velocities over a step.
-ROUNDING = {"pose": 1e-10, "twist": 1e-9, "reaction": 1e-6}
-# Where an engine decides at a threshold (whether two shapes that just touch do touch) or treats the rows of a joint one
-# after the other, two descriptions may come out with errors of their own. Both are of the size of its error at this
-# step, so they differ by at most twice that; and half as much again, since errors are known at samples only.
-OWN = 3.0
-# The order in which an iterative solver goes over the joints changes what its sweeps leave, so the error itself: the
-# rate of a Gauss-Seidel sweep is that of the matrix, whatever the order, but not the first sweep's share. A decade.
-SWEPT = 10.0
+# Differences by rounding, relative to the largest value. A direct solver has 1e-13, an iterative solver more. Reactions
+# may be changes of velocities over a step.
+DESCRIPTION_ROUNDING = {"pose": 1e-10, "twist": 1e-9, "reaction": 1e-6}
+# Largest difference in multiples of the error at this step. Two descriptions may have different errors, for example if
+# rounding decides whether two shapes touch, or if rows are solved one after the other. The difference is then at most
+# twice the error. The margin is for errors between samples.
+ERROR_FACTOR = 3.0
+# The same for joints in another order. The convergence rate of Gauss-Seidel iterations depends on the matrix alone, but
+# the error after the first iteration depends on the order of the joints.
+REORDERED_FACTOR = 10.0
 
 
-def same_if_turned(subject: Subject, world: World) -> None:
-    """The whole world turned by an odd angle moves in the same way."""
-    _same(subject, world, Isometry(turn=0.7), OWN, "a direction of the world is used as one of a body, or of gravity")
+def same_if_turned(subject: CheckedEngine, world: World) -> None:
+    """A rotated mechanism has the same motion."""
+    means = "a direction of the world is used as one of a body, or of gravity"
+    _same(subject, world, Isometry(turn=0.7), means)
 
 
-def same_if_shifted(subject: Subject, world: World) -> None:
-    """The whole world shifted moves in the same way."""
-    _same(subject, world, Isometry(shift=(3.7, -2.9)), OWN, "a point of the ground is taken from the origin")
+def same_if_shifted(subject: CheckedEngine, world: World) -> None:
+    """A shifted mechanism has the same motion."""
+    _same(subject, world, Isometry(shift=(3.7, -2.9)), "a point of the ground is taken from the origin")
 
 
-def same_if_mirrored(subject: Subject, world: World) -> None:
-    """The whole world seen in a mirror moves in the mirrored way."""
-    means = "a sign of an angle or of a direction across is taken for granted"
-    _same(subject, world, Isometry(mirrored=True), OWN, means)
+def same_if_mirrored(subject: CheckedEngine, world: World) -> None:
+    """A mirrored mechanism has the mirrored motion."""
+    means = "the sign of an angle or of a transverse direction is assumed"
+    _same(subject, world, Isometry(mirrored=True), means)
 
 
-def same_if_relabelled(subject: Subject, world: World) -> None:
-    """Other names of bodies and joints change nothing."""
-    _same(subject, world, relabelled, OWN, "bodies are sorted by name, or a name means something")
+def same_if_relabelled(subject: CheckedEngine, world: World) -> None:
+    """The motion does not depend on the names of bodies and joints."""
+    _same(subject, world, relabelled, "bodies are sorted by name, or a name has a meaning")
 
 
-def same_if_bodies_are_reordered(subject: Subject, world: World) -> None:
-    """Bodies in another order move in the same way, and are told in that order."""
-    _same(subject, world, bodies_reordered, OWN, "states stand in the engine's order instead of the mechanism's")
+def same_if_bodies_are_reordered(subject: CheckedEngine, world: World) -> None:
+    """With bodies in another order the motion is the same, with states in that order."""
+    _same(subject, world, bodies_reordered, "states are in the order of the engine instead of the mechanism")
 
 
-def same_if_joints_are_reordered(subject: Subject, world: World) -> None:
-    """Joints in another order move in the same way, with an error of the same size, and reactions in that order."""
-    _same(subject, world, joints_reordered, SWEPT, "reactions stand in the engine's order, or only a tree is built")
+def same_if_joints_are_reordered(subject: CheckedEngine, world: World) -> None:
+    """With joints in another order the motion is the same up to the error, with reactions in that order."""
+    means = "reactions are in the order of the engine, or only a tree is built"
+    _same(subject, world, joints_reordered, means, REORDERED_FACTOR)
 
 
-def same_if_bodies_of_joints_are_swapped(subject: Subject, world: World) -> None:
-    """Pins and drives named from their other body move in the same way, with reactions of the other sign."""
-    _same(subject, world, joints_swapped, OWN, "the ground, or the parent, is expected to be the first body of a joint")
+def same_if_bodies_of_joints_are_swapped(subject: CheckedEngine, world: World) -> None:
+    """With the bodies of pins and drives swapped the motion is the same, with reactions of the other sign."""
+    means = "the ground, or the parent, is expected to be the first body of a joint"
+    _same(subject, world, joints_swapped, means)
 
 
-def _same(subject: Subject, world: World, change: Change, factor: float, means: str) -> None:
+def _same(subject: CheckedEngine, world: World, change: Change, means: str, factor: float = ERROR_FACTOR) -> None:
     run = finite(subject.run(world.mechanism))
     exact = world.exact(run.t)
     changed, back = change(world.mechanism)
     try:
-        other = back(finite(subject.fresh(changed)))
+        restored = back(finite(subject.run(changed)))
     except Unsupported as reason:
         raise Fails(f"a refusal: {reason}", "the same motion, since it builds the other description", means) from reason
-    for name, now in zip(("pose", "twist", "reaction"), other, strict=True):
-        was = getattr(run, name)
-        if np.array_equal(np.isnan(was), np.isnan(now)) and np.isnan(was).all():
+    for name, values in zip(("pose", "twist", "reaction"), restored, strict=True):
+        expected = getattr(run, name)
+        same_nan = np.array_equal(np.isnan(expected), np.isnan(values))
+        if same_nan and np.isnan(expected).all():
             continue
-        own = factor * float(np.nanmax(np.abs(was - getattr(exact, name))))
-        size = max(1.0, float(np.nanmax(np.abs(was))))
-        bound = own + ROUNDING[name] * size
-        differ = float(np.max(np.abs(np.nan_to_num(now) - np.nan_to_num(was))))
+        error = factor * float(np.nanmax(np.abs(expected - getattr(exact, name))))
+        size = max(1.0, float(np.nanmax(np.abs(expected))))
+        bound = error + DESCRIPTION_ROUNDING[name] * size
+        difference = float(np.max(np.abs(np.nan_to_num(values) - np.nan_to_num(expected))))
         require(
-            differ <= bound and np.array_equal(np.isnan(was), np.isnan(now)),
-            f"a {name} that differs by {differ:.3g}",
+            difference <= bound and same_nan,
+            f"a {name} that differs by {difference:.3g}",
             f"at most {bound:.2g}: {factor:g} times its error at this step, and rounding",
             means,
         )
 
 
-CHECKS = (
-    *(Check(function, MOVING) for function in (same_if_turned, same_if_shifted, same_if_mirrored, same_if_relabelled)),
-    Check(same_if_bodies_are_reordered, tuple(world for world in MOVING if len(world.mechanism.bodies) > 1)),
-    Check(same_if_joints_are_reordered, tuple(world for world in MOVING if len(world.mechanism.joints) > 1)),
-    Check(same_if_bodies_of_joints_are_swapped, tuple(world for world in MOVING if {"pin", "drive"} & {*world.kinds})),
+CHECKS = tuple(
+    ConformanceCheck(function, tuple(filter(has, MOVING)))
+    for has, functions in (
+        (lambda world: True, (same_if_turned, same_if_shifted, same_if_mirrored, same_if_relabelled)),
+        (lambda world: len(world.mechanism.bodies) > 1, (same_if_bodies_are_reordered,)),
+        (lambda world: len(world.mechanism.joints) > 1, (same_if_joints_are_reordered,)),
+        (lambda world: {"pin", "drive"} & {*world.kinds}, (same_if_bodies_of_joints_are_swapped,)),
+    )
+    for function in functions
 )

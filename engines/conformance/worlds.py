@@ -1,7 +1,7 @@
-"""Small mechanisms whose motions are known in closed form: the exact motions that runs are compared with.
+"""Small mechanisms whose exact motions are known in closed form.
 
-Each has one or a few bodies, and the joints that its name says. Nothing here comes from a scene or from an engine, and
-the formulas stand beside the numbers. Units: kg, m, s, rad, N, N m. Vectors of the plane are complex numbers x + i y.
+The formulas are independent of scenes and engines. Units are kg, m, s, rad, N and N m. Vectors of the plane are complex
+numbers x + i y.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from scipy.special import ellipj, ellipkinc
 
-from engines.conformance.check import Array, Motion, World
+from engines.conformance.check import Array, World, WorldMotion
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Line, Ring
@@ -39,38 +39,37 @@ def world(
     bodies: tuple[Body, ...] = (body(),),
     gravity: float = -G,
 ) -> World:
-    """A world whose bodies start where `states` says.
+    """A world whose bodies start in the states at t = 0.
 
-    `states(t)`: for each body its place and the first two derivatives (complex), and its angle and the first two
-    derivatives, numbers or arrays (times,). `reaction(t)` (rows, times) is a formula of its own; without one, reactions
-    are what the accelerations need.
+    `states(t)`: for each body its position with two derivatives (complex), and its angle with two derivatives, as
+    numbers or arrays (times,). `reaction(t)`: reactions (rows, times); by default they follow from the accelerations.
     """
 
-    def motion(t: Array) -> Motion:
+    def motion(t: Array) -> WorldMotion:
         numbers: list[list[Any]] = [[np.broadcast_to(value, t.shape) for value in state] for state in states(t)]
         pose, twist, change = (
             np.moveaxis(np.array([(s[k].real, s[k].imag, s[3 + k].real) for s in numbers]), -1, 0) for k in range(3)
         )
         if reaction is None:
-            return Motion(pose, twist, change, mechanism.reaction(pose, change))
-        return Motion(pose, twist, change, np.array([np.broadcast_to(row, t.shape) for row in reaction(t)]).T)
+            return WorldMotion(pose, twist, change, mechanism.reaction(pose, change))
+        return WorldMotion(pose, twist, change, np.array([np.broadcast_to(row, t.shape) for row in reaction(t)]).T)
 
     starts = [[complex(np.ravel(value)[0]) for value in state] for state in states(np.zeros(1))]
     placed = (
-        replace(each, pose=(z.real, z.imag, angle.real), twist=(v.real, v.imag, rate.real))
-        for each, (z, v, _, angle, rate, _) in zip(bodies, starts, strict=True)
+        replace(body, pose=(z.real, z.imag, angle.real), twist=(v.real, v.imag, rate.real))
+        for body, (z, v, _, angle, rate, _) in zip(bodies, starts, strict=True)
     )
     mechanism = Mechanism(tuple(placed), joints, (0.0, gravity))
     return World(name, mechanism, motion)
 
 
 def resting(name: str, joints: tuple[Joint, ...], reaction: list[float], place: complex, angle: float) -> World:
-    """One body that stays where it is."""
+    """A world with one body at rest."""
     return world(name, joints, lambda t: [(place, 0.0, 0.0, angle, 0.0, 0.0)], lambda t: reaction)
 
 
 def swing(t: Array, angle: float, rate: float, frequency: float) -> tuple[Array, Array, Array]:
-    """angle'' = -frequency^2 sin(angle) by Jacobi's functions: angle, rate, acceleration; to and fro, never over."""
+    """Angle, rate and acceleration of a swing with angle'' = -frequency^2 sin(angle), by Jacobi's functions."""
     modulus = math.hypot(rate / (2 * frequency), math.sin(angle / 2))
     phase = math.asin(math.sin(angle / 2) / modulus)
     start = ellipkinc(phase if rate >= 0 else math.pi - phase, modulus**2)
@@ -80,7 +79,7 @@ def swing(t: Array, angle: float, rate: float, frequency: float) -> tuple[Array,
 
 
 def round_about(radius: float, angle: Any, rate: Any, change: Any) -> tuple[Any, Any, Any]:
-    """Place, velocity, acceleration of a point on a circle about the origin."""
+    """Position, velocity and acceleration of a point on a circle about the origin."""
     point = radius * np.exp(1j * angle)
     return point, 1j * rate * point, (1j * change - rate**2) * point
 
@@ -98,9 +97,9 @@ def _swinging_bar() -> World:
 
 
 def _swinging_parallelogram() -> World:
-    """Two equal cranks and a coupler that stays parallel to the ground: one freedom, and the pins close a loop."""
-    crank, base, arm = 0.5, 0.8, 0.2  # arm: of a crank's centre of mass from the ground
-    heavy, light = 1.5, 1.0  # kg, the coupler and a crank
+    """Two equal cranks and a coupler that stays parallel to the ground: a loop with one degree of freedom."""
+    crank, base, arm = 0.5, 0.8, 0.2  # arm: distance of a crank's centre of mass from its pivot
+    heavy, light = 1.5, 1.0  # masses of the coupler and a crank
     inertia = 2 * (0.05 + light * arm**2) + heavy * crank**2
     frequency = math.sqrt((2 * light * arm + heavy * crank) * G / inertia)
 
@@ -124,7 +123,7 @@ def _swinging_parallelogram() -> World:
 
 
 def _driven_crank() -> World:
-    """A crank at a constant rate: the drive carries the weight's moment, the pin the weight and m a."""
+    """A crank at a constant rate. The torque of the drive balances the weight's moment."""
     arm, rate = 0.5, 3.0
 
     def states(t: Array) -> Any:
@@ -139,13 +138,13 @@ def _driven_crank() -> World:
 
 
 def _sliding_block() -> World:
-    """A block whose centre of mass slides down an incline, turning at a rate that nothing changes."""
+    """A block whose centre of mass slides down an incline while it turns at a constant rate."""
     slope, speed, spin = -0.5, 0.8, 0.7
     pull, line = G * math.sin(-slope), np.exp(1j * slope)
 
     def states(t: Array) -> Any:
-        way = speed * t + pull * t**2 / 2
-        return [(way * line, (speed + pull * t) * line, pull * line, 0.3 + spin * t, spin, 0.0)]
+        distance = speed * t + pull * t**2 / 2
+        return [(distance * line, (speed + pull * t) * line, pull * line, 0.3 + spin * t, spin, 0.0)]
 
     slot = Slot("guide", None, "body", ORIGIN, slope, ORIGIN)
     return world("sliding block", (slot,), states, lambda t: [MASS * G * math.cos(slope)])
@@ -154,34 +153,33 @@ def _sliding_block() -> World:
 def _bead() -> World:
     """A bead in a slot of a rod that turns at a constant rate: r'' = rate^2 r - g sin(turned).
 
-    r = near cosh(rate t) + far sinh(rate t) + g sin(turned) / (2 rate^2), and across the rod the bead feels
-    2 m r' rate + m g cos(turned).
+    The solution is r = near cosh(rate t) + far sinh(rate t) + g sin(turned) / (2 rate^2). The force of the rod on the
+    bead is 2 m r' rate + m g cos(turned).
     """
     rate, begin, near, far = 3.0, 0.5, 0.2, 0.1
     sag = G / (2 * rate**2)
 
     def along(t: Array) -> tuple[Array, Array, Array]:
-        grown = near * np.cosh(rate * t) + far * np.sinh(rate * t)
-        growing = near * np.sinh(rate * t) + far * np.cosh(rate * t)
+        homogeneous = near * np.cosh(rate * t) + far * np.sinh(rate * t)
+        derivative = near * np.sinh(rate * t) + far * np.cosh(rate * t)
         sine, cosine = np.sin(begin + rate * t), np.cos(begin + rate * t)
-        return grown + sag * sine, rate * (growing + sag * cosine), rate**2 * (grown - sag * sine)
+        return homogeneous + sag * sine, rate * (derivative + sag * cosine), rate**2 * (homogeneous - sag * sine)
 
     def states(t: Array) -> Any:
-        way, speed, change = along(t)
+        r, speed, change = along(t)
         turned = begin + rate * t
         line = np.exp(1j * turned)
-        acceleration = (change - rate**2 * way + 2j * speed * rate) * line
+        acceleration = (change - rate**2 * r + 2j * speed * rate) * line
         return [
             (0.0, 0.0, 0.0, turned, rate, 0.0),
-            (way * line, (speed + 1j * way * rate) * line, acceleration, 0.0, 0.0, 0.0),
+            (r * line, (speed + 1j * r * rate) * line, acceleration, 0.0, 0.0, 0.0),
         ]
 
     def reaction(t: Array) -> Any:
-        way, speed, _ = along(t)
+        r, speed, _ = along(t)
         cosine, sine = np.cos(begin + rate * t), np.sin(begin + rate * t)
-        pressed = MASS * (2 * speed * rate + G * cosine)
-        # The hinge and the motor hold the rod against its weight and against the force of the bead.
-        return [-pressed * sine, pressed * cosine + MASS * G, pressed * way, pressed]
+        contact = MASS * (2 * speed * rate + G * cosine)
+        return [-contact * sine, contact * cosine + MASS * G, contact * r, contact]
 
     joints = (
         Pin("hinge", None, "rod", ORIGIN, ORIGIN),
@@ -192,13 +190,13 @@ def _bead() -> World:
 
 
 def _trammel() -> World:
-    """A bar whose ends slide on two lines at a right angle: its middle swings on a circle, its angle the other way."""
+    """A bar whose ends slide on two perpendicular lines. Its centre swings on a circle; the bar turns the other way."""
     half = 0.5
     frequency = math.sqrt(MASS * G * half / (MASS * half**2 + INERTIA))
 
     def states(t: Array) -> Any:
         angle, rate, change = swing(t, 0.7, 1.5, frequency)
-        # The end (half, 0) of the bar is on the x axis, the other on the y axis: the bar's angle is minus the middle's.
+        # The end (half, 0) of the bar is on the x axis: the angle of the bar is minus the polar angle of its centre.
         return [(*round_about(half, angle - math.pi / 2, rate, change), math.pi / 2 - angle, -rate, -change)]
 
     joints = (
@@ -209,7 +207,7 @@ def _trammel() -> World:
 
 
 def _skate() -> World:
-    """A skate under its centre of mass on a slope: it turns steadily, and only the pull along the blade changes v.
+    """A skate under its centre of mass on a slope, with a constant turning rate w.
 
     heading' = w and v' = -g sin(heading), so v = c + (g / w) cos(heading).
     """
@@ -219,11 +217,11 @@ def _skate() -> World:
 
     def states(t: Array) -> Any:
         heading = begin + spin * t
-        sine, now = np.sin(heading), steady + pull * np.cos(heading)
+        sine, v = np.sin(heading), steady + pull * np.cos(heading)
         x = steady * (sine - math.sin(begin)) + pull * (spin * t + (np.sin(2 * heading) - math.sin(2 * begin)) / 2) / 2
         y = -steady * (np.cos(heading) - math.cos(begin)) + pull * (sine**2 - math.sin(begin) ** 2) / 2
         ahead = np.exp(1j * heading)
-        return [((x + 1j * y) / spin, now * ahead, (-G * sine + 1j * now * spin) * ahead, heading - blade, spin, 0.0)]
+        return [((x + 1j * y) / spin, v * ahead, (-G * sine + 1j * v * spin) * ahead, heading - blade, spin, 0.0)]
 
     def reaction(t: Array) -> Any:
         cosine = np.cos(begin + spin * t)
@@ -233,11 +231,11 @@ def _skate() -> World:
 
 
 def _sleigh() -> World:
-    """Chaplygin's sleigh, its blade behind the centre of mass, on level ice: in the end it runs straight ahead.
+    """Chaplygin's sleigh on a horizontal plane, with its blade behind the centre of mass.
 
-    With v along the blade and w the rate: v' = arm w^2, (I + m arm^2) w' = -m arm v w. So v = V tanh(s) and
-    w = W / cosh(s), where V^2 m = W^2 (I + m arm^2) and s = s0 + p t with p = m arm V / (I + m arm^2). The heading has
-    turned by W / p (gd(s) - gd(s0)), gd the Gudermannian function.
+    The velocity v along the blade and the rate w satisfy v' = arm w^2 and (I + m arm^2) w' = -m arm v w. The solution
+    is v = V tanh(s) and w = W / cosh(s), with V^2 m = W^2 (I + m arm^2) and s = s0 + p t, p = m arm V / (I + m arm^2).
+    The heading changes by W / p (gd(s) - gd(s0)), with the Gudermannian function gd.
     """
     arm, largest, begin, turned = 0.4, 2.0, 0.5, 0.3
     whole = INERTIA + MASS * arm**2
@@ -255,13 +253,13 @@ def _sleigh() -> World:
         return fastest * np.tanh(begin + pace * t)
 
     def states(t: Array) -> Any:
-        angle, now, rate = heading(t), speed(t), largest / np.cosh(begin + pace * t)
-        within = t[:, None] * (nodes + 1) / 2  # the path's integral by Gauss's rule, to rounding below a second
-        way = t / 2 * ((speed(within) * np.exp(1j * heading(within))) @ weights)
-        faster, slower = arm * rate**2, -MASS * arm * now * rate / whole
+        angle, v, rate = heading(t), speed(t), largest / np.cosh(begin + pace * t)
+        quadrature = t[:, None] * (nodes + 1) / 2  # Gauss's rule has only rounding errors for t < 1 s
+        blade = t / 2 * ((speed(quadrature) * np.exp(1j * heading(quadrature))) @ weights)
+        dv, change = arm * rate**2, -MASS * arm * v * rate / whole
         ahead = np.exp(1j * angle)
-        acceleration = (faster - arm * rate**2 + 1j * (arm * slower + now * rate)) * ahead
-        return [(way + arm * ahead, (now + 1j * arm * rate) * ahead, acceleration, angle, rate, slower)]
+        acceleration = (dv - arm * rate**2 + 1j * (arm * change + v * rate)) * ahead
+        return [(blade + arm * ahead, (v + 1j * arm * rate) * ahead, acceleration, angle, rate, change)]
 
     def reaction(t: Array) -> Any:
         return [INERTIA * MASS * speed(t) * largest / np.cosh(begin + pace * t) / whole]
@@ -270,30 +268,30 @@ def _sleigh() -> World:
 
 
 def rolling(ground: Any, radius: float, angle: float, ground_arc: float) -> Rolling:
-    """A disc of `radius` about its centre of mass, at `angle`, on a ground at `ground_arc`."""
-    below = float(ground.angle(ground_arc)) + math.pi - angle  # the tangent's angle on the disc at the contact
+    """A disc of `radius` about its centre of mass, at `angle` [rad], that touches the ground at `ground_arc` [m]."""
+    below = float(ground.angle(ground_arc)) + math.pi - angle  # angle of the disc's tangent at the contact
     return Rolling(Circle(radius), ground, angle, ground_arc, radius * (below - math.pi / 2))
 
 
 def _disc() -> World:
-    """A disc rolls down a slope: r angle'' = -g sin(slope) / (1 + I / (m r^2)), and friction is -I angle'' / r."""
+    """A disc rolls down a slope: r angle'' = -g sin(slope) / (1 + I / (m r^2)), with the friction -I angle'' / r."""
     radius, slope, spin, begin = 0.3, 0.4, -2.0, 0.2
     pull = G * math.sin(slope) / (1 + INERTIA / (MASS * radius**2))
     downhill = np.exp(-1j * slope)
 
     def states(t: Array) -> Any:
-        way, speed = -radius * spin * t + pull * t**2 / 2, -radius * spin + pull * t
-        turning = begin - way / radius, -speed / radius, -pull / radius
-        return [((way + 1j * radius) * downhill, speed * downhill, pull * downhill, *turning)]
+        distance, speed = -radius * spin * t + pull * t**2 / 2, -radius * spin + pull * t
+        turning = begin - distance / radius, -speed / radius, -pull / radius
+        return [((distance + 1j * radius) * downhill, speed * downhill, pull * downhill, *turning)]
 
-    # The ground's material is on its left, so it is traversed uphill: there friction, which slows the disc, points.
+    # The ground's arc length increases uphill, since its material is on the left. Friction points uphill too.
     joint = Roll("rim", None, "body", rolling(Line(math.pi - slope), radius, begin, 0.0))
     forces = [INERTIA * pull / radius**2, MASS * G * math.cos(slope)]
     return world("disc on a slope", (joint,), states, lambda t: forces)
 
 
 def _disc_in_a_hole() -> World:
-    """A disc rolls to and fro at the bottom of a round hole: a pendulum of frequency^2 = g / (q (1 + I / (m r^2)))."""
+    """A disc swings in a round hole like a pendulum, with frequency^2 = g / (between (1 + I / (m r^2)))."""
     hole, radius, begin = 1.2, 0.3, 0.5
     between = hole - radius
     frequency = math.sqrt(G / (between * (1 + INERTIA / (MASS * radius**2))))
@@ -304,7 +302,7 @@ def _disc_in_a_hole() -> World:
         turning = ratio * (angle - begin), ratio * rate, ratio * change
         return [(*round_about(between, angle - math.pi / 2, rate, change), *turning)]
 
-    # The ring's arc 0 is at +x, and it is traversed clockwise.
+    # The arc length of the ring begins at +x and increases clockwise.
     joint = Roll("rim", None, "body", rolling(Ring(hole), radius, 0.0, hole * (math.pi / 2 - begin)))
     return world("disc in a hole", (joint,), states)
 
@@ -316,7 +314,7 @@ SPINNING = world(
     lambda t: [(0.0, 0.0, 0.0, 20.0 - 60.0 * t, -60.0, 0.0)],
     gravity=0.0,
 )
-# One body each, which nothing moves: reactions show its weight.
+# Bodies at rest, whose reactions balance the weight.
 RESTING: tuple[World, ...] = (
     resting("hanging bar", (Pin("hinge", None, "body", (0.3, 1.0), (0.0, 0.5)),), [0.0, WEIGHT], 0.3 + 0.5j, 0.0),
     resting(

@@ -17,7 +17,7 @@ from typing import Annotated
 import typer
 
 from engines import Engine
-from engines.conformance import Case, Result, Status, cases
+from engines.conformance import ConformanceCase, ConformanceResult, Status, cases
 from engines.registry import ENGINES, INSTALLED, method_name, mislabelled
 from reports.cli.known import engines_named
 from reports.cli.options import REFERENCES, AsJson, AsMarkdown
@@ -29,7 +29,7 @@ from reports.run.running import TIME_LIMIT
 from reports.run.supervisor import supervise
 
 MODELS = 20  # that a check may build, where each takes seconds: every mechanism of the checks once
-Answers = Sequence[tuple[Case, Result]]
+Answers = Sequence[tuple[ConformanceCase, ConformanceResult]]
 
 
 def conform(
@@ -61,7 +61,7 @@ def conform(
             raise Broken(f"{', '.join(broken)}: not as the contract of an engine says")
 
 
-def verdicts(results: Iterator[tuple[Case, Result]]) -> Iterator[tuple[Status, str]]:
+def verdicts(results: Iterator[tuple[ConformanceCase, ConformanceResult]]) -> Iterator[tuple[Status, str]]:
     """The status and the line of every check, and a line for every reason why a check did not apply, once."""
     printed: set[str] = set()
     for check, group in groupby(results, key=lambda pair: pair[0].check):
@@ -80,7 +80,7 @@ def verdicts(results: Iterator[tuple[Case, Result]]) -> Iterator[tuple[Status, s
                 printed.add(line)
 
 
-def _with_status(answers: Answers, status: str) -> list[tuple[Case, Result]]:
+def _with_status(answers: Answers, status: str) -> list[tuple[ConformanceCase, ConformanceResult]]:
     return [(case, result) for case, result in answers if result.status == status]
 
 
@@ -121,12 +121,12 @@ class Question:
 
 
 @cache
-def _cases(named: Named, place: int) -> tuple[Case, ...]:
+def _cases(named: Named, place: int) -> tuple[ConformanceCase, ...]:
     """Cached in a process, so that checks share the runs of an engine."""
     return tuple(cases(named.engines()[place]))
 
 
-def ask(question: Question) -> tuple[Result, ...]:
+def ask(question: Question) -> tuple[ConformanceResult, ...]:
     """In a worker: the results of the check, in each of its mechanisms."""
     results = []
     for number, case in enumerate(_of_check(_cases(question.named, question.place), question.check)):
@@ -135,7 +135,9 @@ def ask(question: Question) -> tuple[Result, ...]:
     return tuple(results)
 
 
-def asked(named: Named, limit: float = TIME_LIMIT) -> Iterator[tuple[Engine, Iterator[tuple[Case, Result]]]]:
+def asked(
+    named: Named, limit: float = TIME_LIMIT
+) -> Iterator[tuple[Engine, Iterator[tuple[ConformanceCase, ConformanceResult]]]]:
     """Every engine that is named, and the results of its checks, in their order. `limit`: CPU seconds of a check, and
     more where an engine declares that its models take long to build.
 
@@ -145,7 +147,9 @@ def asked(named: Named, limit: float = TIME_LIMIT) -> Iterator[tuple[Engine, Ite
         yield engine, _answers(named, number, engine, limit + MODELS * engine.build_time)
 
 
-def _answers(named: Named, place: int, engine: Engine, limit: float) -> Iterator[tuple[Case, Result]]:
+def _answers(
+    named: Named, place: int, engine: Engine, limit: float
+) -> Iterator[tuple[ConformanceCase, ConformanceResult]]:
     every = tuple(cases(engine))
     names = [name for name, _ in groupby(case.check.name for case in every)]
     with temporary_folder() as notes:
@@ -167,9 +171,9 @@ def _answers(named: Named, place: int, engine: Engine, limit: float) -> Iterator
                 yield from answers[names.pop(0)]
 
 
-def _failed(case: Case, words: str) -> tuple[Case, Result]:
-    return case, Result("fails", f"{case.check.name}: {case.check.asks} {words}")
+def _failed(case: ConformanceCase, words: str) -> tuple[ConformanceCase, ConformanceResult]:
+    return case, ConformanceResult("fails", f"{case.check.name}: {case.check.requirement} {words}")
 
 
-def _of_check(every: Sequence[Case], name: str) -> list[Case]:
+def _of_check(every: Sequence[ConformanceCase], name: str) -> list[ConformanceCase]:
     return [case for case in every if case.check.name == name]

@@ -1,4 +1,4 @@
-"""The checks of `engines.conformance`: ours pass all of them, and each check finds the mistake that it is there for."""
+"""The checks of `engines.conformance`: all our engines pass them, and each check finds a deliberate mistake."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engines import Engine, conformance, lagrange, method_name, mujoco, pymunk, registry
-from engines.conformance import CHECKS, Case, Subject, cases
+from engines.conformance import CHECKS, CheckedEngine, ConformanceCase, cases
 from engines.conformance.same import Isometry, bodies_reordered, joints_reordered, joints_swapped, relabelled
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS
 from engines.mujoco import methods as of_mujoco
@@ -23,7 +23,7 @@ SPECIAL = (
     *(*of_pymunk.SKATE_METHODS, *of_pymunk.ROLL_FACETED, of_pymunk.ROLL_PIVOT),
     *(*of_mujoco.SKATES, *of_mujoco.SLOTS, *of_mujoco.ROLLS, *of_mujoco.DRIVES),
 )
-# Daily one of each adapter, and one that is extrapolated; the others differ by settings alone.
+# One or two methods of each adapter run daily. Other methods differ from them by settings alone.
 DAILY = (
     *(pymunk.DEFAULT, pymunk.EXTENDED, mujoco.DEFAULT, lagrange.Lagrange("rk4", "projection")),
     *(engine for engine in registry.OTHERS if engine.build_time < SLOW_TO_BUILD and engine.variant == "default"),
@@ -49,20 +49,20 @@ def failures(engine: Engine) -> list[str]:
 
 
 @pytest.mark.parametrize("engine", ALL, ids=method_name)
-def test_every_construction_of_ours_passes_every_check(engine):
+def test_all_our_methods_pass_all_checks(engine):
     if engine.missing:
         pytest.skip(engine.missing)
     assert failures(engine) == []
 
 
 def close(found: Iterable[np.ndarray], exact) -> bool:
-    """Whether pose, twist and reaction are exact: the judge's tolerance is 1e-13 of a step."""
+    """Whether poses, twists and reactions are exact, with a tolerance of 100 times the judge's 1e-13."""
     expected = (exact.pose, exact.twist, exact.reaction)
     return all(np.abs(a - b).max() <= 1e-11 * (1 + np.abs(b).max()) for a, b in zip(found, expected, strict=True))
 
 
 @pytest.mark.parametrize("world", [*WORLDS, SPINNING], ids=lambda world: world.name)
-def test_the_exact_motions_are_those_of_the_judge_in_every_description(world):
+def test_exact_motions_equal_the_judges_in_every_description(world):
     run = lagrange.TRUTH.build(world.mechanism, 0.05)(6, 1)
     assert close((run.pose, run.twist, run.reaction), world.exact(run.t))
     for name, change in DESCRIPTIONS.items() if world in MOVING else ():
@@ -71,9 +71,9 @@ def test_the_exact_motions_are_those_of_the_judge_in_every_description(world):
         assert close(back(run), world.exact(run.t)), name
 
 
-def first_failure(among: Iterable[Case]) -> tuple[str, str]:
-    """The first check that fails, and its sentence; raises StopIteration if none does."""
-    results = ((case.check.name, case.result()) for case in among)
+def first_failure(cases_of_check: Iterable[ConformanceCase]) -> tuple[str, str]:
+    """The name and the sentence of the first check that fails."""
+    results = ((case.check.name, case.result()) for case in cases_of_check)
     return next((name, result.sentence) for name, result in results if result.status == "fails")
 
 
@@ -82,17 +82,17 @@ def test_a_wrong_adapter_fails_the_check_of_its_mistake(mistake):
     check, engine = WRONG[mistake]
     its_cases = [case for case in cases(engine) if case.check.name == check]
     name, sentence = first_failure(its_cases)
-    assert sentence.startswith(f"{name}: {its_cases[0].check.asks} It found ")
+    assert sentence.startswith(f"{name}: {its_cases[0].check.requirement} It found ")
     assert "; expected " in sentence
     assert ". Usually: " in sentence
 
 
-def test_every_check_finds_a_mistake_and_the_right_engine_passes():
+def test_each_check_has_a_deliberate_mistake_and_a_correct_engine_passes():
     assert {check for check, _ in WRONG.values()} == {check.name for check in CHECKS}
     assert failures(cast(Engine, Wrong("nothing"))) == []
 
 
-def test_an_engine_that_spoils_its_mechanism_spoils_no_other_check():
+def test_an_engine_that_changes_its_mechanism_fails_no_other_check():
     remaining = [repr(world.mechanism) + repr(world.mechanism.twist) for world in WORLDS]
     failed = {line.split(": ")[1] for line in failures(cast(Engine, Wrong("the mechanism is written into")))}
     assert failed == {"leaves_the_mechanism_alone"}
@@ -102,20 +102,20 @@ def test_an_engine_that_spoils_its_mechanism_spoils_no_other_check():
 def test_a_case_that_is_not_supported_does_not_hold():
     check = next(check for check in CHECKS if check.name == "gives_the_same_bits")
     hole = next(world for world in WORLDS if world.name == "disc in a hole")
-    result = Case(Subject(mujoco.DEFAULT), check, hole).result()
+    result = ConformanceCase(CheckedEngine(mujoco.DEFAULT), check, hole).result()
     assert result.status == "not supported"
     assert "hollow" in result.sentence
 
 
 def conform(capsys, *words: str) -> tuple[int, list[str], str]:
-    """Exit status, lines on standard output, and text on standard error, of the command."""
+    """The exit status, the lines on standard output and the text on standard error of `crosscheck conform`."""
     with pytest.raises(SystemExit) as ended:
         main(["conform", *words])
     captured = capsys.readouterr()
     return int(ended.value.code or 0), captured.out.splitlines(), captured.err
 
 
-def test_the_command_prints_a_line_a_check_and_a_refusal_once(capsys, monkeypatch):
+def test_the_command_prints_one_line_for_each_check_and_each_refusal(capsys, monkeypatch):
     some = [check for check in CHECKS if check.name in ("builds_or_refuses", "has_a_name", "first_pose_is_the_start")]
     monkeypatch.setattr(conformance, "CHECKS", some)
     status, lines, error = conform(capsys, "mujoco", "--variant", "tuned")
@@ -125,7 +125,7 @@ def test_the_command_prints_a_line_a_check_and_a_refusal_once(capsys, monkeypatc
     assert len([line for line in lines if "disc in a hole (roll)" in line]) == 1
 
 
-def test_the_command_ends_with_1_where_a_check_fails(capsys, monkeypatch):
+def test_the_exit_status_is_1_if_a_check_fails(capsys, monkeypatch):
     some = [check for check in CHECKS if check.name == "twists_stand_at_their_instants"]
     monkeypatch.setattr(conformance, "CHECKS", some)
     status, lines, error = conform(capsys, "tests.wrong.adapters:HALF_A_STEP_LATE")

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Unsupported, method_name, registry
-from engines.conformance.moving import FORCES as FORCE_EXAMPLES
+from engines.conformance.moving import FORCE_EXAMPLES
 from engines.conformance.worlds import MOVING, WORLDS
 from engines.tree import spanning_tree
 from reference.couplings import Coupling, Term
