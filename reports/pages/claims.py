@@ -1,6 +1,6 @@
 """Claims of pages as predicates on rows and motions. A report is not published if the rows contradict a claim.
 
-The claims of an experiment are Jinja expressions in `experiments.md`. They can use the functions of `_names` and the
+The claims of an experiment are Jinja expressions in `experiments.md`, which can use the functions of `_names` and the
 experiment's context. Claims that belong to no experiment are functions in this module.
 """
 
@@ -47,12 +47,12 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         return all(first > factor * second for first, second in pairs)
 
     def share(*outcomes: str, without: str = "") -> float:
-        """The share of runs with these outcomes; runs of the method `without` are not counted."""
+        """The share of runs that have one of `outcomes`; runs of the method `without` are not counted."""
         counted = Rows(row for row in experiment if row.method != without)
         return counted.count(*outcomes) / counted.count()
 
     def same_as_in(scene: str, name: str, *methods: str) -> bool:
-        """Whether the errors of these methods equal those of the sweep of a scene within 1 %."""
+        """Whether the errors of `methods` equal their errors in the sweep of `scene` within 1 %."""
         sweep = {
             (row.method, row.every): getattr(row, name)
             for row in material.rows.values()
@@ -83,10 +83,10 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
 
 
 def settings_of_a_loop(material: Material) -> bool:
-    """Whether the statements on MuJoCo's settings hold.
+    """Whether the statements of the page "settings" on MuJoCo hold.
 
-    They are: a stiff loop alone or RK4 alone gains less than a factor of 2; both together gain a factor of 1000;
-    implicitfast has the errors of Euler.
+    A stiff loop alone or RK4 alone reduces the error by less than a factor of 2, and both together by more than a
+    factor of 1000. The integrator implicitfast has the errors of Euler.
     """
     rows = Rows(material.sweep((guides.SETTINGS_LOOP,)))
 

@@ -28,7 +28,7 @@ ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engin
 
 
 def sweeps(count: int) -> Engine:
-    """pymunk with `count` iterations and `error_bias = 0`; with that value a step closes the whole gap."""
+    """pymunk with `count` iterations and `error_bias = 0`, so that each step closes the whole gap."""
     return replace(pymunk.DEFAULT, variant=f"{count} sweeps, all of the gap", iterations=count, error_bias=0.0)
 
 
@@ -106,7 +106,7 @@ def scene_page(
     context: Callable[[Material], Mapping[str, Any]] = no_context,
     **fields: Any,
 ) -> Page:
-    """A page on scenes. Its template can look up their rows; its known deviations are those of `deviations.toml`.
+    """A page on scenes. The template can look up rows of the scenes. `deviations.toml` has the known deviations.
 
     `context` adds variables for the template; `fields` are further fields of `Page`.
     """
@@ -143,7 +143,7 @@ def run_script(name: str, text: str) -> dict[str, Any]:
 
 
 def refusals(attempts: Mapping[str, Callable[[], object]]) -> list[Observation]:
-    """The reference's error messages for settings that it must refuse. Raises AssertionError if it accepts one."""
+    """The reference's error messages for invalid settings. Raises AssertionError if the reference accepts a setting."""
     observations = []
     for setting, attempt in attempts.items():
         try:

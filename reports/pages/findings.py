@@ -34,9 +34,9 @@ from reports.write.rows import Rows, rows_of_pages
 from reports.write.templates import environment, template
 from reports.write.unmeasured import UNKNOWN_MARK, UNMEASURED
 
-# Size of a picture in inches: it is 360 pixels wide in a browser, and fits on a telephone.
+# Size of a picture in inches. In a browser the picture is 360 pixels wide, which is the width of a telephone's screen.
 PICTURE_WIDTH, PICTURE_HEIGHT = 3.75, 2.55
-# (dashes, mark, whether the mark is filled) of the first to fourth line, since lines of an engine have the same colour.
+# (dashes, mark, whether the mark is filled) of the lines of a picture, which may have the same colour.
 LINE_STYLES = ((":", "o", False), ("--", "s", True), ("-", "D", True), ("-.", "^", False))
 STEP_AXIS, CPU_AXIS, RELEASE_AXIS = "step [ms]", "CPU time [ms per simulated second]", "release"
 TENTH_OF_MS = 1e-4  # s
@@ -297,7 +297,7 @@ def finding(name: str, sources: Sources) -> Finding:
 
 
 def findings(pages: Mapping[Page, Material]) -> list[Finding]:
-    """The findings that the rows confirm and that one of these pages explains, in the order of `findings.toml`."""
+    """The findings, in the order of `findings.toml`, that the rows confirm and that a page of `pages` explains."""
     sources, names = Sources.of(pages), {page.name for page in pages}
     candidates = (finding(name, sources) for name in FINDING_PLANS)
     return [candidate for candidate in candidates if candidate.is_sound and candidate.page in names]

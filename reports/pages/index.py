@@ -61,7 +61,7 @@ def symptoms() -> tuple[Symptom, ...]:
 
 
 def foot(command: str, engines: Iterable[Engine] = ()) -> str:
-    """The last line of a page; `engines` are those whose versions it names besides the registered ones."""
+    """The last line of a page. It states the versions of the registered engines and of `engines`."""
     return f"Made by `{command}` with {versions(engines)}; timings on {machine()}."
 
 
@@ -105,7 +105,7 @@ def compared_picture(lines: Sequence[EngineLine]) -> str:
                 line.engine: error_by_cost([rows for _, rows in line.columns.get(filled, ())], line.quantity)
                 for line, filled in pairs
             }
-            if column is not Column.CODE:  # an engine without a variant with our code lacks nothing
+            if column is not Column.CODE:  # an engine may have no variant with our code
                 absent[column] = {
                     reason: [line.engine for line, filled in pairs if absence_reason(line, filled) == reason]
                     for reason in (NO_JOINT, NOT_BUILT)

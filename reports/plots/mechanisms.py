@@ -1,7 +1,7 @@
 """Pictures of mechanisms: a line connects the joint points of a body, and a circle is a joint.
 
-`configurations` has a panel for each pose, with methods drawn over the reference motion. `stroboscope` draws poses at
-equal intervals into one panel; earlier poses are paler, or the poses are side by side.
+`configurations` has a panel for each pose, with methods drawn over the reference motion. `stroboscope` draws several
+poses of a motion into one panel.
 """
 
 from __future__ import annotations
@@ -100,8 +100,8 @@ def visibly_off(mechanism: Mechanism, truth: Array, pose: Array, size: float) ->
 Points = tuple[tuple[float, float], ...]
 
 LEAST_OPACITY = 0.12  # of the earliest pose
-LINE_BREAK = np.full((1, 2), np.nan)  # between bodies that are plotted as one line
-BLOCK_SIZE = 0.045  # side of the rectangle of a body with one joint point, as a fraction of the picture
+LINE_BREAK = np.full((1, 2), np.nan)
+BLOCK_SIZE = 0.045  # side of the rectangle that stands for a body with one joint point, as a fraction of the picture
 
 
 @dataclass(frozen=True)

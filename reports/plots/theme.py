@@ -92,7 +92,7 @@ RC_SETTINGS = {
 
 # Verdana replaces DejaVu Sans on systems without it, and has letters of the same widths.
 FONTS = "'DejaVu Sans', Verdana, sans-serif"
-# Names that matplotlib derives from coordinates; the last bits of these may differ between runs.
+# Names that matplotlib derives from coordinates, whose last bits may differ between runs.
 DIGESTED = re.compile(r"\b([mpCh][0-9a-f]{10})\b")
 
 
@@ -124,7 +124,7 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class PowersOfTen(LogFormatterSciNotation):
-    """Labels of a logarithmic axis such as 10⁻³. They are texts, because matplotlib parses formulas slowly."""
+    """Labels of a logarithmic axis as texts such as 10⁻³, since matplotlib parses formulas slowly."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
         if not super().__call__(x, pos):  # a minor tick without a label

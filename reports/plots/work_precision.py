@@ -22,9 +22,9 @@ from reports.plots.looks import colour, family_of, look, mark
 from reports.plots.theme import LIGHT, PowersOfTen, drawing, new_figure, note, settings, style_axes
 
 PANEL_COLUMNS = 2
-LONGEST_OF_FOUR = 30  # letters of a name of which four fit into a line of the legend
+LONGEST_OF_FOUR = 30  # letters; four longer names do not fit into a line of the legend
 SLOPES = (1, 2, 4)
-FAN_POSITIONS = 25  # positions of the fan of slopes that are tried along each side of a panel
+FAN_POSITIONS = 25
 
 Featured = Callable[[Measurement], bool]
 
@@ -130,7 +130,7 @@ def _chart(
 def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle") -> Figure:
     """A panel for each scene with error against CPU time and the Pareto front of all rows.
 
-    Each featured method is a line through the rows that `forwards` keeps. Other rows are small grey dots.
+    Each featured method is a line through the rows that `forwards` keeps. Rows of other methods are small grey dots.
     """
 
     def pairs(members: Iterable[Measurement]) -> Pairs:

@@ -193,7 +193,7 @@ def _format_cell(line: EngineLine, column: Column, format_rows: FormatCell) -> s
 
 
 def remarks_of(line: EngineLine, column: Column) -> str:
-    """A text for the end of a cell: ', contact' if a contact replaces a joint, and the names of unusual variants."""
+    """The end of a cell's text, with ', contact' if a contact replaces a joint, and the names of unusual variants."""
     joints = mechanism_of(line.scene).joints
     contact = column in (Column.SHIPPED, Column.SETTINGS) and any(isinstance(joint, Skate | Roll) for joint in joints)
     variants = [engine.variant for engine, _ in line.columns[column]]
@@ -290,9 +290,9 @@ def equal_error(entries: Iterable[PageRows]) -> dict[str, str]:
 
 
 def equal_step(entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_STEPS) -> dict[str, str]:
-    """The table of each engine: the errors at these steps [s] (name -> step), and the effect of smaller steps.
+    """The table of each engine with the errors at `steps` (name -> step [s]) and the effect of smaller steps.
 
-    The number of a method's inner runs is in the header if it is the same in all scenes.
+    The header has the number of a method's inner runs, unless scenes have different numbers.
     """
     last, lines = list(steps.values())[-1], engine_lines(entries)
     runs: dict[tuple[str, Column], set[str]] = {}

@@ -1,7 +1,7 @@
 """The CSV files of a report: errors, timings, descriptions of rows, digests of files; and the rows that are published.
 
 A number that agrees with the published number within rounding keeps its published text, so that a diff shows only real
-changes. Pages are rendered from the numbers in these files.
+changes. Pages are rendered from the numbers in the CSV files.
 """
 
 from __future__ import annotations
@@ -89,8 +89,8 @@ DIGESTS = "digests.csv"
 def digests_csv(files: Mapping[str, str]) -> str:
     """The digests of the tables and pages of a report.
 
-    Pictures are left out, because nobody reads numbers from them. Timings are left out, because those of an earlier
-    run may remain.
+    Pictures are left out, because no number is read from a picture. Timings are left out, because a folder may contain
+    timings of an earlier run.
     """
     names = sorted(name for name in files if name.endswith((".csv", ".md")) and name not in (DIGESTS, "timings.csv"))
     return "".join(["file,digest\n", *(f"{name},{digest(files[name], SHORT)}\n" for name in names)])

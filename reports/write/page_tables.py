@@ -16,7 +16,7 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, quantity
 from reports.write.tables import DASH, ENFORCED_BY, markdown, milliseconds, number, step_words, sweep_words
 
-# Methods are compared at the step of the grid that is nearest to this one [s].
+# Step [s] at which methods are compared. A grid without this step has its nearest step instead.
 COMPARED_STEP = 1e-3
 # Error bounds in the unit of the page's quantity; a setting is recommended for each bound.
 TARGETS = (1e-2, 1e-4, 1e-6, 1e-9)
@@ -24,7 +24,7 @@ TARGETS = (1e-2, 1e-4, 1e-6, 1e-9)
 # cost, the first of the page is recommended: a page lists settings of the engine before methods with our code.
 EQUAL_COST_FACTOR = 1.25
 
-# (method, step [s]) -> the error that the method's declared regularisation causes, or NaN if it is unknown.
+# (method, step [s]) -> the error that the method's declared regularisation causes, or NaN for an unknown error.
 DeclaredError = Callable[[str, float], float]
 
 
@@ -126,7 +126,7 @@ def _cheapest(
 
 
 def reliable(members: Sequence[Measurement], name: str, target: float) -> list[Measurement]:
-    """The timed rows of one method at steps such that the target is met there and at all smaller steps."""
+    """The timed rows of one method at steps below the smallest step that misses the target."""
     rows = []
     for row in sorted(members, key=lambda row: row.step):
         if not (Outcome(row.outcome).comparable and getattr(row, name) <= target):
@@ -161,11 +161,11 @@ def advice_lines(
 
 
 # A program that does not import this suite is a file `results/programs/<scene>_<method>.py`, in which "_" replaces all
-# but letters and digits. It has the lines `duration = ...` (within the scene's horizon) and `steps = ...`. It prints
-# the position and angle of one body, `end`. These files are written by hand, because `crosscheck export` can't write
-# methods with code in each step. A report changes only the line `steps = ...`. For settings without such a file, the
-# page has code that calls this suite.
-PROGRAM_FOLDER = "programs"  # in the folder of the results
+# but letters and digits. The program has the lines `duration = ...` (within the scene's horizon) and `steps = ...`,
+# and prints the position and angle of one body, `end`. Programs are written by hand, because `crosscheck export` can't
+# write methods with code in each step. A report changes only the line `steps = ...`. For settings without a program,
+# the page has code that calls this suite.
+PROGRAM_FOLDER = "programs"
 RESULTS = Path(__file__).parents[1] / "results"
 DURATION_LINE = re.compile(r"^duration = ([\d.]+)", re.MULTILINE)
 STEPS_LINE = re.compile(r"^steps = \d+.*$", re.MULTILINE)

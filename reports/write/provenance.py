@@ -13,17 +13,17 @@ from pathlib import Path
 from engines import Engine, registry
 from engines.package_versions import installed_version
 
-# Reference motions and errors of every engine are computed with these packages.
+# Packages that compute reference motions and the errors of every engine.
 MEASURED_WITH = ("numpy", "scipy")
 
 
 def versions(engines: Iterable[Engine] = ()) -> str:
-    """The versions of all registered engines and of these, such as 'Python 3.11.7, numpy 2.4.0, ...'."""
+    """The versions of all registered engines and of `engines`, such as 'Python 3.11.7, numpy 2.4.0, ...'."""
     return row_versions(*registry.ENGINES, *engines)
 
 
 def row_versions(*engines: Engine) -> str:
-    """The versions on which rows of these engines depend, such as 'Python 3.11.7, numpy 2.4.0, ...'."""
+    """The versions on which rows of `engines` depend, such as 'Python 3.11.7, numpy 2.4.0, ...'."""
     names = dict.fromkeys([*MEASURED_WITH, *(name for engine in engines for name in engine.packages)])
     return ", ".join([f"Python {platform.python_version()}", *map(_version, names)])
 
@@ -42,7 +42,7 @@ def _version(package: str) -> str:
 
 
 def still_installed(versions: str) -> bool:
-    """Whether all packages in a result of `row_versions` are installed in these versions.
+    """Whether the installed packages have the versions in `versions`, a result of `row_versions`.
 
     Only Python's minor version is compared, since a patch release changes no number of an engine.
     """

@@ -35,7 +35,7 @@ class Rows(tuple[Measurement, ...]):
         return Rows(row for row in self if math.isfinite(getattr(row, name)))
 
     def near(self, step: float) -> Any:
-        """The row with the nearest step by ratio, if it is within a factor of NEAREST_WITHIN."""
+        """The row whose step is nearest to `step` by ratio; UNMEASURED if the ratio is NEAREST_WITHIN or more."""
         row = min(self, key=lambda row: abs(math.log(row.step / step)), default=None)
         return row if row is not None and max(row.step / step, step / row.step) < NEAREST_WITHIN else UNMEASURED
 
@@ -59,7 +59,7 @@ class Rows(tuple[Measurement, ...]):
         return list(dict.fromkeys(str(row.outcome) for row in self))
 
     def count(self, *outcomes: str) -> Any:
-        """The number of rows with one of these outcomes; without arguments, the number of all rows."""
+        """The number of rows with one of `outcomes`; without arguments, the number of all rows."""
         return sum(not outcomes or row.outcome in outcomes for row in self) if self else UNMEASURED
 
     def points(self, name: str) -> list[tuple[float, float]]:
@@ -71,8 +71,8 @@ class Rows(tuple[Measurement, ...]):
 def lookups(material: Material, scenes: Iterable[Scene]) -> dict[str, Any]:
     """The functions by which templates look up rows of scenes.
 
-    They are `best(scene, engine, variant)`, `sweep(scene, engine, variant, quantity)`, `at(scene, engine, variant,
-    every)`, and `ended(scene, engine, variant)`, which returns the method's outcomes.
+    The functions are `best(scene, engine, variant)`, `sweep(scene, engine, variant, quantity)`, `at(scene, engine,
+    variant, every)`, and `ended(scene, engine, variant)`, which returns the method's outcomes.
     """
     rows = Rows(material.sweep(scenes))
 

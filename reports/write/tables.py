@@ -83,7 +83,7 @@ def markdown(
 ) -> str:
     """A Markdown table; the first `left` columns are aligned to the left.
 
-    `enforcement` (what enforces the joints, by method) becomes the second column; the first one has the methods.
+    `enforcement` (what enforces the joints, by method) becomes the second column, after the column of the methods.
     """
     if enforcement:
         header, left = [header[0], ENFORCED_BY, *header[1:]], left + 1

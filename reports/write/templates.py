@@ -38,7 +38,7 @@ def link(page: str, heading: str, files: Mapping[str, str]) -> str:
 
 
 def without_dead_links(text: str, exists: Callable[[str], bool]) -> str:
-    """The text without links to pages that do not exist; the words of these links remain."""
+    """The text, with plain text in place of links to pages that do not exist."""
     return PAGE_LINK.sub(lambda match: match[0] if exists(match[2]) else match[1], text)
 
 

@@ -1,8 +1,8 @@
 """Missing numbers in templates: a clause that lacks a number is left out.
 
-A lookup without a row returns `UNMEASURED`, which stands for the row and for each of its numbers. It is false, it is
-NaN, and each of its attributes is UNMEASURED. A template prints NaN as UNKNOWN_MARK. `{% filter if_measured %}` removes
-the text up to `{% endfilter %}` if it contains this mark. `without_marks` replaces the remaining marks by a text.
+A lookup without a row returns `UNMEASURED`, which replaces the row and each of its numbers. UNMEASURED is false, is
+NaN, and has UNMEASURED for each attribute. A template prints NaN as UNKNOWN_MARK. `{% filter if_measured %}` removes
+the text up to `{% endfilter %}` if the text contains UNKNOWN_MARK. `without_marks` replaces the other marks by a text.
 """
 
 from __future__ import annotations

@@ -23,10 +23,11 @@ from reports.pages.atlas.subjects import StabilityMap
 from reports.write.csv_files import read_lines
 
 FILE = "atlas.csv"
-FORCE_SAMPLES = 20  # instants at which the reactions of the reference motion are evaluated
+FORCE_SAMPLES = 20
 # Letter of a cell that was not run, because the neighbours above and below have the same outcome.
 NOT_RUN = "="
-BY_LETTER = {outcome.letter: outcome for outcome in reversed(Outcome)}  # two outcomes may share a letter: the first
+# If two outcomes have the same letter, the letter stands for the first of them.
+BY_LETTER = {outcome.letter: outcome for outcome in reversed(Outcome)}
 RunCells = Callable[[list[Cell]], Mapping[Cell, Measurement]]
 
 
@@ -65,7 +66,7 @@ class StoredColumn:
 
     @property
     def outcome_of_steps(self) -> tuple[Outcome, ...]:
-        """The outcome at each step. For a cell that was not run, it is the outcome at the next larger step."""
+        """The outcome at each step; a cell that was not run has the outcome at the next larger step."""
         outcomes: list[Outcome] = []
         for letter in self.outcomes:
             outcomes.append(outcomes[-1] if letter == NOT_RUN and outcomes else BY_LETTER[letter])
@@ -153,7 +154,7 @@ def tearing_step(scene: Scene, mechanism: Mechanism, engine: Engine, least: floa
 
     With `engines.Regularisation`, J a = bias - damping slip - stiffness gap - compliance A reaction, where A is the
     diagonal of J M^-1 J^T. The steady gap is therefore (compliance A reaction) / stiffness. In an engine that omits the
-    bias it is (compliance A reaction + bias) / stiffness. The reactions are those of the ideal motion.
+    bias, the steady gap is (compliance A reaction + bias) / stiffness. Reactions are computed from the ideal motion.
 
     Steps from `least` to `largest` [s] are searched. The result is 0 if the step `least` tears a joint, inf if no step
     does, and NaN without a reference motion.

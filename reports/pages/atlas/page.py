@@ -29,7 +29,7 @@ from reports.write.columns import displayed_variant
 from reports.write.tables import DASH, markdown, number, step_words
 
 RESULTS = Path(__file__).parents[2] / "results"
-ERROR_BOUNDS = (math.inf, 1e-2, 1e-4)  # rad; the table has the largest admissible step for each bound
+ERROR_BOUNDS = (math.inf, 1e-2, 1e-4)  # rad
 CRITICAL_RESIDUAL = 0.5  # see `residual_of_sweeps`
 MAX_DECADES_FOR_FINE_TICKS = 2.2
 # Prediction of a border -> (label, role of the colour, dashes). "gives" and "left" are fields of `StoredColumn`.
@@ -88,7 +88,7 @@ def largest_step(columns: Sequence[StoredColumn], bound: float) -> str:
 
 
 def _errors_of_steps(column: StoredColumn) -> list[float]:
-    """The error at each step [rad]. For a cell that was not run, it is the error at the next larger step, or 0."""
+    """The error at each step [rad]; a cell that was not run has the error at the next larger step, or 0."""
     errors, last = [], 0.0
     for power in column.errors:
         last = last if math.isnan(power) else 10**power
@@ -188,7 +188,7 @@ def _legend_entries(
         labels.append(SHADE_NAMES[role])
     for outcome in (outcome for outcome in Outcome if outcome in regions):
         face = Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome), edgecolor=LIGHT.quiet)
-        # Two patches: in a single one the colour of the hatch would not follow the reader's colour scheme.
+        # The hatch is a patch of its own, because otherwise its colour would not follow the reader's colour scheme.
         hatch = Rectangle((0, 0), 1, 1, fill=False, edgecolor=LIGHT.quiet, hatch=outcome.hatch or None)
         handles.append((face, hatch))
         labels.append(str(outcome))
@@ -200,7 +200,7 @@ def _legend_entries(
 
 
 def edges(values: Sequence[float], whole: bool) -> np.ndarray:
-    """The borders between cells with these increasing middles, and the two ends.
+    """The borders between cells with increasing middles `values`, and the two ends.
 
     A border is halfway between two middles: arithmetically for integers (`whole`), geometrically otherwise.
     """

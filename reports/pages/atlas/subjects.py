@@ -21,7 +21,7 @@ from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.scenes.wheels.vehicles import CarAndTrailer
 
-MIN_STEPS = 10  # steps of a run at the largest step
+MIN_STEPS = 10  # number of steps of a run at the largest step
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class StabilityMap:
     remark: str = ""
 
     def at(self, points: int) -> tuple[float, ...]:
-        """The values form a geometric sequence. Integers form an arithmetic one, without repetitions."""
+        """The values form a geometric sequence; integer values form an arithmetic sequence without repetitions."""
         low, high = self.values
         if self.whole:
             return tuple(map(float, dict.fromkeys(np.linspace(low, high, points).round().tolist())))
@@ -65,7 +65,7 @@ class StabilityMap:
 
 
 def near_the_largest_offset(gap: float) -> DrivenSliderCrank:
-    """A driven slider-crank whose offset is (1 - gap) times the largest possible one."""
+    """A driven slider-crank; its offset is (1 - gap) times the largest possible offset."""
     plain = DrivenSliderCrank()
     return replace(plain, offset=(1 - gap) * (plain.rod - plain.crank), angle=math.pi / 2)
 

@@ -33,7 +33,7 @@ MAX_POSES_CHECKED = 101
 
 
 def returned(curves: Centrodes) -> tuple[float, float]:
-    """(largest distance of origins [m] between the poses and those of the rolling curves, checked rotation [rad]).
+    """(largest distance [m] between the body and the rolling body curve, range of rotation [rad] that was checked).
 
     Raises InvalidMechanism if the curves can't roll on each other.
     """
@@ -49,7 +49,7 @@ def returned(curves: Centrodes) -> tuple[float, float]:
 
 
 def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indices: Sequence[int], body: int) -> Figure:
-    """A panel for each of these samples. `poses` (samples, bodies, 3) and `curves` have the same order of samples."""
+    """A panel for each of `indices`. `poses` (samples, bodies, 3) and `curves` have the same order of samples."""
     with drawing(4.4) as figure:
         for panel, index in zip(figure.subplots(1, len(indices), sharex=True, sharey=True), indices, strict=True):
             bare(panel, "")
@@ -78,7 +78,7 @@ def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indice
 
 
 def _letters(panel: Axes, mechanism: Mechanism, pose: Array) -> None:
-    """Write the names of the pins. They are beyond the end of the bar at the ground, else outside of the linkage."""
+    """Write the names of pins: of ground pins beyond the bar's end, of other pins outside of the linkage."""
     pins, bars = {}, {}
     for joint in mechanism.joints:
         if isinstance(joint, Pin) and joint.second is not None:
@@ -111,7 +111,7 @@ def draw_rate(curves: Centrodes) -> Figure:
     return figure
 
 
-COUPLER_INDEX = 1  # among the bodies
+COUPLER_INDEX = 1
 # Crank angles [rad] between which the coupler's rate keeps its sign; it vanishes at 2.80 and 5.94 rad.
 ARC = (3.5, 5.5)
 ARC_SAMPLES = 401
@@ -179,7 +179,7 @@ def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
 
 
 def largest(values: np.ndarray) -> float:
-    """The largest value; NaN if there is none or if one is NaN."""
+    """The largest value; NaN if there is no value or if a value is NaN."""
     return float(values.max()) if values.size else math.nan
 
 

@@ -89,8 +89,8 @@ HAS_NONE, NOT_BUILT, TOO_OLD = "**has none**", "not built", "too old"
 class Capabilities(BuildingTask):
     """The elements that an engine builds.
 
-    For each line of ELEMENT_EXAMPLES the values have one of the words above and, in `reason_key`, the reason of a
-    refusal. `reactions` and `width` come from a run.
+    The values are YES, CONTACT, CODE, HAS_NONE, NOT_BUILT or TOO_OLD for each line of ELEMENT_EXAMPLES, and the reason
+    of a refusal by `reason_key`. The values `reactions` and `width` are found in a run.
     """
 
     description: ClassVar[str] = "what it builds"
@@ -131,7 +131,7 @@ def reason_key(line: str) -> str:
 
 
 COMPARED_INSTANTS = 12
-TERM_STEP = 1e-3  # s, for building a model; no step is made
+TERM_STEP = 1e-3  # s
 
 
 def started_at(mechanism: Mechanism, pose: Array, twist: Array) -> Mechanism:
@@ -168,7 +168,7 @@ def reactions_with(
 
 @dataclass(frozen=True)
 class VelocityTerm(BuildingTask):
-    """Relative differences (instants,) between an engine's reactions and those with and without the velocity term."""
+    """The relative errors (instants,) of the equations with and without the velocity term for an engine's reactions."""
 
     description: ClassVar[str] = "the velocity term of a loop"
 
@@ -230,7 +230,7 @@ VELOCITY_TERMS = tuple(
 
 
 def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
-    """The rows of these scenes in all engines, extras included, as rows of a sweep; naive methods are left out."""
+    """The rows of `scenes` in all engines, extras included, as rows of a sweep; naive methods are left out."""
     names = {*scenes}
     return [
         replace(row, purpose="sweep")

@@ -42,9 +42,9 @@ from reports.write.tables import number
 
 REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 
-# Time between samples [s]. The errors of the differences below (order eight) are then far below those of engines.
+# Time between samples [s]. With this value, differences of order eight have far smaller errors than the engines.
 WINDOW_SPACING = 1e-3
-RUN_SAMPLES = 300  # only the last POINTS are used
+RUN_SAMPLES = 300  # samples of a run; only the last POINTS samples are used
 # Weights of nine points in the first and second derivatives at the middle point.
 FIRST_DERIVATIVE = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
 SECOND_DERIVATIVE = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
@@ -64,7 +64,7 @@ class SampleWindow:
 
 
 HILL, SLEIGH = RollingOnCircle(), ChaplyginSleigh()
-CONFIRMED = 0  # the number that stands for equations (18.70) and (18.71), which are right as printed
+CONFIRMED = 0  # number for equations (18.70) and (18.71), which are right as printed
 
 
 def double_pendulum() -> Mechanism:
@@ -155,7 +155,7 @@ QUESTIONS: dict[str, DecidingMotion] = {  # by a description of the motion
 
 @dataclass(frozen=True)
 class Refereed(MethodTask):
-    """The last POINTS samples of an engine's run of one of QUESTIONS."""
+    """The last POINTS samples of an engine's motion that decides a question."""
 
     question: str
     description: ClassVar[str] = "{0.question}"
@@ -171,7 +171,7 @@ TASKS = tuple(Refereed(engine, question) for question in QUESTIONS for engine in
 
 @dataclass(frozen=True)
 class Ruling:
-    """One engine's values for one slip, near 0.3 s of the motion `about`; `values.decides` is the engine's."""
+    """The values of one slip from one engine's motion (`about`) near 0.3 s; the engine computes `values.decides`."""
 
     number: int
     method: str
@@ -318,7 +318,7 @@ def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The values of formulas are computed here; those of engines come from stored motions."""
+    """The values of formulas, and decisions of engines from their stored motions."""
     decided, failed = rulings(material.answers.items())
     slips = [
         {

@@ -113,8 +113,8 @@ SCRIPTS: Mapping[str, FaultScript] = {
 class Offsets(Task):
     """The velocity across its groove that pymunk's GrooveJoint creates, for several distances of its anchor.
 
-    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The vector from the centre of mass to the
-    anchor has one of the lengths `offsets` [m] and an angle of 45 degrees to the groove.
+    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The line from its centre of mass to the
+    anchor has an angle of 45 degrees to the groove and one of the lengths `offsets` [m].
     """
 
     offsets: tuple[float, ...]
@@ -122,7 +122,7 @@ class Offsets(Task):
     words: ClassVar[str] = "grooves: anchor's offset"
 
     def run(self) -> Values:
-        """`across` (offsets,) [m/s], the velocities after one step."""
+        """`across` (offsets,): the velocity of the anchor across the groove [m/s] after one step."""
         return {"across": np.array(list(map(measured_across, self.offsets)))}
 
 
@@ -130,7 +130,7 @@ OFFSETS = Offsets(tuple(np.geomspace(0.05, 5.0, 13).round(6).tolist()))
 
 
 def measured_across(offset: float) -> float:
-    """The anchor's velocity across the groove [m/s] after one step of pymunk that closes no gap."""
+    """The anchor's velocity across the groove [m/s] after one step of pymunk with `error_bias = 1`."""
     import pymunk
     from pymunk.constraints import GrooveJoint
 

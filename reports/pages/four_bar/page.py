@@ -93,10 +93,10 @@ RECOMMENDED = "free_four_bar"
 
 # Fig. 18.66 has nine poses at the ends of eight equal intervals; the last pose equals the first.
 INTERVALS = 8
-SAMPLES_PER_INTERVAL = 8  # the engines' step is then about 1e-2 s
+SAMPLES_PER_INTERVAL = 8  # which gives the engines a step of about 1e-2 s
 DRAWN_OVER_TRUTH = {"pymunk default": ("first", "--"), "mujoco default": ("second", ":")}
 
-# The readme's animation shows these methods and the exact motion, with steps of 1 ms.
+# The readme's animation shows MOVING_METHODS and the exact motion, with steps of 1 ms.
 MOVING_PICTURE = "moving.svg"
 MOVING_EVERY = 10  # steps between samples
 MOVING_METHODS = {

@@ -1,11 +1,11 @@
 """Two published benchmarks: the energy of Gymnasium's Acrobot, and the bounds in tests of the engine Newton.
 
-Acrobot: issue 1714 of github.com/Farama-Foundation/Gymnasium has three numbers for the drift of the energy. The links
-are those of `gymnasium/envs/classic_control/acrobot.py`. The issue does not state the initial state, which changes the
-drift by a factor of hundreds. Both links are assumed to be in line and at rest, and their angle is computed from the
-first of the three numbers.
+Acrobot: issue 1714 of github.com/Farama-Foundation/Gymnasium has three numbers for the drift of the energy. The data
+of the links are from `gymnasium/envs/classic_control/acrobot.py`. The issue does not state the initial state, which
+changes the drift by a factor of hundreds. Here both links are initially in line and at rest, and their angle is chosen
+so that RK4 has the first of the three drifts.
 
-Newton: the problems and bounds are those of tests 2, 3 and 10 of `newton/tests/test_physics_validation.py` in
+Newton: problems and bounds are copied from tests 2, 3 and 10 of `newton/tests/test_physics_validation.py` in
 github.com/newton-physics/newton.
 """
 

@@ -1,7 +1,7 @@
 """The page of published problems: Andrews' mechanism, and three benchmarks.
 
-The published numbers are copied. Those of Andrews' mechanism are from F. Mazzia, C. Magherini, Test set for initial
-value problem solvers, release 2.4, II-17.
+The published numbers of Andrews' mechanism are copied from the Test set for initial value problem solvers, release 2.4,
+II-17, by F. Mazzia and C. Magherini.
 """
 
 from __future__ import annotations

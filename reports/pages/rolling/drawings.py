@@ -125,7 +125,7 @@ def draw_contact() -> Figure:
                 tip = point + 0.45 * vector
                 arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.8}
                 panel.annotate("", tip, point, arrowprops=arrow, zorder=5)
-                # The label of e_t is above the arrow; in a hole it is below, since the ground rises there.
+                # The label of e_t is above the arrow, but in a hole below the arrow, since the ground rises.
                 above = (0.09 if a >= 0 else -0.09) * normal if vector is tangent else 0.0
                 panel.annotate(name, point + 0.53 * vector + above, color=colour, ha="center", va="center", fontsize=11)
             panel.plot(*point, "o", color=LIGHT.ink, markersize=4, zorder=6)
@@ -179,7 +179,7 @@ FRICTION_COEFFICIENTS = (0.2, 0.5, 1.0)
 
 
 def draw_acceleration() -> Figure:
-    """The rolling term of the acceleration and that of a body pinned at C: of an ellipse that turns, and of discs."""
+    """The acceleration's rolling term and the term of a body pinned at C, for an ellipse that turns and for discs."""
     with drawing(3.6) as figure:
         left_panel, right = figure.subplots(1, 2)
         rolling = Rolling.at_angle(Ellipse(0.5, 0.3), Line())

@@ -135,8 +135,7 @@ HILL_SCENE = RollingOnCircle()  # one object, because it caches its last compara
 def compared(scene: Scene, engine: Engine) -> bool:
     """Whether a method is run in a scene.
 
-    ROLL_CONSTRUCTIONS are run on the ellipse only. Exact multipliers are left out in two scenes in which they are slow.
-    Tests compare these with the reference.
+    ROLL_CONSTRUCTIONS are run on the ellipse only. Exact multipliers are slow in two scenes, and only tests run these.
     """
     if engine in ROLL_CONSTRUCTIONS:
         return scene.name == RollingEllipse.name

@@ -1,4 +1,4 @@
-"""The reference's banded solver for joint forces of a chain, with RK4, as an engine. It builds only LongPendulums."""
+"""The reference's banded solver for joint forces of a chain, with RK4, as an engine for LongPendulums only."""
 
 from __future__ import annotations
 

@@ -188,12 +188,12 @@ SCALING_METHODS: tuple[Engine, ...] = (
     *(pymunk.DEFAULT, pymunk.TUNED, pymunk.EXTENDED, mujoco.DEFAULT, mujoco.TUNED),
     *(FREE_DEFAULT, SCALING_SPARSE_NEWTON, PGS, EULER, RUNGE_KUTTA, BandedChain()),
 )
-# Longer chains take seconds for a step of these methods.
+# Methods that take seconds for a step of more than 300 links.
 AT_MOST_300 = (pymunk.EXTENDED, PGS, EULER, RUNGE_KUTTA)
 CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SCALING_SPARSE_NEWTON, BandedChain())
 
 # In a chain of N equal links, an iteration multiplies the slowest mode by 1 - pi^2/(4 N^2). The iterations of a step
-# multiply it by RESIDUAL, so their number is SWEEPS_OVER_SQUARE N^2. From CAPPED links on, a limit reduces this number.
+# multiply it by RESIDUAL, so their number is SWEEPS_OVER_SQUARE N^2. ITERATION_LIMIT bounds it from CAPPED links on.
 SWEEPS_OVER_SQUARE = -4 * log(RESIDUAL) / pi**2
 CAPPED = ceil(sqrt(ITERATION_LIMIT / SWEEPS_OVER_SQUARE))
 
@@ -293,7 +293,7 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def crossing(one: MethodSeries | None, other: MethodSeries | None) -> tuple[int, int] | None:
-    """Two neighbouring sizes: `one` costs at most as much as `other` at the first, and more at the second; or None."""
+    """Two neighbouring sizes between which `one` becomes more expensive than `other`; None if there are none."""
     if one is None or other is None:
         return None
     pairs = [(p.size, p.step, q.step) for p in one.points if (q := other.at(p.size))]

@@ -34,13 +34,13 @@ WITHOUT_EULER: tuple[Engine, ...] = tuple(
     engine for engine in VARIANTS if engine.name != "lagrange" or engine.variant.startswith("rk4")
 )
 
-# Rates [rad/s] between which a small rotation grows as in the linearised motion. They are far above the initial rate,
-# and their squares are less than a thousandth of the square of the largest rate.
+# Rates [rad/s] between which a small rotation grows as in the linearised motion. Both rates are far above the initial
+# rate, and their squares are less than a thousandth of the square of the largest rate.
 LINEAR_GROWTH = (2e-3, 4e-2)
 
 
 def growth_of(t: np.ndarray, rate: np.ndarray) -> float:
-    """The slope of log |rate| over time [1/s] between the rates of LINEAR_GROWTH; NaN if they are not reached."""
+    """The slope of log |rate| over time [1/s] between the two rates of LINEAR_GROWTH; NaN if a rate is not reached."""
     speed = np.abs(rate)
     late = int(np.argmax(speed > LINEAR_GROWTH[1])) if np.any(speed > LINEAR_GROWTH[1]) else 0
     chosen = (np.arange(len(t)) < late) & (speed > LINEAR_GROWTH[0])

@@ -44,8 +44,8 @@ from reports.write.columns import enforcement_by_method
 from reports.write.page_tables import COMPARED_STEP
 from reports.write.rows import Rows
 
-BLADE_LENGTH = 0.35  # m, in pictures
-PARKED: Triple = (0.0, 1.0, 0.0)  # the final pose of parking: straight sideways of the initial one
+BLADE_LENGTH = 0.35  # m
+PARKED: Triple = (0.0, 1.0, 0.0)  # final pose of parking; the initial pose is (0, 0, 0)
 
 
 def parking() -> Figure:
@@ -186,7 +186,7 @@ def constructions(rows: Sequence[Measurement], enforcement: Mapping[str, str] | 
 
 @cache
 def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> str:
-    """A Markdown table of degrees of freedom by rank and by Lie brackets; `names` replace those of the scenes."""
+    """A Markdown table of degrees of freedom by rank and by Lie brackets; `names` replace the scenes' names."""
     body = []
     for name, scene in zip(names or tuple(scene.name for scene in scenes), scenes, strict=True):
         mechanism = scene.mechanism()
@@ -199,7 +199,7 @@ def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> 
 
 
 def uniform_conditions() -> str:
-    """A Markdown table of conditions w = (a, b, c) on one body, with the equivalent skate and w . curl w at a pose."""
+    """A Markdown table of conditions w = (a, b, c) on one body, the equivalent skates, and the products w · curl w."""
     body = []
     for row in ((0.0, 1.0, 0.5), (1.0, 0.0, 0.0), (3.0, 4.0, -2.0), (0.0, 0.0, 1.0)):
         skate, curl = skate_of(row), frobenius(row, np.array([0.3, -0.2, 0.8]))
@@ -212,7 +212,7 @@ def uniform_conditions() -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Tables, and functions that look up rows of the sleigh. They return UNMEASURED if there is no row.
+    """Tables, and functions that look up rows of the sleigh and return UNMEASURED if there is no row.
 
     at: a method's row nearest to a step [s]
     least: the row of an engine's variant with the least position error

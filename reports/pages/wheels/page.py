@@ -111,9 +111,9 @@ FORCE_QUANTITIES = ("position", "slip", "energy", "reaction")
 CAR, CART = CarAndTrailer(redundant=True), Cart(redundant=True)
 
 
-DRAWBAR = 1.0  # m; the drawbar is first at a right angle to the hitch's path
-RADII = (1.6, 1.0, 0.6)  # of the hitch's circles [m]
-DRAWBARS = 7  # drawn along a path
+DRAWBAR = 1.0  # m
+RADII = (1.6, 1.0, 0.6)  # m, of the hitch's circles
+DRAWBARS = 7
 
 
 def tows() -> Figure:
@@ -137,7 +137,7 @@ def _tow(title: str, radius: float, distance: float) -> Panel:
 
 
 def casters() -> Figure:
-    """The two casters of a cart: they trail when the cart goes ahead, and swing round when it is pushed back."""
+    """The casters of a cart trail when the cart goes ahead, and swing round when the cart is pushed back."""
     cart = Casters(((0.7, 0.2), (0.7, -0.2)), 0.1)
     corners = np.array([[0.0, 0.2], *cart.places, [0.0, -0.2], [0.0, 0.2]])  # from the fixed axle to the kingpins
     t = np.linspace(0, 2, 801)

@@ -23,7 +23,7 @@ from reports.pages.common import MethodTask
 from reports.pages.your_loop.linkages import LINKAGES
 
 PAGE_STEP = 1e-3  # s
-MILLISECONDS_PER_SAMPLE = 10  # samples of the scenes are 1e-2 s apart
+MILLISECONDS_PER_SAMPLE = 10
 # The seed is the hash of the last commit before this code was written, so it was not chosen for its results.
 COMMIT = "007b1fa1"
 COUNT = 60  # mechanisms of each kind
@@ -94,9 +94,9 @@ class Fresh(MethodTask):
         return float(early.max()) if np.isfinite(early).all() else inf
 
 
-GAP_DURATION = 10.0  # s; longer than the trial run of `choose`
-ANGLE_DURATION = 3.0  # s; angles are compared for at most this time
-LINKAGE_STEP = 1 / 240  # s, usual in games
+GAP_DURATION = 10.0  # s, longer than the trial run of `choose`
+ANGLE_DURATION = 3.0  # s
+LINKAGE_STEP = 1 / 240  # s
 
 
 def run_lines(space: pymunk.Space, lines: str) -> dict[str, Any]:
