@@ -1,6 +1,7 @@
-"""A search is divided into chunks of cases of one subject; each is a task of a worker, and its results are stored.
+"""Chunks: each contains some cases of one subject, and is one task of a worker with one stored answer.
 
-A chunk that crashes or times out is run again case by case, so that the failing case is known and no other is lost.
+The cases of a chunk that crashes or times out are run again one by one. So the failing case is identified, and the
+results of the others are kept.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from reports.search.motions import NEEDLESS_REPORT
 from reports.search.parts import SINGULAR_KINDS
 from reports.search.subjects import Adapted, OracleResult, Subject, is_shaped
 
-CHUNK_SIZE = 10  # cases in a piece: a second or some
+CHUNK_SIZE = 10  # cases in a chunk, which take some seconds
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class Chunk(Task):
         return self.subject.draw(self.seed, number, self.kinds, self.decades)
 
     def run(self) -> Values:
-        """The results as JSON, one a case."""
+        """A list of results by case, as JSON."""
         results = []
         for number in range(self.first, self.first + self.count):
             case = self.draw(number)
@@ -67,7 +68,7 @@ class Chunk(Task):
 
 @dataclass(frozen=True)
 class CaseResult:
-    """A case of a piece, and its result."""
+    """A case of a chunk and its result."""
 
     chunk: Chunk
     number: int
@@ -76,10 +77,10 @@ class CaseResult:
 
 
 def iter_case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
-    """Yield the results of these chunks' cases.
+    """Yield the result of each case of these chunks.
 
-    A chunk of one case that crashed is a fault with an infinite error. An unfinished chunk of several cases yields
-    nothing, since its cases are run again one by one.
+    A chunk of one case that crashed or timed out is a fault with an infinite error. An unfinished chunk of several
+    cases yields nothing, since its cases are run again one by one.
     """
     for chunk, answer in answers.items():
         if answer.finished:
@@ -96,7 +97,10 @@ def iter_case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
 def make_chunks(
     subjects: Sequence[Subject], seed: int, cases: int, kinds: Sequence[str], decades: int, oracles: tuple[str, ...]
 ) -> list[Chunk]:
-    """Chunks of the first cases of a seed, the subjects alternating; `kinds`: all of a subject if none of its own."""
+    """Chunks of the first cases of a seed, with the subjects in turn.
+
+    A subject that supports none of `kinds` gets all kinds that it supports.
+    """
     out = []
     for first in range(0, cases, CHUNK_SIZE):
         count = min(CHUNK_SIZE, cases - first)
@@ -112,30 +116,32 @@ def unfinished_cases(answers: Mapping[Chunk, Answer]) -> list[Chunk]:
     return [replace(chunk, first=chunk.first + n, count=1) for chunk in ended for n in range(chunk.count)]
 
 
-def stored_answers(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
+def stored_answers(store: Store, chunks: Sequence[Chunk]) -> dict[Chunk, Answer]:
     """Stored answers of these chunks, and of their cases that were run one by one."""
-    stored = store.answers(pieces)
-    answers = {piece: stored[piece] for piece in pieces if piece in stored}
-    singles = unfinished_cases(answers)
-    single = store.answers(singles)
-    return answers | {piece: single[piece] for piece in singles if piece in single}
+
+    def stored(wanted: Sequence[Chunk]) -> dict[Chunk, Answer]:
+        found = store.answers(wanted)
+        return {chunk: found[chunk] for chunk in wanted if chunk in found}
+
+    answers = stored(chunks)
+    return answers | stored(unfinished_cases(answers))
 
 
 def chunk_to_json(chunk: Chunk) -> str:
-    """A chunk as JSON: its numbers, and the subject's name."""
+    """A chunk as JSON, with the name of its subject."""
     numbers = [chunk.seed, chunk.first, chunk.count, list(chunk.kinds), chunk.decades, list(chunk.oracles)]
     return json.dumps([chunk.subject.name, *numbers])
 
 
 def chunk_from_json(text: str, subjects: Sequence[Subject]) -> Chunk | None:
-    """The chunk that `chunk_to_json` wrote; None if its subject is not among these."""
+    """The inverse of `chunk_to_json`; None if the subject is not among `subjects`."""
     name, seed, first, count, kinds, decades, oracles = json.loads(text)
     subject = next((subject for subject in subjects if subject.name == name), None)
     return Chunk(subject, seed, first, count, tuple(kinds), decades, tuple(oracles)) if subject else None
 
 
 def case_label(case: CaseResult) -> str:
-    """Name of the subject, with the selected kinds of joints if the user selected some."""
+    """Name of the subject, followed by the kinds of joints if these are not all its kinds."""
     chunk = case.chunk
     kinds = "" if chunk.kinds == chunk.subject.kinds else f" ({', '.join(chunk.kinds)})"
     return f"{chunk.subject.name}{kinds}"
@@ -145,7 +151,7 @@ CHECKS_HEADER = ("subject", "check", "judged", "median", "99 %", "worst", "fault
 
 
 def summary_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """Rows of a table under CHECKS_HEADER; the last rows count the cases that each subject refused."""
+    """Rows under CHECKS_HEADER; the last rows count the cases that each subject refused."""
     checks: dict[tuple[str, str], list[tuple[float, float]]] = {}
     for case in cases:
         for check, pair in case.result.errors.items():
@@ -179,7 +185,7 @@ FINDINGS_HEADER = ("subject", "check", "error", "may be", "seed", "decades", "ca
 
 
 def finding_rows(cases: Iterable[CaseResult]) -> list[list[str]]:
-    """Rows of a table under FINDINGS_HEADER, one for each failing check of a case."""
+    """Rows under FINDINGS_HEADER, one for each failing check of a case."""
     out = []
     for case in cases:
         case_columns = [str(case.chunk.seed), str(case.chunk.decades), str(case.number), ",".join(case.kinds)]
@@ -189,7 +195,7 @@ def finding_rows(cases: Iterable[CaseResult]) -> list[list[str]]:
 
 
 def count_skip_reasons(cases: Iterable[CaseResult]) -> list[tuple[str, str, int]]:
-    """(oracle, skip reason, number of cases), the most frequent first; numbers in reasons are masked."""
+    """(oracle, skip reason, number of cases), the most frequent first; numbers in reasons become "..."."""
     reasons: Counter[tuple[str, str]] = Counter()
     for case in cases:
         for reason in case.result.skipped:

@@ -26,35 +26,36 @@ from reports.gate.change import Nudge
 
 Array = NDArray[np.float64]
 
-NOISE_MARGIN = 10.0  # the noise is the largest of only a few draws
-NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # of its place and of a radian: what depends on these themselves changes as little
-LAW_TOLERANCE = 1e-9  # of one instant: rounding makes a thousandth of it where rows are independent
-PRECISION_MARGIN = 10.0  # of an engine of lower precision
-INSTANT_STEP, INSTANT_STEPS = 0.01, 5  # a step of the mechanism's own time scale, and how many are asked
-Errors = Mapping[str, tuple[float, float]]  # by check (error, what it may be)
+NOISE_MARGIN = 10.0  # above 1, since the noise is the maximum of few samples
+NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # the shift is relative to the distance, the rotation in radians
+LAW_TOLERANCE = 1e-9  # a thousand times the error of rounding with independent rows
+PRECISION_MARGIN = 10.0  # tolerance in units of the engine's precision
+INSTANT_STEP, INSTANT_STEPS = 0.01, 5  # step in units of the mechanism's time scale, and number of steps
+Errors = Mapping[str, tuple[float, float]]  # (error, tolerance) by check
 
 
 @dataclass(frozen=True)
 class CheckSkipped:
-    """The reason why a check does not apply to a case, one sentence."""
+    """The reason why a check does not apply to a case."""
 
     reason: str
 
 
 class Fault(Exception):
-    """A failure without a numerical error; the message is one sentence with the reason."""
+    """A failure of an engine without a numerical error; the message is the reason."""
 
 
 def iter_nudged(mechanism: Mechanism, away: float = 0.0) -> Iterator[Described]:
-    """Yield the mechanism slightly shifted, turned and rounded, with the function that transforms a run back.
+    """Yield slightly shifted, rotated and rounded copies, each with the function that transforms a run back.
 
-    The shift is NUDGE_SHARE of the distance `away` [m], the rotation at most NUDGE_SHARE radians.
+    The shift is at most NUDGE_SHARE times the largest of `away` [m], the length scale and the coordinates of bodies.
+    The rotation is at most NUDGE_SHARE radians.
     """
     random = np.random.default_rng(NUDGE_COUNT)
     far = NUDGE_SHARE * max(away, mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
     for seed, (x, y, turn) in enumerate(random.uniform(-1.0, 1.0, (NUDGE_COUNT, 3)).tolist()):
         moved, back = Isometry(turn=NUDGE_SHARE * turn, shift=(far * x, far * y))(mechanism)
-        with suppress(InvalidMechanism):  # numbers that fit to the last digit alone
+        with suppress(InvalidMechanism):  # some joints are closed only to the last digit
             moved = Nudge(seed)(moved)
         yield moved, back
 
@@ -62,15 +63,15 @@ def iter_nudged(mechanism: Mechanism, away: float = 0.0) -> Iterator[Described]:
 def difference(mechanism: Mechanism, found: Array, expected: Array, scales: tuple[Array, ...] = ()) -> float:
     """The largest difference of two motions (..., bodies, 3), relative to the largest of `expected` and of `scales`.
 
-    Rotations count as the arcs that they make at the mechanism's own length. Infinite where a number is lost.
+    Angles are multiplied by the mechanism's length scale. The difference is infinite if a number is not finite.
     """
     return _relative(found, expected, np.array([1.0, 1.0, mechanism.length_scale]), scales)
 
 
 def force_difference(mechanism: Mechanism, found: Array, expected: Array, scales: tuple[Array, ...] = ()) -> float:
-    """The largest relative difference of forces (..., rows); torques are divided by the mechanism's length.
+    """The largest relative difference of forces (..., rows); torques are divided by the mechanism's length scale.
 
-    Rows whose force is NaN, since the engine does not report it, are left out.
+    A force of NaN is one that the engine does not report; it is ignored.
     """
     reported = ~np.isnan(found)
     size = np.where(mechanism.is_angular, 1 / mechanism.length_scale, 1.0)
@@ -88,8 +89,8 @@ def _relative(found: Array, expected: Array, size: Array, scales: tuple[Array, .
 def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array) -> float:
     """Rotation [rad] of the fastest body, or of the fastest constraint direction, in a step of dt [s] from a state.
 
-    A row turns at about the rate |J' v| / (|J| |v|), with the velocities of its bodies: a short rod, say, whose ends
-    move apart. Above a radian no integrator follows, and what comes of the motion is rounding.
+    A constraint direction turns at about the rate |J' v| / (|J| |v|). Above one radian, the result of every integrator
+    is dominated by rounding.
     """
     rows, bias = mechanism.rows(pose), mechanism.bias(pose, twist)
     size = np.array([1.0, 1.0, mechanism.length_scale])
@@ -101,7 +102,7 @@ def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array)
 
 
 def driving_force(mechanism: Mechanism, twist: Array) -> float:
-    """A force [N] that acts in the mechanism: of gravity, of its motion, or of its force elements at the start."""
+    """Scale [N] of the forces that act: gravity, inertia forces, or the force elements at the start."""
     rate = np.abs(twist[:, 2]).max()
     speed = np.hypot(twist[:, 0], twist[:, 1]).max()
     pull = np.hypot(*mechanism.gravity) + rate * rate * mechanism.length_scale + speed / mechanism.time_scale
@@ -111,9 +112,9 @@ def driving_force(mechanism: Mechanism, twist: Array) -> float:
 
 
 def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
-    """Relative errors of an engine's first steps against the law that it declares for single instants.
+    """Errors of an engine's first steps against the equations that it declares for single instants.
 
-    See `engines.Engine.instants`; errors are relative to the largest term of the law.
+    `engines.Engine.instants` returns both sides. Errors are relative to the largest term of the equations.
     """
     declared_instants = _instants(engine, mechanism)
     if isinstance(declared_instants, NotDeclared):
@@ -128,20 +129,20 @@ def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkippe
     for nudged, back in iter_nudged(mechanism):
         others = _instants(engine, nudged)
         if not isinstance(others, NotDeclared):
-            for instant, other in zip(
-                declared_instants, others, strict=False
-            ):  # the later states of one may be left out
+            # One of the two runs may have fewer instants.
+            for instant, other in zip(declared_instants, others, strict=False):
                 noise[instant.check] = max(noise[instant.check], _nudge_effect(mechanism, instant, other, back))
     return {check: (error, max(bound, NOISE_MARGIN * noise[check])) for check, error in missed.items()}
 
 
 def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDeclared:
-    """Instants of the first steps; only the start if something turns by a radian in a step, or rolls: rows of a roll
-    are those of a closed gap, and turn by an open one over the radius of curvature.
+    """Instants of the first steps; only the start if something turns by more than a radian in a step, or rolls.
+
+    The rows of a roll hold only for a closed gap: an open gap turns them by the gap divided by the radius of curvature.
     """
     dt = INSTANT_STEP * mechanism.time_scale
 
-    def followed(instant: Instant) -> bool:
+    def is_resolved(instant: Instant) -> bool:
         return turned_in_a_step(mechanism, dt, *instant.state) <= 1
 
     rolls = any(isinstance(joint, Roll) for joint in mechanism.joints)
@@ -150,7 +151,7 @@ def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDe
     if isinstance(declared, NotDeclared):
         return declared
     first = len({instant.check for instant in declared})
-    return [instant for index, instant in enumerate(declared) if index < first or followed(instant)]
+    return [instant for index, instant in enumerate(declared) if index < first or is_resolved(instant)]
 
 
 def _instant_error(mechanism: Mechanism, instant: Instant) -> float:
@@ -162,7 +163,7 @@ def _instant_error(mechanism: Mechanism, instant: Instant) -> float:
 
 
 def _nudge_effect(mechanism: Mechanism, instant: Instant, other: Instant, back: Callable[[Trajectory], Three]) -> float:
-    """Sum of the changes of the computed and of the expected values between two descriptions."""
+    """Sum of the differences of `found` and of `expected` between two descriptions."""
 
     def described_back(values: Array) -> Array:
         motion, force = np.zeros((1, len(mechanism.bodies), 3)), np.zeros((1, mechanism.row_count))

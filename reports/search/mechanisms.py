@@ -1,16 +1,15 @@
-"""Random planar mechanisms, each from a seed and a number: for tests and searches anywhere in the suite.
+"""Random planar mechanisms, each defined by a seed and a number.
 
     from reports.search.mechanisms import mechanism, recipe
     for number in range(2000):
-        drawn = mechanism(seed=1, number=number)                          # kinds of `FIRST_KINDS`
+        drawn = mechanism(seed=1, number=number)                          # kinds: FIRST_KINDS
         wide = mechanism(1, number, kinds=("pin", "slot", "skate"), decades=2)
-        whole = mechanism(1, number, kinds=ALL_KINDS)                     # rods, gears, welds and forces too
+        whole = mechanism(1, number, kinds=ALL_KINDS)                     # also rods, gears, welds, forces
 
-A case depends on its own seed, number, kinds and decades alone: numpy's PCG64 gives its whole numbers, which are the
-same on every machine. A mechanism has 1 to 6 bodies. Most are connected to an earlier body or to the ground by a joint
-of the selected kinds, and up to three further joints close loops. Angles are not special, and points of joints are not
-at centres of mass. Half of the mechanisms have gravity, three quarters move at the start, and each has at least one of
-the two. The rows of the joints are independent (`recipe.DEPENDENCE_LIMIT`), and a freedom is left or a drive turns.
+A case depends on its seed, number, kinds and decades alone. Its integers are drawn by numpy's PCG64 and are the same on
+every machine. A mechanism has 1 to 6 bodies. Most bodies are connected to an earlier body or to the ground by a joint
+of the selected kinds. Up to three more joints close loops. Every mechanism has gravity or moves at the start.
+The rows of the joints are independent (`recipe.DEPENDENCE_LIMIT`), and a degree of freedom is left or a drive turns.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ from reports.search.recipe import Held, Standing, build
 
 DRAWN_BODIES, DRAWN_LOOPS = 6, 3
 DECADES_LIMIT = 6
-# The first rim and the second of a roll: which pairs of shapes can roll whatever their sizes are.
+# Pairs of shapes (first rim, second rim) that can roll with all sizes.
 RIM_PAIRS = (
     ("line", "circle"),
     ("line", "ellipse"),
@@ -90,7 +89,7 @@ class _Draw:
         self._kinds = tuple(kind for kind in (*ALL_KINDS, *SINGULAR_KINDS) if kind in kinds)  # their order is no choice
 
     def whole(self, low: int, high: int) -> int:
-        """Both included."""
+        """Draw an integer from `low` to `high`, both included."""
         return int(self._random.integers(low, high + 1))
 
     def two(self, most: int) -> tuple[int, int]:
@@ -131,7 +130,7 @@ class _Draw:
     def _independent(
         self, standing: Standing, links: Sequence[RecipeLink]
     ) -> tuple[tuple[RecipeLink, ...], Sequence[Held]]:
-        """The links that are independent and leave a freedom, and their joints."""
+        """The links whose joints are independent and leave a degree of freedom, and these joints."""
         held_joints: list[Held] = []
         kept_links: list[RecipeLink] = []
         freedom = 3 * len(standing.bodies)
@@ -155,13 +154,13 @@ class _Draw:
         return (first, second) if first != second else (0, second)
 
     def _link(self, first: int, second: int, parts: Sequence[RecipeBody]) -> RecipeLink:
-        # Pins twice as often and more: they make the trees in which the others are interesting.
+        # Pins are drawn more often, since they connect the bodies to trees.
         more_pins = ["pin"] * max(1, len(self._kinds) // 3)
         choice = (*self._kinds, *more_pins) if "pin" in self._kinds else self._kinds
         kind = choice[self.whole(0, len(choice) - 1)]
         at, turn = self.two(6), self.whole(-10, 10)
         if self.chance(6):
-            at = (0, 0)  # the centre of mass is a place of its own in many an adapter
+            at = (0, 0)  # many adapters treat the centre of mass as a special case
         along, rims = 0, ()
         if kind == "drive":
             along = self.whole(-6, 6)
@@ -178,7 +177,7 @@ class _Draw:
         return RecipeLink(kind, first, second, at, turn, along, rims)
 
     def _further(self, kind: str, first: int, second: int, at: tuple[int, int], turn: int) -> RecipeLink:
-        """Draw a link of a later kind; its distance, ratio or force is not zero."""
+        """Draw a link of a kind outside of FIRST_KINDS; its distance, ratio or force is not zero."""
         amount = self.whole(1, 8) * (1 if self.chance(2) else -1)
         strength, rest = self.whole(-2, 4), self.whole(-10, 10)
         if kind in ("rod", "gear", "force", "torque"):
@@ -205,9 +204,9 @@ def _with_pins(link: RecipeLink) -> tuple[RecipeLink, ...]:
     return (RecipeLink("pin", link.first, link.second, link.at), link) if link.kind == TOGGLE else (link,)
 
 
-SHAPE_COUNT = 6  # of a search, of each set of kinds; every second one with a loop
-CASES_PER_SHAPE = 10  # cases after which the next shape comes
-SHAPE_TRIALS = 400  # shapes that an engine may refuse
+SHAPE_COUNT = 6  # number of shapes by seed and kinds; every second shape has a loop
+CASES_PER_SHAPE = 10  # number of consecutive cases with the same shape
+SHAPE_TRIALS = 400  # number of recipes that are tried as shapes
 
 Whole = Callable[[int, int], int]
 
@@ -241,9 +240,10 @@ def _shapes(engine: Engine, seed: int, kinds: tuple[str, ...], decades: int) -> 
 
 
 def renumber(shape: Recipe, whole: Whole) -> Recipe:
-    """A recipe of the same shape with new numbers in the ranges of `recipe`; `whole(low, high)` draws one, inclusive.
+    """A recipe of the same shape with new numbers; `whole(low, high)` draws an integer, both ends included.
 
-    Zero stays zero, since a drive at rest is held otherwise than one that turns. A ratio of gears is compiled in.
+    Zero stays zero, since engines build a drive at rest differently from one that turns. The ratio of a gear does not
+    change, since it is a constant of the compiled model.
     """
 
     def part(old: RecipeBody) -> RecipeBody:

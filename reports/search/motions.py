@@ -1,8 +1,8 @@
 """Convergence check: a short motion and its reactions against the judge, at two or more steps.
 
-The step is halved, up to FINEST_DIVISION times finer, until poses and reactions converge with the engine's declared
-order. A step at which the motion diverges is too long if the motion is right at shorter ones. An error that does not
-converge is a fault, unless it is noise (`reports.search.law`), follows from the declared compliance, or a textbook
+The step is halved, at most to 1/FINEST_DIVISION, until poses and reactions converge with the engine's declared order.
+Divergence at a long step is accepted if the motion converges at shorter steps. An error that does not converge is a
+fault, with three exceptions: it is noise (`reports.search.law`), the declared compliance explains it, or a textbook
 method of the same order does not converge either.
 """
 
@@ -41,23 +41,23 @@ Array = NDArray[np.float64]
 Floors = dict[str, float]
 
 MOTION_SPAN = 0.4  # duration in units of the mechanism's time scale: too short for exponential growth of errors
-MOTION_SAMPLES, COARSE_STEPS = 4, 10  # and steps between samples
-# Times the error that the declared order predicts from the coarser step: allows for the next power of the step and for
-# errors that are known at samples only (as in `engines.conformance.moving`).
+MOTION_SAMPLES, COARSE_STEPS = 4, 10  # COARSE_STEPS: steps between two samples
+# Tolerance relative to the error that the declared order predicts from the coarser step. The margin covers the next
+# power of the step and the sampling of the error (as in `engines.conformance.moving`).
 ORDER_MARGIN = 2.5
-# Smallest tolerances relative to the motion: rounding, also of combined runs and of a drive with a large inertia.
+# Smallest tolerances, relative to the motion. They cover rounding in combined runs and in drives of large inertias.
 ERROR_FLOORS = {"motion": 1e-8, "reactions": 1e-5}
 FINEST_DIVISION = 64
 DIVERGED_ERROR = 10.0  # relative to the motion: a run with a larger error has diverged
-DISTANT_POSE = 0.1  # rad, or lengths of the mechanism: at a pose error this large, reactions are not compared
-CACHED_MECHANISMS = 16  # all engines run one chunk of cases before the next one, see `chunk.CHUNK_SIZE`
-RIGID_COMPLIANCE = 1e-10  # compliance in units of the squared time scale: joints with less count as ideal
-ENGINE_WARNED = CheckSkipped("it says itself that something is wrong")
+DISTANT_POSE = 0.1  # relative to the length scale: with a larger pose error, reactions are not compared
+CACHED_MECHANISMS = 16  # above `chunk.CHUNK_SIZE`: all engines run one chunk of cases before the next chunk
+RIGID_COMPLIANCE = 1e-10  # in units of the squared time scale: a joint with a smaller compliance counts as ideal
+ENGINE_WARNED = CheckSkipped("the engine warns that something is wrong")
 
 
 @by_identity(CACHED_MECHANISMS)
 def judge_motion(mechanism: Mechanism) -> Trajectory:
-    """The judge's motion of a mechanism; cached, since many engines run the same mechanism."""
+    """The judge's motion, cached since many engines run the same mechanism."""
     return TRUTH.build(mechanism, MOTION_SPAN * mechanism.time_scale / MOTION_SAMPLES)(MOTION_SAMPLES, 1)
 
 
@@ -67,23 +67,21 @@ def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped
     Raises Fault if a run diverges without a warning.
     """
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
-        return CheckSkipped(
-            "shapes that touch may part, and those with corners do not roll as the curves do, at any step"
-        )
+        return CheckSkipped("shapes in contact may separate, and a polygon does not roll like its curve")
     dt = MOTION_SPAN * mechanism.time_scale / MOTION_SAMPLES / COARSE_STEPS
     coarse = _run(engine, mechanism, dt, 1)
     promise = engine.order(mechanism)
     if isinstance(promise, NotDeclared):
-        return CheckSkipped(f"no order is promised: {promise.reason}")
+        return CheckSkipped(f"the engine declares no order: {promise.reason}")
     if _has_lasting_compliance(engine, mechanism, dt):
-        return CheckSkipped("joints give way as the engine says, by the same at every step")
+        return CheckSkipped("joints give way by the declared compliance, at every step")
     truth = judge_motion(mechanism)
     if not np.isfinite(truth.pose).all():
-        return CheckSkipped("the judge itself finds no motion")
+        return CheckSkipped("the judge finds no motion")
     if truth.unresolved_at is not None:
-        return CheckSkipped(f"the judge itself does not hold {JUDGE_CLAIM:g}, as it says")
+        return CheckSkipped(f"the judge does not reach its tolerance of {JUDGE_CLAIM:g}")
     if max(turned_in_a_step(mechanism, dt, *state) for state in zip(truth.pose, truth.twist, strict=True)) > 1:
-        return CheckSkipped("steps are too long for what turns, so that no order is seen")
+        return CheckSkipped("something turns by more than a radian in a step, so no order is visible")
     case = _Case(engine, mechanism, promise, truth, dt)
     halved = case.halved(coarse)
     if isinstance(halved, CheckSkipped):
@@ -100,17 +98,17 @@ def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped
 def _run(engine: Engine, mechanism: Mechanism, dt: float, parts: int) -> Trajectory:
     run = engine.build(mechanism, dt / parts)(MOTION_SAMPLES, parts * COARSE_STEPS)
     if run.estimate is not None and not run.warnings and not np.isfinite(run.pose).all():
-        raise Fault(f"at a step of {dt / parts:.3g} s it lost the motion, though it tells its own error")
+        raise Fault(f"at a step of {dt / parts:.3g} s the motion diverged, and the error estimate gives no warning")
     return run
 
 
 def _has_lasting_compliance(engine: Engine, mechanism: Mechanism, dt: float) -> bool:
-    """Whether the compliance of joints is visible and does not vanish with the step."""
+    """Whether the compliance of joints is visible and does not become smaller with the step."""
     coarse, fine = (engine.regularisation(mechanism, step) for step in (dt, dt / 2))
     if coarse is None or fine is None:
         return False
-    ways = [soft.compliance / soft.stiffness / mechanism.time_scale**2 for soft in (coarse, fine)]
-    return ways[1] > RIGID_COMPLIANCE and 2 * ways[1] > ways[0]
+    at_coarse, at_fine = (soft.compliance / soft.stiffness / mechanism.time_scale**2 for soft in (coarse, fine))
+    return at_fine > RIGID_COMPLIANCE and 2 * at_fine > at_coarse
 
 
 def _fails(found: Errors) -> bool:
@@ -124,7 +122,7 @@ def _tolerance_for(promise: ConvergenceOrder, name: str, coarser: float, floor: 
 
 @dataclass(frozen=True, eq=False)
 class _Case:
-    """A mechanism in an engine, with the judge's motion of it; `dt`: the coarse step [s]."""
+    """A mechanism in an engine, with the judge's motion; `dt`: the coarse step [s]."""
 
     engine: Engine
     mechanism: Mechanism
@@ -134,7 +132,10 @@ class _Case:
 
     @cached_property
     def size(self) -> float:
-        """Largest displacement [m], with or without joints; at least so large that rounding is below ERROR_FLOORS."""
+        """Largest displacement [m], with or without joints.
+
+        Its lower bound is chosen so that rounding stays below ERROR_FLOORS.
+        """
         mechanism, arm = self.mechanism, np.array([1.0, 1.0, self.mechanism.length_scale])
         moved = float(np.abs((self.truth.pose - mechanism.pose) * arm).max())
         pulled = float(np.abs(mechanism.unconstrained(mechanism.pose, mechanism.twist) * arm).max())
@@ -147,7 +148,7 @@ class _Case:
 
     @cached_property
     def forces(self) -> tuple[Array, ...]:
-        """What reactions are compared with: those of the judge, and the forces that act."""
+        """Scales of reactions: the judge's reactions and the applied forces."""
         acting = max(driving_force(self.mechanism, twist) for twist in self.truth.twist)
         arms = np.where(self.mechanism.is_angular, self.mechanism.length_scale, 1.0)
         return np.nan_to_num(self.truth.reaction), arms * max(acting, np.finfo(float).tiny)
@@ -182,20 +183,18 @@ class _Case:
                 is_comparable = floor < DIVERGED_ERROR and (coarser[name] < DIVERGED_ERROR or parts == FINEST_DIVISION)
                 if is_comparable and (name not in out or not out[name][0] <= out[name][1]):
                     out[name] = (error, _tolerance_for(self.promise, name, coarser[name], floor))
-        # What two steps after each other say nothing of is silent.
+        # Two successive runs without a warning count as silent.
         if warned and longest < 2 and (_fails(out) or not np.isfinite(run.pose).all()):
             return ENGINE_WARNED
         return run, parts, out
 
     def excuse(self, run: Trajectory, parts: int, out: dict[str, tuple[float, float]]) -> CheckSkipped | None:
-        """Add noise and declared compliance to the tolerances; return a reason to skip the case, if there is one."""
+        """Add noise and declared compliance to the tolerances; return the reason if the case is to be skipped."""
         if not np.isfinite(run.pose).all():
             stricter = self.engine.stricter(self.mechanism)
             if stricter is not None and np.isfinite(_run(stricter, self.mechanism, self.dt, parts).pose).all():
-                return CheckSkipped(
-                    "its solver leaves so much at these steps that the motion is lost, and not if it goes on"
-                )
-            raise Fault(f"at a step of {self.dt / parts:.3g} s it lost the motion, and says nothing")
+                return CheckSkipped("the motion diverges, but not with a smaller tolerance of the solver")
+            raise Fault(f"at a step of {self.dt / parts:.3g} s the motion diverged without a warning")
         noise = self.noise(run, parts)
         out |= {
             name: (error, max(bound, min(NOISE_MARGIN * noise[name], DIVERGED_ERROR)))
@@ -206,13 +205,11 @@ class _Case:
         if _fails(out):
             out |= self.as_declared(run, parts)
         if _fails(out) and not self.resolved(parts):
-            return CheckSkipped(
-                "something passes within a step: a textbook method shows no order at these steps either"
-            )
+            return CheckSkipped("a textbook method shows no order at these steps either")
         return None
 
     def noise(self, run: Trajectory, parts: int) -> Floors:
-        """Changes of the errors with rounding of the run and of the judge, and with a smaller solver tolerance."""
+        """Differences by rounding, of the run and of the judge's motion, and by a smaller solver tolerance."""
         pairs: list[tuple[Trajectory, Trajectory]] = []
         for nudged, back in iter_nudged(self.mechanism):
             truth = judge_motion.__wrapped__(nudged)  # pyright: ignore[reportFunctionMemberAccess]
@@ -226,10 +223,9 @@ class _Case:
         return {name: max(pair_difference[name] for pair_difference in differences) for name in ERROR_FLOORS}
 
     def resolved(self, parts: int) -> bool:
-        """Whether a textbook method of the declared order (at most 4) converges with it in two successive halvings.
+        """Whether a textbook method of the declared order (at most 4) converges with that order in two halvings.
 
-        A spring whose length passes zero within a step reverses its force: the error then depends on the instants of
-        the method's stages and follows no power of the step.
+        A counterexample is a spring whose length passes zero within a step, so that its force is reversed.
         """
         usual = ConvergenceOrder(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
         spacing, parts = MOTION_SPAN * self.mechanism.time_scale / MOTION_SAMPLES, max(4, parts)
@@ -239,7 +235,7 @@ class _Case:
                 textbook(self.mechanism, MOTION_SAMPLES, spacing, int(usual.order), n * COARSE_STEPS, None, True)
                 for n in (parts // 4, parts // 2, parts)
             ]
-        except ValueError:  # it went where curves can't touch
+        except ValueError:  # the curves have no contact at this pose
             return False
         differences = [self.apart(run) for run in runs]
         return not any(
@@ -250,11 +246,11 @@ class _Case:
     def as_declared(self, run: Trajectory, parts: int) -> dict[str, tuple[float, float]]:
         """(error, tolerance) against the judge's run with the regularisation that the engine declares at this step.
 
-        A compliance that is tied to the step converges with its order only where it is small, so the judge is run with
-        that compliance at the same steps. The tolerance is ORDER_MARGIN times the larger of two uncertainties of the
-        judge's run: its change with double steps, since the engine integrates other coordinates; and its change with
-        the compliance scaled by the largest ratio of inverse inertias along the motion, since the judge evaluates the
-        inverse inertia at each pose and MuJoCo at the start.
+        A compliance that depends on the step converges with its order only if it is small. So the judge is run with the
+        same compliance and the same steps. The tolerance is ORDER_MARGIN times the larger of two changes of this run.
+        The first is the change with doubled steps, since the engine integrates other coordinates. The second is the
+        change with the compliance scaled by the largest ratio of inverse inertias along the motion, since the judge
+        evaluates the inverse inertia at each pose, and MuJoCo only at the start.
         """
         mechanism, spacing = self.mechanism, MOTION_SPAN * self.mechanism.time_scale / MOTION_SAMPLES
         softness = self.engine.regularisation(mechanism, self.dt / parts)
@@ -262,29 +258,27 @@ class _Case:
             return {}
         order, gives = int(self.promise.step("angle")), giving_way(mechanism, softness)
 
-        def judged_as(
-            compliance: float, every: int
-        ) -> Trajectory:  # MOTION_SAMPLES x COARSE_STEPS samples, so that fast rows are met
+        def run_judge(compliance: float, every: int) -> Trajectory:
             soft = replace(softness, compliance=compliance * softness.compliance)
-            return in_numpy(
-                mechanism, MOTION_SAMPLES * COARSE_STEPS, spacing / COARSE_STEPS, order, every, soft, least=0.0
-            )
+            samples = MOTION_SAMPLES * COARSE_STEPS  # many samples, so that the largest ratio of inertias is found
+            return in_numpy(mechanism, samples, spacing / COARSE_STEPS, order, every, soft, least=0.0)
 
         try:
-            right = judged_as(1.0, parts)
+            right = run_judge(1.0, parts)
             products = [(rows / mechanism.inertias.reshape(-1)) @ rows.T for rows in mechanism.rows(right.pose)]
             share = np.array([inverse_inertia(product, gives, 0.0)[gives] for product in products])
             ratio = float((share.max(axis=0) / share.min(axis=0)).max())
-            runs = right, judged_as(1.0, max(1, parts // 2)), judged_as(ratio, parts)
-        except ValueError:  # curves can't touch where it goes
+            runs = right, run_judge(1.0, max(1, parts // 2)), run_judge(ratio, parts)
+        except ValueError:  # the curves have no contact at this pose
             return {}
         names = ("t", "pose", "twist", "reaction")
         right, *others = (
             replace(soft, **{name: getattr(soft, name)[::COARSE_STEPS] for name in names}) for soft in runs
         )
-        open_by = [self.apart(other, right) for other in others]
+        changes = [self.apart(other, right) for other in others]
         bounds = {
-            name: max(least, ORDER_MARGIN * max(item[name] for item in open_by)) for name, least in ERROR_FLOORS.items()
+            name: max(least, ORDER_MARGIN * max(change[name] for change in changes))
+            for name, least in ERROR_FLOORS.items()
         }
         return {name: (error, bounds[name]) for name, error in self.apart(run, right).items()}
 
@@ -297,25 +291,26 @@ class _Case:
         return ESTIMATE_MARGIN * float(max(estimates)) / self.size + ERROR_FLOORS["motion"]
 
     def of_estimate(self, run: Trajectory, parts: int) -> tuple[float, float]:
-        """(error, tolerance) of a run with an error estimate; the judge's estimate is part of the tolerance."""
+        """(error, tolerance) of a run with an error estimate."""
         bound, missed = self.estimated(run), self.apart(run)["motion"]
         if missed > bound:
             bound = max(bound, NOISE_MARGIN * self.noise(run, parts)["motion"])
         return missed, min(bound, DIVERGED_ERROR)
 
 
-CLAIM_SPAN = 2.0  # times the mechanism's own time scale
+CLAIM_SPAN = 2.0  # duration in units of the mechanism's time scale
 CLAIM_STEPS = (40, 100, 200)  # steps in CLAIM_SPAN; the case's number selects one
 SAMPLE_INTERVALS = (1, 2, 5)  # steps between samples; the case's number selects one
 CLAIMED_POSES, CLAIMED_REACTIONS, NEEDLESS_REPORT = "claimed", "claimed of reactions", "reported, though right"
 
 
 def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | CheckSkipped:
-    """(error, claim) of a method with an estimate of its own, over a longer motion, at steps as users take.
+    """(error, claim) of a method with an error estimate, over a longer motion, at steps that users choose.
 
-    Poses, in radians or parts of the length, are right to CLAIM until `unresolved_at`, and reactions to FORCES of the
-    largest force, unless it warns of them. A warning of another kind withdraws the claim. NEEDLESS_REPORT is 1 where a
-    method warns although all poses are right, else 0; it is counted and no fault.
+    A method claims an error of at most CLAIM for poses until `unresolved_at`, relative to a radian or the length scale.
+    It claims an error of at most FORCES for reactions, relative to the largest force, unless it warns of reactions. Any
+    other warning withdraws both claims. NEEDLESS_REPORT is 1 if a method warns although all poses hold the claim, else
+    0; it is counted but is no fault.
     """
     steps, every = (
         CLAIM_STEPS[number % len(CLAIM_STEPS)],
@@ -324,10 +319,10 @@ def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | 
     dt = CLAIM_SPAN * mechanism.time_scale / steps
     run = engine.build(mechanism, dt)(steps // every, every)
     if run.estimate is None:
-        return CheckSkipped("it has no estimate of its own error")
+        return CheckSkipped("the method has no error estimate")
     truth = _long_judge_motion(mechanism)
     if truth.unresolved_at is not None or truth.warnings or not np.isfinite(truth.pose).all():
-        return CheckSkipped(f"the judge itself does not hold {JUDGE_CLAIM:g}, as it says")
+        return CheckSkipped(f"the judge does not reach its tolerance of {JUDGE_CLAIM:g}")
     return check_claims(mechanism, run, truth)
 
 
@@ -353,6 +348,6 @@ def check_claims(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> di
 
 @by_identity(CACHED_MECHANISMS)
 def _long_judge_motion(mechanism: Mechanism) -> Trajectory:
-    """The judge's motion, at all instants at which any run is sampled."""
+    """The judge's motion, at all sampling instants of all runs."""
     samples = int(np.lcm.reduce(CLAIM_STEPS))
     return TRUTH.build(mechanism, CLAIM_SPAN * mechanism.time_scale / samples)(samples, 1)

@@ -1,9 +1,8 @@
-"""MuJoCo alone, on models in its own XML that the search writes: the law of their accelerations.
+"""Random models in MuJoCo's own format, and their equations of motion at the start.
 
-No adapter is used, so a finding is a fault of MuJoCo itself, in the release that `reports.search.release` runs. A model
-is a tree of slides and hinges in the plane; `connect`, `weld`, `joint` and `tendon` equalities close it. The law is
-written here in the coordinates of the tree. Derivatives are computed by complex steps, which are exact to rounding;
-only the compliance of each constraint (`efc_R`) is taken from MuJoCo.
+No adapter is used, so a finding is a fault of MuJoCo itself. A model is a planar tree of slides and hinges with
+`connect`, `weld`, `joint` and `tendon` equalities. The equations are written in the coordinates of the tree. Complex
+steps give derivatives without truncation error. Only the compliance (`efc_R`) of the constraints comes from MuJoCo.
 """
 
 from __future__ import annotations
@@ -24,19 +23,22 @@ from reports.search.recipe import DEPENDENCE_LIMIT, MOTION_ROUNDING
 Array = NDArray[np.float64]
 Numbers = Any  # an array, real or complex
 
-# "gear": a joint equality that is a straight line; "joint" and "tendon" are curved.
+# "gear" is a linear joint equality; "joint" and "tendon" equalities are quadratic.
 EQUALITY_KINDS = ("connect", "weld", "gear", "joint", "tendon")
 HINGED_KINDS = ("connect", "weld", "gear")
 RAW_BODIES, RAW_EQUALITIES = 9, 3
-DERIVATIVE_STEP = 1e-30  # of a complex step
+DERIVATIVE_STEP = 1e-30  # imaginary step of a derivative
 
 
 @dataclass(frozen=True)
 class RawBody:
-    """A body. `parent`: 0 is the world, 1 the first body. `offset`: tenths of a metre in the parent's frame; `angle` in
-    steps of 0.3 rad against it. It has so many `slides` (0 to 2: along the x and y of its own frame as it starts) and
-    then, if it `turns`, a hinge at its frame's origin. `centre`: its centre of mass in tenths of a metre; `mass` and
-    `inertia` (about the centre) on the ladder of `parts`. `velocity`: of its slides and hinge, in halves per second.
+    """A body in integers.
+
+    `parent`: number of an earlier body, or 0 for the world. `offset`: position in the parent's frame, in tenths of a
+    metre. `angle`: relative to the parent, in steps of 0.3 rad. `slides`: number of slides, the first along x and the
+    second along y of the body's frame. `turns`: whether the body has a hinge at the origin of its frame. `centre`:
+    centre of mass, in tenths of a metre. `mass`, `inertia` about the centre: steps of `parts.ladder`. `velocity`: of
+    the slides and the hinge, in steps of 0.5 m/s and 0.5 rad/s.
     """
 
     parent: int = 0
@@ -51,18 +53,19 @@ class RawBody:
 
     @property
     def rates(self) -> dict[str, float]:
-        """The velocity of each of its coordinates [m/s, rad/s]."""
+        """The velocity of each coordinate [m/s, rad/s]."""
         names = [*("slide 0", "slide 1")[: self.slides], *(["hinge"] if self.turns else [])]
         return {name: self.velocity[("slide 0", "slide 1", "hinge").index(name)] / 2 for name in names}
 
 
 @dataclass(frozen=True)
 class Equality:
-    """`first` and `second`: bodies (0: the world, the second's alone); for kinds of coordinates the last of each body.
+    """An equality constraint in integers.
 
-    `at`: the anchor of a connect, tenths of a metre in the first body's frame. `curve`: slope and curvature, in halves,
-    of the first coordinate or tendon as a function of the second. A tendon is the sum of a coordinate and the one
-    before it.
+    `first`, `second`: numbers of the bodies; `second` may be 0, the world, for "connect" and "weld". The other kinds
+    couple the last coordinates of both bodies. `at`: anchor of a "connect" in the first body's frame, in tenths of a
+    metre. `curve`: twice the linear and the quadratic coefficient of the first coordinate or tendon as a function of
+    the second. A tendon is the sum of a coordinate and the previous coordinate.
     """
 
     kind: str
@@ -74,7 +77,7 @@ class Equality:
 
 @dataclass(frozen=True)
 class RawModel:
-    """`gravity` in m/s^2; `sparse`: whether MuJoCo shall store a sparse Jacobian."""
+    """A model in integers; `gravity` in m/s^2; `sparse`: whether MuJoCo uses a sparse Jacobian."""
 
     parts: tuple[RawBody, ...]
     links: tuple[Equality, ...]
@@ -83,12 +86,11 @@ class RawModel:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of its equalities, each once."""
         return tuple(kind for kind in EQUALITY_KINDS if any(link.kind == kind for link in self.links))
 
 
 def coordinates(model: RawModel) -> list[tuple[int, str]]:
-    """(body from 1, 'slide 0', 'slide 1' or 'hinge') of each, as MuJoCo orders them: depth first."""
+    """(body from 1, "slide 0", "slide 1" or "hinge") in MuJoCo's depth-first order."""
 
     def below(body: int) -> list[tuple[int, str]]:
         mine = [(body, name) for name in model.parts[body - 1].rates] if body else []
@@ -99,7 +101,7 @@ def coordinates(model: RawModel) -> list[tuple[int, str]]:
 
 
 def coupled_coordinates(model: RawModel, link: Equality) -> tuple[list[int], list[int]]:
-    """The coordinates, by their numbers, whose sums an equality of coordinates couples. Raises InvalidMechanism."""
+    """Indices of the coordinates whose sums an equality couples. Raises InvalidMechanism for bodies without any."""
     bodies = [body for body, _ in coordinates(model)]
     if link.first == link.second or not {link.first, link.second} <= {*bodies}:
         raise InvalidMechanism(f"model: bodies {link.first} and {link.second} have no coordinates to couple")
@@ -164,11 +166,11 @@ def _across(vector: Numbers) -> Numbers:
     return np.array([-vector[1], vector[0]])
 
 
-Frame = tuple[Numbers, Any, Numbers, Any]  # place (2,) [m], angle [rad], and their rates
+Frame = tuple[Numbers, Any, Numbers, Any]  # position (2,) [m], angle [rad], and their rates
 
 
 def _frames(model: RawModel, q: Numbers, v: Numbers) -> list[Frame]:
-    """The frames of the world and of each body at coordinates q (coordinates,) that change at rates v."""
+    """The frames of the world and of each body at coordinates q (coordinates,) with rates v."""
     values = {name: (q[number], v[number]) for number, name in enumerate(coordinates(model))}
     frames: list[Frame] = [(np.zeros(2), 0.0, np.zeros(2), 0.0)]
     for number, part in enumerate(model.parts, start=1):
@@ -183,7 +185,7 @@ def _frames(model: RawModel, q: Numbers, v: Numbers) -> list[Frame]:
 
 
 def _velocities(model: RawModel, q: Numbers, v: Numbers) -> Numbers:
-    """Velocities (3 bodies,) of centres of mass and angles."""
+    """Velocities (3 bodies,) of the centres of mass and of the angles."""
     out = []
     for part, (_, angle, speed, rate) in zip(model.parts, _frames(model, q, v)[1:], strict=True):
         out += [*(speed + rate * _across(_turned(angle, np.divide(part.centre, 10)))), rate]
@@ -191,7 +193,7 @@ def _velocities(model: RawModel, q: Numbers, v: Numbers) -> Numbers:
 
 
 def _slips(model: RawModel, q: Numbers, v: Numbers) -> list[Numbers]:
-    """The velocities (rows,) with which each equality would open; anchors are those of the start, where q is 0."""
+    """The velocity error (rows,) of each equality; its anchor is defined at the start, where q is 0."""
     start_frames, frames = _frames(model, 0.0 * q.real, 0.0 * q.real), _frames(model, q, v)
     out: list[Numbers] = []
     for link in model.links:
@@ -217,9 +219,9 @@ def _slips(model: RawModel, q: Numbers, v: Numbers) -> list[Numbers]:
 class StartEquations:
     """The equations of motion of a model at the start.
 
-    `root` (coordinates, coordinates): S, with S^T S the mass matrix. `free`: S times the accelerations without
-    equalities. `rows` and `right`: J and J a of each equality; `bent`, the part of `right` that its curve makes;
-    `rates` (coordinates,): a motion that the equalities allow.
+    `root` (coordinates, coordinates): S, where S^T S is the mass matrix. `free`: S times the accelerations without
+    equalities. `rows`, `right`: J and J a of each equality. `bent`: the part of `right` that comes from the curve of
+    the equality. `rates` (coordinates,): velocities that satisfy the equalities.
     """
 
     root: Array
@@ -230,9 +232,9 @@ class StartEquations:
     rates: Array
 
     def expected(self, give: Array, bent: bool = True) -> Array:
-        """Accelerations of the coordinates for a compliance `give` (rows, any) of the equalities' rows.
+        """Accelerations of the coordinates; `give` (rows, any): compliance of the equalities' rows.
 
-        Without `bent` the velocity term of curved equalities is left out, as in MuJoCo up to 4.0.1.
+        bent: whether the velocity term of curved equalities is included; MuJoCo up to 4.0.1 omits it.
         """
         rows: Any = np.linalg.solve(self.root.T, np.vstack([np.zeros((0, len(self.free))), *self.rows]).T).T
         right = [item if bent else item - curve for item, curve in zip(self.right, self.bent, strict=True)]
@@ -240,9 +242,9 @@ class StartEquations:
         return np.asarray(np.linalg.solve(self.root, law.motion), dtype=np.float64)
 
 
-@lru_cache(maxsize=4)  # a model is needed when it is drawn, compared and run
+@lru_cache(maxsize=4)  # used when a model is drawn, compared and run
 def start_equations(model: RawModel) -> StartEquations:
-    """Raises InvalidMechanism where rows are nearly dependent, or something is joined with itself."""
+    """The equations of a model. Raises InvalidMechanism for nearly dependent rows or a body joined to itself."""
     order = coordinates(model)
     count, zeros = len(order), np.zeros(len(order))
     slips = [_slips(model, zeros, unit) for unit in np.eye(count)]
@@ -252,9 +254,9 @@ def start_equations(model: RawModel) -> StartEquations:
         all_rows = np.vstack(rows)
         sizes = np.linalg.svd(all_rows, compute_uv=False)
         if len(all_rows) > count or not sizes[-1] > DEPENDENCE_LIMIT * sizes[0]:
-            raise InvalidMechanism("model: an equality holds nothing, or the equalities' rows are nearly dependent")
+            raise InvalidMechanism("model: a row of an equality is zero, or the equalities' rows are nearly dependent")
         wanted, inverse = rates, np.linalg.pinv(all_rows)
-        for _ in range(2):  # the second time for the rounding of the first
+        for _ in range(2):  # the second pass corrects the rounding of the first
             rates = rates - inverse @ (all_rows @ rates)
         if np.abs(rates).max(initial=0.0) <= MOTION_ROUNDING * np.abs(wanted).max(initial=0.0):
             rates = np.zeros(count)
@@ -275,7 +277,7 @@ def start_equations(model: RawModel) -> StartEquations:
 def draw_model(seed: int, number: int, kinds: tuple[str, ...]) -> RawModel:
     """Case `number` of a seed with equalities of these kinds; the same on every machine.
 
-    With connects, welds and gears alone every body is hinged, else some slide.
+    If all kinds are HINGED_KINDS, no body has slides.
     """
     random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, len(kinds)])))
     while True:
@@ -296,7 +298,7 @@ def _draw_once(random: np.random.Generator, kinds: tuple[str, ...]) -> RawModel:
     for index in range(count):
         slides = 0 if hinged else (0, 0, 1, 2)[whole(0, 3)]
         part = RawBody(
-            parent=whole(0, index) if whole(1, 4) == 1 else whole(min(1, index), index),  # few trees, which branch
+            parent=whole(0, index) if whole(1, 4) == 1 else whole(min(1, index), index),  # few children of the world
             offset=two(8),
             angle=whole(-10, 10),
             slides=slides,

@@ -1,4 +1,4 @@
-"""The oracles of the search, in one table: a new one is a function and an entry here."""
+"""The table of the search's oracles."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ LAW_CHECKS = ("acceleration", CURVED, "velocity", "without velocity terms")
 
 @dataclass(frozen=True)
 class Oracle:
-    """`errors` of an engine in a case: (error, tolerance) by check, or the reason why the oracle does not apply.
+    """`errors` returns (error, tolerance) by check, or the reason why the oracle does not apply.
 
-    `column`: the word of the page's table, which counts all `checks` of the oracle together; the checks of the oracle
-    of motions are all others. `question`: the sentence of the page. `is_default`: used without the option --oracles.
+    `column`: heading of the page's table; the column counts the cases of all `checks` together. `question`: sentence of
+    the page. `is_default`: whether the search uses the oracle without the option --oracles. MOTION_ORACLE lists no
+    checks; a check that no oracle lists belongs to MOTION_ORACLE.
     """
 
     column: str
@@ -34,24 +35,24 @@ MOTION_ORACLE = "motions"
 ORACLES: Mapping[str, Oracle] = {
     "instant": Oracle(
         "instant",
-        "does the engine solve the equations that its settings stand for?",
+        "does the engine solve the equations that it declares for its settings?",
         lambda engine, mechanism, recipe, number: instant_errors(engine, mechanism),
         (*LAW_CHECKS, "reaction", "as its groove pushes", BESIDE_CURVED),
     ),
     "relations": Oracle(
         "description",
-        "is the motion the same where the same mechanism is described otherwise?",
+        "is the motion independent of the description of the mechanism?",
         lambda engine, mechanism, recipe, number: relations.relation_errors(engine, recipe, number),
         relations.RELATIONS,
     ),
     MOTION_ORACLE: Oracle(
         "motion",
-        "is it the motion of the exact judge, but for what the engine's order and softness admit?",
+        "does the motion converge to the judge's motion with the declared order and compliance?",
         lambda engine, mechanism, recipe, number: motions.motion_errors(engine, mechanism),
     ),
-    "claims": Oracle(  # by its name alone: runs are as long as a user's, and cost as much
+    "claims": Oracle(  # not a default oracle, since its runs are long
         "claim",
-        "is an error that a method reports the error that it has?",
+        "is the error of a method within the bound that the method claims?",
         lambda engine, mechanism, recipe, number: motions.claim_errors(engine, mechanism, number),
         (motions.CLAIMED_POSES, motions.CLAIMED_REACTIONS, motions.NEEDLESS_REPORT),
         is_default=False,

@@ -1,4 +1,4 @@
-"""The page of a search, from its stored rows alone."""
+"""The page of a search, from stored results."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 from reports.write.tables import number
 from reports.write.templates import environment
 
-RARE_SHARE = 0.01  # of all cases: reasons that came up less often are counted together
-AXIS_LEAST, AXIS_MOST = 1e-17, 1e2  # what an error of exactly zero, and one without a number, is drawn at
-ROW_INCHES = 0.24  # inches
+RARE_SHARE = 0.01  # reasons of a smaller share of all cases are counted together
+AXIS_LEAST, AXIS_MOST = 1e-17, 1e2  # limits of the axis, to which errors are clipped
+ROW_INCHES = 0.24
 
 
 def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figure | None:
-    """A line for each subject from the median to the largest error of instants; None if no case has such an error."""
+    """A line for each subject from the median to the largest error of the law; None without such errors."""
     errors_by_subject: dict[str, list[float]] = {}
     for case in cases:
         for law in LAW_CHECKS:
@@ -73,7 +73,7 @@ def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figu
 
 
 def known_subjects(texts: Sequence[str]) -> list[Subject]:
-    """Every registered engine, and MuJoCo alone in the releases that occur in these chunks (JSON texts)."""
+    """Every registered engine, and MuJoCo alone in all releases that occur in these chunks (JSON texts)."""
     releases = dict.fromkeys(release_of(json.loads(text)[0]) for text in texts)
     engines = dict.fromkeys([*ENGINES, *OTHERS, plan.GROOVE_SUBJECT.engine])
     return [*(Adapted(engine) for engine in engines), *(Alone(release) for release in releases if release is not None)]
@@ -83,18 +83,18 @@ Stored = tuple[list[CaseResult], list[tuple[Shrink, Answer]], Mapping[PlantedCon
 
 
 def read_stored(store: Store, published: bool = False) -> Stored:
-    """Stored results of the present sources: cases, reduced findings, and the controls with planted faults.
+    """Stored results of the current sources: cases, reduced findings, and controls with planted faults.
 
-    `published`: only cases of the plan (`reports.search.plan`), whose seeds come from the commit's hash.
+    `published`: only cases of `plan.published_chunks`.
     """
     texts = store.load_references()
     subjects = known_subjects(texts)
-    pieces = [piece for piece in (chunk_from_json(text, subjects) for text in texts) if piece is not None]
-    cases = list(iter_case_results(stored_answers(store, plan.published_chunks() if published else pieces)))
+    chunks = [chunk for chunk in (chunk_from_json(text, subjects) for text in texts) if chunk is not None]
+    cases = list(iter_case_results(stored_answers(store, plan.published_chunks() if published else chunks)))
     tasks = [Shrink.of(check, case) for check, case in choose_worst(cases)]
-    small, soon = store.answers(tasks), store.answers(all_controls())
+    small, controls = store.answers(tasks), store.answers(all_controls())
     reduced = [(task, small[task]) for task in tasks if task in small]
-    return cases, reduced, {task: soon[task] for task in all_controls() if task in soon}
+    return cases, reduced, {task: controls[task] for task in all_controls() if task in controls}
 
 
 def render_page(
@@ -104,7 +104,7 @@ def render_page(
     foot: str,
     planned: int = 0,
 ) -> dict[str, str]:
-    """search.md and its picture by file name; empty without cases. `planned`: number of planned cases, or 0."""
+    """The files search.md and search_errors.svg; none without cases. `planned`: number of planned cases, or 0."""
     if not cases:
         return {}
     picture = draw_distribution(cases)
@@ -140,7 +140,7 @@ def _shown_oracles(cases: Sequence[CaseResult]) -> list[Oracle]:
 
 
 def _count_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """A row for each subject: numbers of cases, of refused cases, and of judged and failed cases by group of checks."""
+    """A row for each subject: number of cases, of refused cases, and of judged and failed cases by oracle."""
     subjects: dict[str, list[CaseResult]] = {}
     columns = [oracle.column for oracle in _shown_oracles(cases)]
     for case in cases:
@@ -156,28 +156,28 @@ def _count_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
 
 
 def _skip_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """Rows (question, skip reason, number of cases) of all subjects; rare reasons are summed in the last row."""
+    """Rows (oracle, skip reason, number of cases); the last row is the sum of rare reasons."""
     reasons = count_skip_reasons(cases)
     frequent = [reason for reason in reasons if reason[-1] >= RARE_SHARE * len(cases)]
-    rest = sum(count for *_, count in reasons) - sum(count for *_, count in frequent)
-    rare_row = [["all", f"{len(reasons) - len(frequent)} rarer reasons", str(rest)]] if rest else []
+    rare_count = sum(count for *_, count in reasons) - sum(count for *_, count in frequent)
+    rare_row = [["all", f"{len(reasons) - len(frequent)} rarer reasons", str(rare_count)]] if rare_count else []
     columns = {name: oracle.column for name, oracle in ORACLES.items()}
     return [[columns.get(name, name), text, str(count)] for name, text, count in frequent] + rare_row
 
 
 def _finding_rows(cases: Sequence[CaseResult], small: Sequence[tuple[Shrink, Answer]]) -> list[list[str]]:
-    """A row for each failing check of a subject: number of cases, smallest mechanism, command for the first case."""
+    """A row for each failing check of a subject: number of cases, smallest mechanism, command that finds a case."""
     groups: dict[tuple[str, str], list[CaseResult]] = {}
     for case in cases:
         if case.chunk.subject.name != plan.GROOVE_SUBJECT.name:
             for check in case.result.faults:
                 groups.setdefault((case.chunk.subject.name, check), []).append(case)
-    least = {(task.subject.name, task.check): line_of(answer) for task, answer in reversed(small)}
-    return [[*key, str(len(some)), least.get(key, ""), f"`{_command(some[0])}`"] for key, some in groups.items()]
+    smallest = {(task.subject.name, task.check): line_of(answer) for task, answer in reversed(small)}
+    return [[*key, str(len(some)), smallest.get(key, ""), f"`{_command(some[0])}`"] for key, some in groups.items()]
 
 
 def _command(case: CaseResult) -> str:
-    """The command that draws a case again and writes its script."""
+    """The command that runs a case again and writes its script."""
     chunk = case.chunk
     name, variant = ("mujoco", "alone") if isinstance(chunk.subject, Alone) else chunk.subject.name.split(" ", 1)
     command = ["crosscheck", "search", "--engine", name, "--variant", variant, "--seed", str(chunk.seed)]
@@ -187,13 +187,14 @@ def _command(case: CaseResult) -> str:
 
 
 def _planted_rows(answers: Mapping[PlantedControl, Answer]) -> list[list[str]]:
-    """A row for each fault: the case that detected it in each engine, and its size if not the smallest one."""
-    cells = {(task.fault, task.name): _how_soon(answer) for task, answer in answers.items()}
+    """A row for each fault with a cell for each engine."""
+    cells = {(task.fault, task.name): _control_cell(answer) for task, answer in answers.items()}
     names = dict.fromkeys(task.name for task in answers)
     return [[fault, *(cells.get((fault, name), "") for name in names)] for fault in PLANTED_FAULTS if answers]
 
 
-def _how_soon(answer: Answer) -> str:
+def _control_cell(answer: Answer) -> str:
+    """The number of the case that detects a fault, and the fault's size if it is not the smallest one."""
     if not answer.finished:
         return answer.told
     if not answer.number("built"):

@@ -1,4 +1,4 @@
-"""A mechanism written in small whole numbers: bodies, the links between them, and how they are stored."""
+"""Recipes: mechanisms that are described by small integers, and their JSON."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ from typing import Any, TypeVar, get_args, get_type_hints
 
 Case = TypeVar("Case")
 
-# The first kinds that were drawn. Their order stays, so that a seed gives the same mechanisms.
+# The order of the kinds is fixed, so that a seed gives the same mechanisms.
 FIRST_KINDS = ("pin", "slot", "skate", "roll", "drive")
 LINK_KINDS = ("rod", "gear", "weld")
 FORCE_KINDS = ("spring", "damper", "torsion-spring", "torsion-damper", "force", "torque")
 ALL_KINDS = (*FIRST_KINDS, *LINK_KINDS, *FORCE_KINDS)
-# Drawn only if selected by name: their rows are nearly dependent.
+# Kinds with nearly dependent rows, which are drawn only if the user selects them.
 TOGGLE, FOLD = "toggle", "fold"
 SINGULAR_KINDS = (TOGGLE, FOLD)
 RIM_SHAPES = ("line", "circle", "ring", "ellipse")
 
-ANGLE_UNIT = Decimal("0.3")  # rad: no multiple of it but 0 is an angle that a formula is simple at
-RATE_UNIT = Decimal("0.5")  # m/s, and rad/s
+ANGLE_UNIT = Decimal("0.3")  # rad; 0 is its only multiple with simple sines and cosines
+RATE_UNIT = Decimal("0.5")  # m/s and rad/s
 
 
 @dataclass(frozen=True)
 class RecipeBody:
-    """A body. `parent`: 0 is the ground, 1 the first body, and so on; it is earlier than the body itself.
+    """A body in integers.
 
-    `offset`: from the parent's place, in tenths of the body's own `size`; `angle` in steps of 0.3 rad; `velocity` in
-    steps of 0.5 m/s and rad/s. `size`, `mass` and `gyration` (a share of the size) are steps on the ladder ..., 0.5,
-    1, 2, 5, 10, ...
+    `parent`: number of an earlier body, or 0 for the ground. `offset`: position relative to the parent, in tenths of
+    `size`. `angle`: in steps of 0.3 rad. `velocity`: in steps of 0.5 m/s and 0.5 rad/s. `size`, `mass`, `gyration`:
+    steps of `ladder`; the radius of gyration is relative to the size.
     """
 
     parent: int = 0
@@ -43,8 +43,10 @@ class RecipeBody:
 
 @dataclass(frozen=True)
 class Rim:
-    """A curve that rolls: its `shape`; its `size` on the ladder, times that of the second body; and for an ellipse the
-    `ratio` of its axes on the ladder, and where it touches, `place` in steps of 0.3 rad of its natural parameter.
+    """A rolling curve in integers.
+
+    `size`: step of `ladder`, relative to the size of the second body. For an ellipse, `ratio` is the ratio of the axes
+    as a step of `ladder`, and `place` the parameter of the contact point in steps of 0.3 rad.
     """
 
     shape: str = "circle"
@@ -55,19 +57,21 @@ class Rim:
 
 @dataclass(frozen=True)
 class RecipeLink:
-    """A joint, or a force, of the bodies `first` (0: the ground) and `second`, at `at`: tenths of the second
-    body's size from it.
+    """A joint or a force element in integers.
 
-    `turn`, in steps of 0.3 rad: the direction in the world of a slot, a blade, or the tangent of a contact, with the
-    first body's material on its left. `more`: how far the slot's own point lies from there along it (tenths of the
-    size), or the rate of a drive in steps of 0.5 rad/s. `rims`: the curves of the first and the second body of a roll.
+    `first`, `second`: numbers of the bodies; `first` may be 0, the ground. `at`: position relative to the second body,
+    in tenths of that body's size. Other lengths have the same unit. `rims`: the curves of both bodies of a roll.
 
-    Rods, springs and dampers: `more` and `turn` are the distance and direction of the first body's point. Gears: half
-    of `more` is the ratio. Forces (in the direction `turn`) and torques: half of `more` is the strength. All others:
-    `strength` is a step on the ladder, and `rest` the deflection of a spring at the start: tenths, or steps of 0.3 rad.
+    `turn`: a direction in the world, in steps of 0.3 rad. It is the direction of a slot, of a blade, of a force, or of
+    the tangent of a contact, with the first body's material on the left. `more`: the distance from `at` to the point
+    that defines the slot's line, or the rate of a drive in steps of 0.5 rad/s. Half of `more` is the ratio of a gear,
+    and the strength of a force or a torque. Rods, springs and dampers: `more` and `turn` are the distance and the
+    direction of the point on the first body. Springs and dampers: `strength` is a step of `ladder`. Springs: `rest` is
+    the deflection at the start, in tenths of the length or in steps of 0.3 rad.
 
-    A toggle is a rod between points on both sides of `at`, where a pin holds the same bodies: `more` tenths and half of
-    that away along `turn`, on a line that misses `at` by 10^-strength sizes.
+    A toggle is a rod between two points on opposite sides of `at`, where a pin connects the same bodies. The distances
+    from `at` along `turn` are `more` and half of `more`. The line of the rod misses `at` by 10^-strength sizes. The
+    bodies of a fold are pinned to the ground, the first at `far` and the second at `at`.
     """
 
     kind: str
@@ -84,7 +88,7 @@ class RecipeLink:
 
 @dataclass(frozen=True)
 class Recipe:
-    """`gravity` in m/s^2; `decades` of the units of length, mass and time in which everything is written."""
+    """A mechanism in integers; `gravity` in m/s^2; `decades`: powers of ten of the units of length, mass and time."""
 
     parts: tuple[RecipeBody, ...]
     links: tuple[RecipeLink, ...]
@@ -93,7 +97,7 @@ class Recipe:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of its joints and forces, each once, in the order of ALL_KINDS."""
+        """The kinds of the joints and forces, in the order of ALL_KINDS."""
         return tuple(kind for kind in (*ALL_KINDS, *SINGULAR_KINDS) if any(link.kind == kind for link in self.links))
 
 
@@ -103,7 +107,7 @@ def ladder(step: int) -> Decimal:
 
 
 def case_to_json(case: Any) -> str:
-    """A recipe, or another case of `parts` and `links`, as JSON without its default values."""
+    """A recipe or a `RawModel` as JSON without default values."""
 
     def plain(value: Any) -> Any:
         if not is_dataclass(value):
@@ -132,4 +136,6 @@ def case_from_json(text: str, kind: type[Case]) -> Case:
     try:
         return made(json.loads(text), kind)
     except (TypeError, KeyError, AttributeError) as error:
-        raise ValueError(f"this is no {kind.__name__.lower()} ({error}); it must be what `as_text` writes") from None
+        raise ValueError(
+            f"this is no {kind.__name__.lower()} ({error}); it must be written by `case_to_json`"
+        ) from None

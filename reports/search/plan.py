@@ -1,4 +1,4 @@
-"""The cases of the published page, with seeds from the commit's hash, and endless batches with random seeds."""
+"""The cases of the published page, with seeds from the commit's hash, and batches of cases with random seeds."""
 
 from __future__ import annotations
 
@@ -21,20 +21,19 @@ from reports.search.recipe import build
 from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 
 COMMIT_RULE, SOURCES_RULE = "the last commit's hash", "the SHA-256 of all sources, as there is no git"
-SEED_DECADES = (0, 2, 4)  # one for each of the seeds
-PLANNED_CASES, ALONE_CASES = 100, 1000  # of an engine for each seed; of MuJoCo alone
-# For MJX, which compiles each shape: one of its cases takes three seconds, of the others 0.005 to 0.8. So its
-# two variants share a third of all time, and 100 cases would take three quarters of an hour.
+SEED_DECADES = (0, 2, 4)  # decades by seed
+PLANNED_CASES, ALONE_CASES = 100, 1000  # cases of a seed: of an engine, and of MuJoCo alone
+# Cases of a seed for MJX, which compiles each shape. A case takes three seconds there, elsewhere 0.005 to 0.8.
 COMPILED_CASES = 20
-SINGULAR_CASES = 60  # of each engine that knows pins and rods, with rows that nearly depend on each other
-KIND_TRIALS = 60  # mechanisms of one kind, by which is known whether an engine takes it
-# A slot as users of pymunk build it, wherever its point is: see `engines.pymunk.joints.slide`.
+SINGULAR_CASES = 60  # cases with nearly dependent rows, of an engine that has pins and rods
+KIND_TRIALS = 60  # number of mechanisms that are tried for one kind of joint
+# pymunk's usual slot; `engines.pymunk.joints.slide` says when it is wrong.
 GROOVE_SUBJECT = Adapted(replace(pymunk.DEFAULT, variant="slots as grooves", slot="groove"))
 
 
 @cache
 def seed_origin() -> tuple[str, str]:
-    """(rule, words that seeds are made from): the hash of the last commit, without git that of all sources."""
+    """(rule, text from which the seeds are computed): the hash of the last commit, or of all sources without git."""
     if (ROOT / ".git").exists():
         command = ["git", "-C", str(ROOT), "rev-parse", "HEAD"]
         answer = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -45,14 +44,14 @@ def seed_origin() -> tuple[str, str]:
 
 
 def published_seeds(many: int = len(SEED_DECADES)) -> tuple[int, ...]:
-    """The first eight hexadecimal digits, halved, of the SHA-256 of the origin, a blank and a number from 1."""
+    """Half of the first eight hexadecimal digits of the SHA-256 of "ORIGIN NUMBER", with numbers from 1."""
     texts = (f"{seed_origin()[1]} {number}" for number in range(1, many + 1))
     return tuple(int(digest(text, SHORT), 16) // 2 for text in texts)
 
 
 @cache
 def supported_kinds(engine: Engine) -> tuple[str, ...]:
-    """The kinds of joints and forces that an engine can build in at least one of KIND_TRIALS mechanisms."""
+    """The kinds of joints and forces that an engine builds in at least one of KIND_TRIALS mechanisms."""
     return tuple(kind for kind in ALL_KINDS if any(_is_built(engine, kind, number) for number in range(KIND_TRIALS)))
 
 
@@ -69,14 +68,14 @@ def _is_built(engine: Engine, kind: str, number: int) -> bool:
 
 
 def all_subjects() -> list[Subject]:
-    """Every variant of every engine that is installed, and MuJoCo alone."""
+    """Every variant of every installed engine, and MuJoCo alone."""
     return [*(Adapted(engine) for engine in (*VARIANTS, *INSTALLED)), Alone()]
 
 
 def published_chunks() -> list[Chunk]:
-    """All engines in mechanisms of the commit's seeds and of the kinds that each can build.
+    """All engines in mechanisms of the commit's seeds, with the kinds that the engine supports.
 
-    Two kinds of cases are separate: nearly dependent rows, and pymunk's grooves away from the centre of mass.
+    Nearly dependent rows, and pymunk's grooves, have chunks of their own.
     """
     out: list[Chunk] = []
     for seed, decades in zip(published_seeds(), SEED_DECADES, strict=True):
@@ -93,14 +92,14 @@ def published_chunks() -> list[Chunk]:
 
 
 def fresh_chunks(subjects: Sequence[Subject], cases: int) -> Iterator[list[Chunk]]:
-    """Yield endless batches of `cases` of each subject, each with a new seed from the system's random generator."""
+    """Yield batches without end: `cases` cases of each subject, with a new random seed for each batch."""
     for number in count():
         seed, decades = secrets.randbits(31), SEED_DECADES[number % len(SEED_DECADES)]
-        mixed = secrets.SystemRandom().sample(subjects, len(subjects))  # so that all have their turn in a short run
+        mixed = secrets.SystemRandom().sample(subjects, len(subjects))  # a short run may end before the last subject
         yield [
-            piece
+            chunk
             for subject in mixed
-            for piece in make_chunks([subject], seed, cases, _kinds(subject), decades, DEFAULT_ORACLES)
+            for chunk in make_chunks([subject], seed, cases, _kinds(subject), decades, DEFAULT_ORACLES)
         ]
 
 

@@ -1,7 +1,7 @@
-"""The catalogue of wrong models: engines that are given a mechanism with one number off, and how soon this is found.
+"""Planted faults: controls that give an engine a wrong mechanism and measure when the search detects it.
 
-A mistake in an adapter has this effect: the engine moves another mechanism than the one that the results are compared
-with. A fault changes a kind of joint, a force element, or all inertias, or it depends on the description.
+A mistake in an adapter has the same effect. A fault changes one number of all joints or force elements of a kind, or
+the inertias. The change of the inertias may depend on the description of the mechanism.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from reports.search.subjects import Adapted
 
 Array = NDArray[np.float64]
 
-# By fault, which begins with a kind, the number that is off: by a part of it, of a length if it is a point, or so many
-# radians.
+# The wrong field by fault. The name of a fault begins with a kind. The error of a point is relative to the length
+# scale, that of a field in FAULT_ANGLES is in radians, and other errors are relative to the value.
 FAULT_FIELDS = {
     "pin": "second_point",
     "slot": "line_angle",
@@ -54,12 +54,12 @@ FAULT_FIELDS = {
     "force force": "force",
 }
 FAULT_ANGLES = ("line_angle", "angle", "rest_angle")
-CLOSING_STEPS = 6  # of Newton's method, which closes the joints of a wrong model: quadratic from a miss of 1e-2
+CLOSING_STEPS = 6  # Newton steps that close the joints of a wrong mechanism
 
 
 @dataclass(frozen=True)
 class Misbuilt(Mechanism):
-    """A mechanism with a fault, from which an engine builds its model; reactions are those of the mechanism `right`.
+    """A mechanism with a fault; reactions are computed for the mechanism `right`.
 
     If the joints can't all be closed with the fault, their gaps are minimal.
     """
@@ -67,7 +67,7 @@ class Misbuilt(Mechanism):
     right: Mechanism = field(kw_only=True)
 
     def _refuse_a_bad_start(self) -> None:
-        """Accept any."""
+        """Accept joints that are open at the start."""
 
     def reaction(
         self,
@@ -77,11 +77,14 @@ class Misbuilt(Mechanism):
         gravity: Array | None = None,
         twist: Array | None = None,
     ) -> Array:
-        """Reactions on the right mechanism's rows; its masses too, unless the engine gives its own."""
+        """Reactions on the rows of the right mechanism."""
         return self.right.reaction(pose, acceleration, inertias, gravity, twist)
 
     def closed(self, twist: Array) -> Misbuilt:
-        """With the start closed again: poses next to the right ones, and twists next to these (bodies, 3), by mass."""
+        """A copy with closed joints; poses and velocities are projected in the metric of the masses.
+
+        twist: velocities (bodies, 3) to be projected; poses are those of the right mechanism.
+        """
         pose = allowed = self.right.pose
         for _ in range(CLOSING_STEPS):
             pose, allowed = dynamics_of(self).project(pose, twist, 0.0)
@@ -91,7 +94,7 @@ class Misbuilt(Mechanism):
 
 @dataclass(frozen=True)
 class PlantedFault:
-    """The change of a mechanism in which a number is off by a part: one of PLANTED_FAULTS."""
+    """A change of a mechanism by one of PLANTED_FAULTS; `relative`: the size of the error."""
 
     fault: str
     relative: float
@@ -102,12 +105,12 @@ class PlantedFault:
 
     @property
     def is_relation(self) -> bool:
-        """Whether it depends on how a mechanism is described."""
+        """Whether the fault depends on the description of the mechanism."""
         return self.kind in relations.RELATIONS
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of mechanisms that may show it."""
+        """The kinds of joints and forces in the mechanisms to be drawn."""
         return ("pin",) if self.kind not in ALL_KINDS else tuple(dict.fromkeys(("pin", self.kind)))
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
@@ -141,7 +144,7 @@ class PlantedFault:
         return replace(part, **{name: off})
 
     def _heavier(self, mechanism: Mechanism, body: Body) -> Body:
-        """With a larger inertia, where that is so of all, or by the place, the name or the unit of this body."""
+        """The body with a larger inertia if the condition of this fault holds for the body."""
         off = {
             "inertia": True,
             "shifted": body.pose[0] > 0,
@@ -160,7 +163,7 @@ def kind_of(part: Any) -> str:
 
 
 PLANTED_FAULTS = ("inertia", *FAULT_FIELDS, *relations.RELATIONS)
-# By engine, the variants of which the own error hides least: one for the law of an instant, one for a motion.
+# The most accurate variants of each engine, for the checks of instants and of motions.
 CONTROL_ENGINES: Mapping[str, tuple[Engine, ...]] = {
     "pymunk": (pymunk.LEAPFROG, pymunk.EXTENDED),
     "mujoco": (mujoco.TUNED, mujoco.EXTENDED),
@@ -179,9 +182,9 @@ FAULT_SIZES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
 @dataclass(frozen=True)
 class PlantedControl(Task):
-    """The task of finding the smallest of FAULT_SIZES and the first case at which the search detects a fault."""
+    """The task of finding the smallest size of a fault that the search detects, and the first case that shows it."""
 
-    name: str  # of the engine
+    name: str  # name of the engine
     fault: str
     sizes: tuple[float, ...] = FAULT_SIZES
     cases: int = CONTROL_CASES
@@ -199,9 +202,9 @@ class PlantedControl(Task):
         return CONTROL_ENGINES[self.name][0]
 
     def run(self) -> Values:
-        """The size, check and number of the first case that detects the fault (NaN if none), and two counts.
+        """The size of the fault, and the number and the check of the first case that detects it; NaN if there is none.
 
-        "built": whether the engine builds this kind; "asked": number of cases that were judged.
+        "built": whether the engine supports the kind. "asked": number of judged cases.
         """
         engines, kind, judged_count = CONTROL_ENGINES[self.name], PlantedFault(self.fault, 0.0).kind, 0
         built = kind not in ALL_KINDS or kind in supported_kinds(engines[0])
@@ -220,9 +223,10 @@ class PlantedControl(Task):
 
 
 def search_with_fault(engines: tuple[Engine, ...], change: PlantedFault, cases: int) -> Iterator[tuple[int, bool, str]]:
-    """(case, whether it was judged, the check that fails by this change and not without it), until one does."""
+    """Yield (case, whether it was judged, the check that fails only with the fault) up to the first such check."""
+    # An engine that compiles each shape is checked at instants only, which saves time.
     of_motion = ("instant",) if any(engine.build_time for engine in engines) else ("instant", "motions")
-    oracles = ("relations",) if change.is_relation else of_motion  # one is enough where each shape is compiled
+    oracles = ("relations",) if change.is_relation else of_motion
     for number, engine in product(range(cases), engines):
         if change.is_relation and relations.RELATIONS[number % len(relations.RELATIONS)] != change.kind:
             continue
@@ -233,7 +237,7 @@ def search_with_fault(engines: tuple[Engine, ...], change: PlantedFault, cases: 
         for oracle in oracles:
             try:
                 result = wrong.ask(case, number, (oracle,))
-            except (InvalidMechanism, np.linalg.LinAlgError):  # with the fault this one is no mechanism
+            except (InvalidMechanism, np.linalg.LinAlgError):  # the fault makes this mechanism invalid
                 continue
             faults = [check for check in result.faults if check != "raised"]
             faults = [check for check in faults if not change.is_relation or check == change.kind]
@@ -246,9 +250,9 @@ def search_with_fault(engines: tuple[Engine, ...], change: PlantedFault, cases: 
 
 
 def all_controls() -> list[PlantedControl]:
-    """A control for each fault in each engine."""
+    """A control for each fault and engine."""
     out = []
     for (name, engines), fault in product(CONTROL_ENGINES.items(), PLANTED_FAULTS):
-        shaped = any(engine.build_time for engine in engines)  # after all shapes come the first ones again
+        shaped = any(engine.build_time for engine in engines)
         out.append(PlantedControl(name, fault, cases=SHAPE_COUNT * CASES_PER_SHAPE if shaped else CONTROL_CASES))
     return out

@@ -1,8 +1,7 @@
-"""The mechanism that a recipe of small whole numbers describes (`reports.search.parts`).
+"""The mechanism of a recipe (`reports.search.parts`).
 
-Bodies are placed first. A joint is then placed at a point of the world, and its bodies' points are computed from that
-point. So every joint is closed at the start for all numbers, and no loop has to be solved. Velocities are those of the
-recipe, projected onto the joints.
+Bodies are placed first. Each joint is placed at a point of the world, from which the points on its bodies follow. So
+every joint is closed at the start, and no loop has to be solved. The recipe's velocities are projected onto the joints.
 """
 
 from __future__ import annotations
@@ -42,18 +41,17 @@ from reports.search.parts import (
 
 Array = NDArray[np.float64]
 Point = tuple[Decimal, Decimal]
-# Smallest ratio of the singular values of the rows. Below it a joint is left out: its forces and the motion would
-# depend on digits that rounding destroys in every engine.
+# Smallest ratio of the singular values of the rows. With a smaller ratio, rounding would change the forces and the
+# motion in every engine.
 DEPENDENCE_LIMIT = 1e-3
-SINGULAR_LIMIT = 1e-6  # the same where toggles are asked for
-MOTION_ROUNDING = 1e-12  # of the velocities wanted: what rounding leaves where joints allow no motion at all
+SINGULAR_LIMIT = 1e-6  # the limit in mechanisms with toggles or folds
+MOTION_ROUNDING = 1e-12  # relative to the recipe's velocities: smaller projected velocities are rounding errors
 
 
 def build(recipe: Recipe) -> Mechanism:
-    """The mechanism of a recipe, with closed joints.
+    """The mechanism of a recipe.
 
-    Raises InvalidMechanism for an invalid recipe: a joint of a body with itself, nearly dependent rows, curves that
-    don't fit.
+    Raises InvalidMechanism for an invalid recipe, for example with nearly dependent rows or with curves that don't fit.
     """
     standing = Standing(recipe)
     links = list(enumerate(recipe.links, start=1))
@@ -63,20 +61,20 @@ def build(recipe: Recipe) -> Mechanism:
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A joint, and its rows (rows, 3 bodies) in the poses at the start."""
+    """A joint and its rows (rows, 3 bodies) at the start."""
 
     joint: Joint
     rows: Array
 
 
 class Standing:
-    """The bodies of a recipe in their places, before the joints are chosen and before anything moves."""
+    """The bodies of a recipe at their start poses, and the construction of joints and forces between them."""
 
     def __init__(self, recipe: Recipe) -> None:
         self._recipe = recipe
         self._length, mass, self._time = (Decimal(1).scaleb(decade) for decade in recipe.decades)
         self.bodies: list[Body] = []
-        self._places, self._sizes = [(Decimal(0), Decimal(0))], [Decimal(0)]  # the ground's first
+        self._places, self._sizes = [(Decimal(0), Decimal(0))], [Decimal(0)]  # index 0: the ground
         for index, part in enumerate(recipe.parts, start=1):
             if not 0 <= part.parent < index:
                 raise InvalidMechanism(
@@ -91,7 +89,7 @@ class Standing:
             self._sizes.append(size)
 
     def _check(self, link: RecipeLink, number: int) -> None:
-        """Raise InvalidMechanism for a link of bodies that are not there, or of an unknown kind."""
+        """Raise InvalidMechanism for a link with unknown bodies or of an unknown kind."""
         count = len(self.bodies)
         if not (0 <= link.first <= count and 0 < link.second <= count and link.first != link.second):
             raise InvalidMechanism(
@@ -105,7 +103,6 @@ class Standing:
             )
 
     def _joint(self, link: RecipeLink, number: int) -> Joint:
-        """The joint of a link. Raises InvalidMechanism for one that can't be."""
         self._check(link, number)
         size, name, ends = self._sizes[link.second], f"{link.kind} {number}", self._ends(link)
         (first, second), (first_angle, second_angle) = self._points(link), self._angles(link)
@@ -144,7 +141,7 @@ class Standing:
         raise InvalidMechanism(f"recipe: joint {number} is a {link.kind}, which has no construction here")
 
     def _fold(self, link: RecipeLink, number: int) -> Rod:
-        """A rod beside the line through two pins of the ground."""
+        """A rod nearly parallel to the line through two pins of the ground."""
         pin, other = self._at(link), _beside(self._places[link.first], link.far, self._sizes[link.first])
         across, up = float(other[0] - pin[0]), float(other[1] - pin[1])
         if not math.hypot(across, up) > 0:
@@ -157,10 +154,7 @@ class Standing:
         return Rod(f"{link.kind} {number}", *self._ends(link), first_point, second_point, length)
 
     def _force(self, link: RecipeLink, number: int) -> ForceElement:
-        """The force of a link. Raises InvalidMechanism for one that can't be.
-
-        Its strength is counted in the second body's own mass, inertia and size, and in the unit of time.
-        """
+        """The force element of a link; its strength is relative to the second body's mass, inertia and size."""
         self._check(link, number)
         body, name, ends = self.bodies[link.second - 1], f"{link.kind} {number}", self._ends(link)
         strength, rate = float(ladder(link.strength)), 1 / float(self._time)
@@ -194,19 +188,19 @@ class Standing:
         return _beside(self._places[link.second], link.at, self._sizes[link.second])
 
     def _points(self, link: RecipeLink) -> tuple[Vector, Vector]:
-        """The link's place in the frames of both bodies [m]."""
+        """The link's position [m] in the frames of both bodies."""
         at = self._at(link)
         return self._local(link.first, at), self._local(link.second, at)
 
     def _far_point(self, link: RecipeLink) -> Vector:
-        """The point [m] of the first body that lies `more` tenths along `turn` from the link's place."""
+        """The point [m] on the first body at the distance `more` in the direction `turn` from the link's position."""
         x, y = self._local(link.first, self._at(link))
         along = float(link.more * self._sizes[link.second] / 10)
         line = float(link.turn * ANGLE_UNIT) - self._angles(link)[0]
         return x + along * math.cos(line), y + along * math.sin(line)
 
     def _moved(self, body: int, place: Point, x: float, y: float) -> Vector:
-        """The point [m] of a body that lies x and y [m] from a place of the world."""
+        """The position `place` + (x, y) [m] of the world in a body's frame."""
         local_x, local_y = self._local(body, place)
         more_x, more_y = components(-self._angle(body), x, y)
         return local_x + more_x, local_y + more_y
@@ -218,12 +212,12 @@ class Standing:
         return self.bodies[body - 1].pose[2] if body else 0.0
 
     def _local(self, body: int, point: Point) -> Vector:
-        """A point of the world in a body's frame."""
+        """A position of the world in a body's frame [m]."""
         x, y = (float(point[axis] - self._places[body][axis]) for axis in (0, 1))
         return tuple(components(-self._angle(body), x, y))
 
     def held(self, link: RecipeLink, number: int) -> Held:
-        """The joint of a link, `number` being the joint's own. Raises InvalidMechanism for one that can't be."""
+        """The joint of a link, with `number` in its name. Raises InvalidMechanism for an invalid link."""
         joint = self._joint(link, number)
         poses = [np.array(self.bodies[body - 1].pose) if body else np.zeros(3) for body in (link.first, link.second)]
         assert not isinstance(joint, Coupling), "a link joins two bodies"
@@ -235,8 +229,8 @@ class Standing:
         return Held(joint, rows)
 
     def mechanism(self, held: Sequence[Held], forces: Sequence[tuple[RecipeLink, int]] = ()) -> Mechanism:
-        """The mechanism with these joints and forces, moving as the joints allow."""
-        joints = tuple(item.joint for item in held)
+        """The mechanism with these joints and forces; its velocities satisfy the joints."""
+        joints = tuple(closed.joint for closed in held)
         twists = self.allowed(held).tolist()
         bodies = tuple(_with(body, twist=tuple(twist)) for body, twist in zip(self.bodies, twists, strict=True))
         down_x, down_y = (float(pull * self._length / self._time**2) for pull in self._recipe.gravity)
@@ -244,34 +238,36 @@ class Standing:
         return Mechanism(bodies, joints, (down_x, down_y), acting)
 
     def independent(self, held: Sequence[Held]) -> bool:
-        """Whether the joints' rows are independent, in units without dimensions."""
+        """Whether the dimensionless rows of the joints are independent."""
         if not held:
             return True
         scaled, norm, _ = self._scaled(held)
         if not np.all(norm > 0) or len(norm) > scaled.shape[1]:
             return False
-        least = SINGULAR_LIMIT if any(item.joint.name.startswith(SINGULAR_KINDS) for item in held) else DEPENDENCE_LIMIT
+        least = (
+            SINGULAR_LIMIT if any(closed.joint.name.startswith(SINGULAR_KINDS) for closed in held) else DEPENDENCE_LIMIT
+        )
         return dependence(scaled) >= least
 
     def _scaled(self, held: Sequence[Held]) -> tuple[Array, Array, Array]:
-        """Rows with angles as arcs, their lengths (rows, 1), and how long the arc of a radian is, by coordinate [m]."""
-        turn = np.tile([1.0, 1.0, length_scale(self.bodies, [item.joint for item in held])], len(self.bodies))
-        scaled = np.vstack([item.rows for item in held]) / turn
+        """The scaled rows, their norms (rows, 1), and the scales of the coordinates: 1 or the length scale [m]."""
+        turn = np.tile([1.0, 1.0, length_scale(self.bodies, [closed.joint for closed in held])], len(self.bodies))
+        scaled = np.vstack([closed.rows for closed in held]) / turn
         return scaled, np.linalg.norm(scaled, axis=1, keepdims=True), turn
 
     def allowed(self, held: Sequence[Held]) -> Array:
-        """The velocities (bodies, 3) nearest to those of the recipe with which every joint holds."""
+        """The velocities (bodies, 3) that satisfy every joint and are nearest to those of the recipe."""
         wanted = np.array([part.velocity for part in self._recipe.parts], dtype=float) * float(RATE_UNIT / self._time)
         wanted[:, :2] *= float(self._length)
         if not self.independent(held):
-            raise InvalidMechanism("recipe: the joints' rows are nearly dependent, or one holds nothing; leave one out")
-        rate = np.array([value for item in held for value in item.joint.rate], dtype=float)
+            raise InvalidMechanism("recipe: the joints' rows are nearly dependent, or one row is zero; remove a joint")
+        rate = np.array([value for closed in held for value in closed.joint.rate], dtype=float)
         if not held or not (np.any(wanted) or np.any(rate)):
             return wanted
         scaled, norm, turn = self._scaled(held)
         inverse = np.linalg.pinv(scaled / norm)
         twist = wanted.reshape(-1) * turn
-        for _ in range(2):  # the second time for the rounding of the first
+        for _ in range(2):  # the second pass corrects the rounding of the first
             twist = twist - inverse @ ((scaled @ twist - rate) / norm[:, 0])
         if np.abs(twist).max() <= MOTION_ROUNDING * np.abs(wanted.reshape(-1) * turn).max():
             twist = np.zeros_like(twist)
@@ -279,7 +275,7 @@ class Standing:
 
 
 def dependence(rows: Array) -> float:
-    """The smallest singular value of these rows, each of length 1, beside the largest."""
+    """The ratio of the smallest to the largest singular value of the normalised rows."""
     sizes = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True), compute_uv=False)
     return float(sizes[-1] / sizes[0])
 
@@ -291,12 +287,11 @@ def _with(value: Any, **changed: Any) -> Any:
 
 
 def _beside(place: Point, tenths: tuple[int, int], size: Decimal) -> Point:
-    """A place [m] so many tenths of a size beside another."""
     return place[0] + tenths[0] * size / 10, place[1] + tenths[1] * size / 10
 
 
 def _touching(rim: Rim, unit: Decimal, point: Vector, tangent: float) -> tuple[Curve, float]:
-    """The curve through `point` in the direction `tangent` [rad], both in its body's frame, and its arc there [m]."""
+    """The curve through `point` with the direction `tangent` [rad] in its body's frame, and its arc there [m]."""
     size = float(ladder(rim.size) * unit)
     match rim.shape:
         case "line":

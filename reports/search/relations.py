@@ -1,6 +1,6 @@
-"""A motion does not depend on how its mechanism is described: turned, shifted, mirrored, renamed, in other units.
+"""Check that the motion of a mechanism does not depend on its description.
 
-The changes are those of the conformance kit, applied to random mechanisms; the case's number selects one change.
+The mechanism is rotated, shifted, mirrored, renamed or written in other units. The case's number selects one change.
 """
 
 from __future__ import annotations
@@ -32,16 +32,15 @@ from reports.search.parts import Recipe
 from reports.search.recipe import build
 
 Array = NDArray[np.float64]
-State = tuple[Array, Array]  # pose and twist (bodies, 3) after the last step, in the mechanism's own description
+State = tuple[Array, Array]  # pose and twist (bodies, 3) after the last step, in the mechanism's original description
 
-# The descriptions differ by rounding. Methods that combine runs amplify it up to a hundred times; with very stiff
-# constraints half of the digits are lost.
+# Methods that combine runs amplify rounding up to a hundred times. Very stiff constraints lose half of the digits.
 DESCRIPTION_TOLERANCE = 1e-7
-LOW_PRECISION_ROUNDINGS = 1e4  # roundings of an engine of lower precision: displacements are small differences
-POSITION_ROUNDING = 1e-6  # relative to a position: smaller displacements are affected by its rounding
+LOW_PRECISION_ROUNDINGS = 1e4  # tolerance in roundings of the engine, since a displacement is a small difference
+POSITION_ROUNDING = 1e-6  # relative to the position: rounding of the position affects smaller displacements
 MAX_NOISE = 0.1  # relative to the motion: with more noise the check detects nothing
-ESTIMATE_MARGIN = 10.0  # times a method's error estimate: a larger error contradicts it
-TOO_LONG = CheckSkipped("steps are too long for what turns, so that rounding grows at will")
+ESTIMATE_MARGIN = 10.0  # an error above ESTIMATE_MARGIN times the error estimate contradicts the estimate
+TOO_LONG = CheckSkipped("something turns by more than a radian in a step, so rounding errors grow without a bound")
 
 CHANGES: dict[str, Change] = {
     "turned": Isometry(turn=0.7),
@@ -50,23 +49,22 @@ CHANGES: dict[str, Change] = {
     "renamed": relabelled,
     "swapped": joints_swapped,
 }
-# Decades of length and of mass: in another unit the same mechanism has other numbers.
+# Powers of ten (length, mass) by which the units change.
 UNIT_CHANGES = {"in other lengths": (-3, 0), "in other masses": (0, 2)}
 RELATIONS = (*CHANGES, *UNIT_CHANGES)
 
 
 def relation_errors(engine: Engine, recipe: Recipe, number: int) -> Errors | CheckSkipped:
-    """(error, tolerance) of the poses and velocities in another description, relative to the motion."""
+    """(error, tolerance) of the motion in another description, relative to the motion."""
     mechanism = build(recipe)
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
-        return CheckSkipped("whether two shapes that just touch do touch depends on rounding")
+        return CheckSkipped("rounding decides whether two shapes touch")
     if _turns_too_far(mechanism, mechanism.pose, mechanism.twist):
         return TOO_LONG
     name = RELATIONS[number % len(RELATIONS)]
-    if (
-        name in UNIT_CHANGES and engine.variant == "default"
-    ):  # an impedance grows over a millimetre, a slop is a decimetre
-        return CheckSkipped("settings as shipped have lengths in them")
+    # MuJoCo's impedance grows over a millimetre, and pymunk's slop is a decimetre.
+    if name in UNIT_CHANGES and engine.variant == "default":
+        return CheckSkipped("the default settings contain lengths")
     described = describe_otherwise(recipe, mechanism, name)
     if isinstance(described, CheckSkipped):
         return described
@@ -81,12 +79,13 @@ def describe_otherwise(
     """The mechanism in another description, and the function that transforms a run's last state back."""
     if name in UNIT_CHANGES:
         longer, heavier = UNIT_CHANGES[name]
-        of_length, of_mass, of_time = recipe.decades
-        other, length = build(replace(recipe, decades=(of_length + longer, of_mass + heavier, of_time))), 10.0**longer
+        length_decade, mass_decade, time_decade = recipe.decades
+        decades = length_decade + longer, mass_decade + heavier, time_decade
+        other, length = build(replace(recipe, decades=decades)), 10.0**longer
         unit = np.array([length, length, 1.0])
-        begins = difference(mechanism, other.twist / unit, mechanism.twist)
-        if max(begins, abs(other.length_scale / (length * mechanism.length_scale) - 1)) > DESCRIPTION_TOLERANCE:
-            return CheckSkipped("no joint has an arm: a metre stands for the mechanism's length, whatever the unit")
+        twist_error = difference(mechanism, other.twist / unit, mechanism.twist)
+        if max(twist_error, abs(other.length_scale / (length * mechanism.length_scale) - 1)) > DESCRIPTION_TOLERANCE:
+            return CheckSkipped("no joint has an arm, so the length scale is one metre in every unit")
         return other, lambda run: (run.pose[-1] / unit, run.twist[-1] / unit)
     try:
         changed, back = CHANGES[name](mechanism)
@@ -107,59 +106,62 @@ def _compare_runs(
     back: Callable[[Trajectory], State],
     stricter: Engine | None = None,
 ) -> tuple[float, float] | CheckSkipped:
-    """(error, tolerance); see `reports.search.law` for the noise in the tolerance."""
+    """(error, tolerance) of the last states; `reports.search.law` defines the noise in the tolerance."""
 
     def run(described: Mechanism) -> Trajectory:
         return engine.build(described, INSTANT_STEP * described.time_scale)(1, INSTANT_STEPS)
 
     first, second = run(mechanism), run(changed)
-    if any(item.unresolved_at is not None and np.isfinite(item.pose).all() for item in (first, second)):
-        return CheckSkipped("it says itself that it is unresolved in one of the descriptions")
-    away, duration = float(np.abs(changed.pose[:, :2]).max()), INSTANT_STEPS * INSTANT_STEP * mechanism.time_scale
+    if any(
+        trajectory.unresolved_at is not None and np.isfinite(trajectory.pose).all() for trajectory in (first, second)
+    ):
+        return CheckSkipped("the engine reports an unresolved motion in one of the descriptions")
+    distance, duration = float(np.abs(changed.pose[:, :2]).max()), INSTANT_STEPS * INSTANT_STEP * mechanism.time_scale
     floor = max(DESCRIPTION_TOLERANCE, LOW_PRECISION_ROUNDINGS * engine.precision)
 
-    def apart(state: State, other: State, of: Mechanism) -> float:
-        # A shift costs digits of a place, those of its distance; a velocity those of a place divided by a step.
-        least = POSITION_ROUNDING * max(away, float(np.abs(of.pose[:, :2]).max()))
-        if any(isinstance(joint, Weld) for joint in of.joints):  # whose angle is measured, and closed as a gap
+    def state_difference(state: State, other: State, of: Mechanism) -> float:
+        # Rounding of a position is relative to its distance from the origin. Rounding of a velocity is the same error
+        # divided by the step.
+        least = POSITION_ROUNDING * max(distance, float(np.abs(of.pose[:, :2]).max()))
+        if any(isinstance(joint, Weld) for joint in of.joints):  # the engine closes an error of the weld's angle
             least += NOISE_MARGIN * engine.angle_error * of.length_scale / floor
-        far = np.array([[least, 0.0, 0.0]])
-        moved, speed = other[0] - of.pose, far * INSTANT_STEPS / duration
+        least_scale = np.array([[least, 0.0, 0.0]])
+        moved, least_speed = other[0] - of.pose, least_scale * INSTANT_STEPS / duration
         return max(
-            difference(of, state[0] - of.pose, moved, (of.twist * duration, 1e-6 * of.pose, far)),
-            difference(of, state[1], other[1], (of.twist, speed)),
+            difference(of, state[0] - of.pose, moved, (of.twist * duration, 1e-6 * of.pose, least_scale)),
+            difference(of, state[1], other[1], (of.twist, least_speed)),
         )
 
     state, other = (first.pose[-1], first.twist[-1]), back(second)
-    error = apart(other, state, mechanism)
+    error = state_difference(other, state, mechanism)
     if error <= floor:
         return error, floor
-    if stricter is not None:  # its solver leaves another part in each description
+    if stricter is not None:  # the residual of the solver depends on the description
         return _compare_runs(stricter, mechanism, changed, back)
     if first.warnings or second.warnings:
-        return CheckSkipped("descriptions differ, and it says itself that something is wrong")
+        return CheckSkipped("descriptions differ, and the engine warns that something is wrong")
     if not np.isfinite(state[0]).all():
         if engine.variant == "default":
-            return CheckSkipped("settings as shipped lose the motion in either description")
-        raise Fault(f"it was lost within {INSTANT_STEPS} steps, and says nothing")
+            return CheckSkipped("the motion diverges with the default settings")
+        raise Fault(f"the motion diverged within {INSTANT_STEPS} steps without a warning")
     if _turns_too_far(mechanism, *state):
         return TOO_LONG
-    if first.estimate is not None:  # what rounding makes of a motion has to be in it
-        size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
-        claimed = float((first.estimate / size).max())
-        missed = [float(np.abs((a - b) / size).max()) for a, b in zip(other, state, strict=True)]
-        if not missed[0] <= max(CLAIM, ESTIMATE_MARGIN * claimed):
+    if first.estimate is not None:  # the estimate must include the effect of rounding
+        unit = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+        claimed = float((first.estimate / unit).max())
+        pose_error, twist_error = (float(np.abs((a - b) / unit).max()) for a, b in zip(other, state, strict=True))
+        if not pose_error <= max(CLAIM, ESTIMATE_MARGIN * claimed):
             return error, floor
-        if max(missed[0], missed[1] * duration) <= claimed:
-            return CheckSkipped("descriptions differ by less than what it says itself that it misses")
+        if max(pose_error, twist_error * duration) <= claimed:
+            return CheckSkipped("the descriptions differ by less than the method's error estimate")
     noise = 0.0
     for of, plain in ((mechanism, first), (changed, second)):
         last_state = plain.pose[-1], plain.twist[-1]
-        for nudged, undo in iter_nudged(of, away):
+        for nudged, undo in iter_nudged(of, distance):
             pose, twist, _ = undo(run(nudged))
-            noise = max(noise, apart((pose[-1], twist[-1]), last_state, of))
+            noise = max(noise, state_difference((pose[-1], twist[-1]), last_state, of))
     if NOISE_MARGIN * noise > MAX_NOISE:
-        return CheckSkipped("rounding, or what its solver leaves, changes the motion by more than a hundredth")
+        return CheckSkipped("rounding or the residual of the solver changes the motion by more than a hundredth")
     return error, max(floor, NOISE_MARGIN * noise)
 
 

@@ -1,6 +1,6 @@
-"""MuJoCo's accelerations in models of its own format: of the installed release, or of another in its own process.
+"""Checks of MuJoCo's accelerations, by the installed release or by another release in a separate process.
 
-As a program it reads models as JSON line by line, and writes for each a line of JSON: the answer, or the exception.
+As a program, the module reads models as lines of JSON. It writes a line of JSON for each: the answer or the exception.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -23,26 +23,27 @@ from reports.search.law import Fault
 from reports.search.mujoco_alone import RawModel, StartEquations, start_equations, to_mjcf
 from reports.search.parts import case_from_json, case_to_json
 
-DISTRIBUTIONS = ("mujoco-core", "mujoco")  # the first is a part of the second from 4.0 on
-# Checks of curved equalities, whose velocity term MuJoCo leaves out (the page of faults), and of all else in them.
+DISTRIBUTIONS = ("mujoco-core", "mujoco")  # mujoco-core exists from version 4.0 on
+# MuJoCo omits the velocity term of curved equalities. CURVED expects the term; BESIDE_CURVED accepts its absence.
 CURVED, BESIDE_CURVED = "acceleration, a known fault", "beside the known fault"
 
 
 def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
-    """Relative errors by check, accelerations that are "found" and "expected", and the "version".
+    """Relative "errors" by check, the accelerations "found" and "expected", and the "version".
 
-    If the velocity term of a curved equality matters, BESIDE_CURVED is the smaller of the errors with and without it.
-    `version`: another release than the installed one, as "3.6.0". Raises Fault if that one raises or crashes.
+    The error BESIDE_CURVED is the smaller of the errors with and without the velocity term of curved equalities.
+    `version`: a release such as "3.6.0"; empty for the installed one. Raises Fault if the other release raises or
+    crashes.
     """
     if version:
         return _check_in_other_release(version, case_to_json(model))
-    import mujoco  # of this process
+    import mujoco
 
     law = start_equations(model)
     give, accelerations = _give_and_found(model, law)
 
     def error(expected: NDArray[np.float64]) -> float:
-        # Sizes that the accelerations come from: gravity, and the square of the rates.
+        # Scales of accelerations are gravity and the square of the rates.
         size = max(np.abs(expected).max(), np.hypot(*model.gravity), np.abs(law.rates).max() ** 2)
         largest = float(np.abs(accelerations - expected).max())
         if not np.isfinite(largest):
@@ -62,7 +63,7 @@ def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
 
 
 def _give_and_found(model: RawModel, law: StartEquations) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Compliance of the law's rows (rows, rows) from MuJoCo's efc_R, and its accelerations (coordinates,)."""
+    """The compliance (rows, rows) from MuJoCo's efc_R, and MuJoCo's accelerations (coordinates,)."""
     import mujoco
 
     from engines.mujoco.declared import jacobian
@@ -85,7 +86,7 @@ def _give_and_found(model: RawModel, law: StartEquations) -> tuple[NDArray[np.fl
 
 @cache
 def process_of(version: str) -> subprocess.Popen[str]:
-    """The process of a release, started once; it ends with this one. Raises BadInput if it can't be installed."""
+    """The process of a release, which is started once. Raises BadInput if the release can't be installed."""
     return subprocess.Popen(
         [sys.executable, "-m", "reports.search.release"],
         stdin=subprocess.PIPE,
@@ -117,13 +118,13 @@ def _check_in_other_release(version: str, model: str) -> dict[str, Any]:
 
 
 def release_of(name: str) -> str | None:
-    """The release in the name of a subject, '' for the installed one; None if it is not MuJoCo alone."""
+    """The release in the name of a subject, empty for the installed one; None unless the subject is MuJoCo alone."""
     name_parts = name.split()
     return " ".join(name_parts[2:]) if name_parts[:2] == ["mujoco", "alone"] else None
 
 
 def main() -> None:
-    """Answer each model of the standard input."""
+    """Check each model of the standard input."""
     for line in sys.stdin:
         try:
             result = check_accelerations(case_from_json(line, RawModel))

@@ -1,4 +1,4 @@
-"""A search as a function, from drawing the cases to the reduced findings; workers run it and a store keeps it."""
+"""A search: cases are drawn, run by workers and stored; findings are reduced."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ from reports.search.shrinking import Shrink, choose_worst
 from reports.search.subjects import Subject
 
 STORE = "cells.sqlite"
-CHUNK_LIMIT = 120.0  # CPU seconds of one piece
-PLANTED_LIMIT = 1800.0  # of a planted fault: 300 cases of each size
-WAVE_CHUNKS = 4  # pieces for each worker between two looks at the clock
+CHUNK_LIMIT = 120.0  # CPU time of a chunk [s]
+PLANTED_LIMIT = 1800.0  # CPU time of a control with a planted fault [s]
+WAVE_CHUNKS = 4  # chunks for each worker between two checks of the time limit
 DEFAULT_CASES = 200
 
-# (store, items, limit, words, size of an item) -> the items that are to be run, done(answer, count), watch
+# (store, tasks, limit, label, number of cases of a task) -> the tasks that are not stored, done(answer, count), watch
 Progress = Callable[..., AbstractContextManager[tuple[Sequence[Any], Callable[..., None], Any]]]
 
 
 @contextmanager
 def quietly(
-    store: Store, items: Sequence[Task], limit: float, words: str, size: Callable[[Any], int] | None = None
+    store: Store, tasks: Sequence[Task], limit: float, label: str, size: Callable[[Any], int] | None = None
 ) -> Iterator[tuple[Sequence[Any], Callable[..., None], Any]]:
     """Run without a progress display."""
-    yield missing(items, store, limit), lambda *_: None, None
+    yield missing(tasks, store, limit), lambda *_: None, None
 
 
 def run_search(
@@ -58,21 +58,22 @@ def run_search(
     seconds: float | None = None,
     workers: int | None = None,
 ) -> tuple[list[CaseResult], Mapping[Shrink, Answer]]:
-    """The results of so many cases of these subjects, and the findings, made small; a store in `folder` keeps both.
+    """Results of `cases` cases of each subject, and reduced findings; both are stored in `folder`.
 
-    `seed`: that of the last commit if None; `kinds`: all of a subject if empty; `seconds`: begin nothing after these.
+    `seed`: None means the first published seed. `kinds`: empty means all kinds. `seconds`: time limit, after which no
+    task is started.
     """
     kinds = kinds or tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
-    pieces = make_chunks(subjects, plan.published_seeds()[0] if seed is None else seed, cases, kinds, decades, oracles)
+    chunks = make_chunks(subjects, plan.published_seeds()[0] if seed is None else seed, cases, kinds, decades, oracles)
     with Store(folder / STORE) as store:
         search = Search(store, pool(workers), seconds)
-        results = search.run([pieces])
+        results = search.run([chunks])
         return results, search.shrink(results)
 
 
 @dataclass
 class Search:
-    """A search into a store; `seconds`: begin nothing after these."""
+    """A search into a store; `seconds`: time limit, after which no task is started."""
 
     store: Store
     crew: Workforce
@@ -80,7 +81,7 @@ class Search:
     progress: Progress = quietly
     begin: float = field(default_factory=monotonic)
     cases: int = 0  # number of cases of this run
-    first: str = ""  # sentence with the time of the first finding
+    first: str = ""  # sentence on the first finding
 
     @property
     def spent(self) -> float:
@@ -91,24 +92,24 @@ class Search:
         return self.seconds is not None and self.spent >= self.seconds
 
     def run(self, batches: Iterable[Sequence[Chunk]]) -> list[CaseResult]:
-        """Run the chunks that are not stored until the time is over; return all results of the started batches."""
-        pieces: list[Chunk] = []
+        """Run the missing chunks until the time limit; return all results of the started batches."""
+        chunks: list[Chunk] = []
         for batch in batches:
-            if not pieces:  # drawing the first batch tests which kinds each subject can build
+            if not chunks:  # the time for drawing the first batch does not count: it finds the supported kinds
                 self.begin = monotonic()
             if self.over:
                 break
-            self.store.save_references(chunk_to_json(piece) for piece in batch)
+            self.store.save_references(chunk_to_json(chunk) for chunk in batch)
             self._run_batch(batch)
-            pieces += batch
-        return list(iter_case_results(stored_answers(self.store, pieces)))
+            chunks += batch
+        return list(iter_case_results(stored_answers(self.store, chunks)))
 
     def _run_batch(self, batch: Sequence[Chunk]) -> None:
         """Run the chunks of a batch, and the cases of crashed chunks one by one.
 
-        Without a time limit all chunks are run in one wave, since workers are idle between two waves.
+        Without a time limit there is one wave, since workers are idle between two waves.
         """
-        progress = self.progress(self.store, batch, CHUNK_LIMIT, "pieces", size=lambda piece: piece.count)
+        progress = self.progress(self.store, batch, CHUNK_LIMIT, "chunks", size=lambda chunk: chunk.count)
         with progress as (waiting, done, watch):
             size = len(waiting) if self.seconds is None else WAVE_CHUNKS * self.crew.threads
 
@@ -117,15 +118,15 @@ class Search:
 
             while waiting and not self.over:
                 wave, waiting = waiting[:size], waiting[size:]
-                self._into(wave, CHUNK_LIMIT, count, watch)
+                self._run_tasks(wave, CHUNK_LIMIT, count, watch)
                 singles = missing(unfinished_cases(stored_answers(self.store, wave)), self.store, CHUNK_LIMIT)
-                self._into(singles, CHUNK_LIMIT, lambda answer: count(answer, 1), watch)
+                self._run_tasks(singles, CHUNK_LIMIT, lambda answer: count(answer, 1), watch)
 
-    def _into(self, items: Sequence[Any], limit: float, done: Callable[..., None], watch: Any) -> None:
-        run_into(self.store, items, False, limit, self.crew.threads, done, watch, supervised=self.crew.supervise)
+    def _run_tasks(self, tasks: Sequence[Any], limit: float, done: Callable[..., None], watch: Any) -> None:
+        run_into(self.store, tasks, False, limit, self.crew.threads, done, watch, supervised=self.crew.supervise)
 
     def _count(self, answer: Answer, single: int) -> int:
-        """The cases in an answer; `single`: in one that may have ended its process."""
+        """The number of cases in an answer; `single`: that number for a single case that did not finish."""
         results = json.loads(str(answer.values["results"])) if answer.finished else []
         count = len(results) or single
         self.cases += count
@@ -137,16 +138,15 @@ class Search:
 
     @property
     def summary(self) -> str:
-        """The number of cases of this run, its duration, and when the first finding came."""
         return f"{self.cases} cases were asked in {self.spent:.0f} s.{self.first}"
 
     def run_controls(self) -> None:
         """Run the controls with planted faults that are not stored."""
         with self.progress(self.store, all_controls(), PLANTED_LIMIT, "planted faults") as (waiting, done, watch):
-            self._into(waiting, PLANTED_LIMIT, done, watch)
+            self._run_tasks(waiting, PLANTED_LIMIT, done, watch)
 
     def shrink(self, results: Iterable[CaseResult]) -> Mapping[Shrink, Answer]:
-        """Reduce some findings of each check, within as much time as the search had."""
+        """Reduce some findings of each check; the time limit of the search holds again."""
         tasks = [Shrink.of(check, case) for check, case in choose_worst(results)]
         if not tasks:
             return {}
@@ -155,6 +155,6 @@ class Search:
             size = len(waiting) if self.seconds is None else self.crew.threads
             while waiting and (self.seconds is None or monotonic() - begin < self.seconds):
                 wave, waiting = waiting[:size], waiting[size:]
-                self._into(wave, CHUNK_LIMIT, done, watch)
+                self._run_tasks(wave, CHUNK_LIMIT, done, watch)
         answers = self.store.answers(tasks)
         return {task: answers[task] for task in tasks if task in answers}

@@ -1,6 +1,6 @@
-"""A case as a script that needs pymunk, MuJoCo or MJX alone, with the numbers that it should print.
+"""Scripts for the authors of pymunk, MuJoCo and MJX: each runs a case with the engine alone.
 
-It is for the authors of these engines.
+A script prints the engine's result, the expected result and their difference.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -28,7 +28,7 @@ from reports.search.recipe import build
 from reports.search.release import check_accelerations
 from reports.search.subjects import Alone, Subject
 
-# The imports of a script by the engine's name, with a function that returns the poses of bodies.
+# Code of a script: a function that returns the poses of bodies.
 POSES_FUNCTION = """
 
 def poses(model, data, start):
@@ -44,16 +44,16 @@ SCRIPT_IMPORTS = {
 UNWRAP_LINES = """
     if apart.ndim == 2:  # an angle may be given without its whole turns
         apart[:, 2] = np.remainder(apart[:, 2] + np.pi, 2 * np.pi) - np.pi"""
-IDEAL_LAW = """what an independent calculation with exact constraints gives. A method of some order comes nearer with
-smaller steps"""
-DECLARED_LAW = """that of M a = f + J^T F and J a + R F = aref - J' v, by an independent calculation: R and aref are
-MuJoCo's own (efc_R, efc_KBIP), and J' v is the term of the velocities"""
-IMPULSE_LAW = "the nearest, in the metric of the masses, that joints allow in the pose after the step's drift"
+IDEAL_LAW = """the motion with exact constraints. The error of a right method falls with the step"""
+DECLARED_LAW = """the solution of M a = f + J^T F and J a + R F = aref - J' v, with R and aref by MuJoCo's efc_R and
+efc_KBIP"""
+IMPULSE_LAW = """the projection of the velocities onto the joints, in the metric of the masses and in the pose after the
+step"""
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """A part of a script that steps one model: a title, lines, and Python for what they found (bodies, 3)."""
+    """A function of a script that steps one model. `read`: a Python expression for the result."""
 
     title: str
     lines: Sequence[str]
@@ -66,9 +66,9 @@ class Block:
 
 
 def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
-    """The script; empty where none can be written: for other engines, and where our own code steps with the engine.
+    """The script of a case; empty for other engines, and if our code runs between the steps of the engine.
 
-    `number`: of the case; it selects the relation.
+    `number`: number of the case, which selects the relation.
     """
     if isinstance(subject, Alone):
         return _of_mujoco_alone(case, subject.release)
@@ -88,19 +88,19 @@ def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
 
 
 def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list[tuple[str, Mechanism, float, int]]:
-    """(title, mechanism, step [s], steps): two descriptions for a relation, else two steps."""
+    """(title, mechanism, step [s], number of steps): two descriptions for a relation, else two step sizes."""
     name = relations.RELATIONS[number % len(relations.RELATIONS)]
     if check in (*relations.RELATIONS, "relations"):
         changed = relations.describe_otherwise(recipe, mechanism, name)
-        both = [("as it is", mechanism)] + ([] if isinstance(changed, CheckSkipped) else [(name, changed[0])])
-        return [(title, item, INSTANT_STEP * item.time_scale, INSTANT_STEPS) for title, item in both]
+        both = [("original", mechanism)] + ([] if isinstance(changed, CheckSkipped) else [(name, changed[0])])
+        return [(title, one, INSTANT_STEP * one.time_scale, INSTANT_STEPS) for title, one in both]
     steps = motions.MOTION_SAMPLES * motions.COARSE_STEPS
     dt = motions.MOTION_SPAN * mechanism.time_scale / steps
-    return [("at this step", mechanism, dt, steps), ("at half of it", mechanism, dt / 2, 2 * steps)]
+    return [("full step", mechanism, dt, steps), ("half step", mechanism, dt / 2, 2 * steps)]
 
 
 def _motion(engine: Any, title: str, mechanism: Mechanism, dt: float, steps: int) -> Block:
-    """Poses after a short motion. Raises Unsupported where our code would be needed between the steps."""
+    """Poses after a short motion. Raises Unsupported if our code runs between the steps."""
     title = f"{title}: {steps} steps of {dt:.6g} s"
     expected = TRUTH.build(mechanism, steps * dt)(1, 1).pose[-1]
     if engine.name != "pymunk":
@@ -108,14 +108,14 @@ def _motion(engine: Any, title: str, mechanism: Mechanism, dt: float, steps: int
     model = engine.model(mechanism, dt)
     constant = any(isinstance(force, Force | Torque) for force in mechanism.forces)
     if model.before_step or model.after_step or engine.leapfrog or constant:
-        raise Unsupported("code of ours takes part in every step")
+        raise Unsupported("our code runs in every step")
     lines = _pymunk_lines(model, model.space.iterations)
     loop = f"for _ in range({steps}):\n    space.step({dt / model.unit!r})"
     return Block(title, [*lines, loop], f"[(*b.position, b.angle) for b in ({_bodies(model)},)]", expected)
 
 
 def _of_velocities(engine: Any, mechanism: Mechanism) -> str:
-    """pymunk's objects before a step, the step, and the expected velocities after it."""
+    """Velocities after one step of pymunk."""
     dt = INSTANT_STEP * mechanism.time_scale
     model = engine.model(mechanism, dt)
     for update in model.before_step:
@@ -127,7 +127,7 @@ def _of_velocities(engine: Any, mechanism: Mechanism) -> str:
 
 
 def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
-    """The model as MJCF and its accelerations by MuJoCo or MJX at two instants."""
+    """Accelerations by MuJoCo or MJX at two instants."""
     import mujoco
 
     by_mjx = engine.name == "mjx"
@@ -150,12 +150,12 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
         lines = [f"data.time, data.qpos[:], data.qvel[:] = {numbers}", "mujoco.mj_forward(model, data)"]
         blocks.append(Block(f"accelerations {title}", [*begin, *lines], read, expected))
     return _render_script(
-        engine, blocks, DECLARED_LAW if term else f"{DECLARED_LAW},\nhere left out for loops and rods, as MJX does"
+        engine, blocks, DECLARED_LAW if term else f"{DECLARED_LAW},\nwithout J' v for loops and rods, as in MJX"
     )
 
 
 def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
-    """One call of mj_forward, and the expected accelerations; `other`: another release, or empty."""
+    """Accelerations by one call of mj_forward; `other`: another release, or empty."""
     rates, accelerations = mujoco_alone.start_equations(model).rates, check_accelerations(model, other)
     names = ", ".join(f"b{body} {coordinate}" for body, coordinate in mujoco_alone.coordinates(model))
     lines = [f"data.qvel[:] = {rates.tolist()!r}", "mujoco.mj_forward(model, data)"]
@@ -165,7 +165,7 @@ def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
 
 
 def _render_script(engine: Engine | None, blocks: Sequence[Block], law: str, turning: str = "") -> str:
-    """The script of these blocks; no engine: MuJoCo alone. `turning`: lines that remove whole turns."""
+    """The script of these blocks. `engine`: None for MuJoCo alone; `turning`: lines that remove whole turns."""
     runs = "\n\n".join(block.function(number) for number, block in enumerate(blocks))
     rows = "\n".join(
         f"    ({block.title!r}, run_{number}, {np.asarray(block.expected).tolist()!r}),"
@@ -174,10 +174,9 @@ def _render_script(engine: Engine | None, blocks: Sequence[Block], law: str, tur
     name, version = "mujoco", "mujoco.__version__"
     if engine is not None and engine.name != name:
         name, version = engine.name, f"version({engine.packages[0]!r})"
-    return f'''"""{name} against a law. Expected is {law}.
+    return f'''"""{name} compared with an independent calculation. The expected result is {law}.
 
-Rows are bodies, columns x [m], y [m] and the angle [rad] or their rates; or there is a number for each coordinate.
-Calls are those that an adapter made, with their numbers.
+Rows are bodies; columns are x [m], y [m] and the angle [rad], or their rates. Accelerations are listed by coordinate.
 """
 
 import math
@@ -214,12 +213,11 @@ def _mujoco_lines(engine: Any, mechanism: Mechanism, dt: float, steps: int) -> l
 
 
 def _model_lines(text: str) -> list[str]:
-    """A model of MuJoCo's and its data."""
     return [f'model = mujoco.MjModel.from_xml_string("""\n{text.strip()}\n""")', "data = mujoco.MjData(model)"]
 
 
 def _pymunk_lines(model: Any, sweeps: int) -> list[str]:
-    """Lines that make a space before its first step. Raises Unsupported for objects that can't be written."""
+    """Lines that build a space. Raises Unsupported for objects that can't be written."""
     settings = f"space.gravity, space.iterations = {tuple(model.space.gravity)!r}, {sweeps}"
     return ["space = pymunk.Space()", settings, *object_lines(model.space, model.bodies)]
 

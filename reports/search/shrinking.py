@@ -1,4 +1,4 @@
-"""Test-case reduction: fewer bodies, fewer joints and smaller whole numbers, as long as the check still fails."""
+"""Test-case reduction: removes bodies and joints and makes integers smaller while the check still fails."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ def shrink_case(case: Case, still: Callable[[Case], bool], seconds: float) -> Ca
     """The smallest case found within `seconds` of CPU time; `still`: whether a smaller case fails in the same way."""
     end = time.process_time() + seconds
     seen: set[Case] = {case}
-    going = True
-    while going and time.process_time() < end:
-        going = False
+    reduced = True
+    while reduced and time.process_time() < end:
+        reduced = False
         for smaller in (*_with_less(case), *_with_smaller_numbers(case)):
             if smaller in seen:
                 continue
             seen.add(smaller)
             if still(smaller):
-                case, going = smaller, True
+                case, reduced = smaller, True
                 break
             if time.process_time() > end:
                 break
@@ -39,7 +39,7 @@ def shrink_case(case: Case, still: Callable[[Case], bool], seconds: float) -> Ca
 
 
 def _with_less(case: Any) -> Iterator[Any]:
-    """Without a body, or without a joint; bodies first, since joints go with them."""
+    """Yield copies without one body, then copies without one joint."""
     for removed in range(len(case.parts), 0, -1):
         if len(case.parts) > 1:
             yield _without_part(case, removed)
@@ -48,7 +48,7 @@ def _with_less(case: Any) -> Iterator[Any]:
 
 
 def _without_part(case: Any, removed: int) -> Any:
-    """Without a body and its joints; its parent takes its place as the parent of others."""
+    """A copy without a body and its joints; the children of the body get its parent."""
     parent = case.parts[removed - 1].parent
 
     def renumbered(body: int) -> int:
@@ -63,12 +63,12 @@ def _without_part(case: Any, removed: int) -> Any:
     return replace(case, parts=tuple(parts), links=tuple(links))
 
 
-# Fields that are identities, not quantities: they are not reduced.
+# Fields that are not quantities and are not reduced.
 IDENTITY_FIELDS = {"parent", "first", "second", "kind", "shape"}
 
 
 def _with_smaller_numbers(value: Any) -> Iterator[Any]:
-    """Copies with one number, or all numbers of a tuple, nearer to zero."""
+    """Yield copies in which one number, or all numbers of a tuple, are nearer to zero."""
     if is_dataclass(value) and not isinstance(value, type):
         for field in fields(value):
             if field.name not in IDENTITY_FIELDS:
@@ -88,29 +88,25 @@ def _with_smaller_numbers(value: Any) -> Iterator[Any]:
         yield from dict.fromkeys([0, step, int(value / 2), value - step])
 
 
-SHRINK_TIME = 20.0  # of CPU time for one finding
-# Smallest error of a reduced case, relative to the original error; a smaller one may be another fault.
-KEPT_SHARE = 0.01
-FINDINGS_SHRUNK = 2  # findings of one check of a subject that are made smaller
+SHRINK_TIME = 20.0  # CPU time for one finding [s]
+KEPT_SHARE = 0.01  # smallest error relative to the original one; a smaller error may have another cause
+FINDINGS_SHRUNK = 2  # number of findings that are reduced, by check and subject
 
 
 @dataclass(frozen=True)
 class Shrink(Task):
-    """A case in which a check fails. `chunk`: the piece that is this case alone."""
+    """The task of reducing a case in which a check fails; `chunk` contains only this case."""
 
     check: str
     chunk: Chunk
 
     @classmethod
     def of(cls, check: str, case: CaseResult) -> Shrink:
-        """The task of making a finding smaller."""
         return cls(check, replace(case.chunk, first=case.number, count=1))
 
     @property
     def cost(self) -> float:
-        return SHRINK_TIME + (
-            self.engine.build_time if self.engine else 0.0
-        )  # few shapes of a compiled engine are tried
+        return SHRINK_TIME + (self.engine.build_time if self.engine else 0.0)
 
     @property
     def label(self) -> str:
@@ -119,7 +115,6 @@ class Shrink(Task):
 
     @property
     def subject(self) -> Subject:
-        """The engine, or MuJoCo alone."""
         return self.chunk.subject
 
     @property
@@ -127,7 +122,7 @@ class Shrink(Task):
         return self.chunk.engine
 
     def run(self) -> Values:
-        """The smallest case, in a line and as JSON (`replay_finding` reads it), and a script of it."""
+        """The smallest case as a line of text, as JSON for `replay_finding`, and as a script."""
         subject, number = self.subject, self.chunk.first
         case = self.chunk.draw(number)
         oracles = self._oracle(case)
@@ -164,7 +159,7 @@ class Shrink(Task):
         }
 
     def _oracle(self, case: Any) -> tuple[str, ...]:
-        """The oracle that detects this fault, so that the reduction does not run the others."""
+        """The oracle that detects the fault; the reduction runs no other oracle."""
         for oracle in (name for name in ORACLES if name in self.chunk.oracles):
             if self.check in self.subject.ask(case, self.chunk.first, (oracle,)).faults:
                 return (oracle,)
@@ -172,12 +167,15 @@ class Shrink(Task):
 
 
 def _kind_of(result: OracleResult) -> str:
-    """The message of a fault without its numbers and names; a reduced case must fail with the same one."""
+    """The message of a fault without numbers and names; a reduced case must have the same message."""
     return re.sub(r"'[^']*'|[0-9.e+-]+", "", result.words)
 
 
 def choose_worst(cases: Iterable[CaseResult], most: int = FINDINGS_SHRUNK) -> list[tuple[str, CaseResult]]:
-    """(check, case): of each check of each subject those with fewest kinds of joints, at most so many; one of a set."""
+    """(check, case): at most `most` cases by subject and check, those with the fewest kinds of joints.
+
+    Of the cases with the same kinds, only the first is considered.
+    """
     by_check: dict[tuple[str, str], dict[tuple[str, ...], CaseResult]] = {}
     for case in cases:
         for check in case.result.faults[:1]:
@@ -190,12 +188,12 @@ def choose_worst(cases: Iterable[CaseResult], most: int = FINDINGS_SHRUNK) -> li
 
 
 def line_of(answer: Answer) -> str:
-    """The finding in one line."""
-    return str(answer.values["line"]) if answer.finished else f"not made smaller: {answer.sentence}"
+    """A finding in one line."""
+    return str(answer.values["line"]) if answer.finished else f"not reduced: {answer.sentence}"
 
 
 def files_of(task: Shrink, answer: Answer) -> dict[str, str]:
-    """A finding's files by name; none of one that could not be made smaller."""
+    """The files of a reduced finding by name; none if the reduction did not finish."""
     if not answer.finished:
         return {}
     stem = re.sub(r"\W+", "_", f"{task.subject.name} {task.check} {task.chunk.seed} {task.chunk.first}").strip("_")
@@ -206,6 +204,6 @@ def files_of(task: Shrink, answer: Answer) -> dict[str, str]:
 
 
 def replay_finding(finding: dict[str, Any], subject: Subject) -> OracleResult:
-    """The present result of a finding that was written before."""
+    """Run the case of a stored finding again."""
     case: Any = case_from_json(json.dumps(finding["case"]), subject.case)
     return subject.ask(case, finding["number"], tuple(finding["oracles"]))

@@ -1,4 +1,4 @@
-"""The subjects of a search: an engine through its adapter, or MuJoCo alone; each draws its cases and checks them."""
+"""The subjects of a search: an engine with its adapter, or MuJoCo alone."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from reports.search.parts import ALL_KINDS, Recipe
 from reports.search.recipe import build
 from reports.search.release import check_accelerations
 
-OUR_ERROR = "our own error"  # check name for an exception that an oracle raised without the engine
+OUR_ERROR = "our own error"  # name of the check for an exception outside of the engine
 
 
 @dataclass(frozen=True)
 class OracleResult:
-    """The result of one case: (error, tolerance) by check, and the reasons why oracles did not apply."""
+    """The result of a case. `errors`: (error, tolerance) by check. `skipped`: reasons why oracles did not apply."""
 
     errors: dict[str, tuple[float, float]]
     skipped: tuple[str, ...] = ()
-    words: str = ""  # of a fault that has no number
+    words: str = ""  # message of a fault without a numerical error
 
     @property
     def faults(self) -> tuple[str, ...]:
@@ -43,7 +43,7 @@ class OracleResult:
 
 @dataclass(frozen=True)
 class Adapted:
-    """An engine, on recipes of joints."""
+    """An engine with its adapter; cases are recipes."""
 
     engine: Engine
     case: ClassVar[type] = Recipe
@@ -63,18 +63,16 @@ class Adapted:
 
     def ask(self, case: Recipe, number: int, oracles: Sequence[str]) -> OracleResult:
         """Run these oracles on one case. Raises InvalidMechanism for an invalid case."""
-        requested = self.engine, _cached_mechanism(case), case, number
-        return _run_oracles(
-            {name: partial(oracle.errors, *requested) for name, oracle in ORACLES.items() if name in oracles},
-            self.engine,
-        )
+        arguments = self.engine, _cached_mechanism(case), case, number
+        runs = {name: partial(oracle.errors, *arguments) for name, oracle in ORACLES.items() if name in oracles}
+        return _run_oracles(runs, self.engine)
 
 
 @dataclass(frozen=True)
 class Alone:
-    """MuJoCo on models of its own format: no adapter takes part. See `mujoco_alone`.
+    """MuJoCo without an adapter, on models in its own format (`mujoco_alone`).
 
-    `release`: another one than is installed, as "3.6.0"; see `reports.search.release`.
+    `release`: a version such as "3.6.0"; empty for the installed one.
     """
 
     release: str = ""
@@ -93,30 +91,29 @@ class Alone:
 
     def ask(self, case: mujoco_alone.RawModel, number: int, oracles: Sequence[str]) -> OracleResult:
         def instant() -> Errors:
-            return {
-                name: (error, LAW_TOLERANCE)
-                for name, error in check_accelerations(case, self.release)["errors"].items()
-            }
+            errors = check_accelerations(case, self.release)["errors"]
+            return {name: (error, LAW_TOLERANCE) for name, error in errors.items()}
 
         mujoco_alone.start_equations(case)  # raises InvalidMechanism for an invalid case
         return _run_oracles({"instant": instant} if "instant" in oracles else {}, None)
 
 
 Subject = Adapted | Alone
-# Cached, since all engines run the same mechanism: its tables of rolling curves and the judge's motion are reused.
-_cached_recipe, _cached_mechanism = (
-    lru_cache(motions.CACHED_MECHANISMS)(mechanisms.recipe),
-    lru_cache(motions.CACHED_MECHANISMS)(build),
-)
+# Cached, since all engines run the same mechanism and share its tables of rolling curves and the judge's motion.
+_cached_recipe = lru_cache(motions.CACHED_MECHANISMS)(mechanisms.recipe)
+_cached_mechanism = lru_cache(motions.CACHED_MECHANISMS)(build)
 
 
 def is_shaped(subject: Subject) -> bool:
-    """Whether its cases are of few shapes, since a model takes seconds to build."""
+    """Whether the cases have few shapes, since the engine compiles a model for each shape."""
     return isinstance(subject, Adapted) and subject.engine.build_time > 0
 
 
 def _run_oracles(oracles: Mapping[str, Callable[[], Errors | CheckSkipped]], engine: Engine | None) -> OracleResult:
-    """Run oracles; an exception is a fault of the engine (None for MuJoCo alone) if its code raised it, else ours."""
+    """Run oracles. An exception counts as "raised" if code of the engine raised it, else as OUR_ERROR.
+
+    `engine`: None for MuJoCo alone.
+    """
     errors: dict[str, tuple[float, float]] = {}
     skipped: list[str] = []
     messages: list[str] = []
@@ -131,7 +128,7 @@ def _run_oracles(oracles: Mapping[str, Callable[[], Errors | CheckSkipped]], eng
                 messages.append(str(reason))
             except ImportError:  # a missing module is no fault of an engine
                 raise
-            except Exception as error:  # whatever an adapter raises that is no refusal is a fault of its own
+            except Exception as error:
                 blamed = engine is not None and _passed_through(error, engine)
                 errors["raised" if blamed else OUR_ERROR] = (np.inf, 0.0)
                 messages.append(f"{'' if blamed else 'ours: '}{type(error).__name__}: {error}"[:300])
@@ -149,7 +146,7 @@ def _passed_through(error: Exception, engine: Engine) -> bool:
     while isinstance(engine, EngineWrapper):
         engine = engine.engine
         modules.append(type(engine).__module__)
-    # An engine is a package, or one module of `engines`, which contains other engines too.
+    # An engine is a package, or a single module of the package `engines`.
     owners = {module if module.count(".") < 2 else module.rpartition(".")[0] for module in modules}
     called = [frame.f_globals.get("__name__", "") for frame, _ in traceback.walk_tb(error.__traceback__)]
     return any(name == owner or name.startswith(f"{owner}.") for name in called for owner in owners)

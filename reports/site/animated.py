@@ -1,4 +1,4 @@
-"""An animated motion: an SVG that is animated by CSS, without a script, and a film of the same picture."""
+"""Animations of a motion: an SVG with CSS animations, or a film."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ Array = NDArray[np.float64]
 Moving = list[tuple[Line2D, Array, Array]]  # lines, their points in the body's frame (points, 2), its poses (times, 3)
 Growing = list[tuple[Line2D, Array]]  # lines, and the error at every instant [rad]
 
-FRAMES = 100  # most frames of an animated SVG
+FRAMES = 100  # approximate upper bound of the number of samples in an animation
 SECONDS = 8.0  # duration of one repetition
 PAUSE = 0.12  # pause at the end of a repetition of an SVG, as a fraction of SECONDS
 KEYS = 60  # key frames of an SVG; the browser interpolates linearly between them
-RATE = 25  # frames a second of a film: a GIF needs whole hundredths of a second for each frame
+RATE = 25  # frames per second of a film; the duration of a frame in a GIF is a multiple of 0.01 s
 INCHES = (12.8, 5.6)
-DOTS = 100  # pixels an inch of a film, which is so 1280 pixels wide
+DOTS = 100  # pixels per inch of a film
 # Line width [pt] and dashes (in multiples of the width) of each motion.
 LOOKS: tuple[tuple[float, Any], ...] = (
     (5.6, "-"),
@@ -50,14 +50,15 @@ LOOKS: tuple[tuple[float, Any], ...] = (
     (3.2, (0, (1.5, 2.5))),
     (3.2, (0, (6, 2, 1, 2))),
 )
-DECADES = 8  # of the scale of errors, at most
+DECADES = 8  # largest number of decades of the error axis
 
 
 @dataclass(frozen=True)
 class Take(Look):
-    """The motion of a scene in a picture: the exact one, and that of several methods.
+    """The exact motion of a scene, and the motions of several methods, for a picture.
 
-    methods: (label of the legend, engine, steps between samples). samples: None takes the number of the scene.
+    methods: (label, engine, steps between samples). samples: number of sampling intervals; None means that of the
+    scene.
     """
 
     scene: Scene
@@ -66,11 +67,10 @@ class Take(Look):
 
     @property
     def sample_count(self) -> int:
-        """Sampling intervals of the motion."""
         return self.scene.samples if self.samples is None else self.samples
 
     def motions(self) -> dict[str, Motion]:
-        """The tasks that have to be run, by the label of the legend."""
+        """The tasks by label."""
         return {
             label: Motion(Cell(self.scene, engine, every, "failure", self.samples))
             for label, engine, every in self.methods
@@ -78,24 +78,24 @@ class Take(Look):
 
     @property
     def shown(self) -> slice:
-        """The samples that the picture shows, about FRAMES at most."""
+        """The samples in the picture, about FRAMES at most."""
         return slice(0, None, max(1, -(-(self.sample_count + 1) // (FRAMES + 1))))
 
 
 @dataclass(frozen=True)
 class Shown:
-    """A take with its motions, from which a picture is drawn."""
+    """A take with its motions."""
 
     take: Take
     mechanism: Mechanism
     t: Array  # (frames,) s
     truth: Trajectory
     motions: Mapping[str, Array]  # label -> poses (frames, bodies, 3), NaN after the method has failed
-    missing: Mapping[str, str]  # label -> why there is no motion
+    missing: Mapping[str, str]  # label -> reason
 
 
 def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
-    """Return the take at its frames; methods without a motion are in `missing` with the reason."""
+    """Return a take with its motions; `missing` has the methods that have no motion."""
     motions: dict[str, Array] = {}
     missing: dict[str, str] = {}
     spacing = take.scene.duration / take.sample_count
@@ -110,10 +110,10 @@ def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
 
 
 def animation(shown: Shown, title: str) -> str:
-    """Return the SVG, deterministic for equal motions; without animation it shows the first frame."""
+    """Return an animated SVG; a reader without animations sees the first frame."""
     keys = np.unique(np.linspace(0, len(shown.t) - 1, KEYS).round().astype(int))
     with settings():
-        figure, moving, growing = _figure(shown, title, LIGHT, 72)  # the units of matplotlib's SVG
+        figure, moving, growing = _figure(shown, title, LIGHT, 72)  # matplotlib's SVG has 72 points per inch
         figure.draw_without_rendering()
         figure.set_layout_engine("none")
         rules = {}
@@ -139,12 +139,13 @@ def animation(shown: Shown, title: str) -> str:
 def _keyframes(label: str, places: Array) -> str:
     """Return the CSS that moves the elements with the id `label-...` through `places` (keys, 3).
 
-    The columns are x, y [pt] and the angle [degrees]. After the first place that is not finite they keep the last one.
+    The columns of `places` are x, y [pt] and the angle [degrees]. A place that is not finite is replaced by the
+    previous one.
     """
     frames = []
     x0, y0, first = last = places[0]
-    for index, where in enumerate(places):
-        x, y, angle = last = where if np.all(np.isfinite(where)) else last
+    for index, place in enumerate(places):
+        x, y, angle = last = place if np.all(np.isfinite(place)) else last
         share = 100 * (1 - PAUSE) * index / (len(places) - 1)
         frames.append(
             f"{share:.2f}%{{transform:translate({drawn.number(x - x0, 2)}px,{drawn.number(y - y0, 2)}px) "
@@ -157,13 +158,13 @@ def _keyframes(label: str, places: Array) -> str:
 
 
 def _looks(shown: Shown, theme: Theme) -> list[tuple[str, float, Any]]:
-    """Colour, width and dashes of each motion: engines differ by colour, as in charts, variants by dashes."""
+    """Colour, width and dashes of each motion; engines differ by colour."""
     roles = [role(family_of(engine.name)) for label, engine, _ in shown.take.methods if label in shown.motions]
     return [(getattr(theme, colour), *look) for colour, look in zip(roles, LOOKS, strict=False)]
 
 
 def decades(errors: Sequence[Array]) -> tuple[int, int]:
-    """Return the powers of ten (low, high) of the error axis, which cover most instants of each method."""
+    """Return the powers of ten (low, high) of the error axis; it covers most samples of each method."""
     positive = [error[np.isfinite(error) & (error > 0)] for error in errors]
     positive = [error for error in positive if len(error)] or [np.ones(1)]
     high = int(np.ceil(np.log10(max(error.max() for error in positive))))
@@ -172,14 +173,13 @@ def decades(errors: Sequence[Array]) -> tuple[int, int]:
 
 
 def film(shown: Shown, title: str, path: Path, theme: Theme = LIGHT) -> None:
-    """Write the film to a path that ends in .gif or .mp4. Raises BadInput where ffmpeg is needed and missing."""
+    """Write a film to a path that ends in .gif or .mp4. Raises BadInput if .mp4 is requested without ffmpeg."""
     program = ffmpeg() if path.suffix == ".mp4" else "ffmpeg"
     with settings(), rc_context({"animation.ffmpeg_path": program}):
         figure, moving, growing = _figure(shown, title, theme, DOTS)
         FigureCanvasAgg(figure)
 
         def draw(frame: float) -> list[Line2D]:
-            """Set the poses by linear interpolation between samples."""
             start, share = int(frame), frame % 1
             end = min(start + 1, len(shown.t) - 1)
             for line, points, pose in moving:
@@ -198,7 +198,7 @@ def film(shown: Shown, title: str, path: Path, theme: Theme = LIGHT) -> None:
 
 
 def ffmpeg() -> str:
-    """Return the path of ffmpeg: the installed one, or that of the package imageio-ffmpeg. Raises BadInput."""
+    """Return the path of the installed ffmpeg, or of imageio-ffmpeg's. Raises BadInput if both are missing."""
     installed = shutil.which("ffmpeg")
     if installed is not None:
         return installed
@@ -211,7 +211,7 @@ def ffmpeg() -> str:
 
 
 def _figure(shown: Shown, title: str, theme: Theme, dots: int) -> tuple[Figure, Moving, Growing]:
-    """Return the figure of the mechanism beside its errors, the lines that move, and those that grow."""
+    """Return the figure, the lines that move, and the lines that grow."""
     figure = Figure(figsize=INCHES, dpi=dots, facecolor=theme.paper, layout="constrained")
     stage, chart = figure.subplots(1, 2, width_ratios=(1.2, 1))
     figure.suptitle(title, fontsize=15, color=theme.ink, x=0.02, ha="left")

@@ -33,9 +33,9 @@ from reports.write.templates import CODE, inert_page
 
 HERE = Path(__file__).parent
 MARKER = "site.json"
-# A link to a file beside the page; Sphinx itself reads pictures.
+# A link to a file; links to pictures are excluded, since Sphinx resolves them.
 FILE_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?![a-z]+:|#)([^)#\s]+)(#[^)]*)?\)")
-DRAGGED = re.compile(r"\{(\w+)\}")  # the name of a control, in braces, in the text of a lesson
+DRAGGED = re.compile(r"\{(\w+)\}")  # the name of a control in braces, in the text of a lesson
 ENGINE_FILES = {"munk2d": "packages/munk2d.js", "mujoco": "packages/mujoco.js"}
 
 # The columns of the page of charts.
@@ -52,7 +52,7 @@ def tasks(lessons: Iterable[Lesson] = LESSONS) -> tuple[Motion, ...]:
 
 
 def build(source: SiteSource, lessons: Iterable[Lesson] = LESSONS) -> Files:
-    """Return every file of the site by its path. Raises BadInput where packages of the extra `site` are missing."""
+    """Return every file of the site by its path. Raises BadInput if packages of the extra `site` are missing."""
     lessons = tuple(lessons)
     extra = _extra_files(source, lessons)
     documents = _documents(source, lessons)
@@ -75,7 +75,7 @@ def build(source: SiteSource, lessons: Iterable[Lesson] = LESSONS) -> Files:
 
 
 def _extra_files(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
-    """Return scripts, packages, data of the lessons, tables; a missing part adds a sentence to `source.troubles`."""
+    """Return scripts, packages, data of the lessons and tables; a missing package adds to `source.troubles`."""
     files: Files = {path.name: path.read_bytes() for path in sorted((HERE / "assets").iterdir())}
     files |= {"colours.css": colours().encode(), "front.svg": _front_picture(source).encode()}
     parts: dict[str, Callable[[], Files]] = {
@@ -98,10 +98,8 @@ def _extra_files(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
 def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
     """Return all rows of sweeps for the page of charts, from the texts of three CSV files; a missing number is None.
 
-    Returns:
-        columns, rows: `cpu` is CPU time per simulated second [s], settings are words.
-        looks: for each engine the role of its colour, and whether it is an exact solver: those are hidden at first.
-        headings: the names of the variants.
+    "cpu" is the CPU time per simulated second [s]. "looks" has the role of each engine's colour, and whether the engine
+    is an exact solver. "headings" has the names of the variants.
     """
     times, texts = _by(timings, *ROW_KEY), _by(descriptions, "digest")
     rows = []
@@ -127,7 +125,7 @@ def _json(value: object) -> bytes:
 
 
 def _documents(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
-    """Return the documents for Sphinx: results, how-to pages, the lecture, the reference, the page on the site."""
+    """Return the documents for Sphinx."""
     texts = {f"results/{name}": inert_page(text) for name, text in source.pages.items()}
     guides = {path.stem: path.read_text(encoding="utf-8") for path in sorted((HERE / "howto").glob("*.md"))}
     quoted = {
@@ -158,7 +156,7 @@ def _documents(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
 
 
 def _with_links(text: str, moved: Mapping[str, str], documents: Iterable[str]) -> str:
-    """Return a page whose links lead to documents of the site; a link to another file becomes HTML."""
+    """Return a page with links to documents of the site; a link to any other file becomes HTML."""
     for old, new in moved.items():
         text = text.replace(f"({old}", f"({new}")
 
@@ -196,7 +194,7 @@ def _about(source: SiteSource) -> str:
 
 
 def _lesson_context(lesson: Lesson, quote: Callable[[str], str | None]) -> dict[str, Any]:
-    """Return the values of lesson.html; `quote` returns the HTML of a part of the lesson's page of results."""
+    """Return the values of lesson.html; `quote` returns the HTML of a section of the results page."""
     parts = []
     for part, experiment in zip(lesson.parts, lesson.experiments, strict=True):
         live = lesson.scene(experiment.scene)
@@ -229,13 +227,13 @@ def _lesson_context(lesson: Lesson, quote: Callable[[str], str | None]) -> dict[
 
 
 def _with_drags(text: str, values: Mapping[str, str]) -> Markup:
-    """Return the HTML of a text; a control's name in braces becomes a number that the reader can drag."""
+    """Return the HTML of a text; the name of a control in braces becomes a number that the reader can drag."""
     number = r'<span class="drag" role="slider" tabindex="0" data-name="{0}" aria-label="{0}">{1}</span>'
     return Markup(DRAGGED.sub(lambda match: number.format(match[1], escape(values[match[1]])), render_html(text)))
 
 
 def _front_picture(source: SiteSource) -> str:
-    """Return an animated motion of the first lesson, without a script."""
+    """Return an animated SVG of the first lesson."""
     live = LESSONS[0].scene("let go")
     stored = live.stored()
     cells = {label: stored[name, 0].cell for name, label in NAMES.items()}

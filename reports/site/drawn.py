@@ -1,4 +1,4 @@
-"""The drawing of a mechanism: an SVG group for each body, which a page moves and turns, and its joints as numbers."""
+"""The drawing of a mechanism: SVG elements of each body, and the joints as numbers for a page."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from reports.site.live.sliders import Look, Point
 
 Array = NDArray[np.float64]
 
-# Sizes as fractions of the mechanism's length.
+# Sizes as fractions of the mechanism's length scale.
 BLOCK = 0.07  # half the side of a body without joints and ends
 PIN = 0.018  # radius of a pin
 BLADE = 0.16  # length of a blade
 SUPPORT = 0.05  # half the width of a support
-OUTLINE = 160  # points of a curve
+OUTLINE = 160  # number of points of a curve
 
 
 def number(value: float, digits: int = 5) -> str:
@@ -52,7 +52,7 @@ class Stroke:
 
     @property
     def outline(self) -> Array:
-        """The points, the first one at the end too if it is closed."""
+        """The points; a closed line repeats its first point at the end."""
         return np.vstack([self.points, self.points[:1]]) if self.closed else self.points
 
     def svg(self) -> str:
@@ -112,7 +112,7 @@ def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
 
 
 def ground_lines(mechanism: Mechanism, look: Look, pose: Array) -> list[Stroke]:
-    """Return the fixed lines: supports, slots, curves on which bodies roll; `pose` (times, bodies, 3) is exact."""
+    """Return supports, slots and curves of the ground; `pose` (times, bodies, 3) is the exact motion."""
     size = mechanism.length_scale
     lines = []
     for joint in mechanism.joints:
@@ -124,8 +124,8 @@ def ground_lines(mechanism: Mechanism, look: Look, pose: Array) -> list[Stroke]:
         if isinstance(joint, Slot) and joint.first is None:
             along = np.array([np.cos(joint.line_angle), np.sin(joint.line_angle)])
             origin = np.array(joint.first_point)
-            reach = (pose[:, mechanism.body_index(str(joint.second)), :2] - origin) @ along
-            ends = (reach.min() - 0.2 * size, reach.max() + 0.2 * size)
+            travel = (pose[:, mechanism.body_index(str(joint.second)), :2] - origin) @ along
+            ends = (travel.min() - 0.2 * size, travel.max() + 0.2 * size)
             lines.append(Stroke("rail", np.array([origin + along * end for end in ends])))
         if isinstance(joint, Roll) and joint.first is None:
             lines.append(Stroke("rail", rolled_on(joint, pose, mechanism)))
@@ -133,14 +133,14 @@ def ground_lines(mechanism: Mechanism, look: Look, pose: Array) -> list[Stroke]:
 
 
 def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:
-    """Return the part of the ground's curve on which a body rolls (points, 2) [m], or all of a closed curve."""
+    """Return the part of the ground's curve on which a body rolls (points, 2) [m]; a closed curve is returned whole."""
     curve = joint.rolling.ground
     low, high = curve.limits
     if np.isfinite(curve.length):
         return curve.point(np.linspace(max(low, 0.0), min(high, curve.length), OUTLINE))
     travelled = np.ptp(pose[:, mechanism.body_index(str(joint.second)), :2], axis=0).max()
-    reach = travelled + joint.rolling.body.length / 2
-    return curve.point(np.linspace(joint.rolling.ground_arc - reach, joint.rolling.ground_arc + reach, OUTLINE))
+    half = travelled + joint.rolling.body.length / 2
+    return curve.point(np.linspace(joint.rolling.ground_arc - half, joint.rolling.ground_arc + half, OUTLINE))
 
 
 def point_path(pose: Array, point: Point | Array) -> Array:
@@ -154,7 +154,7 @@ def box(mechanism: Mechanism, look: Look, pose: Array) -> tuple[float, float, fl
         point_path(pose[:, index], point)
         for index, body in enumerate(mechanism.bodies)
         for line in body_lines(mechanism, look, body.name)
-        if line.kind != "curve"  # the curve of an instant centre reaches far away
+        if line.kind != "curve"  # a curve of instant centres may be much larger than the mechanism
         for point in line.points
     ]
     fixed = [
@@ -167,7 +167,7 @@ def box(mechanism: Mechanism, look: Look, pose: Array) -> tuple[float, float, fl
     low, high = everything.min(axis=0), everything.max(axis=0)
     margin = 0.09 * float((high - low).max())
     width, height = high - low + 2 * margin
-    least = 0.32 * width  # a picture that is a thin strip shows nothing
+    least = 0.32 * width  # smallest height, so that the picture is not a thin strip
     lift = max(0.0, least - height) / 2
     return float(low[0] - margin), float(low[1] - margin - lift), float(width), float(max(height, least))
 
@@ -178,12 +178,12 @@ def index_of(mechanism: Mechanism, name: str | None) -> int:
 
 
 def measure_of(mechanism: Mechanism) -> Literal["angle", "position"]:
-    """Return the error to show: of positions with skates, which constrain velocities alone, else of angles."""
+    """Return the error that a page shows: "position" for mechanisms with skates, otherwise "angle"."""
     return "angle" if mechanism.holonomic.all() else "position"
 
 
 def joints_of(mechanism: Mechanism) -> list[dict[str, Any]]:
-    """Return the pins and slots, whose gaps a page computes from poses: their bodies, points, and a slot's line."""
+    """Return the pins and slots, from which a page computes gaps."""
     return [
         {
             "name": joint.name,
@@ -207,21 +207,21 @@ def between(mechanism: Mechanism, joint: Joint, pose: Array) -> tuple[Array, Arr
 
 
 def place_of(joint: Joint, first: Array, second: Array) -> Array:
-    """Return the point (times, 2) [m] at which a joint acts: its point on the second body, or the contact of a Roll."""
+    """Return the point (times, 2) [m] of a joint: the contact of a Roll, otherwise its point on the second body."""
     if isinstance(joint, Roll):
         return first[:, :2] + rotated(first[:, 2], joint.rolling.contact(second[:, 2] - first[:, 2]).point)
     return point_path(second, getattr(joint, "second_point", (0.0, 0.0)))
 
 
 def loose(mechanism: Mechanism) -> list[Skate | Roll]:
-    """Return the joints whose error is not a distance of two points: skates and rolling contacts."""
+    """Return the skates and rolling contacts."""
     return [joint for joint in mechanism.joints if isinstance(joint, Skate | Roll)]
 
 
 def required_friction(reaction: Array) -> Array:
-    """Return the friction coefficient (times,) [1] that rolling requires; reaction (times, 2): along, across.
+    """Return the friction coefficient (times,) [1] that rolling requires; reaction (times, 2): tangential, normal.
 
-    NaN where the normal force is not compressive: no friction is sufficient there.
+    A normal force that pulls gives NaN, since no coefficient is sufficient.
     """
     with np.errstate(all="ignore"):
         return np.where(reaction[:, 1] > 0, np.abs(reaction[:, 0]) / reaction[:, 1], np.nan)

@@ -1,4 +1,4 @@
-"""A site's folder: written whole, so that an earlier site is replaced only by a complete one, and served."""
+"""Writing a site to a folder, and serving the folder by HTTP."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ REMEDY = "give another --output"
 
 
 def refuse_strangers(output: Path) -> None:
-    """Raises FileTrouble where the folder has files and no mark of an earlier site: they would be lost."""
+    """Raises FileTrouble if the folder contains files that are not a site."""
     if output.is_symlink() or (output.exists() and not output.is_dir()):
         raise FileTrouble(f"{output} is no folder: {REMEDY}")
     if output.is_dir() and any(output.iterdir()) and not (output / MARKER).is_file():
@@ -25,9 +25,9 @@ def refuse_strangers(output: Path) -> None:
 
 
 def write_site(output: Path, files: Mapping[str, bytes]) -> int:
-    """Write all files into `output`, an earlier site replaced; their size when compressed [bytes].
+    """Write all files to `output`, where they replace an earlier site, and return their compressed size [bytes].
 
-    Raises FileTrouble, and leaves the earlier site as it was.
+    Raises FileTrouble if that fails; an earlier site is then unchanged.
     """
     refuse_strangers(output)
     parent = folder_for(output.absolute().parent, REMEDY)
@@ -47,14 +47,14 @@ def write_site(output: Path, files: Mapping[str, bytes]) -> int:
 
 
 def compressed_size(files: Mapping[str, bytes]) -> int:
-    """Return the sum of the sizes of the files [bytes], each compressed by gzip."""
+    """Return the sum of the sizes of the files after gzip [bytes]."""
     return sum(len(gzip.compress(content, 9, mtime=0)) for content in files.values())
 
 
 class Quiet(SimpleHTTPRequestHandler):
-    """Serves files and says nothing; JavaScript and WebAssembly have their types whatever the machine's table says."""
+    """A handler without a log, with content types that do not depend on the system."""
 
-    extensions_map = {  # noqa: RUF012 (as the class above has it)
+    extensions_map = {  # noqa: RUF012 (the base class has a mutable attribute too)
         **SimpleHTTPRequestHandler.extensions_map,
         ".js": "text/javascript",
         ".wasm": "application/wasm",
@@ -64,7 +64,7 @@ class Quiet(SimpleHTTPRequestHandler):
     }
 
     def send_head(self) -> Any:
-        """As the class above, with an answer to a name that no file can have, such as one with a zero byte."""
+        """Answer 404 also to a name that no file can have, such as one with a zero byte."""
         try:
             return super().send_head()
         except (ValueError, OSError):
@@ -76,11 +76,11 @@ class Quiet(SimpleHTTPRequestHandler):
 
 
 def server(folder: Path, port: int) -> ThreadingHTTPServer:
-    """A server of the folder for this machine alone; port 0 takes any. Raises BadInput if the port is taken."""
+    """A server of the folder for this machine; port 0 selects a free port. Raises BadInput if the port is in use."""
     try:
         return ThreadingHTTPServer(("127.0.0.1", port), partial(Quiet, directory=str(folder)))
     except OSError as reason:
-        raise BadInput(f"port {port} can't be had ({reason.strerror or reason}): give another --port") from None
+        raise BadInput(f"port {port} is not available ({reason.strerror or reason}): give another --port") from None
 
 
 def serve_folder(folder: Path, port: int) -> None:

@@ -1,6 +1,6 @@
-"""Sphinx with MyST and Furo: Markdown pages and docstrings as HTML, with formulas in MathML and a search.
+"""The build by Sphinx with MyST and Furo: Markdown pages and docstrings become HTML with MathML and a search.
 
-The pages of our own templates (lessons, stored rows) are added to those of the documents.
+The lessons and the page of stored rows have their own templates.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ LINE = re.compile(r' (?:d|x|y)="[^"]*"')
 LONG = re.compile(r"-?\d+\.\d{2,}(?![\de])")
 PACKAGES = ("reference", "engines")
 MODULE = "{name}\n{line}\n\n.. automodule:: {name}\n   :members:\n"
-# Kinds of Sphinx's warnings that are ignored: docstrings are plain text, and headings skip levels.
+# Kinds of Sphinx warnings that are ignored, since docstrings are plain text and headings skip levels.
 HARMLESS = ("docutils", "autodoc", "ref.", "toc.", "myst.header")
 
-# The templates of Furo's sidebar, and ours with the lessons.
+# Templates of the sidebar; "lessons" is ours, the others belong to Furo.
 SIDEBAR = ("scroll-start", "brand", "search", "lessons", "navigation", "scroll-end")
 
 Extra = tuple[str, dict[str, Any], str]  # page, context, template
@@ -37,12 +37,12 @@ Extra = tuple[str, dict[str, Any], str]  # page, context, template
 
 @dataclass(frozen=True)
 class Documents:
-    """Files of a Sphinx project: `sources` are read as documents, `extra` are copied to the site as they are."""
+    """Files of a Sphinx project: `sources` are documents, `extra` are copied without a change."""
 
     sources: Mapping[str, bytes]
     extra: Mapping[str, bytes]
-    context: Mapping[str, Any]  # values of our own templates
-    add_pages: Callable[[Any], Iterator[Extra]]  # of the Sphinx application, when all documents are written
+    context: Mapping[str, Any]  # values for the templates
+    add_pages: Callable[[Any], Iterator[Extra]]  # receives the Sphinx application after all documents are written
 
 
 def require_packages() -> None:
@@ -53,7 +53,7 @@ def require_packages() -> None:
 
 
 def build_html(documents: Documents) -> tuple[dict[str, bytes], list[str]]:
-    """The files of the site by name, and the warnings about our pages. Raises BadInput where a package is missing."""
+    """The files of the site by name, and Sphinx's warnings. Raises BadInput if a package is missing."""
     require_packages()
     from sphinx.application import Sphinx  # pyright: ignore[reportMissingImports]
     from sphinx.util.docutils import docutils_namespace  # pyright: ignore[reportMissingImports]
@@ -79,7 +79,7 @@ def build_html(documents: Documents) -> tuple[dict[str, bytes], list[str]]:
 
 
 def setup(app: Any) -> None:
-    """Register the renderer of formulas; Sphinx calls it, since this module is one of its extensions."""
+    """Register the renderer of formulas; Sphinx calls this function for each of its extensions."""
     app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))
 
 
@@ -123,7 +123,7 @@ def configure(extra: Path) -> dict[str, Any]:
 
 
 def furo_colours(theme: Theme) -> dict[str, str]:
-    """The colours of our charts as those of the theme."""
+    """The colours of the charts as variables of Furo."""
     return {
         "color-brand-primary": theme.ink,
         "color-brand-content": theme.second,
@@ -134,7 +134,7 @@ def furo_colours(theme: Theme) -> dict[str, str]:
 
 
 def colours() -> str:
-    """CSS that sets a variable for each role; the reader's choice overrides that of the system."""
+    """CSS with a variable for each role of a colour; the reader's choice overrides the system's colour scheme."""
     light, dark = (" ".join(f"--{f.name}: {getattr(theme, f.name)};" for f in fields(Theme)) for theme in (LIGHT, DARK))
     return (
         f":root {{ color-scheme: light dark; {light} }}\n"
@@ -145,7 +145,7 @@ def colours() -> str:
 
 
 def visit_inline(translator: Any, node: Any) -> None:
-    """Write a formula of a sentence, and nothing of its children."""
+    """Write an inline formula."""
     from docutils.nodes import SkipNode  # pyright: ignore[reportMissingImports]
 
     translator.body.append(mathml(node.astext()))
@@ -153,7 +153,7 @@ def visit_inline(translator: Any, node: Any) -> None:
 
 
 def visit_block(translator: Any, node: Any) -> None:
-    """Write a displayed formula, and nothing of its children."""
+    """Write a displayed formula."""
     from docutils.nodes import SkipNode  # pyright: ignore[reportMissingImports]
 
     translator.body.append(f'<div class="math">{mathml(" ".join(node.astext().split()), True)}</div>')
@@ -161,7 +161,7 @@ def visit_block(translator: Any, node: Any) -> None:
 
 
 def quote_section(app: Any, page: str, heading: str) -> str | None:
-    """The HTML of a part of a results page, as a page in a folder beside `results` shows it; None without that part."""
+    """The HTML of a section of a results page, for a page in another folder; None without the section."""
     from docutils import nodes  # pyright: ignore[reportMissingImports]
 
     name = f"results/{page}"
@@ -180,7 +180,7 @@ def quote_section(app: Any, page: str, heading: str) -> str | None:
 
 
 def reference_sources() -> dict[str, bytes]:
-    """A document for each module of the packages, whose docstrings Sphinx reads, and their index."""
+    """A document for each module, and their index; Sphinx fills the documents from docstrings."""
     names = [*PACKAGES]
     for package in PACKAGES:
         names += [module.name for module in walk_packages([str(HERE.parents[1] / package)], f"{package}.")]
@@ -190,5 +190,5 @@ def reference_sources() -> dict[str, bytes]:
 
 
 def lighten(picture: str) -> str:
-    """An SVG whose lines are drawn to a tenth of a point, a fraction of a pixel, instead of a millionth."""
+    """An SVG with coordinates of lines rounded to a tenth of a point, which makes the file smaller."""
     return LINE.sub(lambda found: LONG.sub(lambda digits: f"{float(digits[0]):.1f}", found[0]), picture)

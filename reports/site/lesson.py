@@ -1,4 +1,4 @@
-"""The types of lessons (scenes, experiments and their texts) and of the input of a site."""
+"""Lessons (scenes, experiments and their texts) and the input of a site."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FORCES, CENTRE = ("reactions",), ("centre",)  # overlays
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim on the effect of a change of settings: an engine's error becomes `least` to `most` times as large."""
+    """A claim: a change of settings multiplies an engine's error by `least` to `most`."""
 
     engine: Name
     least: float = 0.0
@@ -28,12 +28,12 @@ class Claim:
 
 @dataclass(frozen=True)
 class Experiment:
-    """The settings before a question, and the change of them that answers it.
+    """Settings of a scene before a question, and the change of settings that answers it.
 
-    `before`: values of controls of the scene called `scene`, the others have their start values; `after`: the values
-    that change then. claims: errors after the change relative to those before. causes: further changes, each with a
-    claim relative to the errors after the change, so that a text that names a cause is tested without that cause.
-    overlays: names of overlays beside the paths. section: the heading of a part of the Markdown page that is quoted.
+    before: values of controls; the other controls have their start values. after: the values that change. claims:
+    claims on this change. causes: further changes, each with a claim relative to the errors after the first change;
+    they test the cause that the text gives. overlays: names of overlays in addition to the paths. section: heading of
+    the quoted section of the Markdown page.
     """
 
     scene: str
@@ -47,7 +47,7 @@ class Experiment:
 
 @dataclass(frozen=True)
 class Part:
-    """The texts of an experiment: heading, introduction, question, answers with the right one marked, explanation."""
+    """The texts of an experiment; `after` is the explanation."""
 
     heading: str
     text: str
@@ -58,7 +58,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Lesson:
-    """A mechanism's page: scenes that engines run in it, experiments on these, and their words in lessons/`name`.md."""
+    """A page on a mechanism, with live scenes and experiments; the file lessons/`name`.md contains the texts."""
 
     name: str
     title: str
@@ -72,7 +72,7 @@ class Lesson:
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
-        """The texts of each experiment. Raises ValueError where their number differs from that of the experiments."""
+        """The texts of each experiment. Raises ValueError if the number of texts is wrong."""
         text = (FOLDER / f"{self.name}.md").read_text(encoding="utf-8")
         parts = tuple(part_of(part) for part in text.split("\n## ")[1:])
         if len(parts) != len(self.experiments):
@@ -81,9 +81,10 @@ class Lesson:
 
 
 def part_of(text: str) -> Part:
-    """Parse a part: a heading, text, and optionally a quotation with a question and three answers, the right one bold.
+    """Parse the texts of an experiment: a heading, an introduction, and optionally a quotation and an explanation.
 
-    Raises ValueError for another number of answers.
+    The quotation contains a question and three answers, of which the right one is bold. Raises ValueError for another
+    number of answers, or of right answers.
     """
     heading, _, body = text.partition("\n")
     lines = body.strip().splitlines()
@@ -104,15 +105,15 @@ def part_of(text: str) -> Part:
 
 @dataclass
 class SiteSource:
-    """The input of a site: Markdown pages and pictures by file name, and the answers to the lessons' tasks."""
+    """The input of a site; files by name."""
 
     pages: Mapping[str, str]
     pictures: Mapping[str, str]
-    tables: Mapping[str, str]  # CSV files, and programs to copy, by name
+    tables: Mapping[str, str]  # CSV files and programs
     answers: Mapping[Motion, Answer]
     cache: Path
     foot: str
-    contributing: str = ""  # CONTRIBUTING.md, parts of which are quoted; empty outside of a checkout
-    api: bool = True  # whether docstrings become a reference, which takes a minute
-    lecture: str = ""  # the notebook, as JSON
-    troubles: list[str] = field(default_factory=list)  # a sentence for each part that could not be built
+    contributing: str = ""  # CONTRIBUTING.md, from which pages quote; empty outside of a checkout
+    api: bool = True  # whether the site has a reference from docstrings, which takes a minute to build
+    lecture: str = ""  # the notebook as JSON
+    troubles: list[str] = field(default_factory=list)  # a message for each missing file

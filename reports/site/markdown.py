@@ -1,6 +1,6 @@
-"""Markdown of lessons as HTML, formulas as MathML, sections of a Markdown page, and the lecture as Markdown.
+"""Conversions: Markdown to HTML, formulas to MathML, and the notebook of the lecture to Markdown.
 
-The cells of the lecture are run once, in a process of their own; the page has their output and their pictures.
+The cells of the lecture run in a separate process; the page shows their output and pictures.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from reports.site.packages import printed
 from reports.write.templates import inert
 
 ROOT = Path(__file__).resolve().parents[2]
-PATIENCE = 300  # s for all cells of the lecture
+PATIENCE = 300  # timeout for all cells of the lecture [s]
 
 
 @cache
@@ -31,7 +31,7 @@ def mathml(formula: str, displayed: bool = False) -> str:
 
     rendered = convert(formula.replace(r"\arg", r"\operatorname{arg}"), display="block" if displayed else "inline")
     if "\\" in rendered:
-        raise BadInput(f"the formula {formula!r} has a command that latex2mathml does not know: write it otherwise")
+        raise BadInput(f"the formula {formula!r} has a command that latex2mathml does not know: use another command")
     return rendered
 
 
@@ -58,7 +58,7 @@ def title(text: str) -> str:
 
 
 def section(text: str, heading: str) -> str | None:
-    """Return the part of a Markdown page below a heading, up to the next of its rank; None without that heading."""
+    """Return the section of a Markdown page with this heading, including its subsections; None without the heading."""
     start, rank, fenced = None, 0, False
     lines = text.splitlines()
     for index, line in enumerate(lines):
@@ -78,9 +78,9 @@ def cards(links: list[tuple[str, str]]) -> str:
 
 
 def render_lecture(notebook: str) -> dict[str, str]:
-    """Return the page "lecture.md" and its pictures by name; the last cell, the solutions, is collapsed.
+    """Return the page "lecture.md" and its pictures by name; the last cell contains the solutions and is collapsed.
 
-    Raises NotFetched with the reason where a cell fails.
+    Raises NotFetched if a cell fails.
     """
     cells = json.loads(notebook)["cells"]
     sources = ["".join(cell["source"]) for cell in cells]
@@ -103,7 +103,7 @@ def render_lecture(notebook: str) -> dict[str, str]:
 
 
 def main() -> None:
-    """Run cells from JSON on standard input; write the output and the pictures of each as JSON."""
+    """Run the cells in the standard input (JSON); write the output and the pictures of each cell as JSON."""
     import matplotlib
 
     matplotlib.use("agg")

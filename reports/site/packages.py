@@ -1,7 +1,7 @@
-"""Third-party parts of the site: packages of npm, and Munk2D, the engine inside pymunk, compiled by emscripten.
+"""Third-party files of the site: npm packages, and Munk2D, the engine inside pymunk, compiled by emscripten.
 
-The build fetches them, checks their digests and stores them in a folder `cache`; pages fetch nothing. Without npm, a
-compiler or a network the site is built without the parts that need them.
+The build fetches the packages, checks their digests and stores them in a folder `cache`. Pages fetch nothing from other
+servers. Without npm, emscripten or a network the site is built without the corresponding files.
 """
 
 from __future__ import annotations
@@ -24,42 +24,39 @@ from reports.run.files import temporary_folder
 from reports.run.installed import sources
 
 PATIENCE = 180  # s: timeout for one package
-ANSWERING = 8  # s: timeout of a short query to a registry, so that a build without a network ends soon
-COMPILING = 600  # s: timeout of emscripten, which first builds its own library
+ANSWERING = 8  # s: timeout of a query to a registry; it is short, since the network may be missing
+COMPILING = 600  # s: timeout of emscripten, which builds its own library first
 SHIM = Path(__file__).with_name("munk2d.c")
 # At -O2 emscripten 3.1.6 of Debian fails in a later step.
 FLAGS = (
     *("-O1", "-DNDEBUG", "-sSINGLE_FILE=1", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web,worker"),
     *("-sEXPORTED_FUNCTIONS=_munk_run,_malloc,_free", "-sALLOW_MEMORY_GROWTH=1", "-sFILESYSTEM=0"),
 )
-THREADED = "cpHastySpace.c"  # needs threads, which pages have not
+THREADED = "cpHastySpace.c"  # a source file that needs threads, which the page does not have
 
 
 @dataclass(frozen=True)
 class Package:
-    """A package of npm: its version, the digest that its archive must have, its licence, and by their paths in the
-    archive the names of the files in the site.
-    """
+    """A package of npm. `files`: pairs (path in the archive, name in the site)."""
 
     name: str
     version: str
-    sha512: str  # base64, as npm writes it
+    sha512: str  # digest of the archive in base64
     licence: str
     use: str
     files: tuple[tuple[str, str], ...]
 
     def path_in(self, cache: Path) -> Path:
-        """The archive in the folder `cache`."""
         return cache / f"{self.name.strip('@').replace('/', '-')}-{self.version}.tgz"
 
 
 class NotFetched(Exception):
-    """A part cannot be fetched or built; the message is one sentence with the reason."""
+    """A file cannot be fetched or built; the message is the reason."""
 
 
 @functools.cache
 def npm_trouble(cache: Path) -> str:
-    """Return why nothing can be fetched; empty if all packages are in the folder or npm's registry answers."""
+    """Return the reason why packages cannot be fetched; empty if they are in `cache` or npm's registry answers."""
     if all(package.path_in(cache).is_file() for package in PACKAGES):
         return ""
     npm = shutil.which("npm")
@@ -74,7 +71,7 @@ def npm_trouble(cache: Path) -> str:
 
 
 def fetch_package(package: Package, cache: Path) -> dict[str, bytes]:
-    """Return the package's files by their names in the site; fetched once into `cache`. Raises NotFetched."""
+    """Return the package's files by their names in the site. Raises NotFetched."""
     path = package.path_in(cache)
     if not path.is_file():
         if trouble := npm_trouble(cache):
@@ -93,7 +90,7 @@ def fetch_package(package: Package, cache: Path) -> dict[str, bytes]:
 
 
 def compile_munk2d(cache: Path) -> bytes:
-    """Return the engine as one JavaScript file, stored in `cache` by version, shim and compiler. Raises NotFetched."""
+    """Return Munk2D as one JavaScript file. Raises NotFetched."""
     compiler = shutil.which("emcc")
     if compiler is None:
         raise NotFetched("emscripten is not installed")
@@ -104,7 +101,7 @@ def compile_munk2d(cache: Path) -> bytes:
     if not path.is_file():
         cache.mkdir(parents=True, exist_ok=True)
         with temporary_folder(cache) as folder:
-            try:  # pip may wait twice
+            try:  # pip may wait for the timeout twice
                 options = ("--retries", "0", "--timeout", str(ANSWERING // 2))
                 engine = sources("pymunk", release, folder, *options) / "Munk2D"
             except BadInput as reason:
@@ -118,8 +115,9 @@ def compile_munk2d(cache: Path) -> bytes:
 
 
 def printed(command: Sequence[str], trouble: str, patience: float, **given: Any) -> str:
-    """Return the output of a program. Raises NotFetched, with a message that begins with `trouble`, if it fails or
-    takes longer than `patience` [s].
+    """Return the output of a program.
+
+    Raises NotFetched if the program fails or takes longer than `patience` [s]. `trouble`: the start of the message.
     """
     try:
         ended = subprocess.run(command, capture_output=True, encoding="utf-8", timeout=patience, **given)
@@ -127,7 +125,7 @@ def printed(command: Sequence[str], trouble: str, patience: float, **given: Any)
         raise NotFetched(f"{trouble}: it did not end within {patience} s") from None
     if ended.returncode:
         lines = ended.stderr.strip().splitlines() or ["no reason was given"]
-        errors = [line for line in lines if line.startswith("npm error")]  # the last lines name npm's log
+        errors = [line for line in lines if line.startswith("npm error")]  # npm's last lines only name its log file
         raise NotFetched(f"{trouble}: {(errors or lines[-1:])[0]}")
     return ended.stdout
 

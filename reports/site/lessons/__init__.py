@@ -11,7 +11,7 @@ LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, SKATE, WHEELS, ROLLING, GEARS, CENT
 
 
 def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Take:
-    """Return a take of a scene in these methods, with the look of the lesson that has a scene of this name, if any."""
+    """Return a take of a scene with these methods; it looks like the scene in the lesson that contains it."""
     plain = next((live for lesson in LESSONS for live in lesson.scenes if live.scene.name == scene.name), None)
     if plain is None:
         return Take(scene, methods)

@@ -1,4 +1,4 @@
-"""Lessons on pins: the four-bar, the slider-crank, pendulums, and the curves of an instant centre."""
+"""Lessons on the four-bar, the slider-crank, pendulums and centrodes."""
 
 from __future__ import annotations
 
@@ -214,7 +214,7 @@ PENDULUM = Lesson(
 
 @cache
 def rolling_centrodes() -> Live:
-    """The four-bar with both curves of its coupler's instant centre, over the arc on which that turns one way."""
+    """The four-bar with both centrodes of its coupler, for the arc on which the coupler turns in one direction."""
     truth, curves = exact()
     scene, frames = DrivenFourBar(), 240
     first, last = (round(t / scene.duration * frames) for t in (truth.t[0], truth.t[-1]))

@@ -1,4 +1,4 @@
-"""Lessons on rolling: an ellipse and a cam on the ground, and two elliptic gears."""
+"""Lessons on an ellipse, a disc and a cam that roll on the ground, and on two elliptic gears."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lessons on skates: the sleigh, and a car with its trailer."""
+"""Lessons on the Chaplygin sleigh, and on a car with a trailer."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Engines that run in the page: the models of our adapters for every position of the sliders."""
+"""Models and controls of the engines that run in a page."""

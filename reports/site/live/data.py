@@ -1,7 +1,6 @@
 """The data that a page loads for a live scene: models, exact motions and drawings at every position of the sliders.
 
-Numbers of the exact motion and of Munk2D's spaces are doubles in base64. Nothing is stepped here: the motions of
-Python's engines are stored answers.
+The exact motions and Munk2D's spaces are doubles in base64. The motions of Python's engines are stored answers.
 """
 
 from __future__ import annotations
@@ -28,15 +27,15 @@ from reports.site.drawn import between, index_of, joints_of, loose, measure_of, 
 from reports.site.live.models import mujoco_text, space_of
 from reports.site.live.sliders import ENGINES, NAMES, Live, Name
 
-DIGITS = 6  # of forces and their places, after the point
+DIGITS = 6  # decimal places of forces and of their points
 PACKAGES: dict[Name, str] = {"munk": "pymunk", "mujoco": "mujoco-core"}
 
 
 def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
     """Return the data of a live scene for JSON; lists over slider positions are in the order of `Live.places`.
 
-    The page integrates the exact motion of pinned linkages itself, from `equations`; `truth` has then the motion at the
-    start positions of the sliders alone. The pose and the twist of a body are six numbers.
+    The page integrates the equations of pinned linkages itself. For these mechanisms, the data contain the exact motion
+    only at the start positions of the sliders. The pose and the twist of a body are six numbers.
     """
     mechanism = live.scene.mechanism()
     positions = [(scene, scene.mechanism()) for scene in live.places()]
@@ -63,7 +62,7 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
 
 
 def _place(live: Live, scene: Scene, mechanism: Mechanism) -> dict[str, Any]:
-    """Return the mechanism at a position of the sliders, its drawing and its motion."""
+    """Return the data of one position of the sliders."""
     pinned = all(isinstance(joint, Pin | Slot | Drive) for joint in mechanism.joints)
     has_motion = not pinned or scene == live.scene
     truth = (scene if has_motion else live.scene).motion(np.arange(live.frames + 1) * (scene.duration / live.frames))
@@ -89,7 +88,7 @@ def _place(live: Live, scene: Scene, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _equations(mechanism: Mechanism) -> dict[str, Any]:
-    """Return the input of the page's exact solver, apart from the joints."""
+    """Return the input of the page's exact solver without the joints."""
     drives = [joint for joint in mechanism.joints if isinstance(joint, Drive)]
     return {
         "inertia": [value for body in mechanism.bodies for value in (body.mass, body.mass, body.inertia)],
@@ -108,10 +107,10 @@ def _equations(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
-    """Return the reaction of each joint on its second body: at each instant two numbers of its point [m] and force [N].
+    """Return the point [m] and the force [N] of each joint's reaction on its second body, as flat lists of pairs.
 
-    A rolling contact has also the friction coefficient that it requires [1]. A drive has no entry: its reaction is a
-    torque. `partly`: the motion determines only a part of the force, which is then returned.
+    A rolling contact also has the required friction coefficient [1]. A drive has no entry, since its reaction is a
+    torque. `partly`: whether the motion determines only one component of the force.
     """
     out, row = [], 0
     for joint in mechanism.joints:
@@ -135,28 +134,28 @@ def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
 
 
 def _listed(values: NDArray[np.float64]) -> list[float | None]:
-    """Return all numbers as a flat list; NaN becomes None, since JSON has no NaN."""
+    """Return a flat list; numbers that are not finite or of at least 1e6 become None, since JSON has no NaN."""
     flat = np.asarray(values, dtype=float).ravel()
     return [round(value, DIGITS) + 0.0 if np.isfinite(value) and abs(value) < 1e6 else None for value in flat.tolist()]
 
 
 def _native(answer: Answer | None, way: Mapping[str, Any]) -> list[str] | None:
-    """Return the poses of Python's engine, and the twists where the page cannot run this way itself."""
+    """Return the poses of Python's engine; with the twists if the page cannot run this method."""
     if answer is None or not answer.finished:
         return None
     return [packed(answer.array(name)) for name in (("pose", "twist") if "why" in way else ("pose",))]
 
 
 def packed(values: NDArray[np.float64]) -> str:
-    """Return doubles, little-endian, in base64."""
+    """Return the values as little-endian doubles in base64."""
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
 
 
 def _models(name: Name, engine: Any, live: Live, mechanisms: Sequence[Mechanism]) -> dict[str, Any]:
     """Return the models of the page's engine by slider position and step, or the reason why it cannot run them.
 
-    One model serves all steps, unless it depends on the step: by the depth of a blade in the ground, or by a stiffness
-    that is tied to the step.
+    There is only one step if the model does not depend on it. MuJoCo's model depends on the step if the stiffness
+    does, or if the mechanism has skates or rolling contacts.
     """
     steps = [live.scene.duration / steps for steps in live.steps]
     try:
@@ -172,7 +171,7 @@ def _models(name: Name, engine: Any, live: Live, mechanisms: Sequence[Mechanism]
 
 
 def drawing(live: Live, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict[str, Any]:
-    """Return the parts of a picture as SVG; `pose` (times, bodies, 3): the exact motion."""
+    """Return the SVG elements of a picture; `pose` (times, bodies, 3) is the exact motion."""
     x, y, width, height = drawn.box(mechanism, live, pose)
     return {
         "box": " ".join(drawn.number(value) for value in (x, -y - height, width, height)),
@@ -183,7 +182,7 @@ def drawing(live: Live, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict
 
 
 def first_picture(live: Live) -> str:
-    """Return the SVG of the start of the exact motion with its paths, for readers without JavaScript."""
+    """Return the SVG of the exact motion's start and paths, for readers without JavaScript."""
     mechanism = live.scene.mechanism()
     pose = live.scene.motion(np.linspace(0.0, live.scene.duration, live.frames + 1)).pose
     parts = drawing(live, mechanism, pose)

@@ -1,4 +1,4 @@
-"""Models for the engines in the page: MuJoCo's as MJCF, pymunk's space as a list of numbers."""
+"""Models for the engines in a page: MJCF for MuJoCo, and a list of numbers for pymunk."""
 
 from __future__ import annotations
 
@@ -26,19 +26,20 @@ from reports.site.live.sliders import ENGINES
 
 @dataclass(frozen=True)
 class MujocoText:
-    """A MuJoCo model for the page: MJCF as `crosscheck export` writes it, and the places of our bodies in it."""
+    """A MuJoCo model for the page; `text` is the MJCF that `crosscheck export` writes."""
 
     text: str
     bodies: tuple[int, ...]  # MuJoCo's number of each body of the mechanism
-    # Parents first: body, parent (-1: ground), indices of rotation and slide in qpos (-1: none), slide direction.
+    # Parents first: body, parent (-1: ground), indices in qpos of the rotation and the slide (-1: none), slide
+    # direction.
     links: tuple[tuple[float, ...], ...]
     idle: tuple[str, ...]  # settings without an effect on this model
 
 
 def mujoco_text(engine: MuJoCo, mechanism: Mechanism, step: float) -> MujocoText:
-    """Return the model of this method for a step [s], which sets the depth of a blade in the ground.
+    """Return the model of this method for a step [s].
 
-    Raises Unsupported for a method with Python code in every step: the page has none.
+    Raises Unsupported for a method with Python code in every step, since the page has no Python.
     """
     model = engine.model(mechanism, step, unit=1.0)
     springs = model.compiled.neq or model.compiled.npair
@@ -51,7 +52,7 @@ def mujoco_text(engine: MuJoCo, mechanism: Mechanism, step: float) -> MujocoText
 
 
 def links(model: MuJoCoModel) -> tuple[tuple[float, ...], ...]:
-    """Return the records `MujocoText.links`, parents first: how the pose of each body follows from qpos."""
+    """Return `MujocoText.links`, from which the page computes the pose of each body."""
     records = []
     for link in model.tree.links:
         rotation = -1 if link.rotation is None else model.address[link.rotation]
@@ -64,7 +65,7 @@ STEP = 1e-3  # s; these models do not depend on the step
 
 
 class RecordKind(IntEnum):
-    """The kind of a record, with the numbers of munk2d.c."""
+    """The kind of a record; munk2d.c uses the same numbers."""
 
     PIVOT, GROOVE, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED = range(1, 8)
 
@@ -74,21 +75,23 @@ Indexed = Callable[[Any], int]
 
 @dataclass(frozen=True)
 class MunkSpace:
-    """A space for the page: its numbers; settings without an effect; indices of the constraints of pins and slots."""
+    """A pymunk space for the page; `space_of` defines the numbers."""
 
     numbers: tuple[float, ...]
-    idle: tuple[str, ...]
-    impulses: tuple[int, ...]  # -1 without a constraint of pymunk
+    idle: tuple[str, ...]  # settings without an effect on this model
+    impulses: tuple[int, ...]  # index of the constraint of each pin and slot; -1 without a constraint of pymunk
 
 
 def space_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> MunkSpace:
-    """Return the space of this method for a motion of `duration` [s]. Raises Unsupported.
+    """Return the space of this method for a motion of `duration` [s].
 
-    The numbers are: gravity; collision slop and bias; number of bodies; iterations; error_bias; 1 if error_bias is the
-    residual after a step, 0 after a second; bodies; records. A body: kind (0 dynamic, 1 kinematic), mass, moment, x, y,
-    angle, vx, vy, rate, origin in our frame. A record: kind, count of the numbers that follow, these numbers. Bodies
-    are numbered from 0, and -1 is the ground. Records are in the order in which the adapter added the constraints,
-    which is the order of the solver's iterations.
+    Raises Unsupported for a method with Python code in every step that munk2d.c does not have.
+
+    The list of numbers begins with gx, gy, collision_slop, collision_bias, number of bodies, iterations, error_bias,
+    and a flag (1: error_bias is the residual after a step, 0: after a second). Each body follows with its kind (0
+    dynamic, 1 kinematic), mass, moment, x, y, angle, vx, vy, rate, and its origin (x, y) in our frame. Each record
+    follows with its kind, the count of its numbers, and its numbers. In a record, bodies are numbered from 0, and -1 is
+    the ground. The order of the constraints is that of the solver's iterations.
     """
     model = engine.model(mechanism, STEP, duration)
     space, unit = model.space, model.unit
@@ -97,8 +100,8 @@ def space_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> MunkSpace
     def index(body: Any) -> int:
         return places.get(body, -1)
 
-    constraints = list(space._constraints)  # the public property is a set
-    # The gap of an aimed groove is never closed, so its error_bias does not count.
+    constraints = list(space._constraints)  # a list, while the public property is a set without an order
+    # An aimed groove has no gap, so its error_bias has no effect.
     aimed = [aim.constraint for aim in model.before_step if isinstance(aim, AimedGroove)]
     biases = {constraint.error_bias for constraint in constraints if constraint not in aimed}
     gravity = (component / unit**2 for component in space.gravity)
@@ -106,7 +109,7 @@ def space_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> MunkSpace
     head += (max(biases, default=1.0), float(unit != 1))
     records = [_constraint(constraint, index) for constraint in constraints]
     records += [_shape(shape, index) for shape in space.shapes]
-    records += _by_hand(model, mechanism)
+    records += _step_code(model, mechanism)
     flat = [head, *_bodies(model), *((kind, len(numbers), *numbers) for kind, numbers in records)]
     idle = {"iterations": not (constraints or space.shapes), "bias": not biases}
     joined = [(index(constraint.a), index(constraint.b)) for constraint in constraints]
@@ -157,20 +160,20 @@ def _shape(each: Any, index: Indexed) -> tuple[RecordKind, tuple[float, ...]]:
             raise Unsupported(f"the page knows no {type(each).__name__}")
 
 
-def _by_hand(model: Model, mechanism: Mechanism) -> list[tuple[RecordKind, tuple[float, ...]]]:
-    """Return records of our adapter's code around a step; munk2d.c has the two kinds that enforce skates."""
+def _step_code(model: Model, mechanism: Mechanism) -> list[tuple[RecordKind, tuple[float, ...]]]:
+    """Return records of the adapter's code around a step; munk2d.c implements the two kinds for skates."""
     skates = [mechanism.body_index(str(joint.second)) for joint in mechanism.joints if isinstance(joint, Skate)]
     records: list[tuple[RecordKind, tuple[float, ...]]] = []
-    for hands in (model.after_step, model.before_step):
-        if hands and len(hands) != len(skates):
+    for updates in (model.after_step, model.before_step):
+        if updates and len(updates) != len(skates):
             raise Unsupported("this method needs Python code in every step, which the page has not")
-        for body, hand in zip(skates, hands, strict=False):
-            match hand:
+        for body, update in zip(skates, updates, strict=False):
+            match update:
                 case Zeroed():
-                    records.append((RecordKind.ZEROED, (body, hand._angle, hand._arm, hand._push, hand._spin)))
+                    records.append((RecordKind.ZEROED, (body, update._angle, update._arm, update._push, update._spin)))
                 case AimedGroove():
-                    row = list(model.space._constraints).index(hand.constraint)
-                    records.append((RecordKind.AIMED, (body, row, hand._angle, hand._back, hand._front)))
+                    row = list(model.space._constraints).index(update.constraint)
+                    records.append((RecordKind.AIMED, (body, row, update._angle, update._back, update._front)))
                 case _:
                     raise Unsupported("this method needs Python code in every step, which the page has not")
     return records

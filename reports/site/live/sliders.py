@@ -15,9 +15,9 @@ from reports.model.tasks import Motion
 Name = Literal["munk", "mujoco"]
 Point = tuple[float, float]
 NAMES: dict[Name, str] = {"munk": "pymunk", "mujoco": "MuJoCo"}
-MOST = 125  # positions of a scene's sliders: each has a model for each engine and a drawing in the page
+MOST = 125  # largest number of positions of a scene's sliders; the page loads models and a drawing for each position
 SHIPPED, DOCUMENTED = "as shipped", "documented settings"
-# Settings of the engines: values and their labels. None: the value of the chosen method.
+# Settings of the engines as pairs (value, label). None means the value of the chosen method.
 OWN = (None, "the method's value")
 INTEGRATORS = (OWN, (0, "Euler"), (3, "implicitfast"), (1, "RK4"))
 TIME_CONSTANTS = (OWN, *((value, f"{1000 * value:g} ms") for value in (0.002, 0.005, 0.01, 0.02, 0.05)))
@@ -59,7 +59,7 @@ CONTROLS = {
 
 @dataclass(frozen=True)
 class Slider:
-    """A field of the scene, its label and its values; `texts`: labels of the values, by default the values."""
+    """A slider that sets a field of the scene; `texts`: labels of the values, by default the values."""
 
     field: str
     label: str
@@ -67,7 +67,7 @@ class Slider:
     texts: tuple[str, ...] = ()
 
     def control(self, scene: Scene) -> Control:
-        """Return the control, which starts at the scene's value. Raises ValueError if the slider lacks that value."""
+        """Return the control, which starts at the scene's value. Raises ValueError for a scene with another value."""
         texts = self.texts or tuple(f"{value:.3g}" for value in self.values)
         return Control(self.values, texts, self.values.index(getattr(scene, self.field)))
 
@@ -76,8 +76,8 @@ class Slider:
 class Look:
     """Additional elements of the drawing of a mechanism.
 
-    ends: points of bodies [m]. curves: closed or open lines in the frame of a body, or of the ground (None) [m]. axle:
-    half the length [m] of the axle with two wheels as which a skate is drawn; 0 draws a blade.
+    ends: points of bodies [m]. curves: lines [m] in the frame of a body, or of the ground (None). axle: half the length
+    [m] of an axle with two wheels, which is drawn for a skate; 0 draws a blade.
     """
 
     ends: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
@@ -89,11 +89,11 @@ class Look:
 class Live(Look):
     """A scene that engines run in the page.
 
-    frames: number of sampling intervals; steps: choices for the number of steps of the whole motion, each a multiple or
-    a divisor of `frames`; start: index of the first choice. munk, mujoco: methods with labels, as shipped and with
-    documented settings first; a sentence instead of an engine is the reason why it is missing. window: first and last
-    frame that are played; None plays all. traces: (body, point) whose paths are drawn. centre: the body whose instant
-    centre can be shown.
+    frames: number of sampling intervals. steps: choices for the number of steps of the whole motion, each a multiple or
+    a divisor of `frames`. start: index of the initial choice. munk, mujoco: methods with labels; the first two are the
+    default method and the one with documented settings. A string instead of an engine is the reason why the method is
+    missing. window: first and last frame that are played; None plays all frames. traces: (body, point) whose paths are
+    drawn. centre: the body whose instant centre can be shown.
     """
 
     word: str
@@ -117,7 +117,7 @@ class Live(Look):
 
     @property
     def key(self) -> str:
-        """The name of its data file."""
+        """The name of the data file."""
         return f"{self.scene.name}-{self.word}".replace(" ", "-")
 
     def places(self) -> Iterator[Scene]:
@@ -132,11 +132,9 @@ class Live(Look):
         return min(self.frames, steps)
 
     def ways(self, name: Name) -> Sequence[tuple[str, Engine | str]]:
-        """Return the methods of an engine with their labels."""
         return self.munk if name == "munk" else self.mujoco
 
     def controls(self) -> dict[str, Control]:
-        """Return every control by its name."""
         steps = tuple(f"{1000 * self.scene.duration / count:.3g} ms" for count in self.steps)
         ways = {name: tuple(label for label, _ in self.ways(name)) for name in ENGINES}
         return {
@@ -147,13 +145,14 @@ class Live(Look):
         }
 
     def located(self, given: Mapping[str, Any]) -> dict[str, int]:
-        """Return indices of controls from their values. Raises ValueError, KeyError for unknown values, controls."""
+        """Return the indices of values. Raises KeyError for an unknown control, ValueError for an unknown value."""
         controls = self.controls()
         return {name: controls[name].values.index(value) for name, value in given.items()}
 
     def stored(self) -> dict[tuple[Name, int], Motion]:
-        """Return the motions of Python's engines, by engine and index of the method. A test compares page and Python;
-        the page plays the stored motion where it cannot run the method itself.
+        """Return the motions of Python's engines, by engine and index of the method.
+
+        The page plays a stored motion if it cannot run the method, and otherwise shows the difference from it.
         """
         steps = self.steps[self.start]
         samples = self.samples(steps)
