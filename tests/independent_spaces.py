@@ -77,7 +77,8 @@ class Equations:
                 return [self._turned(q, joint)]
             case DampedRotarySpring():
                 return [-self._turned(q, joint)]
-        raise NotImplementedError(joint)
+            case _:
+                raise NotImplementedError(joint)
 
     def _all(self, q: Array, joints: list[Any]) -> Array:
         rows = [row for joint in joints for row in self._measured(q, joint)]

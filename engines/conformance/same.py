@@ -166,7 +166,8 @@ def _mirrored(curve: Curve, arc: float) -> tuple[Curve, float]:
         case Placed():
             inner, arc = _mirrored(curve.curve, arc)
             return replace(curve, curve=inner, shift=(-curve.shift[0], curve.shift[1]), turn=-curve.turn), arc
-    raise ValueError(f"mirrored: the curve is a {type(curve).__name__}; it must be a Circle, a Ring or a Line")
+        case _:
+            raise ValueError(f"mirrored: the curve is a {type(curve).__name__}; it must be a Circle, a Ring or a Line")
 
 
 def relabelled(mechanism: Mechanism) -> Described:

@@ -94,7 +94,8 @@ class Lagrange(Engine, Valid):
                 return ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=0)
             case "baumgarte":
                 return ConvergenceOrder(order - 2)
-        return ConvergenceOrder(order)
+            case "none":
+                return ConvergenceOrder(order)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:

@@ -290,4 +290,5 @@ def _rolling_constants(rolling: Rolling) -> dict[str, Any]:
             return {"form": RollingForm.ON_ROUND} | dict(zip(names, fast.constants, strict=True))
         case Table() if not fast.exact_only:
             return {"form": RollingForm.TABULATED, "width": fast.width}
-    return {"form": RollingForm.NOT_TABULATED}
+        case _:
+            return {"form": RollingForm.NOT_TABULATED}

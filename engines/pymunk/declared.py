@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,8 @@ from engines.pymunk.joints.drive import find_cranks, find_turned
 from engines.pymunk.joints.slide import GROOVE_HALF_LENGTH, along_blade, groove_is_exact
 from engines.pymunk.model import CONSTRAINT_ROWS, Model
 from engines.pymunk.running import Recording, record
-from reference.joints import Joint, Skate, Slot
+from reference.couplings import Coupling
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.plane import rotated
 from reference.rolling.roll import Roll
@@ -132,7 +133,10 @@ def enforcement(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Enforceme
             return "engine, our rows" if engine.skate == "groove" else "ours"
         case Roll() if engine.roll != "contact":
             return "engine, our rows"
-    return "engine"
+        case Pin() | Weld() | Gear() | Rod() | Slot() | Drive() | Roll() | Coupling():
+            return "engine"
+        case _:
+            assert_never(joint)
 
 
 def _is_off_centre(joint: Joint) -> bool:

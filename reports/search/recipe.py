@@ -138,7 +138,8 @@ class Standing:
                 return Gear(name, *ends, ratio, second_angle - ratio * first_angle)
             case "weld":
                 return Weld(name, *ends, first, second, second_angle - first_angle)
-        raise InvalidMechanism(f"recipe: joint {number} is a {link.kind}, which has no construction here")
+            case _:
+                raise InvalidMechanism(f"recipe: joint {number} is a {link.kind}, which has no construction here")
 
     def _fold(self, link: RecipeLink, number: int) -> Rod:
         """A rod nearly parallel to the line through two pins of the ground."""
@@ -179,7 +180,8 @@ class Standing:
                     float(link.turn * ANGLE_UNIT),
                 )
                 return Force(name, body.name, second, (pull * math.cos(direction), pull * math.sin(direction)))
-        raise InvalidMechanism(f"recipe: force {number} is a {link.kind}, which has no construction here")
+            case _:
+                raise InvalidMechanism(f"recipe: force {number} is a {link.kind}, which has no construction here")
 
     def _ends(self, link: RecipeLink) -> tuple[str | None, str]:
         return self.bodies[link.first - 1].name if link.first else None, self.bodies[link.second - 1].name
@@ -307,4 +309,5 @@ def _touching(rim: Rim, unit: Decimal, point: Vector, tangent: float) -> tuple[C
             turn = tangent - float(curve.angle_of(parameter))
             x, y = (point - rotated(np.asarray(turn), curve.point_of(parameter))).tolist()
             return Placed(curve, (x, y), turn), float(curve.arc_of(parameter))
-    raise InvalidMechanism(f"recipe: a rim is a {rim.shape!r}; it must be one of {', '.join(RIM_SHAPES)}")
+        case _:
+            raise InvalidMechanism(f"recipe: a rim is a {rim.shape!r}; it must be one of {', '.join(RIM_SHAPES)}")

@@ -104,6 +104,8 @@ def column(
                 raise BadInput(message.sentence)
             case Loss():
                 loss = message
+            case _:
+                raise TypeError(f"message of a version's process: it is a {type(message).__name__}")
     if loss is None:
         return VersionColumn(version, tuple(rows), tuple(trees))
     finished = {(row.scene, row.variant, row.every) for row in rows}

@@ -80,7 +80,8 @@ def slip(part: Any, first: BodyState, second: BodyState) -> list[Any]:
         case Rod() | Spring() | Damper():
             x, y = ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]
             return [(x * vx + y * vy) / np.sqrt(x * x + y * y)]
-    raise TypeError(part)
+        case _:
+            raise TypeError(part)
 
 
 def pull(force: Any, first: BodyState, second: BodyState) -> Any:
@@ -95,7 +96,10 @@ def pull(force: Any, first: BodyState, second: BodyState) -> Any:
             return -force.damping * slip(force, first, second)[0]
         case Torque():
             return force.torque
-    return 1.0
+        case Force():
+            return 1.0
+        case _:
+            raise TypeError(force)
 
 
 class Witness:

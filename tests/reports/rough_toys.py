@@ -114,7 +114,8 @@ def act(name: str) -> object:
             return os.abort() if DAMAGE else "sound"
         case "unreadable":
             return Unreadable()
-    return ACTIONS[name](RoughToy())
+        case _:
+            return ACTIONS[name](RoughToy())
 
 
 def dies(*_: object) -> None:

@@ -283,6 +283,8 @@ def some_answers(tasks: Iterable[Task], chance: random.Random) -> dict[Task, Ans
                 results[task] = Answer(chance.choice(FAILED), chance.choice(["", "a reason"]))
             case "lost" | "still" as kind:
                 results[task] = still(task, kind == "lost")
+            case _:
+                pass
     return results
 
 

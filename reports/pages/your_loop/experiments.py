@@ -56,6 +56,8 @@ def draw(scene: Scene, number: int) -> Mechanism:
                     changed[name] = tuple(
                         value * 2 ** float(random.uniform(-SCALE_EXPONENT, SCALE_EXPONENT)) for value in values
                     )
+                case _:
+                    continue  # counts, names and choices
         try:
             changed_scene: Any = replace(cast(Any, scene), **changed)
             mechanism = changed_scene.mechanism()
