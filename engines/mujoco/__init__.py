@@ -1,4 +1,4 @@
-"""MuJoCo as an engine under test: planar joints as a tree, and loops as soft equality constraints."""
+"""The engine MuJoCo, with planar joints as a kinematic tree and with loops as soft equality constraints."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The MuJoCo model of a mechanism while its joints and force elements are added."""
+"""The builder of a MuJoCo model, to which constructions add joints and force elements."""
 
 from __future__ import annotations
 
@@ -18,17 +18,14 @@ if TYPE_CHECKING:
 
 Callback = Callable[[Any, Any], None]  # of (mujoco.MjModel, mujoco.MjData)
 RowKind = Literal["skate", "slot", "rod", "roll"]
-PLACEHOLDER = "written row"  # the name, before a number, of the tendons that reserve the solver's rows
+PLACEHOLDER = "written row"  # the name, without a number, of a tendon that reserves a row of the solver
 
 
 @dataclass(frozen=True)
 class Hooks:
-    """Functions of ours that run while a model is stepped.
+    """Our callbacks for the steps of a model."""
 
-    `control`: in every stage of the integrator (MuJoCo's `mjcb_control`); `before_step`: before every step.
-    """
-
-    control: Callback | None = None
+    control: Callback | None = None  # called in every stage of the integrator, as `mjcb_control`
     before_step: Callback | None = None
 
     def __add__(self, other: Hooks) -> Hooks:
@@ -38,22 +35,22 @@ class Hooks:
         return bool(self.control or self.before_step)
 
 
-# A function of the compiled model and the index of each tree coordinate in qpos and qvel.
+# The arguments are the compiled model and the index of each tree coordinate in qpos and qvel.
 HookMaker = Callable[[Any, Sequence[int]], Hooks]
 
 
 @dataclass(frozen=True)
 class UserRowJoint:
-    """A joint held by rows that our code writes: their kind and the numbers of its function in `user_rows`.
+    """A joint that is enforced by rows that our code writes.
 
-    `first` and `second` are names of bodies, None for the ground; `rolled`: the place of a rolling second body.
+    `numbers`: the arguments of the function for this kind of row in `user_rows`.
     """
 
     kind: RowKind
-    first: str | None
+    first: str | None  # name of a body, None for the ground
     second: str | None
     numbers: tuple[float, ...]
-    rolled: Rolled | None = None
+    rolled: Rolled | None = None  # the position of the second body of a Roll as a function of its rotation
 
     @property
     def size(self) -> int:
@@ -70,26 +67,24 @@ class DrivenCoordinate:
 
 @dataclass
 class ModelBuilder:
-    """A MuJoCo specification, and the parts of the model that it does not contain.
+    """A MuJoCo specification, and data of the model that the specification does not contain.
 
-    In `spec` (mujoco.MjSpec) body i of the mechanism is "body i", and tree coordinate c is the joint "coordinate c".
-    `row_count`: rows of the mechanism that MuJoCo's constraints hold. `user_rows`: joints whose rows our code writes in
-    every stage. `start_rates`: rates at t = 0 of joints that are no tree coordinate; `clocks`: those of them that no
-    force can accelerate. `split_bodies`: auxiliary bodies, and the body of the mechanism from which each was split.
+    In the specification, body i of the mechanism is "body i" and tree coordinate c is the joint "coordinate c".
     """
 
-    spec: Any
+    spec: Any  # mujoco.MjSpec
     mechanism: Mechanism
     tree: Tree
     dt: float
     settings: MuJoCo
-    row_count: int = 0
+    row_count: int = 0  # the number of the mechanism's rows that MuJoCo's constraints enforce
     needs_contacts: bool = False
     user_rows: list[UserRowJoint] = field(default_factory=list)
     hook_makers: list[HookMaker] = field(default_factory=list)
     driven: list[DrivenCoordinate] = field(default_factory=list)
-    start_rates: dict[str, float] = field(default_factory=dict)
-    clocks: list[str] = field(default_factory=list)
+    start_rates: dict[str, float] = field(default_factory=dict)  # rates at t = 0 of joints that are no tree coordinate
+    clocks: list[str] = field(default_factory=list)  # joints that no force can accelerate, besides tree coordinates
+    # The name of each auxiliary body, and the index of the mechanism's body from which it was split.
     split_bodies: list[tuple[str, int]] = field(default_factory=list)
 
     @property
@@ -102,38 +97,35 @@ class ModelBuilder:
         return self.stiffness.gains(self.mechanism, self.dt)
 
     def index(self, name: str | None) -> int | None:
-        """The index of a body in the mechanism, None for the ground."""
         return None if name is None else self.mechanism.body_index(name)
 
     def spec_name(self, name: str | None) -> str:
-        """The name in the specification of a body, or of the ground."""
         return "world" if name is None else f"body {self.index(name)}"
 
     def spec_body(self, name: str | None) -> Any:
-        """The body, or the ground, in the specification."""
         return self.spec.body(self.spec_name(name))
 
     def add_site(self, name: str, body: str | None, point: tuple[float, float]) -> str:
-        """Add a site at a point in a body's frame [m]; returns its name."""
+        """Add a site at a point [m] of a body frame of the mechanism; returns the name of the site."""
         self.spec_body(body).add_site(name=name, pos=[*world_offset(self.mechanism, body, point), 0.0])
         return name
 
     def add_spatial_tendon(self, name: str, element: Any) -> Any:
-        """Add a tendon between the first and the second point of a joint or a force element."""
+        """Add a tendon between the two points of a joint or a force element."""
         tendon = self.spec.add_tendon(name=name)
         tendon.wrap_site(self.add_site(f"{name} first", element.first, element.first_point))
         tendon.wrap_site(self.add_site(f"{name} second", element.second, element.second_point))
         return tendon
 
     def add_fixed_tendon(self, name: str, factors: Mapping[int, float]) -> Any:
-        """Add a tendon whose length is the sum of tree coordinates with these factors."""
+        """Add a tendon whose length is a sum of tree coordinates. `factors`: the factor of each coordinate."""
         tendon = self.spec.add_tendon(name=name)
         for column, factor in sorted(factors.items()):
             tendon.wrap_joint(f"coordinate {column}", factor)
         return tendon
 
     def add_equality(self, kind: Any, first: str, second: str = "", rows: int = 1) -> Any:
-        """Add an equality of this mjtEq by the stiffness settings, which holds `rows` rows of the mechanism."""
+        """Add an equality with the stiffness of the settings. `kind`: its mjtEq, `rows`: its rows in the mechanism."""
         is_tendon = kind == mujoco.mjtEq.mjEQ_TENDON
         self.row_count += rows
         return self.spec.add_equality(
@@ -146,22 +138,22 @@ class ModelBuilder:
         )
 
     def hold_length(self, tendon: str) -> None:
-        """Hold a tendon at its length at the start."""
+        """Keep a tendon at its initial length."""
         self.add_equality(mujoco.mjtEq.mjEQ_TENDON, tendon)
 
     def add_user_rows(self, kind: RowKind, joint: Any, numbers: Sequence[float], rolled: Rolled | None = None) -> None:
-        """Hold a joint by rows that our code writes."""
+        """Enforce a joint by rows that our code writes."""
         self.user_rows.append(UserRowJoint(kind, joint.first, joint.second, tuple(numbers), rolled))
 
     def moving_columns(self, joint: UserRowJoint) -> list[int]:
-        """The tree coordinates that move one of a joint's bodies, ascending."""
+        """The tree coordinates that move a body of the joint, in ascending order."""
         links = (link for name in (joint.first, joint.second) for link in self.tree.path_to_ground(name))
         return sorted({column for link in links for column in link.columns})
 
     def reserve_user_rows(self) -> None:
-        """Reserve solver rows for `user_rows`; to be called after every other equality, so that they come last.
+        """Reserve the last solver rows for `user_rows`; no equality may be added afterwards.
 
-        They are equalities of tendons, since each of these has a scale of compliance of its own (`tendon_invweight0`).
+        Equalities of tendons reserve the rows, since each tendon has its own scale of compliance (`tendon_invweight0`).
         """
         columns = [self.moving_columns(joint)[0] for joint in self.user_rows for _ in range(joint.size)]
         for number, column in enumerate(columns):
@@ -172,14 +164,14 @@ class ModelBuilder:
 
 
 def add_body(parent: Any, name: str, mass: float, inertia: float, position: Sequence[float] = (0.0, 0.0)) -> Any:
-    """Add a rigid body with its centre of mass at `position` [m] in a parent of a specification.
+    """Add a rigid body to a parent in a specification. `position` [m]: its centre of mass in the frame of the parent.
 
-    Only the last moment of inertia is felt in the plane. Three equal ones satisfy MuJoCo's checks.
+    Only the moment of inertia about z affects planar motion. Three equal moments satisfy MuJoCo's checks.
     """
     return parent.add_body(
         name=name,
         pos=[*position, 0.0],
-        ipos=[0.0, 0.0, 0.0],  # if it is not given, MuJoCo adds `pos` to the centre of mass once more
+        ipos=[0.0, 0.0, 0.0],  # without this, MuJoCo adds `pos` to the centre of mass a second time
         mass=mass,
         inertia=[inertia] * 3,
         explicitinertial=True,
@@ -187,11 +179,10 @@ def add_body(parent: Any, name: str, mass: float, inertia: float, position: Sequ
 
 
 def add_slide(body: Any, name: str, direction: Sequence[float]) -> None:
-    """Let a body slide along a direction (2,) of the plane."""
     body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[*direction, 0.0])
 
 
 def add_hinge(body: Any, name: str, anchor: Sequence[float] = (0.0, 0.0), armature: float = 0.0) -> None:
-    """Let a body turn about a point [m] in its frame; `armature` [kg m^2] is added to its inertia."""
+    """Add a hinge about a point [m] in the frame of a body. `armature` [kg m^2] is added to the inertia."""
     hinge = mujoco.mjtJoint.mjJNT_HINGE
     body.add_joint(name=name, type=hinge, axis=[0.0, 0.0, 1.0], pos=[*anchor, 0.0], armature=armature)

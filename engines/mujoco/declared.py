@@ -1,14 +1,14 @@
-"""The accelerations and reactions at one instant that MuJoCo computes, beside those by the law that its model declares.
+"""A comparison at an instant: the accelerations and reactions of MuJoCo, and those of the law that its model declares.
 
-The law has the rows J of the mechanism and their rate of change. From MuJoCo it takes the stiffness (`efc_KBIP`) and
-compliance (`efc_R`) of each constraint row, and the armature of driven coordinates. Each of MuJoCo's rows must be a
-combination of the mechanism's rows of one joint, in the coordinates of the tree.
+The law uses the constraint rows J of the mechanism and their rates of change. It takes the stiffness (`efc_KBIP`) and
+the compliance (`efc_R`) of each row from MuJoCo, and the armature of driven coordinates. In the coordinates of the
+tree, each row of MuJoCo must be a linear combination of the mechanism's rows of a joint.
 
-MJX runs the same compiled model. It leaves out the velocity terms of loops and rods, and so does its law.
+MJX runs the same compiled model, but without the velocity terms of loops and rods. Its law has no such terms either.
 """
 
 # pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
+# (MuJoCo's compiled bindings have no types.)
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-SAME_ROW = 1e-9  # relative to a row's length: the rounding of sums along a chain of ten bodies
-ROUNDING_TOLERANCE = 1e-28  # about the square of a rounding: with this tolerance the solver's error is rounding
-NO_VELOCITY_TERMS = "without velocity terms"  # the name of the law that MJX obeys for loops and rods
+SAME_ROW = 1e-9  # tolerance relative to the norm of a row: the rounding of sums along a chain of ten bodies
+ROUNDING_TOLERANCE = 1e-28  # tolerance of the solver with which its error is rounding: about the square of rounding
+NO_VELOCITY_TERMS = "without velocity terms"  # the name of the law of MJX for loops and rods
 
 
 def instants(
@@ -47,9 +47,10 @@ def instants(
     accelerations: Callable[[MuJoCoModel, Any], Array] | None = None,
     check: str = "acceleration",
 ) -> tuple[Instant, ...] | NotDeclared:
-    """Accelerations and reactions at the start and, with `steps`, after that many; see `engines.Engine.instants`.
+    """Accelerations and reactions at t = 0 and, if `steps` is not 0, after `steps` steps; see `Engine.instants`.
 
-    `accelerations(model, data)` replaces those of MuJoCo, without reactions; `check` may be NO_VELOCITY_TERMS.
+    `accelerations(model, data)`: the accelerations that are checked in place of those of MuJoCo; reactions are then not
+    checked. `check`: the law, "acceleration" or NO_VELOCITY_TERMS.
     """
     if reason := why_no_law(engine, mechanism, dt):
         return NotDeclared(reason)
@@ -81,11 +82,11 @@ def instants(
 
 
 class DependentRows(RuntimeError):
-    """Rows of one joint depend on one another in the coordinates of the tree, so their forces are not determined."""
+    """The rows of a joint are dependent in the coordinates of the tree, so their forces are not determined."""
 
 
 def why_no_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> str:
-    """The reason why a construction of the mechanism obeys no law of an instant; empty if each obeys one."""
+    """The reason why some construction of the mechanism has no law of an instant; "" if all have one."""
     if engine.drive != "inertia" and any(all(joint.is_angular) for joint in mechanism.joints):
         return f"a drive by {engine.drive!r} obeys no law of an instant"
     if engine.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints):
@@ -98,22 +99,17 @@ def why_no_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> str:
 
 @dataclass(frozen=True, eq=False)
 class DeclaredState:
-    """A state of a model and the rows of its declared law there.
-
-    `free` (bodies, 3): accelerations without joints. `aimed` (rows,): J a less its velocity term. `compliance` (rows,
-    rows): a matrix C with C C^T the compliance of the rows. `by_solver` (rows,): whether MuJoCo's solver holds the row,
-    and not the tree.
-    """
+    """A state of a model, and the rows of its declared law in this state."""
 
     mechanism: Mechanism
     model: MuJoCoModel
     data: Any
     pose: Array  # (bodies, 3)
-    twist: Array
-    free: Array
-    aimed: Array
-    compliance: Array
-    by_solver: Array
+    twist: Array  # (bodies, 3)
+    free: Array  # accelerations without joints (bodies, 3)
+    aimed: Array  # J a without its velocity term (rows,)
+    compliance: Array  # a matrix C (rows, rows), where C C^T is the compliance of the rows
+    by_solver: Array  # a mask (rows,) of the rows that MuJoCo's solver enforces, and not the tree
 
     @classmethod
     def of(
@@ -121,22 +117,22 @@ class DeclaredState:
     ) -> DeclaredState:
         """The state of `data` after mj_forward.
 
-        Raises DependentRows, and RuntimeError where MuJoCo's rows are not the mechanism's.
+        Raises DependentRows, and RuntimeError if MuJoCo's rows are not those of the mechanism.
         """
         pose, twist, _ = _motion(model, data, data.qacc)
         rows = _declared_rows(mechanism, model, data, regularisation, pose, twist)
         return cls(mechanism, model, data, pose, twist, mechanism.unconstrained(pose, twist), *rows)
 
     def motion(self, accelerations: Array) -> Array:
-        """Accelerations (bodies, 3) of the bodies for those (nv,) of the coordinates."""
+        """The accelerations of the bodies (bodies, 3) from those of the coordinates (nv,)."""
         return _motion(self.model, self.data, accelerations)[2]
 
     def law(self, velocity_term: bool = True) -> Constrained:
-        """Accelerations (bodies, 3) and forces (rows,) by the law.
+        """The accelerations (bodies, 3) and forces (rows,) of the law.
 
-        Without `velocity_term`, the solver's rows lack it. In the coordinates of the tree a row is J D, with D the
-        directions of the coordinates, and the term is that of (J D)'. J a is then the value with zero accelerations of
-        the coordinates.
+        If `velocity_term` is False, the rows of the solver have no velocity term. In the coordinates of the tree such a
+        row is J D, where D are the directions of the coordinates. The missing term contains the rate of change of J D.
+        J a is then the value for zero accelerations of the coordinates.
         """
         rows, right = self.mechanism.rows(self.pose), self.mechanism.bias(self.pose, self.twist)
         if not velocity_term:
@@ -145,7 +141,7 @@ class DeclaredState:
         return constrained(rows, right + self.aimed, self.mechanism.inertias, self.free, self.compliance)
 
     def coordinates(self, velocity_term: bool = True) -> Array:
-        """The accelerations (tree coordinates,) of the law."""
+        """The accelerations of the tree coordinates according to the law."""
         coasting = self.motion(np.zeros(self.model.compiled.nv))
         columns = _directions(self.model, self.data)[:, self.model.address]
         change = (self.law(velocity_term).motion - coasting).reshape(-1)
@@ -153,7 +149,7 @@ class DeclaredState:
 
 
 def jacobian(compiled: Any, data: Any) -> Array:
-    """MuJoCo's constraint rows (rows, nv), which it stores dense or sparse."""
+    """MuJoCo's constraint rows (rows, nv), from its dense or sparse storage."""
     if not mujoco.mj_isSparse(compiled):
         return data.efc_J[: data.nefc * compiled.nv].reshape(data.nefc, compiled.nv)
     dense = np.zeros((data.nefc, compiled.nv))
@@ -169,12 +165,15 @@ def _declared_rows(
     pose: Array,
     twist: Array,
 ) -> tuple[Array, Array, Array]:
-    """`aimed`, `compliance` and `by_solver` of a DeclaredState. Raises RuntimeError for rows that do not match."""
+    """The fields `aimed`, `compliance` and `by_solver` of a DeclaredState.
+
+    Raises DependentRows, and RuntimeError if MuJoCo's rows are not those of the mechanism.
+    """
     rows, compiled = mechanism.rows(pose), model.compiled
     compliance, aimed, by_solver = np.zeros((len(rows), len(rows))), np.zeros(len(rows)), np.zeros(len(rows), bool)
     in_tree = rows @ _directions(model, data)
     gap, slip = np.nan_to_num(mechanism.gap(pose, data.time)), mechanism.slip(pose, twist)
-    # The tree holds a row that its coordinates can't change, except by the rounding of arms.
+    # The tree enforces a row if its coordinates cannot change it, except by the rounding of arms.
     rounding = 10 * np.finfo(float).eps * float(np.abs(pose[:, :2]).max())
     length = np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
     is_loose = np.abs(in_tree).max(axis=1, initial=0.0) > SAME_ROW * length + rounding
@@ -188,7 +187,7 @@ def _declared_rows(
             continue
         columns = np.flatnonzero(in_tree[part.start])
         if isinstance(joint, Drive) and len(columns) == 1 and compiled.dof_armature[columns[0]] > 0:
-            # The armature adds inertia to this rotation alone: as a row, its compliance is the inverse.
+            # The armature adds inertia to this rotation only. The compliance of the row is the inverse of this inertia.
             compliance[part, part] = 1 / np.sqrt(compiled.dof_armature[columns[0]] * model.unit)
             continue
         numbers = _rows_in_span(solver_rows, unused, in_tree[part], model.address)[: joint.size]
@@ -202,7 +201,7 @@ def _declared_rows(
         joint_rows = _JointRows(model, data, joint, numbers, solver_rows[numbers], in_tree[part])
         compliance[part, part] = joint_rows.compliance
         if regularisation is not None and _is_user_row(compiled, data.efc_id[numbers[0]]):
-            # A user row; that of a skate has a damping of its own.
+            # The damping of a skate differs from that of other user rows.
             damping = slip_damping(mechanism) if isinstance(joint, Skate) else regularisation.damping
             aimed[part] = -regularisation.stiffness * gap[part] - damping * slip[part]
         else:
@@ -214,38 +213,39 @@ def _declared_rows(
 
 @dataclass(frozen=True, eq=False)
 class _JointRows:
-    """MuJoCo's rows of one joint: their indices, the rows (size, nv), and the joint's rows in the tree (size, nv)."""
+    """MuJoCo's rows of a joint."""
 
     model: MuJoCoModel
     data: Any
     joint: Joint
-    numbers: list[int]
-    rows: Array
-    in_tree: Array
+    numbers: list[int]  # indices of MuJoCo's rows
+    rows: Array  # MuJoCo's rows (size, nv)
+    in_tree: Array  # the mechanism's rows of the joint (size, nv)
 
     @property
     def beside(self) -> list[int]:
-        """The coordinates that are not of the tree: clocks, against which a sum of coordinates is driven."""
+        """The coordinates outside the tree: clocks, against which a sum of coordinates is driven."""
         return [column for column in range(self.model.compiled.nv) if column not in self.model.address]
 
     @property
     def factors(self) -> Array:
-        """The matrix (size, size) that takes the joint's rows to MuJoCo's."""
+        """The matrix (size, size) that multiplies the mechanism's rows of the joint to give MuJoCo's rows."""
         seen = self.model.address
         factors = np.linalg.lstsq(self.in_tree[:, seen].T, self.rows[:, seen].T, rcond=None)[0].T
         return np.asarray(factors, dtype=np.float64)
 
     @property
     def compliance(self) -> Array:
-        """A matrix C (size, size) with C C^T the compliance; a clock adds the inverse of its inertia."""
+        """A matrix C (size, size), where C C^T is the compliance. A clock adds the inverse of its inertia."""
         clock = np.sum(self.rows[:, self.beside] ** 2 / self.model.compiled.dof_M0[self.beside], axis=1)
         roots = np.sqrt((self.data.efc_R[self.numbers] + clock) / self.model.unit)
         return np.asarray(np.linalg.solve(self.factors, np.diag(roots)), dtype=np.float64)
 
     def aimed(self, gap: Array, slip: Array) -> Array:
-        """J a (size,) beside its velocity term, from the stiffness and damping of each of MuJoCo's rows.
+        """J a (size,) without its velocity term, from the stiffness and damping of MuJoCo's rows.
 
-        A clock begins at zero, and is not exactly at its prescribed angle: forces accelerate even its inertia a little.
+        A clock starts at the angle zero. Its angle then differs slightly from the prescribed one, since forces
+        accelerate its finite inertia.
         """
         data, beside, factors = self.data, self.beside, self.factors
         rate = self.joint.turning_rate if isinstance(self.joint, Drive) else 0.0
@@ -257,13 +257,12 @@ class _JointRows:
 
 
 def _is_user_row(compiled: Any, equality: int) -> bool:
-    """Whether callbacks write the row of an equality."""
     is_tendon = compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_TENDON
     return bool(is_tendon and compiled.tendon(compiled.eq_obj1id[equality]).name.startswith(PLACEHOLDER))
 
 
 def _rows_in_span(solver_rows: Array, candidates: list[int], rows: Array, columns: list[int]) -> list[int]:
-    """The candidates among the solver's rows that are combinations of `rows` in these columns."""
+    """The indices among `candidates` of solver rows that are linear combinations of `rows` in these columns."""
     these, span = solver_rows[candidates][:, columns], rows[:, columns].T
     residual = these.T - span @ np.linalg.lstsq(span, these.T, rcond=None)[0]
     is_inside = np.linalg.norm(residual, axis=0) <= SAME_ROW * np.linalg.norm(these, axis=1)
@@ -271,7 +270,7 @@ def _rows_in_span(solver_rows: Array, candidates: list[int], rows: Array, column
 
 
 def _directions(model: MuJoCoModel, data: Any) -> Array:
-    """The twists (3 bodies, nv) of unit velocities of the coordinates, in the pose of `data`."""
+    """The twists (3 bodies, nv) for unit velocities of the coordinates, in the pose of `data`."""
     count = model.tree.coordinates
     position = np.broadcast_to(data.qpos[model.address], (count, count))
     _, twists, _ = model.tree.motion(position, np.eye(count), np.zeros((count, count)))
@@ -281,7 +280,7 @@ def _directions(model: MuJoCoModel, data: Any) -> Array:
 
 
 def _motion(model: MuJoCoModel, data: Any, accelerations: Array) -> tuple[Array, Array, Array]:
-    """Poses, twists and accelerations (bodies, 3) of a state with these accelerations (nv,)."""
+    """The poses, twists and accelerations (bodies, 3) in the state of `data` with the given accelerations (nv,)."""
     columns = (values[model.address][None] for values in (data.qpos, data.qvel, accelerations))
     (pose,), (twist,), (change,) = model.tree.motion(*columns)
     return pose, twist, change

@@ -1,4 +1,4 @@
-"""The MuJoCo engine as a value: its settings, and what they declare of order, enforcement and regularisation."""
+"""The engine MuJoCo: its settings, and its convergence orders, enforcement and regularisation."""
 
 from __future__ import annotations
 
@@ -47,18 +47,18 @@ Factorisation = Literal["auto", "dense", "sparse"]
 
 @dataclass(frozen=True)
 class MuJoCo(Engine, Valid):
-    """A mechanism in MuJoCo; every field but `variant` is a setting.
+    """Settings of MuJoCo; raises ValueError for invalid ones.
 
-    `coordinates`: "tree" hinges bodies on one another and closes only the loops, "free" gives every body three
-    coordinates and makes every pin a constraint. `drive`: see `engines.mujoco.joints.links`; with "inertia" the
-    armature of a driven joint is `armature` times the mechanism's own inertia (the relative error of the rate is about
-    0.1 / armature). `solvers` are tried at the start in this order, and the first that solves it is taken. `tolerance`:
-    MuJoCo's, relative to the inertia of the coordinates that are not driven. `slots`, `skates`, `rolls`, `rods`: the
-    constructions of these joints, see `engines.mujoco.joints`; skates whose rows change once a step are stepped by
-    Euler, since four stages with the same outdated row cost more and gain nothing. `estimates`: error estimate by step
-    doubling, with half steps where double ones are inconclusive, if the error falls with the fourth power of the step;
-    see `engines.mujoco.step_doubling`. Where the estimate is above `engines.CLAIM` the motion is unresolved.
-    Raises ValueError for a setting that MuJoCo does not know.
+    `coordinates`: with "tree" a body moves relative to its parent in a kinematic tree, and only loops need constraints.
+    With "free" every body has three coordinates, and every pin is a constraint. `drive`: the construction of drives,
+    see `engines.mujoco.joints.links`. `armature`: the armature of a driven joint relative to the inertia of the
+    mechanism. The relative error of the rate is about 0.1 / armature. `solvers`: the solvers in the order in which they
+    are tried at t = 0. The first one that solves the equations there is used. `tolerance`: the tolerance of the solver,
+    relative to the inertia of the coordinates that are not driven. `slots`, `skates`, `rolls`, `rods`: the
+    constructions of these joints, see `engines.mujoco.joints`. Skates whose rows change once per step use the
+    integrator Euler, since four stages with the same row cost more without a gain. `estimates`: whether methods of
+    order 4 estimate their error, see `engines.mujoco.step_doubling`. A motion whose estimate exceeds `engines.CLAIM` is
+    unresolved.
     """
 
     name = "mujoco"
@@ -92,24 +92,24 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The integrator's order, reduced where a constraint row is of lower order."""
+        """The order of the integrator, or the lower order of a constraint row."""
         tree = self._tree(mechanism)
         has_skates, has_rolls = _has(mechanism, Skate), _has(mechanism, Roll)
         is_driven = any(isinstance(joint, Drive) and not tree.holds(joint) for joint in mechanism.joints)
         is_tied = tree.closed and isinstance(self.stiffness, TiedToStep)
         order, gap = ORDER if self.integrator == "RK4" else 1, None if tree.closed or has_rolls else EXACT
-        # The slip of a row that holds at the ends of steps is of first order, at the predicted pose of second.
+        # The slip is of second order for a row at the predicted pose, else of first order.
         slip = 2 if self.skates == "predicted tendon" else None
         overwritten = "a state that is overwritten between steps obeys no equation of which an order is known"
-        # The first line whose condition holds.
+        # The first entry whose condition holds applies.
         table: tuple[tuple[bool, ConvergenceOrder | NotDeclared], ...] = (
             (is_driven and self.drive == "overwrite", NotDeclared(overwritten)),
-            # A contact's row has the velocity and not its change.
+            # The row of a contact contains the velocity without its rate of change.
             (has_rolls and self.uses_contacts, ConvergenceOrder(1)),
             (has_skates and self.skates != "rows", ConvergenceOrder(1, gap=gap, slip=slip)),
-            # The gap of a loop that a spring of some steps closes falls as the square of the step.
+            # If the time constant of a loop's spring is some steps, the gap falls as the square of the step.
             (is_tied and order > 1, ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1, integrator=order)),
-            # A pose of a prescribed motion is wrong by the gap alone.
+            # The error of a pose in a prescribed motion is the gap.
             (is_tied and is_prescribed(mechanism), ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1)),
             (is_tied, ConvergenceOrder(1, gap=2)),
             (tree.closed or has_rolls or has_skates, ConvergenceOrder(order, gap=gap)),
@@ -121,7 +121,6 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """About how long a step takes [s]."""
         return 12e-6 * over_three(mechanism)
 
     @validated
@@ -154,28 +153,29 @@ class MuJoCo(Engine, Valid):
         return spanning_tree(mechanism, hanging=self.coordinates == "tree")
 
     def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
-        """An estimate needs a second run, with double steps."""
+        """The step sizes of all runs, relative to the step. An error estimate needs a run with double steps."""
         return (2.0, 1.0) if self.estimates else (1.0,)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """The regularisation of loops, skates and rolls at steps of dt [s]; None where the tree holds every joint."""
+        """The regularisation of loops, skates and rolls for steps of dt [s]; None if the tree enforces every joint."""
         tree, stiffness = self._tree(mechanism), self.stiffness
         soft = [joint for joint in mechanism.joints if tree.closes_by(joint) or isinstance(joint, Skate | Roll)]
         if not soft:
             return None
-        # Rows that lack the velocity term, or hold at the ends of steps.
+        # Rows are incomplete if they have no velocity term, or if they hold only at the ends of steps.
         is_incomplete = _has(mechanism, Rod) and self.rods == "tendon"
         is_incomplete |= _has(mechanism, Skate) and self.skates == "blade"
         if _has(mechanism, Roll) and isinstance(self.rolls, RollContact):
             stiffness, is_incomplete = Shipped() if self.rolls.steps is None else TiedToStep(self.rolls.steps), True
         gain, damping = stiffness.gains(mechanism, dt)
         if self.skates == "rows" and all(isinstance(joint, Skate) for joint in soft):
-            damping = slip_damping(mechanism)  # a property of such rows, whatever the springs of loops are
+            damping = slip_damping(mechanism)  # rows of skates have this damping for all settings of stiffness
         softening = stiffness.softening
         if stiffness is self.stiffness and isinstance(stiffness, Hardened) and stiffness.eased:
-            with suppress(Unsupported):  # the softening of eased rows is a property of the model
+            with suppress(Unsupported):  # with `eased`, the softening depends on the model
                 softening = self.model(mechanism, dt).softening
-        # The impedance at a gap of a millimetre and more; with MuJoCo's defaults a closed gap is about twice as soft.
+        # This is the impedance for gaps of a millimetre or more. With MuJoCo's defaults, the compliance at zero gap is
+        # about twice as large.
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * softening
         rows = tuple(joint in soft for joint in mechanism.joints for _ in range(joint.size))
         return Regularisation(gain, damping, compliance, rows, complete=not is_incomplete)
@@ -183,23 +183,22 @@ class MuJoCo(Engine, Valid):
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
     ) -> tuple[Instant, ...] | NotDeclared:
-        """Accelerations and reactions; see `engines.mujoco.declared`."""
         return declared.instants(self, mechanism, dt, steps, built or mechanism)
 
     def stricter(self, mechanism: Mechanism) -> MuJoCo | None:
-        """The same settings with a tolerance at which the solver's error is rounding."""
+        """The engine with a tolerance at which the error of the solver is rounding; None if it has that tolerance."""
         tolerance = declared.ROUNDING_TOLERANCE
         return None if self.tolerance <= tolerance else replace(self, tolerance=tolerance)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> MuJoCoRun:
-        """See the contract of `engines`. Raises Unsupported, or ValueError for a bad step."""
+        """Raises Unsupported, and ValueError for an invalid step."""
         model = self.model(mechanism, dt)
         data = model.start()
         _refuse_huge_rates(data)
         if self.estimates:
-            # Newton's method ends where the cost no longer falls. If it starts at zero, accelerations of light bodies
-            # then have a relative error of 1e-5. It continues from these, as it does from step to step.
+            # Newton's method ends if its cost falls no further. From a start at zero, the accelerations of light bodies
+            # then have a relative error of 1e-5. The next solution starts from them and corrects this error.
             data.qacc_warmstart[:] = data.qacc
         size = Size(
             bodies=model.compiled.nbody - 1,
@@ -214,7 +213,7 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, unit: Positive | None = None) -> MuJoCoModel:
-        """The compiled model; `unit`: that of mass [kg], `engines.mujoco.model.unit_of_mass` if not given."""
+        """The compiled model. `unit` [kg]: the unit of mass, by default `engines.mujoco.model.unit_of_mass`."""
         is_stepwise = self.skates in STEPWISE and _has(mechanism, Skate)
         integrator = "Euler" if is_stepwise else self.integrator
         options = {
@@ -231,9 +230,9 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def text(self, mechanism: Mechanism, dt: Positive) -> str:
-        """MJCF that runs without this suite, in kg, with the start as its keyframe.
+        """A model in MJCF that does not need this suite, in kg, with the initial state as a keyframe.
 
-        Raises Unsupported where our code writes rows or changes compliances.
+        Raises Unsupported if our code writes rows or changes compliances.
         """
         return mjcf(self.model(mechanism, dt, 1.0))
 
@@ -243,7 +242,7 @@ def _has(mechanism: Mechanism, kind: type[Joint]) -> bool:
 
 
 def _refuse_huge_rates(data: Any) -> None:
-    """Raise Unsupported for a start that MuJoCo takes for an instability, so that it resets at the first step."""
+    """Raise Unsupported for an initial state that MuJoCo would take for unstable and reset in the first step."""
     largest = max(float(np.abs(values).max(initial=0.0)) for values in (data.qvel, data.qacc))
     if largest > mujoco.mjMAXVAL:
         raise Unsupported(
@@ -254,7 +253,7 @@ def _refuse_huge_rates(data: Any) -> None:
 
 @validated
 def bare_loop(engine: MuJoCo, mechanism: Mechanism, dt: Positive, steps: Count) -> float:
-    """CPU time [s] of a loop over `mj_step` and nothing else, with which the cost of a run is compared."""
+    """CPU time [s] of `steps` calls of `mj_step` without recording, with which the cost of a run is compared."""
     model = engine.model(mechanism, dt)
     compiled, data, advance = model.compiled, model.start(), mujoco.mj_step
     begin = time.process_time()

@@ -1,8 +1,8 @@
-"""Force elements as parts of MuJoCo's model: tendons with stiffness or damping, and actuators of constant force.
+"""Force elements in MuJoCo's model: tendons with stiffness or damping, and actuators with a constant force.
 
-A tendon is spatial, between two sites, or fixed, a sum of tree coordinates, where the element turns bodies. An actuator
-pushes by its bias alone, whatever its control: along a fixed tendon for a torque, and at a site for a force. The force
-is measured from a site of the world, so that its direction does not turn.
+Springs and dampers are spatial tendons between two sites. Torsional ones are fixed tendons, which are sums of tree
+coordinates. An actuator acts by its bias only, with any control. The actuator of a torque acts on a fixed tendon, and
+that of a force at a site. The reference site of a force is in the world, so its direction does not turn.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from engines.mujoco.builder import ModelBuilder
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
-AUTOMATIC = -1.0  # a springlength that MuJoCo replaces by the length at the start
+AUTOMATIC = -1.0  # the springlength that MuJoCo replaces by the initial length
 
 
 def _name(force: ForceElement) -> str:
@@ -24,7 +24,7 @@ def _name(force: ForceElement) -> str:
 
 
 def _set_linear(tendon: Any, field: str, value: float) -> None:
-    """Set the linear part of a stiffness or damping, which is a polynomial in newer releases."""
+    """Set the linear coefficient of a stiffness or damping, which is a polynomial in newer releases."""
     size = np.size(getattr(tendon, field, 0.0))
     setattr(tendon, field, value if size == 1 else [value, *[0.0] * (size - 1)])
 
@@ -42,7 +42,7 @@ def _add_damper(builder: ModelBuilder, force: Damper) -> None:
 def _add_angle_tendon(
     builder: ModelBuilder, force: TorsionSpring | TorsionDamper | Torque, sign: float = 1.0
 ) -> Any | None:
-    """Add a fixed tendon whose length is `sign` times the relative angle; returns None if no coordinate changes it."""
+    """Add a fixed tendon whose length is `sign` times the relative angle; None if no coordinate changes this angle."""
     factors = builder.tree.turning(force.first, force.second)
     scaled = {column: sign * factor for column, factor in factors.items()}
     return builder.add_fixed_tendon(_name(force), scaled) if factors else None
@@ -82,7 +82,7 @@ def _add_force(builder: ModelBuilder, force: Force) -> None:
 
 
 def _add_actuator(builder: ModelBuilder, force: ForceElement, kind: Any, gear: list[float], **fields: str) -> None:
-    """Add an actuator of the scalar force 1, which `gear` multiplies."""
+    """Add an actuator with the force 1, which is multiplied by `gear`."""
     builder.spec.add_actuator(
         name=_name(force),
         trntype=kind,
@@ -94,7 +94,6 @@ def _add_actuator(builder: ModelBuilder, force: ForceElement, kind: Any, gear: l
     )
 
 
-# The construction of each kind of force element; every other kind is refused.
 FORCE_CONSTRUCTIONS: Mapping[type, Callable[[ModelBuilder, Any], None]] = {
     Spring: _add_spring,
     Damper: _add_damper,

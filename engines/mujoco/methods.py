@@ -1,7 +1,6 @@
-"""The methods of MuJoCo as values: three variants, methods between them, and methods for single kinds of joints.
+"""The methods of MuJoCo: METHODS for all scenes, and methods that compare constructions of a joint.
 
-METHODS are for every scene. SKATES, ROLLS and SLOTS each hold one kind of joint by another construction (see
-`engines.mujoco.joints`), for a page that compares these.
+The constructions of joints are in `engines.mujoco.joints`.
 """
 
 from __future__ import annotations
@@ -52,11 +51,10 @@ METHODS = (
     replace(TUNED, variant="RK4 alone", stiffness=Shipped(), rolls=RollContact()),
     replace(EXTENDED, variant="extended, free coordinates", coordinates="free"),
 )
-# For mechanisms with drives: another way to prescribe a rate.
 DRIVES = (replace(DEFAULT, variant="default, overwritten crank", drive="overwrite"),)
 
-# The blade of DEFAULT with friction that acts as fast as the step allows, and with Euler, which suits it.
+# The blade of DEFAULT, with friction that acts as fast as the step allows and with the integrator Euler.
 SKATES = (replace(TUNED, variant="friction blade", skates="blade", integrator="Euler"),)
 ROLLS = (replace(TUNED, variant="contact, stiff Euler", integrator="Euler"),)
-# A slot with a moving line as a user row, which is no setting of MuJoCo's, and so not in `TUNED`.
+# TUNED has no user rows, since they are no setting of MuJoCo. Here a slot with a moving line is a user row.
 SLOTS = (replace(TUNED, variant="tuned, slots as rows", slots="rows"),)

@@ -1,4 +1,4 @@
-"""MuJoCo's model of a mechanism: a tree of planar joints, and a construction for every joint that the tree lacks."""
+"""The MuJoCo model of a mechanism: a kinematic tree, and constructions for the joints that close loops."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from engines.mujoco.engine import MuJoCo
 
 Coordinates = Literal["tree", "free"]
-# The construction of each kind of joint, where the tree does not hold it; every other kind is refused. MuJoCo's solver
-# has the rows in the order of this table.
+# The construction of each kind of joint that the tree does not enforce. Rows in MuJoCo's solver have the order of this
+# table.
 JOINT_CONSTRUCTIONS: Mapping[type, Callable[[ModelBuilder, Sequence[Any]], None]] = {
     Pin: add_pins,
     Slot: add_slots,
@@ -43,41 +43,34 @@ JOINT_CONSTRUCTIONS: Mapping[type, Callable[[ModelBuilder, Sequence[Any]], None]
     Roll: add_rolls,
 }
 MUJOCO_CAPABILITY = Capability("mujoco", frozenset(JOINT_CONSTRUCTIONS), frozenset(FORCE_CONSTRUCTIONS))
-# The largest unit of mass, relative to the smallest mass or inertia: that is then far above mjMINVAL.
+# The largest unit of mass relative to the smallest mass or inertia, which is then far above mjMINVAL in this unit.
 MAX_MASS_RATIO = 1e13
 
 
 @dataclass(frozen=True)
 class MuJoCoModel:
-    """A compiled model, and the meaning of its coordinates, bodies and units.
-
-    `address`: the index of each tree coordinate in qpos and qvel. `rows`: scalar constraints that forces hold, drives
-    not counted; `has_user_rows`: some of them are written by a callback. `start_rates`: the rates at t = 0 of
-    coordinates of auxiliary bodies, by index in qvel. `unit` [kg]: masses, forces and torques of the compiled
-    model are in this unit. `split_bodies`: auxiliary bodies, and the body from which each was split. `softening`: the
-    factor on MuJoCo's compliances.
-    """
+    """A compiled model, and the meaning of its coordinates, bodies and units."""
 
     mechanism: Mechanism
     tree: Tree
     compiled: Any  # mujoco.MjModel
-    address: list[int]
+    address: list[int]  # the index of each tree coordinate in qpos and qvel
     driven: tuple[DrivenCoordinate, ...]
     drive: DriveBy
     hooks: Hooks = field(default_factory=Hooks)
-    rows: int = 0
+    rows: int = 0  # the number of scalar constraints that forces enforce, without drives
     has_user_rows: bool = False
-    start_rates: Mapping[int, float] = field(default_factory=dict)
-    unit: float = 1.0
-    split_bodies: tuple[tuple[str, int], ...] = ()
+    start_rates: Mapping[int, float] = field(default_factory=dict)  # by index in qvel, for coordinates outside the tree
+    unit: float = 1.0  # kg, the unit of mass of the compiled model, and so of its forces and torques
+    split_bodies: tuple[tuple[str, int], ...] = ()  # as in ModelBuilder
     spec: Any = None  # mujoco.MjSpec
-    softening: float = 1.0
+    softening: float = 1.0  # the factor on MuJoCo's compliances
 
     @contextmanager
     def callback_installed(self) -> Iterator[None]:
-        """Install the model's callback, which every step and every evaluation of the model needs.
+        """Install the callback of the model, which every step and every evaluation needs.
 
-        MuJoCo's callback is global; the previous one is restored at the end, also after an exception.
+        MuJoCo's callback is global. The previous callback is restored at the end, also after an exception.
         """
         previous = mujoco.get_mjcb_control()
         mujoco.set_mjcb_control(self.hooks.control)
@@ -98,7 +91,7 @@ class MuJoCoModel:
         return self.unit * np.stack([mass, mass, inertia], axis=-1), compiled.opt.gravity[:2].copy()
 
     def start(self) -> Any:
-        """A new mujoco.MjData at the mechanism's start, its derived quantities computed."""
+        """A new mujoco.MjData with the initial state of the mechanism, after mj_forward."""
         data = mujoco.MjData(self.compiled)
         data.qvel[self.address] = self.tree.start_rates()
         for driven in self.driven:
@@ -115,10 +108,9 @@ class MuJoCoModel:
 def build_model(
     mechanism: Mechanism, dt: float, settings: MuJoCo, options: Mapping[str, Any], unit: float | None = None
 ) -> MuJoCoModel:
-    """Compile a mechanism for steps of dt [s].
+    """Compile a mechanism for steps of dt [s]; raises Unsupported.
 
-    `options`: fields of MuJoCo's own options, by name; `unit`: that of mass [kg], `unit_of_mass` if not given. Raises
-    Unsupported for a joint or force element without a construction.
+    `options`: MuJoCo's options by name. `unit` [kg]: the unit of mass, by default `unit_of_mass`.
     """
     MUJOCO_CAPABILITY.require(mechanism)
     unit = unit or unit_of_mass(mechanism)
@@ -162,13 +154,12 @@ def build_model(
 
 
 def multiply_compliances(compiled: Any, factor: float) -> None:
-    """Multiply the compliances of the rows of connects, joints and tendons."""
     for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
         scale[:] *= factor
 
 
 def _spec(tree: Tree, dt: float, islands: bool, options: Mapping[str, Any]) -> Any:
-    """A mujoco.MjSpec with the options and the bodies of the tree, and nothing else."""
+    """A mujoco.MjSpec with the options and the bodies of the tree."""
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
     spec.option.timestep = dt
@@ -181,7 +172,7 @@ def _spec(tree: Tree, dt: float, islands: bool, options: Mapping[str, Any]) -> A
 
 
 def _compiled(builder: ModelBuilder) -> Any:
-    """The mujoco.MjModel. Raises Unsupported where MuJoCo refuses it, or would not read the rows of a callback."""
+    """The mujoco.MjModel. Raises Unsupported if MuJoCo refuses it, or would not read rows that a callback writes."""
     option = builder.spec.option
     if builder.needs_contacts:
         option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
@@ -200,10 +191,10 @@ def _compiled(builder: ModelBuilder) -> Any:
 
 
 def _keep_small_offsets(compiled: Any) -> None:
-    """Make MuJoCo read the positions of sites and shapes that are within 1e-6 m of their body's origin.
+    """Make MuJoCo read the positions of sites and shapes within 1e-6 m of the origin of their body.
 
-    The compiler marks these as in their body's frame, so that `site_pos` is never read: a spring at an arm of 1e-7 m
-    then turns nothing (4.0.1, checked by a test in `tests/engines/test_mujoco_joints.py`).
+    The compiler marks such a site as being at the origin, so MuJoCo never reads `site_pos`. A spring with an arm of
+    1e-7 m then has no torque (4.0.1, checked by a test in `tests/engines/test_mujoco_joints.py`).
     """
     kinds = mujoco.mjtSameFrame
     tables = (compiled.site_pos, compiled.site_sameframe), (compiled.geom_pos, compiled.geom_sameframe)
@@ -228,11 +219,11 @@ def _add_bodies(spec: Any, tree: Tree) -> None:
 
 
 def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
-    """Scale the solver's tolerance as if the coordinates that nothing can accelerate, `steady`, were not there.
+    """Make the tolerance of the solver relative to the inertia without the coordinates `steady`.
 
-    MuJoCo's tolerance is relative to the sum of the diagonal of M: at the start up to 3.12, and in the present state
-    in 4.0.1 (`mj_solPrimal` in engine_solver.c), which does not read `stat.meaninertia`. With an armature of 1e8 in
-    that sum, a solver would stop at once although its accelerations are wrong by 100 %.
+    MuJoCo's tolerance is relative to the sum of the diagonal of M. Up to 3.12 this is the sum at t = 0, and in 4.0.1
+    the sum in the present state (`mj_solPrimal` in engine_solver.c, which does not read `stat.meaninertia`). With an
+    armature of 1e8 in the sum, the solver would stop at once although its accelerations are wrong by 100 %.
     """
     free = np.delete(compiled.dof_M0, steady)
     if steady and len(free):
@@ -240,9 +231,9 @@ def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
 
 
 def unit_of_mass(mechanism: Mechanism) -> float:
-    """A power of two near the mechanism's mass [kg], or its inertia [kg m^2] where that is the larger number.
+    """A power of two near the mass [kg] of the mechanism, or near its inertia [kg m^2] if that number is larger.
 
-    MuJoCo takes no regularisation, which is an inverse mass or inertia, below mjMINVAL (1e-15), and no lighter body.
+    MuJoCo accepts neither a mass nor a regularisation, which is an inverse mass or inertia, below mjMINVAL (1e-15).
     """
     mass = sum(body.mass for body in mechanism.bodies)
     smallest = min(min(body.mass, body.inertia) for body in mechanism.bodies)

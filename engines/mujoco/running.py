@@ -1,4 +1,4 @@
-"""Stepping a model and recording its states in the timed loop. Accelerations and reactions are evaluated afterwards."""
+"""Runs of a MuJoCo model: states are recorded in the timed loop, and reactions are computed after it."""
 
 from __future__ import annotations
 
@@ -26,36 +26,37 @@ from reference.trajectory import RunWarning, Trajectory
 
 Array = NDArray[np.float64]
 
-# Relative to the mechanism's length: a larger gap is no error of integration, and is reported.
+# A larger gap, relative to the length of the mechanism, is no integration error and causes a warning.
 MAX_GAP = 1e-3
-# Relative to the accelerations: with a larger residual the solver has not converged, whatever it reports.
+# A solver with a larger residual, relative to the accelerations, has not converged.
 MAX_RESIDUAL = 1e-5
-# The number of instants, beside the samples, at which the error is estimated: all, where there are fewer double steps.
+# The number of instants, besides the samples, at which the error is estimated. With fewer double steps it is at all of
+# them.
 ESTIMATE_INSTANTS = 1000
-# Relative to the largest acceleration so far: smaller accelerations are rounding, in a motion that has come to rest.
+# Smaller accelerations, relative to the largest one so far, are rounding in a motion that has come to rest.
 AT_REST = 1e-9
-# Relative to the mechanism's length: smaller displacements change the reactions by less than is reported.
+# Smaller displacements, relative to the length of the mechanism, change the reactions too little for a warning.
 MIN_DISPLACEMENT = FORCES * RANK_TOLERANCE
-# Factor on the displacement that closes the joints: regularisation also changes the motion that the joints leave free.
+# Factor on the displacement that closes the joints. Regularisation also changes motion that joints do not constrain.
 RELEASED_MOTION = 1.5
 
 
 def residual_warning(residual: float) -> RunWarning:
-    """The warning of a run whose solver left a residual, relative to the accelerations, above MAX_RESIDUAL."""
+    """The warning for a residual of the solver, relative to the accelerations, above MAX_RESIDUAL."""
     text = f"ours: the solver missed the accelerations by {residual:.1g} of themselves"
     return RunWarning(text, "residual", "adapter")
 
 
 @dataclass
 class WarningLog:
-    """MuJoCo's warnings, each message once, and the time at which it first reset itself [s]."""
+    """MuJoCo's warnings, each message once, and the time of its first reset."""
 
     data: Any = None
     messages: dict[str, None] = field(default_factory=dict)
-    reset_at: float | None = None
+    reset_at: float | None = None  # s
 
     def record(self, message: str) -> None:
-        """Called by MuJoCo before it resets itself, so that the time is that of the step that failed."""
+        """Record a warning. MuJoCo calls this before it resets a state, so the time is that of the failed step."""
         text = " ".join(str(message).split(" Time = ")[0].split())
         self.messages.setdefault(text)
         if "value in Q" in text and self.reset_at is None and self.data is not None:
@@ -64,7 +65,7 @@ class WarningLog:
 
 @contextmanager
 def logged_warnings(data: Any = None) -> Iterator[WarningLog]:
-    """Record MuJoCo's warnings, which it would otherwise write into a file in the working directory."""
+    """Record MuJoCo's warnings, which it would otherwise write to a file in the working directory."""
     log = WarningLog(data)
     previous = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(log.record)
@@ -76,30 +77,27 @@ def logged_warnings(data: Any = None) -> Iterator[WarningLog]:
 
 @dataclass(eq=False)
 class MuJoCoRun(OneShot):
-    """A built model at its start; it can be called once, with (samples, every), for a Trajectory.
-
-    `data`: the mujoco.MjData that stepping changes. `with_step`: builds the run with another step [s], for an estimate
-    of the error of RK4; None for no estimate.
-    """
+    """A run of a model from t = 0; see `engines.Run`."""
 
     model: MuJoCoModel
-    data: Any
+    data: Any  # mujoco.MjData, which the steps change
     size: Size
+    # Builds a run with another step [s], for the error estimate of RK4. None for no estimate.
     with_step: Callable[[float], MuJoCoRun] | None = None
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
-        """Take samples * every steps. Raises ValueError for bad counts, RuntimeError at the second call.
+        """Make samples * every steps. Raises ValueError for invalid counts, and RuntimeError at the second call.
 
-        The sampling does not change the method: the error is estimated at ESTIMATE_INSTANTS beside the samples, and
-        these decide whether a third run is needed. `stepping` is the CPU time of all runs.
+        The error is also estimated at ESTIMATE_INSTANTS instants that do not depend on the samples. These instants
+        determine whether a third run is made. `stepping` is the CPU time of all runs.
         """
         self.model.mechanism.require_room(samples)
         self.begin()
         sample_counts = np.arange(samples + 1) * every
         if self.with_step is None:
             return self._trajectory(sample_counts, sample_counts)
-        # Double steps end after every second step. Estimates are made there and beside the samples.
+        # Double steps end after every second step. Odd samples therefore need the even counts before and after them.
         half = (samples * every + 1) // 2
         watched = 2 * np.unique(np.linspace(0, half, min(half, ESTIMATE_INSTANTS) + 1).round().astype(int))
         odd = sample_counts % 2
@@ -110,12 +108,12 @@ class MuJoCoRun(OneShot):
         return replace(run, **{name: getattr(run, name)[at] for name in ("t", "pose", "twist", "reaction", "estimate")})
 
     def _trajectory(self, counts: Counts, reaction_counts: Counts) -> Trajectory:
-        """The motion after `counts` (times,) steps; reactions are evaluated after `reaction_counts` of these."""
+        """The motion after `counts` (times,) steps, with reactions only after `reaction_counts` steps."""
         step, model = self._dt, self.model
         t = counts.astype(float) * step
         with logged_warnings(self.data) as log, model.callback_installed():
             position, velocity, clock, stepping = self._step(counts)
-            # The clock is late after a reset. MuJoCo warns of that too, but only once for each kind of warning.
+            # The clock is late after a reset. MuJoCo also warns of resets, but only once for each kind of warning.
             is_late = np.abs(clock - t) > step / 2
             reset_at = log.reset_at
             if reset_at is None and is_late.any():
@@ -140,10 +138,11 @@ class MuJoCoRun(OneShot):
         return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at)
 
     def _difference(self, pose: Array, counts: Counts, ratio: float) -> tuple[Array, float]:
-        """The poses after `counts` (times,) steps of `ratio` times the length, less `pose` (times, bodies, 3).
+        """The difference from `pose` (times, bodies, 3) of a run with `ratio` times the step; NaN after a failure.
 
-        Also returns the CPU time of these steps [s]. The rows of the other run have ratio^4 times the compliance, so
-        that the difference contains their error beside that of the step. NaN after a failure.
+        `counts` (times,): the numbers of steps of that run before each pose. Its rows have ratio^4 times the
+        compliance, so the difference contains the error of the compliance too. Also returns the CPU time [s] of the
+        steps.
         """
         assert self.with_step is not None  # only a run with an estimate calls this
         run = self.with_step(self._dt * ratio)
@@ -159,12 +158,11 @@ class MuJoCoRun(OneShot):
         return difference, stepping
 
     def _with_estimate(self, run: Trajectory, counts: Counts, watched: Counts) -> Trajectory:
-        """The run with its error estimate, and the time from which that is above CLAIM.
+        """The run with its error estimate, and the time from which the estimate exceeds CLAIM.
 
-        `counts` (times,): the steps before each pose; `watched`: the indices in it at which the order is checked.
-
-        If the difference to the run with double steps exceeds CLAIM, two runs cannot confirm the order, and a third run
-        with half steps is made. See `engines.mujoco.step_doubling`.
+        `counts` (times,): the number of steps before each pose. `watched`: the indices in `counts` at which the order
+        is checked. If the difference to a run with double steps exceeds CLAIM, these two runs cannot confirm the order,
+        and a third run makes half steps. See `engines.mujoco.step_doubling`.
         """
         is_even = counts % 2 == 0
         double, stepping = self._difference(run.pose[is_even], counts[is_even] // 2, 2.0)
@@ -174,7 +172,7 @@ class MuJoCoRun(OneShot):
             half, more = self._difference(run.pose, 2 * counts, 0.5)
             doubling, stepping = replace(doubling, half=half), stepping + more
         error, correction = doubling.estimate()
-        # Extrapolated poses still have the gaps that are equal in all runs.
+        # Extrapolation does not remove gaps that are equal in all runs.
         extrapolated = run.pose[watched] + correction[watched]
         released = RELEASED_MOTION * closing(self.model.mechanism, run.t[watched], extrapolated, run.t)
         error = error + np.maximum.accumulate(np.abs(released))
@@ -186,7 +184,7 @@ class MuJoCoRun(OneShot):
         return replace(run, stepping=stepping, warnings=tuple(warnings), estimate=error, unresolved_at=unresolved_at)
 
     def _reaction_warnings(self, run: Trajectory, *displacements: Array) -> list[RunWarning]:
-        """The warning if displacements of the poses (times, bodies, 3) change the reactions by much."""
+        """Warnings if displacements of the poses (times, bodies, 3) change the reactions too much."""
         mechanism = self.model.mechanism
         is_valid = np.isfinite(run.reaction).any(axis=1) & np.isfinite(displacements).all(axis=(0, 2, 3))
         matters = np.any(np.abs(displacements) > MIN_DISPLACEMENT * mechanism.pose_unit, axis=(0, 2, 3))
@@ -204,9 +202,9 @@ class MuJoCoRun(OneShot):
         return self.model.compiled.opt.timestep
 
     def _step(self, counts: Counts) -> tuple[Array, Array, Array, float]:
-        """MuJoCo's positions, velocities and clock after `counts` (times,) steps, of which the first is 0.
+        """MuJoCo's positions, velocities and clock after `counts` (times,) steps, and the CPU time of the loop [s].
 
-        Also returns the loop's CPU time [s].
+        The first count must be 0.
         """
         compiled, data = self.model.compiled, self.data
         position, velocity = np.empty((len(counts), compiled.nq)), np.empty((len(counts), compiled.nv))
@@ -232,7 +230,6 @@ class MuJoCoRun(OneShot):
         return position, velocity, clock, sampled(np.diff(counts).tolist(), advance, record)
 
     def _overwrite(self) -> None:
-        """Set the driven coordinates to their prescribed angles and rates."""
         for driven in self.model.driven:
             index = self.model.address[driven.column]
             self.data.qpos[index] = driven.rate * self.data.time
@@ -241,9 +238,9 @@ class MuJoCoRun(OneShot):
     def _accelerations(
         self, position: Array, velocity: Array, t: Array, evaluated: NDArray[np.bool_]
     ) -> tuple[Array, float]:
-        """Accelerations by MuJoCo's solver at the `evaluated` times, and the largest residual of the solver there.
+        """The accelerations of MuJoCo's solver at the `evaluated` times, and the largest residual of the solver there.
 
-        Where a motion has come to rest, its accelerations are rounding, and so is the residual: these are left out.
+        The residual is not evaluated for a motion that has come to rest, since its accelerations are rounding.
         """
         compiled, data = self.model.compiled, self.data
         acceleration, residual = np.full_like(velocity, np.nan), 0.0
@@ -263,7 +260,7 @@ class MuJoCoRun(OneShot):
         return acceleration, residual
 
     def _own_warnings(self, pose: Array, t: Array, residual: float) -> list[RunWarning]:
-        """Warnings that MuJoCo does not give: of an open joint, and of a solver that has not converged."""
+        """Warnings of an open joint and of a solver that has not converged, which MuJoCo does not report."""
         mechanism, warnings = self.model.mechanism, []
         gap = np.nan_to_num(np.abs(mechanism.gap(pose, t))) if len(t) else np.zeros((0, 0))
         if gap.size:

@@ -1,4 +1,4 @@
-"""The residual of MuJoCo's iterative solver, and the choice of a solver by it."""
+"""The residual of MuJoCo's iterative solver, and the choice of a solver with a small residual."""
 
 from __future__ import annotations
 
@@ -14,23 +14,24 @@ from engines import Unsupported
 from engines.mujoco.model import MuJoCoModel, multiply_compliances
 from engines.mujoco.releases import full_inertia
 
-# Relative residual up to which a solver has solved the start. Measured: a solver that suits a mechanism has 1e-7 or
-# less, another one 1e-2 or more.
+# Largest relative residual of a solver that has solved the equations at t = 0. Measured residuals are at most 1e-7 for
+# solvers that suit a mechanism, and at least 1e-2 for others.
 SOLVED_RESIDUAL = 1e-6
-# Share of an error that may remain after an iteration of Newton's method: three of them then refine a solution to
-# rounding. In 850 scenes and random mechanisms it is at most 0.08, except for three with 0.13, 0.48 and 2.
+# Largest fraction of an error that may remain after an iteration of Newton's method. With this limit, three iterations
+# reduce the error to rounding. In 850 scenes and random mechanisms the fraction is at most 0.08, except for 0.13, 0.48
+# and 2 in three of them.
 MAX_REMAINING_ERROR = 0.1
 
 _factorise, _inverse_condition = get_lapack_funcs(("potrf", "pocon"), dtype=np.float64)
 
 
 def solver_residual(compiled: Any, data: Any) -> float:
-    """The residual of the solver's answer in its equations, relative to the accelerations in them.
+    """The residual of the solver's equations, relative to the accelerations in them.
 
-    The dual solver satisfies Newton's law M a = f + J^T F exactly, and the primal ones satisfy the constraint law
-    J a + R F = a_ref, so the error is the residual of the other law. A contact row that opens or slides has another
-    law, so only rows that hold are counted. Where R is so small that forces are mostly rounding, the accelerations are
-    compared with an exact solution instead.
+    The dual solver satisfies Newton's law M a = f + J^T F exactly. The primal solvers satisfy the constraint law
+    J a + R F = a_ref exactly. The error is the residual of the law that is not satisfied exactly. A contact row that
+    opens or slides has another law and is not included. If R is so small that forces are mostly rounding, the
+    accelerations are compared with an exact solution instead.
     """
     if not data.nefc:
         return 0.0
@@ -51,9 +52,9 @@ def solver_residual(compiled: Any, data: Any) -> float:
 
 
 def _exact_accelerations(compiled: Any, data: Any, holding: Any) -> Any:
-    """The accelerations (nv,) where the `holding` rows hold and the others are inactive, by elimination.
+    """The accelerations (nv,) by elimination, if the `holding` rows hold and the other rows are inactive.
 
-    None if a row slides or the matrix is singular.
+    None if a row slides, or if the matrix is singular.
     """
     is_inactive = data.efc_state == mujoco.mjtConstraintState.mjCNSTRSTATE_SATISFIED
     if not np.all(holding | is_inactive):
@@ -68,10 +69,10 @@ def _exact_accelerations(compiled: Any, data: Any, holding: Any) -> Any:
 
 
 def _remaining_error(compiled: Any, data: Any) -> float:
-    """The share of an error that remains after an iteration of Newton's method, by rounding.
+    """The fraction of an error that remains, due to rounding, after an iteration of Newton's method.
 
-    It is the condition of the Hessian M + J^T R^-1 J, times the rounding of a double. The Hessian is scaled to a unit
-    diagonal, since the rounding of its Cholesky factor does not depend on such a scale.
+    It is the condition number of the Hessian M + J^T R^-1 J times the rounding of a double. The Hessian is scaled to a
+    unit diagonal, since the rounding of its Cholesky factor does not depend on this scaling.
     """
     if not data.nefc:
         return 0.0
@@ -87,10 +88,11 @@ def _remaining_error(compiled: Any, data: Any) -> float:
 
 
 def soften_until_solvable(model: MuJoCoModel, start: Any) -> float:
-    """Multiply the compliances by 10, at most to MuJoCo's default, until the Newton matrix is well conditioned.
+    """Multiply the compliances by 10 until the Hessian of the Newton solver is well conditioned.
 
-    Returns the new softening. `start`: a mujoco.MjData at the start, solved by the model's solver. 1e-12 is too small
-    where a light body carries a heavy one. Solvers other than Newton's build no such matrix, so nothing changes.
+    Returns the new softening, at most 1, which is MuJoCo's default. The original compliances are too small if a light
+    body carries a heavy one. `start`: a mujoco.MjData at t = 0, solved by the solver of the model. Solvers other than
+    Newton have no Hessian, so the compliances stay unchanged.
     """
     compiled, softening = model.compiled, model.softening
     if compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON or not solver_residual(compiled, start) < SOLVED_RESIDUAL:
@@ -104,12 +106,12 @@ def soften_until_solvable(model: MuJoCoModel, start: Any) -> float:
 
 
 def choose_solver(model: MuJoCoModel, solvers: Sequence[str]) -> Any:
-    """Set the first of the solvers that solves the start; the one with the smallest residual if none does.
+    """Choose the first solver that solves the equations at t = 0, or the one with the smallest residual if none does.
 
-    Returns the mujoco.MjData of the start as that solver solves it. Newton is the fastest, and as exact as any for a
-    few loops and for many short ones. In long chains rounding exceeds its compliance; there the dual solver (PGS) is
-    better, which fails for bodies of very different mass and takes hundreds of iterations for many loops. CG is slower
-    than either, and is there for both cases. Raises Unsupported if none of the solvers can read user rows.
+    Returns the mujoco.MjData at t = 0 that the chosen solver computes. Newton is the fastest solver. In long chains its
+    rounding exceeds the compliance, and the dual solver PGS is better. PGS fails for very different masses, and needs
+    hundreds of iterations for many loops. CG is slower, and is the fallback for both cases. Raises Unsupported if no
+    solver in the list can read user rows.
     """
     residuals = {}
     for solver in solvers:

@@ -1,4 +1,4 @@
-"""An error estimate of poses by step doubling, for a method of order 4: runs with steps h, 2h and, if needed, h / 2."""
+"""Error estimates of poses for a method of order 4, from runs with steps h, 2h and, if needed, h / 2."""
 
 from __future__ import annotations
 
@@ -11,34 +11,29 @@ from numpy.typing import NDArray
 from engines import CLAIM
 
 Array = NDArray[np.float64]
-Counts = NDArray[np.int_]  # of steps since the start, ascending, or indices in such an array
+Counts = NDArray[np.int_]  # numbers of steps since t = 0 in ascending order, or indices in such an array
 
 ORDER = 4
-# In rad, or relative to the mechanism's length: the largest difference of two runs that rounding may explain.
+# The largest difference of two runs that may be rounding, in rad or relative to the length of the mechanism.
 ROUNDING_DIFFERENCE = 1e-8
-MAX_RATIO = 1 / 8  # of the differences of successive step sizes, up to which at least third order is confirmed
+MAX_RATIO = 1 / 8  # the largest ratio of differences for successive step sizes that confirms at least third order
 
 
 @dataclass(frozen=True)
 class StepDoubling:
-    """Poses of a run with steps h, compared with those of runs with other steps.
+    """Differences of the poses of runs with other steps from those with steps h; NaN after the failure of a run."""
 
-    `counts` (times,): the steps h before each pose. Every odd count has both neighbours in it. `watched`: the indices
-    of the even counts at which the order is checked. `unit` (3,): the pose unit. `double` (even counts, bodies, 3) and
-    `half` (times, bodies, 3): poses of runs with steps 2h and h / 2, less those with steps h; NaN where a run failed.
-    """
-
-    counts: Counts
-    watched: Counts
-    unit: Array
-    double: Array
-    half: Array | None = None
+    counts: Counts  # the number (times,) of steps h before each pose; contains both neighbours of every odd number
+    watched: Counts  # indices of the even counts at which the order is checked
+    unit: Array  # the unit of each component of a pose (3,)
+    double: Array  # differences (even counts, bodies, 3) of the run with steps 2h
+    half: Array | None = None  # differences (times, bodies, 3) of the run with steps h / 2
 
     @cached_property
     def difference(self) -> Array:
-        """The differences to steps 2h (times, bodies, 3).
+        """The differences (times, bodies, 3) of the run with steps 2h.
 
-        After an odd number of steps it is the larger of the differences before and after; NaN where either is.
+        After an odd number of steps the difference is the larger one of its two neighbours, or NaN if one is NaN.
         """
         even, odd = self.counts[self.counts % 2 == 0], self.counts % 2
         before, after = (self.double[np.searchsorted(even, count)] for count in (self.counts - odd, self.counts + odd))
@@ -46,7 +41,7 @@ class StepDoubling:
 
     @cached_property
     def conclusive(self) -> Counts:
-        """The leading `watched` indices at which the difference to steps 2h is at most CLAIM."""
+        """The `watched` indices before the first one at which the difference to steps 2h exceeds CLAIM."""
         is_small = self.relative(self.difference[self.watched]) <= CLAIM
         return self.watched[: np.argmin([*is_small, False])]
 
@@ -56,20 +51,20 @@ class StepDoubling:
         return len(self.conclusive) < len(self.watched)
 
     def relative(self, difference: Array) -> Array:
-        """The largest component (times,) of differences of poses, in rad or relative to the mechanism's length."""
+        """The largest component (times,) of differences of poses, in rad or relative to the length of the mechanism."""
         return np.max(np.abs(difference) / self.unit, axis=(1, 2))
 
     def estimate(self) -> tuple[Array, Array]:
-        """The error of poses, and the correction that extrapolates them to zero step (times, bodies, 3).
+        """The errors of the poses, and corrections that extrapolate the poses to step zero (times, bodies, 3).
 
-        Rounding in stiff rows does not shrink with h, so differences below ROUNDING_DIFFERENCE are not divided by 15.
+        Rounding in stiff rows does not decrease with h, so differences below ROUNDING_DIFFERENCE are not divided by 15.
 
-        With steps h / 2, let q be the ratio of the differences to these and to 2h, 1/16 for RK4. Up to q = 1/8 at least
-        third order is confirmed. If the step were halved further, and each difference were at most half of the one
-        before, the others would add up to at most 2 q times the difference. Otherwise each is assumed to be up to 2/3
-        of the one before, so that all add up to three times the first: near a change point they fell so slowly that a
-        ratio of one half missed a fifth of the error. An error may pass zero, so q is the ratio of the largest
-        differences so far.
+        With a run of steps h / 2, let q be the ratio of the difference to that run and the difference to steps 2h. It
+        is 1/16 for RK4, and q <= 1/8 confirms at least third order. In this case, the differences for further halved
+        steps are assumed to fall by at least one half each, so their sum is at most 2 q times the difference to h / 2.
+        Otherwise each difference is assumed to be at most 2/3 of the previous one, and all add up to three times the
+        first. (Near a change point, a factor of one half missed a fifth of the error.) Since an error may pass through
+        zero, q is the ratio of the largest differences so far.
         """
         size = np.abs(self.difference)
         if self.half is None:
@@ -84,9 +79,10 @@ class StepDoubling:
         return np.abs(self.half) * factor[last_watched, None, None], self.half * 2**ORDER / (2**ORDER - 1)
 
     def unresolved_from(self, error: Array) -> int | None:
-        """The number of steps after which an error (times, bodies, 3) is above CLAIM; None if it is nowhere.
+        """The number of steps after which the motion is unresolved; None if no error (times, bodies, 3) exceeds CLAIM.
 
-        It is dated back to the first `watched` time at which the comparison with steps 2h exceeds CLAIM.
+        It is the count of the first such error, or the count after the last `conclusive` one if that is smaller. It is
+        0 if no count is conclusive.
         """
         above = np.flatnonzero(~(self.relative(error) <= CLAIM))
         if not len(above):

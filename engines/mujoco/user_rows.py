@@ -1,15 +1,15 @@
 """User rows: constraint rows that our code writes into MuJoCo's solver in every stage of the integrator.
 
-MuJoCo has no joint for a skate or for rolling, but its solver takes any row J a = right. A placeholder (an equality of
-a tendon) reserves the row. The callback `mjcb_control` then overwrites its part of `efc_J` and `efc_aref`. It runs
-after the references are computed and before the solver, in all four stages of RK4 (mj_forwardSkip in
-engine_forward.c). User rows need the dense Jacobian, no islands, and a primal solver (Newton or CG): the dual one
-builds its matrix earlier.
+MuJoCo has no joint for a skate or for rolling, but its solver accepts any row J a = right. An equality of a tendon
+reserves the row, and the callback `mjcb_control` overwrites the row in `efc_J` and `efc_aref`. MuJoCo calls it between
+the reference accelerations and the solver, in all four stages of RK4 (mj_forwardSkip in engine_forward.c). User rows
+need the dense Jacobian and no islands. They also need a primal solver (Newton or CG), since the dual solver builds its
+matrix before the callback.
 
-`write_rows` computes the motion of the bodies from the tree's coordinates, evaluates the row of each joint, and
-transforms it back to the coordinates. numba compiles this where it is installed; otherwise Python does the same on
-lists. The place of a rolling body is evaluated before, in Python. All compiled functions are in this file, since
-numba's cache does not notice a change in another one.
+`write_rows` computes the motion of the bodies from the coordinates of the tree, evaluates the rows of each joint, and
+transforms them to the coordinates. Without numba, Python evaluates the same functions on lists. The position of a
+rolling body is evaluated before them in Python. All functions that numba compiles are in this file, since numba's cache
+does not detect changes in other files.
 """
 
 from __future__ import annotations
@@ -31,24 +31,24 @@ except ImportError:
     njit = None
 
 Array = NDArray[np.float64]
-# x, y, angle, vx, vy, omega of a body [m, m, rad, and per s]; zero for the ground. Angles are not wrapped.
+# x, y, angle, vx, vy, omega of a body [m, m, rad, and per s]. All are zero for the ground, and angles are not wrapped.
 State = tuple[float, float, float, float, float, float]
-# Factors of the accelerations of x, y and angle of the first body and of the second, and the value of J a.
+# The factors of the accelerations in x, y and angle of the first and then the second body, and the value of J a.
 Row = tuple[float, float, float, float, float, float, float]
 
 ROW_KINDS = ("skate", "slot", "rod", "roll")
 SKATE, SLOT, _, ROLL = range(len(ROW_KINDS))
-# A plan is one array: a header, LINK numbers for each link, JOINT numbers for each joint, and MOTION numbers for the
-# motion of each link and of the ground. The names below are indices in these parts.
-LINK_COUNT, JOINT_COUNT, FIRST_ROW, AHEAD, HEADER = range(5)  # AHEAD: the prediction time [s] of the pose
-# The parent's index; columns of the slides and of the rotation, -1 for none; the start; numbers of the tree.
+# A plan is an array with a header, LINK numbers for each link, JOINT numbers for each joint, and MOTION numbers for the
+# motion of each link and of the ground. The following names are indices in these parts.
+LINK_COUNT, JOINT_COUNT, FIRST_ROW, AHEAD, HEADER = range(5)  # AHEAD: time [s] by which the pose is predicted
+# SLIDE, ACROSS and ROTATION are columns, or -1 for none. START_X, START_Y and START_ANGLE are the pose at t = 0.
 PARENT, SLIDE, ACROSS, ROTATION, START_X, START_Y, START_ANGLE = range(7)
 ARM_X, ARM_Y, ANCHOR_X, ANCHOR_Y, DIRECTION_X, DIRECTION_Y, LINK = range(7, 14)
-KIND, FIRST, SECOND, NUMBERS, JOINT = 0, 1, 2, 3, 11  # the kind of row, both bodies, the numbers of its function
-# The angle since the start is TURNED; accelerations are those with zero accelerations of the coordinates; PIVOT is the
-# point about which the rotation turns the link, and ALONG the direction of its slide.
+KIND, FIRST, SECOND, NUMBERS, JOINT = 0, 1, 2, 3, 11
+# TURNED is the angle since t = 0. AX and AY are accelerations for zero accelerations of the coordinates. The rotation
+# turns the link about PIVOT. ALONG is the direction of the slide.
 X, Y, TURNED, VX, VY, OMEGA, AX, AY, PIVOT_X, PIVOT_Y, ALONG_X, ALONG_Y, ANGLE, MOTION = range(14)
-NO_PARENT = -1  # of a link that moves freely
+NO_PARENT = -1  # the parent of a link that moves freely
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -56,7 +56,7 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
         return function
     try:
         return njit(error_model="numpy", cache=True)(function)
-    except RuntimeError:  # there is no writable folder: each process compiles
+    except RuntimeError:  # without a writable folder for the cache, each process compiles
         return njit(error_model="numpy")(function)
 
 
@@ -68,13 +68,13 @@ def _rotated(angle: float, x: float, y: float) -> tuple[float, float]:
 
 @compiled
 def skate_row(numbers: Any, first: State, second: State) -> Row:
-    """The row of a skate; numbers: its point on the second body [m], its angle there [rad], damping of slip [1/s]."""
+    """The row of a skate. `numbers`: a point [m] and an angle [rad] of the second body, damping of slip [1/s]."""
     point_x, point_y, blade, damping = numbers[0], numbers[1], numbers[2], numbers[3]
     x1, y1, _, vx1, vy1, omega1 = first
     x2, y2, angle, vx2, vy2, omega2 = second
     own_x, own_y = _rotated(angle, point_x, point_y)
     ahead_x, ahead_y = math.cos(angle + blade), math.sin(angle + blade)
-    vx2, vy2 = vx2 - omega2 * own_y, vy2 + omega2 * own_x  # of the blade's point
+    vx2, vy2 = vx2 - omega2 * own_y, vy2 + omega2 * own_x  # velocity of the blade's point
     arm_x, arm_y = x2 + own_x - x1, y2 + own_y - y1
     rate_x, rate_y = vx2 - vx1 + omega1 * arm_y, vy2 - vy1 - omega1 * arm_x
     slip = ahead_x * rate_y - ahead_y * rate_x
@@ -91,7 +91,7 @@ def skate_row(numbers: Any, first: State, second: State) -> Row:
 
 @compiled
 def _points(numbers: Any, first: State, second: State) -> tuple[float, ...]:
-    """The arms of a point on each body, in world directions, and the relative velocity of the second point."""
+    """The arms of a point on each body in the directions of the world, and the relative velocity of the points."""
     _, _, angle1, vx1, vy1, omega1 = first
     _, _, angle2, vx2, vy2, omega2 = second
     own_x1, own_y1 = _rotated(angle1, numbers[0], numbers[1])
@@ -103,7 +103,7 @@ def _points(numbers: Any, first: State, second: State) -> tuple[float, ...]:
 
 @compiled
 def slot_row(numbers: Any, first: State, second: State) -> Row:
-    """The row of a slot; numbers: a point on each body [m], line angle [rad], stiffness [1/s^2], damping [1/s]."""
+    """The row of a slot. `numbers`: a point on each body [m], line angle [rad], stiffness [1/s^2], damping [1/s]."""
     own_x1, own_y1, own_x2, own_y2, rate_x, rate_y = _points(numbers, first, second)
     line, stiffness, damping = numbers[4], numbers[5], numbers[6]
     omega1, omega2 = first[5], second[5]
@@ -125,7 +125,7 @@ def slot_row(numbers: Any, first: State, second: State) -> Row:
 
 @compiled
 def rod_row(numbers: Any, first: State, second: State) -> Row:
-    """The row of a rod; numbers: a point on each body [m], the length [m], stiffness [1/s^2], damping [1/s]."""
+    """The row of a rod. `numbers`: a point on each body [m], the length [m], stiffness [1/s^2], damping [1/s]."""
     own_x1, own_y1, own_x2, own_y2, rate_x, rate_y = _points(numbers, first, second)
     length, stiffness, damping = numbers[4], numbers[5], numbers[6]
     x, y = second[0] + own_x2 - first[0] - own_x1, second[1] + own_y2 - first[1] - own_y1
@@ -144,10 +144,10 @@ def rod_row(numbers: Any, first: State, second: State) -> Row:
 
 @compiled
 def roll_rows(numbers: Any, first: State, second: State) -> tuple[Row, Row]:
-    """The rows, in x and in y, of z_2 - z_1 - e^(i phi_1) P(phi_2 - phi_1) = 0.
+    """The rows in x and y of z_2 - z_1 - e^(i phi_1) P(phi_2 - phi_1) = 0.
 
-    numbers: stiffness [1/s^2], damping [1/s], and P, P', P'' [m]. `reference.rolling.roll` has the same two conditions
-    along tangent and normal.
+    `numbers`: stiffness [1/s^2], damping [1/s], and P, P', P'' [m, m/rad, m/rad^2]. `reference.rolling.roll` has the
+    same two conditions along the tangent and the normal.
     """
     stiffness, damping = numbers[0], numbers[1]
     x1, y1, angle1, vx1, vy1, omega1 = first
@@ -168,22 +168,25 @@ def roll_rows(numbers: Any, first: State, second: State) -> tuple[Row, Row]:
 
 @compiled
 def _move(plan: Any, at: int, moving: int, to: int, q: Any, v: Any) -> None:
-    """Write the motion of the link at `at`, at q + ahead v, to `to`. Its parent's motion has been written before."""
+    """Write the motion of the link at index `at`, for the coordinates q + ahead v, to index `to`.
+
+    The motion of its parent must have been written before.
+    """
     parent, slide, rotation = int(plan[at + PARENT]), int(plan[at + SLIDE]), int(plan[at + ROTATION])
     ahead = plan[AHEAD]
     turn, spin = (0.0, 0.0) if rotation < 0 else (q[rotation] + ahead * v[rotation], v[rotation])
-    way, speed = (0.0, 0.0) if slide < 0 else (q[slide] + ahead * v[slide], v[slide])
+    shift, speed = (0.0, 0.0) if slide < 0 else (q[slide] + ahead * v[slide], v[slide])
     ax, ay, dx, dy = 0.0, 0.0, 0.0, 0.0
     if parent == NO_PARENT:
         across = int(plan[at + ACROSS])
-        x, y = plan[at + START_X] + way, plan[at + START_Y] + q[across] + ahead * v[across]
+        x, y = plan[at + START_X] + shift, plan[at + START_Y] + q[across] + ahead * v[across]
         pivot_x, pivot_y, turned, vx, vy, omega = x, y, turn, speed, v[across], spin
     else:
         m = moving + MOTION * parent
         turned, omega = plan[m + TURNED], plan[m + OMEGA]
         dx, dy = _rotated(turned, plan[at + DIRECTION_X], plan[at + DIRECTION_Y])
         arm_x, arm_y = _rotated(turned, plan[at + ARM_X], plan[at + ARM_Y])
-        arm_x, arm_y = arm_x + way * dx, arm_y + way * dy
+        arm_x, arm_y = arm_x + shift * dx, arm_y + shift * dy
         coriolis, square = 2 * omega * speed, omega * omega
         vx, vy = plan[m + VX] + speed * dx - omega * arm_y, plan[m + VY] + speed * dy + omega * arm_x
         ax, ay = plan[m + AX] - coriolis * dy - square * arm_x, plan[m + AY] + coriolis * dx - square * arm_y
@@ -200,7 +203,7 @@ def _move(plan: Any, at: int, moving: int, to: int, q: Any, v: Any) -> None:
 
 @compiled
 def _write_row(plan: Any, moving: int, ends: tuple[int, int], row: Row, jacobian: Any, line: int, width: int) -> float:
-    """Write the row of a joint in the tree's coordinates from index `line` on; returns the value of J a there."""
+    """Write the row of a joint in the coordinates of the tree from index `line` on; returns the value of J a."""
     links, right = int(plan[LINK_COUNT]), row[6]
     for column in range(line, line + width):
         jacobian[column] = 0.0
@@ -210,7 +213,7 @@ def _write_row(plan: Any, moving: int, ends: tuple[int, int], row: Row, jacobian
         m = moving + MOTION * link
         x, y = plan[m + X], plan[m + Y]
         right -= row_x * plan[m + AX] + row_y * plan[m + AY]
-        while NO_PARENT < link < links:  # the ground comes after the last link
+        while NO_PARENT < link < links:  # the index of the ground is `links`
             at, m = HEADER + LINK * link, moving + MOTION * link
             link, slide, rotation = int(plan[at + PARENT]), int(plan[at + SLIDE]), int(plan[at + ROTATION])
             if link == NO_PARENT:
@@ -233,12 +236,12 @@ def _state(plan: Any, m: int) -> State:
 
 @compiled
 def write_rows(plan: Any, q: Any, v: Any, jacobian: Any, reference: Any) -> None:
-    """Write the rows of all joints into MuJoCo's arrays; all NaN if one is, so that MuJoCo resets."""
+    """Write the rows of all joints into MuJoCo's arrays. All are NaN if one is not finite, so that MuJoCo resets."""
     links, first_row, width = int(plan[LINK_COUNT]), int(plan[FIRST_ROW]), len(v)
     all_joints = HEADER + LINK * links
     moving, row = all_joints + JOINT * int(plan[JOINT_COUNT]), first_row
     if len(reference) <= first_row:
-        return  # MuJoCo has no memory for its rows, and warns of it
+        return  # MuJoCo has no memory for its rows and has warned of this
     for link in range(links):
         _move(plan, HEADER + LINK * link, moving, moving + MOTION * link, q, v)
     for at in range(all_joints, moving, JOINT):
@@ -268,7 +271,7 @@ def write_rows(plan: Any, q: Any, v: Any, jacobian: Any, reference: Any) -> None
 
 
 class RowWriter:
-    """Writes the rows of joints, from `first_row` on, at the pose that the velocity predicts after `ahead` [s].
+    """Writes the rows of joints from the row `first_row` on, at the pose that the velocity predicts after `ahead` [s].
 
     `address`: the index of each coordinate of the tree in qpos and qvel.
     """
@@ -300,7 +303,7 @@ class RowWriter:
         self._rolls = [(self._plan[at : at + 6].view(complex), *others) for at, *others in rolls]
 
     def write(self, q: Array, v: Array, jacobian: Array, reference: Array) -> None:
-        """Write the rows at q + ahead v into efc_J and efc_aref."""
+        """Write the rows for the coordinates q + ahead v into efc_J and efc_aref."""
         for places, place_at, angle, turning in self._rolls:
             for column, sign in turning:
                 angle += sign * q.item(column)
@@ -313,14 +316,14 @@ class RowWriter:
         first_row, plan[FIRST_ROW] = int(plan[FIRST_ROW]), 0
         try:
             write_rows(plan, q.tolist(), v.tolist(), rows, right)
-        except (ValueError, OverflowError, ZeroDivisionError):  # numba returns infinity or NaN instead
+        except (ValueError, OverflowError, ZeroDivisionError):  # in these cases numba returns infinity or NaN
             rows, right = [0.0] * len(rows), [math.nan] * len(right)
         if len(reference):
             jacobian[first_row * len(v) :][: len(rows)] = rows
             reference[first_row:][: len(right)] = right
 
     def rows(self, q: Array, v: Array) -> tuple[Array, Array]:
-        """J (rows, width) and J a (rows,) at q + ahead v, both (width,); for a writer with `first_row` 0."""
+        """J (rows, width) and J a (rows,) for the coordinates q + ahead v (width,). `first_row` must be 0."""
         jacobian, reference = np.zeros(self.size * len(v)), np.zeros(self.size)
         self.write(q, v, jacobian, reference)
         return jacobian.reshape(self.size, len(v)), reference
@@ -329,10 +332,10 @@ class RowWriter:
 def row_callback(
     compiled: Any, tree: Tree, address: Sequence[int], joints: Sequence[UserRowJoint], softening: float
 ) -> Callback:
-    """The callback that writes the joints' rows, the last equalities of the model.
+    """The callback that writes the rows of joints in place of the last equalities of the model.
 
-    The compliance of a row is `softening` times its inverse inertia. The two rows of a roll have the mean of theirs, so
-    that their compliance does not depend on the directions of the axes.
+    The compliance of a row is `softening` times its inverse inertia. The two rows of a roll get the mean of their
+    inverse inertias, so that the compliance does not depend on the directions of the axes.
     """
     data = mujoco.MjData(compiled)
     mujoco.mj_fwdPosition(compiled, data)

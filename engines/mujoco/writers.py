@@ -1,7 +1,8 @@
-"""Writers of MJCF and URDF files that run without this suite, and MuJoCo's viewer, for `crosscheck export` and `view`.
+"""Writers of MJCF and URDF files for `crosscheck export`, and MuJoCo's viewer for `crosscheck view`.
 
-An MJCF file is the output of `mujoco.MjSpec` with all digits instead of six. Bodies have the mechanism's names, and the
-start is a keyframe. Bars and points show the mechanism; they have no mass and no contacts.
+The files do not need this suite. An MJCF file is the output of `mujoco.MjSpec` with all digits instead of six. Bodies
+have their names in the mechanism, and the initial state is a keyframe. Bars and points show the mechanism. They have no
+mass and no contacts.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from reference.plane import rotated
 if TYPE_CHECKING:
     from engines.mujoco.model import MuJoCoModel
 
-MODEL_FLAGS = ("contact", "island")  # the flags that a model of ours may disable
+MODEL_FLAGS = ("contact", "island")  # the flags that our models may disable
 TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
 THICKNESS = 0.02  # of bars, relative to the mechanism's length
 NO_CONTACT = {"contype": "0", "conaffinity": "0", "mass": "0"}
@@ -38,12 +39,10 @@ NO_CONTACT = {"contype": "0", "conaffinity": "0", "mass": "0"}
 
 @dataclass(frozen=True)
 class Mjcf:
-    """MJCF by a variant's settings, with the start as a keyframe."""
-
     suffix: str = ".xml"
 
     def write(self, mechanism: Mechanism, dt: float, variant: str) -> str:
-        """The file's text. Raises Unsupported for a mechanism without such a file, ValueError for a wrong variant."""
+        """Raises Unsupported for a mechanism that MJCF cannot represent, and ValueError for an unknown variant."""
         from engines.mujoco.methods import VARIANTS
 
         known = {engine.variant: engine for engine in VARIANTS}
@@ -52,28 +51,26 @@ class Mjcf:
         return known[variant].text(mechanism, dt)
 
     def commented(self, text: str, lines: Sequence[str]) -> str:
-        """The text with a comment before it."""
         comment = "\n".join(lines).replace("--", "- -")
         return f"<!--\n{comment}\n-->\n{text}"
 
 
 @dataclass(frozen=True)
 class Urdf(Mjcf):
-    """URDF, which has no settings, so that it is the same for all variants."""
+    """URDF has no settings, so the file is the same for all variants."""
 
     suffix: str = ".urdf"
 
     def write(self, mechanism: Mechanism, dt: float, variant: str) -> str:
-        """The file's text. Raises Unsupported for elements that URDF lacks."""
         return urdf(mechanism)
 
 
 def show(text: str) -> None:
-    """MJCF in MuJoCo's viewer, from its start, until the window is closed. Raises Unsupported where there is none."""
+    """Show the motion of an MJCF model in MuJoCo's viewer. Raises Unsupported if there is no viewer or no display."""
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Unsupported("there is no display")
     try:
-        import mujoco.viewer  # an extra of MuJoCo's, which needs a window system
+        import mujoco.viewer  # an optional part of MuJoCo that needs a window system
     except ImportError as reason:
         raise Unsupported(f"MuJoCo's viewer is not installed: {reason}") from None
     model = mujoco.MjModel.from_xml_string(text)
@@ -92,7 +89,7 @@ URDF_CAPABILITY = Capability("URDF", frozenset({Pin, Slot, Weld, Drive}), frozen
 
 
 def urdf(mechanism: Mechanism) -> str:
-    """The text of a URDF file. Raises Unsupported for loops, free bodies, prescribed motions, and forces."""
+    """The text of a URDF file. Raises Unsupported for loops, free bodies, prescribed motions and forces."""
     URDF_CAPABILITY.require(mechanism)
     tree = spanning_tree(mechanism)
     for joint in tree.loops:
@@ -114,7 +111,7 @@ def urdf(mechanism: Mechanism) -> str:
 
 
 def _add_link(root: xml.Element, mechanism: Mechanism, link: Link, anchors: Mapping[int, Vector]) -> None:
-    """Add a body and its joint. The body's frame is at the joint, see `anchors`, and parallel to the world at t = 0."""
+    """Add a body and its joint. The frame of the body is at its joint and parallel to the world at t = 0."""
     body = mechanism.bodies[link.body]
     if link.kind == "free" or (link.kind == "slot" and link.turns):
         raise Unsupported(f"body {body.name!r} is held by less than a hinge or a slide, which URDF has no joint for")
@@ -138,12 +135,12 @@ def _add_link(root: xml.Element, mechanism: Mechanism, link: Link, anchors: Mapp
 
 
 def _upright(x: float, y: float) -> str:
-    """A vector of the plane in the frame of a URDF file, whose z is upwards."""
+    """A vector of the plane in the frame of a URDF file, where z is upwards."""
     return _row((x, 0.0, y))
 
 
 def mjcf(model: MuJoCoModel) -> str:
-    """The MJCF of a model in kg. Raises Unsupported where our code changes the model or runs while it is stepped."""
+    """The MJCF of a model with unit 1 kg. Raises Unsupported if our code changes the model or runs in its steps."""
     if model.hooks:
         raise Unsupported("this variant writes rows while it steps: a file would not run without this suite")
     if model.softening != 1:
@@ -169,7 +166,7 @@ def _text(root: xml.Element) -> str:
 
 
 def _option(option: Any) -> xml.Element:
-    """The settings of the compiled model, MuJoCo's defaults included."""
+    """The options of the compiled model, including those with MuJoCo's default values."""
     attributes = {name: _row(getattr(option, name)) for name in ("timestep", "gravity", "tolerance")}
     for name in ("Integrator", "Solver", "Jacobian", "Cone"):
         attributes[name.lower()] = spelled(getattr(mujoco, f"mjt{name}")(getattr(option, name.lower())))
@@ -184,7 +181,7 @@ def _option(option: Any) -> xml.Element:
 def _write_all_digits(root: xml.Element, spec: Any, compiled: Any) -> None:
     """Replace the numbers in the text of a mujoco.MjSpec, which have six digits.
 
-    Positions of shapes are those of the compiled model: the plane below a blade is raised after it is compiled.
+    Positions of shapes come from the compiled model, since the plane below a blade is raised after compilation.
     """
     for element in root.iter("body"):
         body = spec.body(element.get("name"))
@@ -201,7 +198,7 @@ def _write_all_digits(root: xml.Element, spec: Any, compiled: Any) -> None:
     coefficients = iter(compiled.wrap_prm)
     for element in root.find("tendon") or ():
         tendon = spec.tendon(element.get("name"))
-        # Newer releases have polynomials here, of which the last zeros are left out.
+        # In newer releases these are polynomials. Their trailing zeros are omitted.
         polynomials = {name: np.trim_zeros(np.ravel(getattr(tendon, name)), "b") for name in ("stiffness", "damping")}
         _set(element, springlength=tendon.springlength, **polynomials)
         for child, coefficient in zip(element, coefficients, strict=False):
@@ -229,7 +226,7 @@ def _set(element: xml.Element | None, **numbers: Any) -> None:
 
 
 def _rename(root: xml.Element, model: MuJoCoModel) -> None:
-    """Give the bodies the mechanism's names, with a number where another body of the file has that name."""
+    """Rename the bodies as in the mechanism, with a number if another body of the file has the same name."""
     old = [f"body {number}" for number in range(len(model.mechanism.bodies))]
     names = Names()
     for other in ("world", *(element.get("name", "") for element in root.iter("body"))):
@@ -248,7 +245,7 @@ def _row(values: Any) -> str:
 
 
 def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
-    """Add bars through the joints of every "body i" without shapes, and a view onto the plane."""
+    """Add bars between the joints of every "body i" without shapes, and a camera that looks at the plane."""
     size = THICKNESS * mechanism.length_scale
     visual = xml.Element("visual")
     xml.SubElement(visual, "global", {"azimuth": "90", "elevation": "-90"})
@@ -266,7 +263,7 @@ def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
         element = bodies[f"body {index}"]
         if element.find("geom") is not None:
             continue
-        # The frames of the file's bodies are parallel to the world at the start.
+        # Body frames in the file are parallel to the world at t = 0.
         ends = [_row([*rotated(body.pose[2], np.array(point)), 0.0]) for point in _points(mechanism, body.name)]
         for first, second in pairwise(ends):
             add(element, "capsule", size, fromto=f"{first} {second}")
@@ -277,7 +274,7 @@ def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
 
 
 def _points(mechanism: Mechanism, name: str | None) -> list[Vector]:
-    """The points of a body's joints, and its centre of mass if these are fewer than two; only joints for the ground."""
+    """The points of the joints of a body or the ground. A body with fewer than two also gets its centre of mass."""
     points = [point for joint in mechanism.joints for owner, point in joint.fixed_points if owner == name]
     if name is not None and len(set(points)) < 2:
         points.append((0.0, 0.0))

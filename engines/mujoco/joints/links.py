@@ -1,23 +1,24 @@
-"""A Pin, a Weld, a Rod, a Gear and a Drive in MuJoCo, where no coordinate of the tree stands for them.
+"""Constructions of pins, welds, rods, gears and drives that the kinematic tree does not enforce.
 
-A pin or a weld that closes a loop is a `connect`. The third of its rows is across the plane, where nothing can move, so
-it is empty and harmless. The angle of a weld, and of a gear, is a fixed tendon: a sum of tree coordinates with constant
-factors. The equality that holds its length has no velocity term and needs none.
+A pin or a weld that closes a loop is a `connect`. One of its three rows is normal to the plane and therefore empty. The
+angle of a weld or a gear is the length of a fixed tendon, which is a sum of tree coordinates with constant factors. An
+equality keeps the length constant. It has no velocity term, and needs none since the factors are constant.
 
 `RodBy` is the construction of a rod:
 
-- "tendon": an equality of a spatial tendon between two sites, of MuJoCo's own parts alone. Up to 4.0.1 it leaves out
-  the velocity term -(dJ/dt) v, so that its spring has to supply this force by a gap.
-- "rows": the rod's own row, written by a callback in every stage.
+- "tendon": an equality of a spatial tendon between two sites, which MuJoCo provides. Up to 4.0.1 it has no velocity
+  term -(dJ/dt) v, so its spring supplies this force by a gap.
+- "rows": a row for the rod that a callback writes in every stage.
 
-A driven rotation is a tree coordinate that turns at a given rate. `DriveBy` is the construction of a drive:
+`DriveBy` is the construction of a drive whose rotation is a tree coordinate:
 
-- "inertia": nothing can accelerate the coordinate, since its armature is many times the mechanism's own inertia.
+- "inertia": the armature of the coordinate is so large that no force can accelerate it.
 - "overwrite": position and velocity are overwritten after every step (`engines.mujoco.running`). MuJoCo's solver does
-  not know that the coordinate is driven, so its forces in the loop are wrong.
+  not take this into account, so its forces in the loop are wrong.
 
-Where the driven rotation is a sum of several coordinates, a fixed tendon is that sum less the angle of a clock: a wheel
-that turns at the rate and that nothing can accelerate. An equality holds the length, so the drive is as soft as a loop.
+If the rotation is a sum of several coordinates, a fixed tendon is the difference of this sum and the angle of a clock.
+The clock is an auxiliary wheel with the prescribed rate and a large armature. An equality keeps the length of the
+tendon constant, so the drive is as soft as a loop.
 """
 
 from __future__ import annotations
@@ -38,26 +39,25 @@ DriveBy = Literal["inertia", "overwrite"]
 
 
 def add_pins(builder: ModelBuilder, pins: Sequence[Pin | Weld]) -> None:
-    """Add a `connect` for each; its force acts on the body `name1`, which is the second body of the pin."""
+    """Add a `connect` for each pin. Its force acts on the body `name1`, the second body unless that is the ground."""
     for pin in pins:
         names = [builder.spec_name(name) for name in (pin.first, pin.second)]
         name, point = (pin.second, pin.second_point) if pin.second is not None else (pin.first, pin.first_point)
         if pin.second is None:
-            # The anchor is in the frame of name1. In the frame of a body it has the rounding of this frame alone.
+            # The anchor is in the frame of `name1`. Its rounding is smaller in the frame of a body than in the world.
             names.reverse()
         connect = builder.add_equality(mujoco.mjtEq.mjEQ_CONNECT, names[1], names[0], rows=2)
         connect.data[:3] = [*world_offset(builder.mechanism, name, point), 0.0]
 
 
 def add_welds(builder: ModelBuilder, welds: Sequence[Weld]) -> None:
-    """Add a `connect` and an equality of the angle for each."""
     add_pins(builder, welds)
     for weld in welds:
         _hold_angles(builder, f"weld {weld.name}", builder.tree.turning(weld.first, weld.second))
 
 
 def add_gears(builder: ModelBuilder, gears: Sequence[Gear]) -> None:
-    """Hold the second body's angle less `ratio` times the first's at the value that it has at the start."""
+    """Keep the angle of the second body minus `ratio` times that of the first at its initial value."""
     for gear in gears:
         factors = dict(builder.tree.turning(None, gear.second))
         for column, sign in builder.tree.turning(None, gear.first).items():
@@ -66,7 +66,7 @@ def add_gears(builder: ModelBuilder, gears: Sequence[Gear]) -> None:
 
 
 def _hold_angles(builder: ModelBuilder, name: str, factors: Mapping[int, float]) -> None:
-    """Add an equality of a sum of coordinates; none where no coordinate can change it."""
+    """Add an equality of a sum of coordinates, unless all factors are zero."""
     changing = {column: factor for column, factor in factors.items() if factor}
     if changing:
         builder.add_fixed_tendon(name, changing)
@@ -74,7 +74,6 @@ def _hold_angles(builder: ModelBuilder, name: str, factors: Mapping[int, float])
 
 
 def add_rods(builder: ModelBuilder, rods: Sequence[Rod]) -> None:
-    """Add the rods by the construction of the settings."""
     for rod in rods:
         if builder.settings.rods == "rows":
             numbers = (*rod.first_point, *rod.second_point, rod.length, *builder.gains)
@@ -85,7 +84,7 @@ def add_rods(builder: ModelBuilder, rods: Sequence[Rod]) -> None:
 
 
 def add_drives(builder: ModelBuilder, drives: Sequence[Drive]) -> None:
-    """Drive one coordinate each, or a sum of coordinates. Raises Unsupported where two drive the same coordinate."""
+    """Drive a coordinate, or a sum of coordinates, for each drive. Raises Unsupported if two drive one coordinate."""
     for drive in drives:
         factors = builder.tree.turning(drive.first, drive.second)
         if len(factors) != 1:
@@ -100,7 +99,7 @@ def add_drives(builder: ModelBuilder, drives: Sequence[Drive]) -> None:
 
 
 def _add_geared_drive(builder: ModelBuilder, drive: Drive, factors: Mapping[int, float]) -> None:
-    """Hold a sum of coordinates less the angle of a clock. Raises Unsupported where that can't drive it."""
+    """Keep the difference of a sum of coordinates and the angle of a clock constant. Raises Unsupported."""
     by = builder.settings.drive
     if by != "inertia" or not factors:
         first, second = (repr(name) if name else "the ground" for name in (drive.first, drive.second))
@@ -122,10 +121,10 @@ def _add_geared_drive(builder: ModelBuilder, drive: Drive, factors: Mapping[int,
 
 
 def _driving_inertia(builder: ModelBuilder) -> float:
-    """The armature of a coordinate that nothing can accelerate [kg m^2]."""
+    """The armature of a driven coordinate [kg m^2]."""
     return builder.settings.armature * inertia_scale(builder.mechanism)
 
 
 def inertia_scale(mechanism: Mechanism) -> float:
-    """About the largest inertia that a joint of the mechanism can feel [kg m^2]."""
+    """An estimate of the largest inertia about a joint of the mechanism [kg m^2]."""
     return sum(body.inertia + body.mass * mechanism.length_scale**2 for body in mechanism.bodies)

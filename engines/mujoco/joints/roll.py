@@ -1,7 +1,8 @@
-"""A Roll in MuJoCo: by contact and friction (`RollContact`), or by two rows that a callback writes in every stage.
+"""Constructions of a Roll in MuJoCo: contact with friction, or two rows that a callback writes in every stage.
 
-A contact's rows obey J a = -b J v - k gap, without the term -(dJ/dt) v of a curved or moving contact (in 4.0.1).
-Rolling then lags by about a time constant times the missing acceleration, and converges with first order at best.
+The rows of a contact obey J a = -b J v - k gap. They do not have the term -(dJ/dt) v of a curved or moving contact (in
+4.0.1). The velocity of rolling is then wrong by about a time constant times this term, and errors are at best of first
+order.
 """
 
 from __future__ import annotations
@@ -29,22 +30,22 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 Cone = Literal["pyramidal", "elliptic"]
-# The distance, relative to the mechanism's length, up to which shapes collide: above the rounding of a closed contact.
+# The distance of shapes that collide, relative to the length of the mechanism. It is above the rounding of a contact.
 TOUCH = 1e-12
-# Relative to the largest reaction: a contact with a smaller one counts as lost. The limit is far above rounding.
+# A contact with a smaller reaction, relative to the largest one, counts as lost. The limit is far above rounding.
 NO_FORCE = 1e-9
-# The turn of the curves at the contact in one step [rad] beyond which a method of order 4 does not reach its order.
+# The largest rotation along the curves in a step [rad] with which a method of order 4 reaches its order.
 MAX_CONTACT_TURN = 0.1
 
 
 @dataclass(frozen=True)
 class RollContact(Valid):
-    """Collision and friction by public settings; the default values are MuJoCo's.
+    """Settings of contact and friction. The default values are those of MuJoCo.
 
-    `friction`: the coefficient. `steps`: the contact's time constant in steps (clamped, see `engines.mujoco.stiffness`)
-    with its impedance at the limit; None for MuJoCo's 0.02 s. `stick`: slip decays at the largest rate that the
-    integrator allows, 2/dt for RK4 and 1/dt for the others. MuJoCo reads `solreffriction` with the elliptic cone only
-    (`tests/engines/test_mujoco_upstream.py`). Raises InvalidMechanism for `stick` with another cone.
+    `friction`: the coefficient of friction. `steps`: the time constant of the contact in steps, with the largest
+    impedance; None for MuJoCo's 0.02 s. `stick`: whether slip decays at the largest rate that the integrator allows,
+    2/dt for RK4 and 1/dt for others. MuJoCo reads this rate (`solreffriction`) only with the elliptic cone, as
+    `tests/engines/test_mujoco_upstream.py` checks. Raises InvalidMechanism for `stick` with another cone.
     """
 
     friction: Positive = 1.0
@@ -64,7 +65,7 @@ RollBy = RollContact | Literal["rows"]
 
 
 def add_rolls(builder: ModelBuilder, rolls: Sequence[Roll]) -> None:
-    """Add the rolls by the construction of the settings. Raises Unsupported for curves that MuJoCo has no shape for."""
+    """Add rolls with the construction of the settings. Raises Unsupported for curves without a shape in MuJoCo."""
     by = builder.settings.rolls
     if isinstance(by, RollContact):
         _add_contacts(builder, rolls, by)
@@ -74,7 +75,6 @@ def add_rolls(builder: ModelBuilder, rolls: Sequence[Roll]) -> None:
 
 
 def _add_contacts(builder: ModelBuilder, rolls: Sequence[Roll], by: RollContact) -> None:
-    """Add shapes, and the pairs of them that collide."""
     spec, shipped = builder.spec, Shipped()
     reference, impedance = shipped.reference(builder.mechanism, builder.dt), shipped.impedance
     if by.steps is not None:
@@ -98,11 +98,10 @@ def _add_contacts(builder: ModelBuilder, rolls: Sequence[Roll], by: RollContact)
 
 
 def _add_shape(builder: ModelBuilder, roll: Roll, owner: str | None, curve: Curve) -> str:
-    """Add a plane, a sphere or an ellipsoid for a body's curve; returns the name of the geom.
+    """Add a plane, a sphere or an ellipsoid for the curve of a body; returns the name of the geom.
 
-    Each body's frame is parallel to the world's at t = 0 (see `engines.tree`), so a shape is turned by the body's start
-    angle. A circle is a sphere, which touches at one point, where a cylinder touches at two. Raises Unsupported for
-    other curves.
+    Body frames are parallel to the world at t = 0 (see `engines.tree`), so a shape is turned by the initial angle of
+    the body. A circle is a sphere, since a cylinder would touch at two points. Raises Unsupported for other curves.
     """
     curve, shift, angle = unplaced(curve)
     index, body = builder.index(owner), builder.spec_body(owner)
@@ -111,7 +110,7 @@ def _add_shape(builder: ModelBuilder, roll: Roll, owner: str | None, curve: Curv
 
     def add(kind: Any, centre: complex, quaternion: list[float], size: list[float]) -> str:
         point = rect(1.0, start) * (shift + rect(1.0, angle) * centre)
-        # Only the pairs that are named collide.
+        # Only explicit pairs of geoms collide.
         no_other_contact: dict[str, Any] = {"mass": 0.0, "contype": 0, "conaffinity": 0}
         at = [point.real, point.imag, 0.0]
         body.add_geom(name=name, type=kind, pos=at, quat=quaternion, size=size, **no_other_contact)
@@ -121,7 +120,7 @@ def _add_shape(builder: ModelBuilder, roll: Roll, owner: str | None, curve: Curv
     turned = [math.cos(half), 0.0, 0.0, math.sin(half)]
     match curve:
         case Line() if owner is None:
-            # The normal of a plane is its z axis. A quarter turn points it out of the material, which is on the left.
+            # The z axis of a plane is its normal. It points out of the material, which is to the left of the line.
             normal, quarter = -1j * rect(1.0, curve.heading + angle), math.sqrt(0.5)
             upright = [quarter, -quarter * normal.imag, quarter * normal.real, 0.0]
             return add(mujoco.mjtGeom.mjGEOM_PLANE, complex(*curve.through), upright, [1.0, 1.0, 1.0])
@@ -149,11 +148,11 @@ def _add_shape(builder: ModelBuilder, roll: Roll, owner: str | None, curve: Curv
 def roll_warnings(
     mechanism: Mechanism, step: float, t: Array, pose: Array, twist: Array, reaction: Array
 ) -> list[RunWarning]:
-    """Warnings where a contact of a run was lost, or moved along its curves too fast for the step [s].
+    """Warnings if a contact was lost, or if it moved along its curves too fast for the step [s].
 
-    t (times,); pose and twist (times, bodies, 3); reaction (times, rows). The contact of nearly conformal curves moves
-    along them by omega / (curvature_A + curvature_B). It turns by omega dt / conformality in a step, which must be
-    small even if the body turns little.
+    t (times,); pose and twist (times, bodies, 3); reaction (times, rows). The contact of two curves moves along them
+    with the speed omega / (curvature_A + curvature_B), which is large for nearly conformal curves. In a step it turns
+    by omega dt / conformality, and this angle must be small.
     """
     warnings, begin = list[RunWarning](), 0
 

@@ -1,13 +1,12 @@
-"""A skate in MuJoCo, which has no such joint. `SkateBy` is its construction:
+"""Constructions of a skate, for which MuJoCo has no joint. `SkateBy` is the construction:
 
-- "blade": a capsule that touches a plane with friction across it, of MuJoCo's own parts alone, as its maintainers
-  suggest.
-- "predicted tendon": a fixed tendon, which is a sum of joint velocities. Its coefficients are rewritten before every
-  step as the skate's row at the pose that the velocity predicts for the end of the step.
-- "rows": the skate's own row, written by a callback in every stage.
+- "blade": a capsule that touches a plane, with friction across the capsule. MuJoCo's maintainers suggest this.
+- "predicted tendon": a fixed tendon, whose coefficients are rewritten before every step. They are the row of the skate
+  at the pose that the velocity predicts for the end of the step.
+- "rows": a row for the skate that a callback writes in every stage.
 
-Bodies here can't move out of the plane, so that no weight presses on a contact. The ground plane is raised until the
-contact force equals the mechanism's weight.
+Bodies cannot move out of the plane, so their weight does not press a blade on the ground. The ground is therefore
+raised until the contact force equals the weight of the mechanism.
 """
 
 from __future__ import annotations
@@ -27,31 +26,31 @@ from reference.joints import Skate
 from reference.mechanism import Mechanism
 
 SkateBy = Literal["rows", "predicted tendon", "blade"]
-# The coefficients change once a step, so an integrator of several stages gains nothing and costs four times as much.
+# Constructions whose rows change only once per step. An integrator with four stages costs more without a gain.
 STEPWISE: tuple[SkateBy, ...] = ("predicted tendon",)
 
-# Along and across the blade. The shapes are a capsule on a plane, since the frame of their contact lies along the
-# capsule: the answer of a maintainer of MuJoCo to how one skates on ice, github.com/google-deepmind/mujoco/issues/67.
+# The coefficients along and across the blade. The first direction of friction is along a capsule, as a maintainer of
+# MuJoCo explains for skating on ice in github.com/google-deepmind/mujoco/issues/67.
 BLADE_FRICTION = (1e-5, 10.0)
-TILT = 0.5  # rad: so that only the blade's lower end touches
-STANDARD_GRAVITY = 9.81  # m/s^2: presses the mechanism on the ground
-BISECTIONS = 40  # of the depth at which the contact carries the weight
-MAX_DOUBLINGS = 60  # of a blade's length
-# The stiffness must not be zero in the direct form of solref. This one is 1e-12 m/s^2 at a metre.
+TILT = 0.5  # rad, the tilt of a blade, so that only its lower end touches the ground
+STANDARD_GRAVITY = 9.81  # m/s^2, the acceleration that defines the weight on the ground
+BISECTIONS = 40  # of the depth at which the contact force equals the weight
+MAX_DOUBLINGS = 60  # of the length of a blade
+# The direct form of solref needs a stiffness that is not zero. This stiffness gives 1e-12 m/s^2 at a gap of 1 m.
 NO_STIFFNESS = -1e-12
 
 
 def slip_damping(mechanism: Mechanism) -> float:
-    """The damping of slip in a user row [1/s]: the mechanism's largest angular velocity.
+    """The damping of slip in a user row [1/s]: the largest angular velocity of the mechanism.
 
-    A skate has no gap to close, only slip by rounding. That may decay within the time of the motion; a faster damping
-    would cost accuracy. Speed over a short arm would be far too fast.
+    A skate has no gap, and its slip is rounding. This slip may decay as slowly as the bodies move, and a larger damping
+    would reduce the accuracy. The speed divided by a short arm would be a far larger rate.
     """
     return max(abs(body.twist[2]) for body in mechanism.bodies) or 1 / mechanism.time_scale
 
 
 def add_skates(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
-    """Add the skates by the construction of the settings. Raises Unsupported for a blade on a moving body."""
+    """Add skates with the construction of the settings. Raises Unsupported for a blade on a moving body."""
     if builder.settings.skates == "blade":
         _add_blades(builder, skates)
         return
@@ -67,15 +66,15 @@ def add_skates(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
 
 
 def _add_predicted_tendons(builder: ModelBuilder, joints: Sequence[UserRowJoint]) -> None:
-    """Add rows J v = 0 at the end of a step, with J at the pose that is predicted before the step.
+    """Add rows J v = 0 that hold at the end of a step, where J is the row at the predicted pose.
 
-    MuJoCo holds a tendon's length. Here the stiffness is almost zero and only the damping acts, so that the length,
-    which changes with the coefficients, has no effect and need not be reset.
+    The equality of a tendon acts on the length of the tendon. With a stiffness of almost zero only the damping acts, so
+    changes of the length by the new coefficients have no effect.
     """
     from engines.mujoco.user_rows import RowWriter  # it imports numba
 
     tree, spec, width = builder.tree, builder.spec, builder.tree.coordinates
-    # The coefficients at the start set the scale of the compliance when the model is compiled.
+    # MuJoCo's compiler computes the scale of the compliance from the coefficients at t = 0.
     start, _ = RowWriter(tree, range(width), joints).rows(np.zeros(width), np.zeros(width))
     columns_of = [builder.moving_columns(joint) for joint in joints]
     for number, columns in enumerate(columns_of):
@@ -95,7 +94,7 @@ def _add_predicted_tendons(builder: ModelBuilder, joints: Sequence[UserRowJoint]
         entries = [row * compiled.nv + address[column] for row, columns in enumerate(columns_of) for column in columns]
         first = int(compiled.tendon_adr[compiled.tendon("skate 0").id])
         coefficients = compiled.wrap_prm[first : first + len(entries)]
-        # Where every coordinate moves every skate, the rows are written into the coefficients themselves.
+        # If every coordinate moves every skate, the rows are written directly into the coefficients.
         is_dense = np.array_equal(entries, np.arange(len(joints) * compiled.nv))
         jacobian, unused = coefficients if is_dense else np.zeros(len(joints) * compiled.nv), np.zeros(len(joints))
 
@@ -110,10 +109,7 @@ def _add_predicted_tendons(builder: ModelBuilder, joints: Sequence[UserRowJoint]
 
 
 def _add_blades(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
-    """Add a tilted capsule for each. In its contact with a plane the first direction of friction is along the capsule.
-
-    Raises Unsupported for a skate on a moving body.
-    """
+    """Add a tilted capsule for each skate. Raises Unsupported for a skate on a moving body."""
     mechanism, spec = builder.mechanism, builder.spec
     for skate in skates:
         if skate.first is not None:
@@ -122,17 +118,17 @@ def _add_blades(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
     builder.needs_contacts = True
     builder.hook_makers.append(_raise_ground)
     no_other_contact: dict[str, Any] = {"contype": 0, "conaffinity": 0}
-    # At height zero MuJoCo marks the plane as in its body's own frame (geom_sameframe) and never reads `geom_pos`.
+    # A plane at height zero would be marked as being at the origin (geom_sameframe), and `geom_pos` would not be read.
     height = 1e-3 * mechanism.length_scale
     plane = mujoco.mjtGeom.mjGEOM_PLANE
     spec.worldbody.add_geom(name="ice", type=plane, size=[0.0, 0.0, 1.0], pos=[0.0, 0.0, height], **no_other_contact)
     pair: dict[str, Any] = {"solref": list(builder.stiffness.reference(mechanism, builder.dt))}
     if not isinstance(builder.stiffness, Shipped):
-        # Friction acts as fast as the step allows. The contact keeps its default stiffness, and so a large force.
+        # Friction acts as fast as the step allows. With its default stiffness the contact keeps a large force.
         pair = {"solreffriction": [-1e-9, -1 / builder.dt]}
     radius, length = 0.05 * mechanism.length_scale, 0.2 * mechanism.length_scale
     for skate in skates:
-        # The blade's direction at t = 0 in the world, which is also its direction in MuJoCo's frame of the body.
+        # The direction of the blade in the world at t = 0 is also its direction in MuJoCo's frame of the body.
         heading = float(mechanism.pose[mechanism.body_index(skate.second or ""), 2] + skate.angle)
         low = np.array([*world_offset(mechanism, skate.second, skate.second_point), radius])
         along = np.array([math.cos(heading) * math.cos(TILT), math.sin(heading) * math.cos(TILT), math.sin(TILT)])
@@ -150,7 +146,7 @@ def _add_blades(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
 
 
 def _raise_ground(compiled: Any, _address: Sequence[int]) -> Hooks:
-    """Raise the ground until the contacts carry the weight. The depth depends on the compiled model's stiffness."""
+    """Raise the ground until the contact forces equal the weight, which depends on the stiffness of the model."""
     weight = float(compiled.body_mass.sum()) * STANDARD_GRAVITY
     ground, data = compiled.geom("ice").id, mujoco.MjData(compiled)
 
@@ -168,16 +164,17 @@ def _raise_ground(compiled: Any, _address: Sequence[int]) -> Hooks:
 
 
 def _lengthen_blades(compiled: Any, data: Any, carries: Callable[[float], bool]) -> float:
-    """Double the blades until the ground can carry the weight below their upper ends; returns that height [m].
+    """Double the length of the blades until `carries` is true for the height [m] of their upper ends, and return it.
 
-    An upper end in the ground would be held at a second point.
+    `carries(depth)`: whether the ground carries the weight at a depth [m]. An upper end below the ground would be a
+    second contact.
     """
     blades = [geom for geom in range(compiled.ngeom) if compiled.geom(geom).name.startswith("blade ")]
     height = 2 * float(compiled.geom_size[blades[0], 1]) * math.sin(TILT)
     for _ in range(MAX_DOUBLINGS):
         if carries(height):
             break
-        for blade in blades:  # its z-axis points down, to the end that does not move
+        for blade in blades:  # the z axis of a blade points down to its lower end, which stays where it is
             half = compiled.geom_size[blade, 1]
             compiled.geom_pos[blade] -= half * data.geom_xmat[blade].reshape(3, 3)[:, 2]
             compiled.geom_size[blade, 1], compiled.geom_rbound[blade] = 2 * half, compiled.geom_rbound[blade] + half

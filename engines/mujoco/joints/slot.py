@@ -1,15 +1,16 @@
-"""Slots that no slide of the tree stands for: a linear equality where the line rests, else a weld or a user row.
+"""Constructions of slots that are no slide of the kinematic tree.
 
-`SlotBy` is the construction of a slot whose line moves, or whose point a rotation moves:
+A slot is linear if its line is fixed and its point is the centre of mass of a free body. It is then an equality of a
+fixed tendon. `SlotBy` is the construction of all other slots:
 
-- "halves": MuJoCo's own parts alone. The second body is split into two halves with the same centre of mass. One of them
-  slides and turns in the first body by joints of the tree, and a `weld` holds it to the other.
-- "rows": the slot's own row, written by a callback in every stage.
+- "halves": the second body is split into two halves with the same centre of mass. Joints of the tree let one half slide
+  and turn in the first body, and a `weld` joins the halves. MuJoCo provides all of these elements.
+- "rows": a row for the slot that a callback writes in every stage.
 
-A row needs one body, two coordinates and five of six solver rows less than halves (three rows of a weld are empty in
-the plane), and a fifth less time for a step. With the settings of TUNED and steps of about 1e-3 s, the error of a
-slotted lever is 2.8e-7 rad with its row and 6.2e-7 rad with halves; that of an arm and a block in free coordinates is
-4.4e-6 and 1.4e-6.
+With rows, a model has one body, two coordinates and five solver rows less than with halves, and a step takes a fifth
+less time. (Three of the six rows of a weld are empty in the plane.) With the settings of TUNED and steps of about
+1e-3 s, the error of a slotted lever is 2.8e-7 rad with rows and 6.2e-7 rad with halves. The error of an arm and a block
+in free coordinates is 4.4e-6 with rows and 1.4e-6 with halves.
 """
 
 from __future__ import annotations
@@ -30,7 +31,6 @@ SlotBy = Literal["halves", "rows"]
 
 
 def add_slots(builder: ModelBuilder, slots: Sequence[Slot]) -> None:
-    """Add the slots by the construction of the settings."""
     for slot in slots:
         link = free_link_on_fixed_line(slot, builder.tree)
         if link is not None:
@@ -43,7 +43,7 @@ def add_slots(builder: ModelBuilder, slots: Sequence[Slot]) -> None:
 
 
 def free_link_on_fixed_line(slot: Slot, tree: Tree) -> Link | None:
-    """The link of a free body whose centre of mass the slot holds on a line of the ground; None for other slots.
+    """The link of a free body whose centre of mass the slot keeps on a line of the ground; None for other slots.
 
     The gap of such a slot is a sum of two coordinates with constant factors.
     """
@@ -60,10 +60,10 @@ def _add_tendon(builder: ModelBuilder, slot: Slot, column: int) -> None:
 
 
 def _add_half(builder: ModelBuilder, slot: Slot) -> None:
-    """Put half of the second body on a slide and a hinge in the first, and weld it to the other half.
+    """Let a half of the second body slide and turn in the first body, and weld it to the other half.
 
-    The compliance of a weld grows as the lighter of its two bodies becomes lighter, so both are halves. Where the
-    second body is the ground, the auxiliary body can have any mass, since it rests: it has half of the first body's.
+    The halves are equal, since the compliance of a weld grows as its lighter body becomes lighter. If the second body
+    is the ground, the auxiliary body does not move and may have any mass. It has half the mass of the first body.
     """
     spec, mechanism = builder.spec, builder.mechanism
     first, second = builder.index(slot.first), builder.index(slot.second)
@@ -86,9 +86,9 @@ def _add_half(builder: ModelBuilder, slot: Slot) -> None:
 
 
 def _start_rates(builder: ModelBuilder, slot: Slot, direction: tuple[float, float]) -> tuple[float, float]:
-    """Rates at t = 0 against the first body: of the second body's point along the slot [m/s], and of its angle [rad/s].
+    """The velocity of the second body relative to the first one at t = 0.
 
-    The point is that of the second body which lies in the slot.
+    Its components are the velocity of the second body's point along the slot [m/s], and the angular velocity [rad/s].
     """
     mechanism = builder.mechanism
     point = np.array(world_offset(mechanism, slot.second, slot.second_point))

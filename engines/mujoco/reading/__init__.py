@@ -1,4 +1,4 @@
-"""The reader of users' MuJoCo models (MJCF, URDF or binary) as mechanisms of the plane."""
+"""The reader of users' MuJoCo models (MJCF, URDF or binary) as planar mechanisms."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf", ".mjb")
 
 
 def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: bool = True) -> Reading:
-    """The mechanism of a mujoco.MjModel in the state of a mujoco.MjData, or in the model's first state.
+    """The mechanism of a mujoco.MjModel in the state of a mujoco.MjData, by default in the model's initial state.
 
-    `without`: kinds of elements to switch off, in a copy of the model. Raises Unsupported, in a sentence that names the
-    element, where there is no counterpart in a plane. Raises InvalidMechanism for a start that violates the model's own
-    equalities, except by rounded digits if `closing` is true.
+    `without`: kinds of elements to switch off in a copy of the model. `closing`: whether to close gaps of equalities
+    that come from rounded digits. Raises Unsupported with the name of an element without a planar counterpart. Raises
+    InvalidMechanism for a state that violates the equalities of the model.
     """
     planar, users, tilt = _plane_of(model, mujoco.MjData(model) if data is None else data, without)
     joints = [*tree_joints(planar), *drives(planar), *equalities(planar)]
@@ -76,9 +76,9 @@ def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: boo
 
 
 def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarModel, Any, float]:
-    """The model in its plane and in a state, without some elements; the user's model; and its tilt [rad].
+    """The planar model in a given state, the model to run, and the largest tilt [rad] of its joints.
 
-    Raises Unsupported where no plane exists.
+    Both models are copies without the given elements. Raises Unsupported if the model does not move in a plane.
     """
     model = copy.copy(model)
     for element in without:
@@ -90,7 +90,7 @@ def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarMod
         reason = "MuJoCo stops a tree of bodies that is slow, even a pendulum at its turning point, which no joint does"
         raise refuse("flag sleep", f"{reason}; {left_out('sleep')}")
     _refuse_not_finite(model, started)
-    # Contacts and the solver are not evaluated yet: a model of thousands of bodies is refused before.
+    # Contacts and the solver are not evaluated yet, since a model with too many bodies is refused first.
     mujoco.mj_kinematics(model, started)
     mujoco.mj_comPos(model, started)
     frame = find_frame(model, started)
@@ -104,7 +104,6 @@ def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarMod
 
 
 def read_object(model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:
-    """The reading of a mujoco.MjModel in its first state."""
     if terms.step is not None:
         model = copy.copy(model)
         model.opt.timestep = terms.step
@@ -112,7 +111,7 @@ def read_object(model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:
 
 
 def _refuse_not_finite(model: Any, data: Any) -> None:
-    """Raise Unsupported for NaN or infinity in the start, which MuJoCo accepts."""
+    """Raise Unsupported for NaN or infinity in the initial state, which MuJoCo accepts."""
     joints_of_qpos = np.searchsorted(model.jnt_qposadr, np.arange(model.nq), side="right") - 1
     for name, kind, owners in (
         ("qpos", JOINT, joints_of_qpos),
@@ -127,7 +126,7 @@ def _refuse_not_finite(model: Any, data: Any) -> None:
 
 
 def _note_gravity_across(planar: PlanarModel) -> None:
-    """Note gravity normal to the plane. Raises Unsupported where a free body would follow it."""
+    """Note gravity normal to the plane. Raises Unsupported for a free body, which would leave the plane."""
     model = planar.model
     across = 0.0 if is_off(model, "GRAVITY") else float(model.opt.gravity @ planar.frame.normal)
     if abs(across) <= 1e-12 * max(1.0, float(np.linalg.norm(model.opt.gravity))):
@@ -138,7 +137,7 @@ def _note_gravity_across(planar: PlanarModel) -> None:
 
 
 def _note_limits_and_contacts(planar: PlanarModel) -> None:
-    """Note limits and contacts, which have no part in the mechanism. A judged motion must not reach them."""
+    """Note limits and contacts, which are not in the mechanism. A judged motion must not reach them."""
     model, limit = planar.model, "its limit is left out, since it is not reached in the judged motion"
     for element in limited_forces(model):
         planar.note(element, f"its force is limited; {limit}")
@@ -159,9 +158,9 @@ def _note_limits_and_contacts(planar: PlanarModel) -> None:
 
 
 def _with_armature(planar: PlanarModel) -> tuple[tuple[Any, ...], list[Force]]:
-    """Bodies with the inertia of armatures, and forces that compensate the weight, which an armature does not have.
+    """Bodies with the inertia of armatures, and forces that compensate their weight, since an armature has no weight.
 
-    Raises Unsupported for an armature of a relative motion.
+    Raises Unsupported for an armature of the relative motion of two moving bodies.
     """
     model, bodies, weights = planar.model, list(planar.bodies), []
     gravity = np.zeros(3) if is_off(model, "GRAVITY") else model.opt.gravity
@@ -186,8 +185,6 @@ def _with_armature(planar: PlanarModel) -> tuple[tuple[Any, ...], list[Force]]:
 
 
 class MuJoCoReader:
-    """For `crosscheck check`: MJCF, URDF, and MuJoCo's own binary models."""
-
     words = "a MuJoCo model (model.xml, model.urdf)"
     elements: ClassVar[Mapping[str, str]] = {
         **TREE_CONNECTIONS,
@@ -199,7 +196,7 @@ class MuJoCoReader:
         return Path(word).suffix.lower() in MODEL_SUFFIXES
 
     def read(self, word: str, folder: Path, terms: ReadingTerms) -> Reading:
-        """Raises ValueError for a file that is no model, Unsupported for a model that is no planar mechanism."""
+        """Raises ValueError for a file that is no model, and Unsupported for a model that is no planar mechanism."""
         path = folder / word
         if path.is_dir():
             raise ValueError(f"{word}: it is a folder")
@@ -236,7 +233,7 @@ class MuJoCoReader:
 
 
 def _key(model: Any, key: str) -> int:
-    """The number of a keyframe, the first if none is named."""
+    """The index of the keyframe with the name `key`, by default the first one."""
     if not key:
         return 0
     names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_KEY, index) or str(index) for index in range(model.nkey)]

@@ -26,11 +26,11 @@ from reference.couplings import Coupling, Term
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Weld
 
 Array = NDArray[np.float64]
-Ends = tuple[int, int, Array, Array]  # two groups, and a point of each in the world [m]
-Parts = Sequence[tuple[int, float]]  # joints of the model with their factors in a sum of coordinates
+Ends = tuple[int, int, Array, Array]  # two groups, and a point [m] of each in the world
+WeightedJoints = Sequence[tuple[int, float]]  # joints of the model with their factors in a sum of coordinates
 EQUALITY, TENDON = mujoco.mjtObj.mjOBJ_EQUALITY, mujoco.mjtObj.mjOBJ_TENDON
-# The ratio of armature to the largest inertia that a joint can feel, from which on a hinge counts as driven. Its
-# relative acceleration is the reciprocal, a tenth of the accepted difference to the judge's accelerations at the start.
+# The smallest ratio of armature and inertia with which a hinge counts as driven. The acceleration of such a hinge is
+# smaller than that of a free one by this ratio, and a tenth of the accepted difference from the judge's accelerations.
 DRIVING_RATIO = 1e7
 TORQUE_SCALE = 10  # the index of a weld's torquescale in eq_data
 
@@ -70,7 +70,7 @@ def _joints_with_parent(planar: PlanarModel, group: int) -> list[Joint]:
 
 
 def is_driven(planar: PlanarModel, joint: int) -> bool:
-    """Whether a joint is a hinge whose armature is so large that no force of the model changes its rate."""
+    """Whether a joint is a hinge with an armature that is so large that no force changes its rate."""
     armature = float(planar.model.dof_armature[int(planar.model.jnt_dofadr[joint])])
     points = np.array(
         [body.pose[:2] for body in planar.bodies] + [planar.frame.in_plane(at) for at in planar.data.xanchor]
@@ -81,7 +81,7 @@ def is_driven(planar: PlanarModel, joint: int) -> bool:
 
 
 def drives(planar: PlanarModel) -> list[Drive]:
-    """A drive at the rate of the start for every driven hinge, with a note."""
+    """A drive with the initial rate for every driven hinge, and a note about it."""
     out = []
     for joint in range(planar.model.njnt):
         if not is_driven(planar, joint):
@@ -96,7 +96,7 @@ def drives(planar: PlanarModel) -> list[Drive]:
 
 
 def equalities(planar: PlanarModel) -> list[Joint]:
-    """The ideal joints of the model's equalities, which close loops and couple coordinates."""
+    """The ideal joints for the equalities of the model, which close loops and couple coordinates."""
     model, data = planar.model, planar.data
     flags = mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     out: list[Joint] = []
@@ -119,12 +119,11 @@ def equalities(planar: PlanarModel) -> list[Joint]:
 
 
 def equality_rows(data: Any, index: int) -> NDArray[np.intp]:
-    """The indices of an equality's rows in MuJoCo's."""
+    """The indices of the rows of an equality among MuJoCo's rows."""
     return np.flatnonzero((data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)) & (data.efc_id == index))
 
 
 def _ends(planar: PlanarModel, index: int) -> Ends:
-    """The two groups of a connect or a weld, and a point of each in the world."""
     model, data = planar.model, planar.data
     objects = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
     if model.eq_objtype[index] == int(mujoco.mjtObj.mjOBJ_SITE):
@@ -161,7 +160,7 @@ def _read_weld(planar: PlanarModel, index: int, element: str) -> list[Joint]:
 
 
 def _term(planar: PlanarModel, joint: int, factor: float) -> Term:
-    """`factor` times a joint's coordinate, up to a constant. Raises Unsupported for a hinge between two slides."""
+    """`factor` times the coordinate of a joint, plus a constant. Raises Unsupported for a hinge between two slides."""
     data, group, parent = planar.data, planar.group_of(joint), planar.parent(joint)
     if planar.model.jnt_type[joint] == HINGE:
         return Term(planar.name(parent), planar.name(group), factor * float(planar.groups.signs[joint]))
@@ -170,7 +169,7 @@ def _term(planar: PlanarModel, joint: int, factor: float) -> Term:
         reason = "its body turns between two slides, of which no sum is read; give the slides a body of their own"
         raise refuse(name_of(planar.model, JOINT, joint), reason)
     at = data.xanchor[hinges[0]] if hinges else planar.centre(group)
-    # With two slides, the coordinate of one changes along the direction across the other.
+    # With two slides, the coordinate of a slide changes along the normal of the other slide.
     axes = np.array([planar.frame.in_plane(data.xaxis[slide]) for slide in slides])
     x, y = np.linalg.pinv(axes)[:, slides.index(joint)]
     along, size = planar.frame.both.T @ [x, y], float(np.hypot(x, y))
@@ -181,15 +180,15 @@ def _term(planar: PlanarModel, joint: int, factor: float) -> Term:
     return Term(planar.name(first), planar.name(second), sign * factor * size, True, *line)
 
 
-def terms_of(planar: PlanarModel, parts: Parts) -> tuple[tuple[Term, ...], float]:
-    """A sum of joints' coordinates as terms, and its value at the start."""
+def terms_of(planar: PlanarModel, parts: WeightedJoints) -> tuple[tuple[Term, ...], float]:
+    """The terms of a sum of joint coordinates, and the initial value of the sum."""
     terms = tuple(_term(planar, joint, factor) for joint, factor in parts)
     pose = {body.name: np.array(body.pose) for body in planar.bodies} | {None: np.zeros(3)}
     return terms, float(sum(term.value(pose[term.first], pose[term.second]) for term in terms))
 
 
-def angle_weights(planar: PlanarModel, parts: Parts) -> dict[int, float]:
-    """The factor of each body's angle in a sum of hinge coordinates, without those that are zero."""
+def angle_weights(planar: PlanarModel, parts: WeightedJoints) -> dict[int, float]:
+    """The factor of the angle of each body in a sum of hinge coordinates, without factors of zero."""
     weights: dict[int, float] = {}
     for joint, factor in parts:
         for group, sign in ((planar.group_of(joint), 1.0), (planar.parent(joint), -1.0)):
@@ -199,7 +198,7 @@ def angle_weights(planar: PlanarModel, parts: Parts) -> dict[int, float]:
 
 
 def wrapped_joints(model: Any, tendon: int) -> list[tuple[int, float]] | None:
-    """The joints of a fixed tendon with their coefficients; None for a spatial tendon."""
+    """The joints and coefficients of a fixed tendon; None for a spatial tendon."""
     wraps = range(int(model.tendon_adr[tendon]), int(model.tendon_adr[tendon] + model.tendon_num[tendon]))
     if np.any(model.wrap_type[wraps] != int(mujoco.mjtWrap.mjWRAP_JOINT)):
         return None
@@ -207,7 +206,7 @@ def wrapped_joints(model: Any, tendon: int) -> list[tuple[int, float]] | None:
 
 
 def ends_of_tendon(planar: PlanarModel, tendon: int) -> Ends:
-    """The two groups that a straight tendon joins, and its ends in the world. Raises Unsupported if it wraps."""
+    """The groups and ends of a straight tendon. Raises Unsupported for another tendon."""
     model, element = planar.model, name_of(planar.model, TENDON, tendon)
     first_wrap, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
     if count != 2 or np.any(model.wrap_type[first_wrap : first_wrap + count] != int(mujoco.mjtWrap.mjWRAP_SITE)):
@@ -221,7 +220,7 @@ def ends_of_tendon(planar: PlanarModel, tendon: int) -> Ends:
 
 
 def _read_coupling(planar: PlanarModel, index: int, element: str) -> list[Joint]:
-    """An equality of joints: a linear relation between the coordinates of two joints, or a value of one."""
+    """The ideal joint of a linear relation between the coordinates of two joints, or of a fixed coordinate."""
     model, curve = planar.model, planar.model.eq_data[index][:5]
     pairs = [(int(model.eq_obj1id[index]), 1.0), (int(model.eq_obj2id[index]), -float(curve[1]))]
     parts = [(joint, factor) for joint, factor in pairs if joint >= 0 and factor]
@@ -230,12 +229,12 @@ def _read_coupling(planar: PlanarModel, index: int, element: str) -> list[Joint]
     return _read_sum(planar, index, element, parts, float(open_by))
 
 
-def _read_sum(planar: PlanarModel, index: int, element: str, parts: Parts, open_by: float) -> list[Joint]:
-    """The ideal joint of an equality that holds a sum of joints' coordinates and is open by `open_by` [m or rad]."""
+def _read_sum(planar: PlanarModel, index: int, element: str, parts: WeightedJoints, open_by: float) -> list[Joint]:
+    """The ideal joint of an equality that keeps a sum of joint coordinates constant. `open_by`: its gap [m or rad]."""
     if np.any(planar.model.eq_data[index][2:5]):
         raise refuse(element, "a coupling that is not linear has no ideal counterpart here")
     slides = any(planar.model.jnt_type[joint] != HINGE for joint, _ in parts)
-    # A smaller gap is rounding in the file, which the reading closes.
+    # A smaller gap is rounding in the file, and the reader closes it.
     largest = max((abs(factor) for _, factor in parts), default=1.0)
     if abs(open_by) > PRINTED * largest * (max(1.0, float(planar.model.stat.extent)) if slides else 1.0):
         raise refuse(element, f"it is open by {abs(open_by):.2g} {'m' if slides else 'rad'} at the start")
@@ -257,7 +256,7 @@ def _read_sum(planar: PlanarModel, index: int, element: str, parts: Parts, open_
 
 
 def _read_tendon(planar: PlanarModel, index: int, element: str) -> list[Joint]:
-    """An equality of tendons: a rod between two sites, or a constant sum of coordinates."""
+    """The ideal joint of an equality of tendons, which is a rod or a constant sum of coordinates."""
     model, data = planar.model, planar.data
     tendon, other = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
     extension = data.ten_length - model.tendon_length0
@@ -282,7 +281,7 @@ def _read_tendon(planar: PlanarModel, index: int, element: str) -> list[Joint]:
     return [Rod(planar.new_name(EQUALITY, index), *planar.between(*ends), length)]
 
 
-# The reader of each kind of equality, and the ideal joint that it is read as.
+# The reader of each kind of equality, and the description of its ideal counterpart.
 EQUALITIES: dict[str, tuple[Callable[[PlanarModel, int, str], list[Joint]], str]] = {
     "connect": (_read_connect, "a pin"),
     "weld": (_read_weld, "a weld; a pin where its torquescale is zero"),

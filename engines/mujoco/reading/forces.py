@@ -1,4 +1,4 @@
-"""MuJoCo's springs, dampers, actuators, tendons and applied forces as force elements of the plane."""
+"""The planar force elements of MuJoCo's springs, dampers, actuators, tendons and applied forces."""
 
 from __future__ import annotations
 
@@ -7,7 +7,14 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from engines.mujoco.reading.elements import TENDON, Parts, angle_weights, ends_of_tendon, terms_of, wrapped_joints
+from engines.mujoco.reading.elements import (
+    TENDON,
+    WeightedJoints,
+    angle_weights,
+    ends_of_tendon,
+    terms_of,
+    wrapped_joints,
+)
 from engines.mujoco.reading.frame import BODY, FREE, HINGE, JOINT, PLANAR, SLIDE, PlanarModel, name_of, plain_name
 from engines.reading import left_out, refuse
 from reference.forces import CoupledForce, Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
@@ -26,13 +33,13 @@ NEGATIVE = "a negative stiffness or damping has no counterpart here"
 
 
 def forces(planar: PlanarModel) -> list[ForceElement]:
-    """The force elements of the model besides gravity. Raises Unsupported for forces without an ideal counterpart."""
+    """The force elements of the model without gravity. Raises Unsupported for forces without an ideal counterpart."""
     _refuse_forces_without_counterpart(planar.model)
     return [*_of_joints(planar), *_of_tendons(planar), *_of_actuators(planar), *_applied(planar)]
 
 
 def is_off(model: Any, word: str) -> bool:
-    """Whether the flag with this name is disabled in the model."""
+    """Whether the model disables a flag, as CONTACT."""
     return bool(model.opt.disableflags & int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{word}")))
 
 
@@ -61,15 +68,15 @@ def _along(
     planar: PlanarModel,
     element: str,
     name: str,
-    parts: Parts,
+    parts: WeightedJoints,
     stretch: float,
     push: float = 0.0,
     stiffness: float = 0.0,
     damping: float = 0.0,
 ) -> list[ForceElement]:
-    """A constant force, a spring and a damper along a sum of joints' coordinates.
+    """A constant force, a spring and a damper along a sum of joint coordinates.
 
-    `stretch`: the change of the sum from the start to the rest position of the spring [m or rad].
+    `stretch`: the change of the sum [m or rad] from its initial value to its value at rest of the spring.
     """
     if min(stiffness, damping) < 0:
         raise refuse(element, NEGATIVE)
@@ -189,7 +196,7 @@ def _of_actuator(planar: PlanarModel, actuator: int) -> list[ForceElement]:
 
 
 def _control(planar: PlanarModel, actuator: int, element: str) -> float:
-    """The constant control of an actuator, within its range."""
+    """The constant control of an actuator, clamped to its range."""
     model, control = planar.model, float(planar.data.ctrl[actuator])
     if not model.actuator_ctrllimited[actuator] or is_off(model, "CLAMPCTRL"):
         return control
@@ -200,7 +207,7 @@ def _control(planar: PlanarModel, actuator: int, element: str) -> float:
 
 
 def _at_site(planar: PlanarModel, element: str, name: str, actuator: int, push: float) -> list[ForceElement]:
-    """A constant force and torque at a site, in the directions of a site of the ground."""
+    """A constant force and torque at a site, in the directions of a reference site of the ground."""
     model, data = planar.model, planar.data
     site, base = (int(index) for index in model.actuator_trnid[actuator])
     if base < 0 or planar.group(model.site_bodyid[base]) >= 0:
@@ -214,7 +221,7 @@ def _at_site(planar: PlanarModel, element: str, name: str, actuator: int, push: 
 def _on_body(
     planar: PlanarModel, group: int, at: Any, force: Any, torque: Any, force_name: str, torque_name: str
 ) -> list[ForceElement]:
-    """A constant force (3,) [N] at a point of the world, and a torque (3,) [N m], on a body."""
+    """A constant force (3,) [N] on a body at a point of the world, and a constant torque (3,) [N m] on the body."""
     second, out, pull = planar.name(group), list[ForceElement](), planar.frame.in_plane(force)
     if second is not None and any(pull):
         out.append(Force(planar.names.new(force_name), second, planar.in_body(group, at), pull))
@@ -224,7 +231,7 @@ def _on_body(
 
 
 def _applied(planar: PlanarModel) -> list[ForceElement]:
-    """The forces in the data of the model, and the compensation of gravity."""
+    """The applied forces in the state, and the forces that compensate gravity."""
     model, data, out = planar.model, planar.data, list[ForceElement]()
     for dof in np.flatnonzero(data.qfrc_applied):
         joint = int(model.dof_jntid[dof])
@@ -242,13 +249,12 @@ def _applied(planar: PlanarModel) -> list[ForceElement]:
 
 
 def turns(planar: PlanarModel, group: int) -> bool:
-    """Whether the body of a group can turn."""
     return group >= 0 and (
         bool(planar.joints_of(group, HINGE, FREE)) or turns(planar, planar.parent(planar.joints_of(group)[0]))
     )
 
 
 def limited_servos(model: Any) -> Any:
-    """A mask (nu,) of the actuators with a limited force that is not constant. A constant force is read as limited."""
+    """A mask (nu,) of actuators with a limited force that varies. `forces` applies the limit of a constant force."""
     affine = model.actuator_biastype == int(mujoco.mjtBias.mjBIAS_AFFINE)
     return model.actuator_forcelimited.astype(bool) & affine & np.any(model.actuator_biasprm[:, 1:3], axis=1)

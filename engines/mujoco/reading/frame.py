@@ -1,7 +1,7 @@
-"""The plane in which a MuJoCo model moves, found from its joints, and the bodies of the model in that plane.
+"""The plane in which the joints of a MuJoCo model move its bodies, and the bodies of the model in this plane.
 
-Bodies without joints are merged with their parents. Positions and inertias across the plane do not affect the motion:
-joints hold the bodies in the plane, and products of inertia only load these joints.
+A body without joints is merged with its parent. Positions normal to the plane do not affect the motion. Products of
+inertia do not either: they only change the reactions normal to the plane, since joints keep the bodies in the plane.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from engines.reading import MOST_BODIES, Names, Note, refuse
 from reference.joints import Body, Joint, Vector
 
 Array = NDArray[np.float64]
-PLANAR = 1e-9  # relative to a unit vector or an inertia: smaller components are rounding
-# rad: up to this tilt an axis counts as normal to the plane. Six digits in a file tilt an axis by 2e-6, 1.5708 for a
-# right angle by 4e-6, and tilts add up along chains. An intended tilt is larger, and so is that of 1.57, 8e-4.
+PLANAR = 1e-9  # smaller components are rounding, relative to a unit vector or an inertia
+# The largest tilt [rad] of an axis that counts as normal to the plane. Numbers with six digits tilt an axis by 2e-6, and
+# 1.5708 for a right angle by 4e-6. Tilts add up along chains. The tilt of 1.57 for a right angle, 8e-4, is refused.
 MAX_TILT = 1e-4
-MAX_ROUNDED_TILT = 1e-2  # rad: up to this tilt a message mentions rounding in the file
+MAX_ROUNDED_TILT = 1e-2  # rad, the largest tilt for which a message mentions rounding in the file
 
 BODY, JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
 FREE, BALL, SLIDE, HINGE = (
@@ -33,11 +33,11 @@ FREE, BALL, SLIDE, HINGE = (
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """The plane: unit vectors (3,) along its x and its y, and the normal, about which angles are positive."""
+    """Unit vectors (3,) of the plane."""
 
-    across: Array
-    up: Array
-    normal: Array
+    across: Array  # along x
+    up: Array  # along y
+    normal: Array  # angles are positive about it
 
     @cached_property
     def both(self) -> Array:
@@ -50,19 +50,19 @@ class Frame:
 
 
 def name_of(model: Any, kind: Any, index: Any) -> str:
-    """The kind of an element with its name, or its number, for a message."""
+    """The kind of an element with its name, or with its number if it has no name."""
     word = str(kind).rsplit("_", 1)[-1].lower()
     name = mujoco.mj_id2name(model, kind, int(index))
     return f"{word} {name!r}" if name else f"{word} {index}"
 
 
 def plain_name(model: Any, kind: Any, index: int) -> str:
-    """The name of an element alone; its kind and number if it has none."""
+    """The name of an element, or its kind and number if it has no name."""
     return mujoco.mj_id2name(model, kind, index) or name_of(model, kind, index)
 
 
 def find_frame(model: Any, data: Any) -> Frame:
-    """The plane in which every joint moves its body. Raises Unsupported where there is none."""
+    """The plane in which every joint moves its body. Raises Unsupported if there is no such plane."""
     kinds = model.jnt_type
     for index in np.flatnonzero(kinds == BALL):
         raise refuse(name_of(model, JOINT, index), "a ball joint turns its body out of any plane")
@@ -70,7 +70,7 @@ def find_frame(model: Any, data: Any) -> Frame:
     normal = data.xaxis[hinges[0]].copy() if len(hinges) else _normal_to_slides(model, data, slides)
     normal = _nearest_axis(normal / np.linalg.norm(normal))
     largest = int(np.argmax(np.abs(normal)))
-    # The normal points along z, or against y, so that x is to the right.
+    # The largest component of the normal is along +x, -y or +z, so that x of the plane is to the right.
     if normal[largest] * (-1 if largest == 1 else 1) < 0:
         normal = -normal
     _refuse_tilted_joints(model, data, normal)
@@ -81,7 +81,7 @@ def find_frame(model: Any, data: Any) -> Frame:
 
 
 def _refuse_tilted_joints(model: Any, data: Any, normal: Array) -> None:
-    """Raise Unsupported for a hinge that is not along the normal, or a slide that is not across it."""
+    """Raise Unsupported for a hinge that is not along the normal, or a slide that is not perpendicular to it."""
     hinges = np.flatnonzero(model.jnt_type == HINGE)
     for index in np.flatnonzero((model.jnt_type == HINGE) | (model.jnt_type == SLIDE)):
         is_hinge = model.jnt_type[index] == HINGE
@@ -100,15 +100,15 @@ def _refuse_tilted_joints(model: Any, data: Any, normal: Array) -> None:
 
 
 def _nearest_axis(normal: Array) -> Array:
-    """An axis of the world if a unit vector is within MAX_TILT of it, else the vector."""
+    """The axis of the world within MAX_TILT of a unit vector, or the vector if there is none."""
     axis = np.round(normal)
     return axis if np.linalg.norm(normal - axis) <= MAX_TILT else normal
 
 
 def flattened(model: Any, frame: Frame) -> tuple[Any, float]:
-    """A copy of the model whose joints move exactly in the plane, and the largest tilt of those of the model [rad].
+    """A copy of the model whose joints move exactly in the plane, and the largest tilt [rad] of the original joints.
 
-    The axes of joints are turned in the pose qpos0, so that the bodies keep their heights above the plane.
+    The axes are corrected in the pose qpos0, so that the bodies keep their heights above the plane.
     """
     flat, data = copy.copy(model), mujoco.MjData(model)
     data.qpos[:] = model.qpos0
@@ -124,7 +124,7 @@ def flattened(model: Any, frame: Frame) -> tuple[Any, float]:
 
 
 def _normal_to_slides(model: Any, data: Any, slides: Any) -> Array:
-    """A normal across all slides, and across gravity unless two slides span the plane."""
+    """A vector perpendicular to all slides, and also to gravity unless two slides span the plane."""
     axes = data.xaxis[slides].reshape(-1, 3)
     is_spanned = np.linalg.matrix_rank(axes, tol=PLANAR) == 2
     vectors = axes if is_spanned else np.vstack([axes, model.opt.gravity])
@@ -139,21 +139,16 @@ def _normal_to_slides(model: Any, data: Any, slides: Any) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Groups:
-    """Groups of MuJoCo bodies that are fixed to one another: each is a body of the mechanism.
+    """Groups of MuJoCo bodies that are fixed to each other. A group is a body of the mechanism."""
 
-    `of` (nbody,): the group of each MuJoCo body, -1 for the ground. `roots`: the MuJoCo body of each group that has the
-    joints. `centres` (groups, 3) [m]: centres of mass in the frames of the roots. `signs` (njnt,): 1 for a joint whose
-    axis is along the normal, -1 for one against it.
-    """
-
-    of: Array
-    roots: tuple[int, ...]
-    centres: Array
-    signs: Array
+    of: Array  # the group of each MuJoCo body (nbody,), -1 for the ground
+    roots: tuple[int, ...]  # the MuJoCo body of each group that has the joints
+    centres: Array  # centres of mass (groups, 3) [m] in the frames of the roots
+    signs: Array  # 1 for a joint (njnt,) whose axis is along the normal, -1 for the opposite direction
 
 
 def find_bodies(model: Any, data: Any, frame: Frame) -> tuple[Groups, tuple[Body, ...]]:
-    """The groups of MuJoCo's bodies, and the mechanism's bodies in the state of `data`. Raises Unsupported."""
+    """The groups of MuJoCo's bodies, and the bodies of the mechanism in the state of `data`; raises Unsupported."""
     roots = [int(body) for body in np.flatnonzero(model.body_jntnum)]
     if not roots:
         raise refuse("the model", "nothing in it can move")
@@ -168,7 +163,7 @@ def find_bodies(model: Any, data: Any, frame: Frame) -> tuple[Groups, tuple[Body
 
 
 def _body(model: Any, data: Any, frame: Frame, groups: Groups, index: int, angle: float) -> Body:
-    """The body of the mechanism for a group; stores its centre of mass in `groups`."""
+    """The body of the mechanism for a group. Its centre of mass is written to `groups`."""
     root, parts = groups.roots[index], np.flatnonzero(groups.of == index)
     element, masses = name_of(model, BODY, root), model.body_mass[parts]
     if not masses.sum() > 0:
@@ -200,7 +195,7 @@ def _body(model: Any, data: Any, frame: Frame, groups: Groups, index: int, angle
 
 
 def angles_of(model: Any, frame: Frame, groups: Groups, qpos: Array) -> Array:
-    """Angles (times, groups) [rad] at positions (times, nq), not wrapped: sums of hinge angles along the chain."""
+    """Unwrapped angles (times, groups) [rad] for `qpos` (times, nq)."""
     angles = np.zeros((len(qpos), len(groups.roots)))
     for index, root in enumerate(groups.roots):
         parent, first = int(groups.of[model.body_parentid[root]]), int(model.body_jntadr[root])
@@ -216,7 +211,7 @@ def angles_of(model: Any, frame: Frame, groups: Groups, qpos: Array) -> Array:
 
 
 def _half_angle(model: Any, frame: Frame, address: int, qpos: Array) -> tuple[Array, Array]:
-    """Sine and cosine (times,) of half the angle about the normal between qpos0 and the quaternion at an address.
+    """Sine and cosine (times,) of half the angle about the normal from qpos0 to the quaternion at an address.
 
     Raises Unsupported for a rotation out of the plane.
     """
@@ -229,10 +224,7 @@ def _half_angle(model: Any, frame: Frame, address: int, qpos: Array) -> tuple[Ar
 
 @dataclass(eq=False)
 class PlanarModel:
-    """A model at its start while it is read, the bodies of its mechanism, and the notes of the reading.
-
-    `held`: the ideal joints of each equality, by its index.
-    """
+    """A model in its initial state, the bodies of its mechanism, and the notes of the reading."""
 
     model: Any
     data: Any
@@ -241,18 +233,16 @@ class PlanarModel:
     bodies: tuple[Body, ...]
     names: Names = field(default_factory=Names)
     notes: list[Note] = field(default_factory=list)
-    held: dict[int, tuple[Joint, ...]] = field(default_factory=dict)
+    held: dict[int, tuple[Joint, ...]] = field(default_factory=dict)  # the ideal joints of each equality, by index
 
     def group(self, body: int) -> int:
-        """The group of a MuJoCo body, -1 for the ground."""
         return int(self.groups.of[body])
 
     def group_of(self, joint: int) -> int:
-        """The group that a joint moves."""
         return self.group(self.model.jnt_bodyid[joint])
 
     def parent(self, joint: int) -> int:
-        """The group against which a joint moves its own group."""
+        """The group relative to which a joint moves its own group."""
         return self.group(self.model.body_parentid[self.model.jnt_bodyid[joint]])
 
     def name(self, group: int) -> str | None:
@@ -262,11 +252,11 @@ class PlanarModel:
         return 0.0 if group < 0 else self.bodies[group].pose[2]
 
     def turned(self, first: int, second: int) -> float:
-        """The angle of the second group against the first at the start [rad]."""
+        """The initial angle of the second group relative to the first [rad]."""
         return self.angle(second) - self.angle(first)
 
     def in_body(self, group: int, point: Any) -> Vector:
-        """A point of the world (3,) [m] in the frame of a body, or of the ground."""
+        """A point (3,) [m] of the world in the frame of a group or the ground."""
         x, y = self.frame.in_plane(point)
         if group < 0:
             return x, y
@@ -276,27 +266,26 @@ class PlanarModel:
         return float(cosine * x + sine * y), float(cosine * y - sine * x)
 
     def between(self, first: int, second: int, at: Any, other: Any) -> tuple[str | None, str | None, Vector, Vector]:
-        """The names of two groups, and a point of the world in the frame of each."""
+        """The names of two groups, and a point of the world for each in its frame."""
         return self.name(first), self.name(second), self.in_body(first, at), self.in_body(second, other)
 
     def direction(self, group: int, axis: Any) -> float:
-        """The angle [rad] in the frame of a body of a direction of the world."""
+        """The angle [rad] of a direction of the world in the frame of a group."""
         x, y = self.frame.in_plane(axis)
         return float(np.arctan2(y, x)) - self.angle(group)
 
     def centre(self, group: int) -> Array:
-        """The centre of mass (3,) of a group at the start, moved along the normal into the plane of the origin [m]."""
+        """The initial centre of mass (3,) [m] of a group, projected on the plane through the origin."""
         return self.frame.both.T @ self.bodies[group].pose[:2]
 
     def joints_of(self, group: int, *kinds: int) -> list[int]:
-        """The joints between a group and its parent, of these kinds if any are named."""
+        """The joints between a group and its parent, of these kinds or by default of all kinds."""
         root = self.groups.roots[group]
         first = int(self.model.body_jntadr[root])
         joints = range(first, first + int(self.model.body_jntnum[root]))
         return [joint for joint in joints if not kinds or self.model.jnt_type[joint] in kinds]
 
     def qpos_of(self, joint: int) -> int:
-        """The index of a joint's coordinate in qpos."""
         return int(self.model.jnt_qposadr[joint])
 
     def new_name(self, kind: Any, index: int) -> str:

@@ -1,4 +1,4 @@
-"""A user's MuJoCo model, run from its start with its own or other settings, and the limits and contacts in a motion."""
+"""Runs of a user's MuJoCo model with its own or other settings, and the limits and contacts in a motion."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ LIMIT_ROWS = {
 
 
 def in_state(model: Any, state: Any) -> Any:
-    """A new mujoco.MjData with the positions, velocities and inputs of another one."""
+    """A new mujoco.MjData with the positions, velocities and inputs of `state`."""
     data = mujoco.MjData(model)
     for name in STATE:
         getattr(data, name)[:] = getattr(state, name)
@@ -42,13 +42,12 @@ def in_state(model: Any, state: Any) -> Any:
 
 
 def centres(planar: PlanarModel, data: Any) -> Array:
-    """The centres of mass (bodies, 3) [m] in the world."""
     roots = list(planar.groups.roots)
     return data.xpos[roots] + np.einsum("bij,bj->bi", data.xmat[roots].reshape(-1, 3, 3), planar.groups.centres)
 
 
 def directions(planar: PlanarModel, data: Any) -> Array:
-    """The twists (bodies, 3, nv) of unit velocities of MuJoCo's coordinates."""
+    """The twists (bodies, 3, nv) for unit velocities of MuJoCo's coordinates."""
     jac, out = np.zeros((2, 3, planar.model.nv)), np.zeros((len(planar.bodies), 3, planar.model.nv))
     for index, (root, centre) in enumerate(zip(planar.groups.roots, centres(planar, data), strict=True)):
         mujoco.mj_jac(planar.model, data, jac[0], jac[1], centre, root)
@@ -62,7 +61,7 @@ def positions(planar: PlanarModel, pose: Array) -> Array:
     out = np.empty((len(pose), model.nq))
     for sample, wanted in enumerate(pose):
         data.qpos[:] = planar.data.qpos
-        # Angles are linear in the coordinates. With the angles set, positions are linear in the other coordinates.
+        # Angles are linear in the coordinates that turn bodies. For given angles, positions are linear in the others.
         for part in (slice(2, 3), slice(0, 2)):
             mujoco.mj_kinematics(model, data)
             mujoco.mj_comPos(model, data)
@@ -79,13 +78,13 @@ def positions(planar: PlanarModel, pose: Array) -> Array:
 
 
 def limited_forces(model: Any) -> list[str]:
-    """The elements with a limit of their force, which no ideal mechanism has."""
+    """The elements whose force is limited."""
     tables = ((ACTUATOR, limited_servos(model)), (JOINT, model.jnt_actfrclimited), (TENDON, model.tendon_actfrclimited))
     return [name_of(model, kind, index) for kind, limited in tables for index in np.flatnonzero(limited)]
 
 
 def _at_limits(model: Any, data: Any) -> list[str]:
-    """The elements that are at a limit of their force in the state of `data`, after mj_fwdPosition."""
+    """The elements whose force is at its limit in the state of `data`, after mj_fwdPosition."""
     unlimited = copy.copy(model)
     unlimited.actuator_forcelimited[limited_servos(model)] = 0
     unlimited.jnt_actfrclimited[:] = unlimited.tendon_actfrclimited[:] = 0
@@ -100,20 +99,14 @@ def _at_limits(model: Any, data: Any) -> list[str]:
 
 @dataclass(frozen=True, eq=False)
 class OwnMuJoCo:
-    """The compiled model and its start; see `engines.reading.OwnModel`.
+    """A compiled model and its initial state; see `engines.reading.OwnModel`."""
 
-    `users`: the user's model, which is run. That of `planar` is the same, with joints that move exactly in the plane;
-    `tilt` [rad] is the largest difference of an axis. `urdf`: it was read from a URDF file without an element for
-    MuJoCo, so the lines to copy contain one. `classes`: the file may have classes of defaults, whose values a new
-    default does not change.
-    """
-
-    planar: PlanarModel
+    planar: PlanarModel  # with joints that move exactly in the plane
     mechanism: Mechanism
-    users: Any
-    tilt: float = 0.0
-    urdf: bool = False
-    classes: bool = False
+    users: Any  # the model that runs, with the joints of the user
+    tilt: float = 0.0  # rad, the largest difference of the axes in these two models
+    urdf: bool = False  # whether the file is URDF without an element for MuJoCo, which the lines to copy then contain
+    classes: bool = False  # whether the file may have classes of defaults, which a new default does not change
 
     engine = "MuJoCo"
     assumed = ""
@@ -125,7 +118,7 @@ class OwnMuJoCo:
 
     @property
     def declares(self) -> bool:
-        """Not with a rod: the equality of a tendon lacks the velocity term, which an ideal row has."""
+        """False with a rod, since the equality of a tendon has no velocity term, unlike an ideal row."""
         return not any(isinstance(joint, Rod) for joint in self.mechanism.joints)
 
     @property
@@ -166,7 +159,7 @@ class OwnMuJoCo:
         return self._start_accelerations(model)
 
     def _start_accelerations(self, model: Any) -> Array:
-        """Accelerations (bodies, 3) at the start, with a tolerance of zero, so that the solver's error is rounding."""
+        """The accelerations (bodies, 3) at t = 0. With tolerance zero the error of the solver is rounding."""
         model = copy.copy(model)
         model.opt.tolerance, model.opt.iterations = 0.0, max(100, model.opt.iterations)
         data = self._consistent_start(model)
@@ -190,7 +183,7 @@ class OwnMuJoCo:
         return declared(self.planar, self.mechanism, columns, self._drift(), moved)
 
     def _drift(self) -> Array:
-        """Accelerations (3 bodies,) at the start with zero accelerations of MuJoCo's coordinates."""
+        """The accelerations (3 bodies,) at t = 0 for zero accelerations of MuJoCo's coordinates."""
         data = self._consistent_start(self.planar.model)
         mujoco.mj_forward(self.planar.model, data)
         data.qacc[:] = 0.0
@@ -204,7 +197,7 @@ class OwnMuJoCo:
         for at, qpos, rates in zip(t, positions(self.planar, pose), twist, strict=True):
             data.qpos[:] = qpos
             mujoco.mj_fwdPosition(model, data)
-            events: list[tuple[str, str]] = []  # words, and the kind of element to switch off
+            events: list[tuple[str, str]] = []  # a description, and the kind of element to switch off
             for kind, index in zip(data.efc_type, data.efc_id, strict=True):
                 if kind in LIMIT_ROWS:
                     events.append((f"{name_of(model, LIMIT_ROWS[kind], index)} reaches its limit", "limit"))
@@ -267,7 +260,7 @@ class OwnMuJoCo:
             reset_at = log.reset_at
             is_valid = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
             if reset_at is not None:
-                is_valid &= t < reset_at - model.opt.timestep / 2  # a sum of steps is rounded
+                is_valid &= t < reset_at - model.opt.timestep / 2  # half a step, since MuJoCo's clock is rounded
             is_valid = np.logical_and.accumulate(is_valid)
             pose, twist, acceleration = self._read(model, qpos[is_valid], qvel[is_valid], len(t))
             warnings = (*log.messages, *release_warnings())
@@ -277,7 +270,7 @@ class OwnMuJoCo:
         return Trajectory(t, pose, twist, reaction, stepping, warnings, reset_at)
 
     def _read(self, model: Any, qpos: Array, qvel: Array, count: int) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (count, bodies, 3) of the first states, NaN after them."""
+        """Poses, twists and accelerations (count, bodies, 3) of the given states; NaN after the last state."""
         pose, twist, acceleration = np.full((3, count, len(self.mechanism.bodies), 3), np.nan)
         data = self._own_start(model)
         if len(qpos):
@@ -291,11 +284,10 @@ class OwnMuJoCo:
         return pose, twist, acceleration
 
     def _own_start(self, model: Any) -> Any:
-        """A new mujoco.MjData at the user's start."""
         return in_state(model, self.planar.data)
 
     def _consistent_start(self, model: Any) -> Any:
-        """A new mujoco.MjData at the start with the velocities of the mechanism, which satisfy all joints."""
+        """A new mujoco.MjData at t = 0 with the velocities of the mechanism, which satisfy all joints."""
         data = self._own_start(model)
         mujoco.mj_fwdPosition(model, data)
         if np.any(self.start_twist != self.mechanism.twist):

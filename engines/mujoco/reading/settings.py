@@ -1,7 +1,8 @@
-"""The regularisation of the loops of a user's model as MuJoCo declares it, and changes of settings in model and file.
+"""The regularisation of loops that MuJoCo declares for a user's model, and changes of settings in the model and file.
 
-A row obeys a + b v + k d r = -R f. R is (1 - d) / d times a diagonal for the inverse inertia, and the impedance d grows
-with the gap ("Computation: Constraint model" and "Modeling: Solver parameters" in MuJoCo's documentation).
+A row obeys a + b v + k d r = -R f, where r is its gap and f its force. R is (1 - d) / d times a diagonal matrix for the
+inverse inertia. The impedance d grows with the gap. MuJoCo documents the law in "Computation: Constraint model" and
+"Modeling: Solver parameters".
 """
 
 from __future__ import annotations
@@ -31,17 +32,17 @@ MIN_IMPEDANCE, MAX_IMPEDANCE = 1e-4, 0.9999  # mjMINIMP and mjMAXIMP
 
 @dataclass(frozen=True, eq=False)
 class _EqualityRows:
-    """The rows of an equality, and the indices `ideal` of the mechanism's rows that it holds.
+    """The rows of an equality, and the rows of the mechanism that it enforces.
 
-    `blocks`: slices of the equality's rows and of the ideal ones, and the matrix that takes the latter to the former.
-    `lengths` (ideal,): the norms of its columns. `solimp` (5,).
+    An entry of `blocks` is a slice of the equality's rows, a slice of `ideal`, and a matrix. The product of the matrix
+    and these rows of the mechanism gives these rows of the equality.
     """
 
     equality: int
-    ideal: list[int]
+    ideal: list[int]  # indices of the mechanism's rows
     blocks: tuple[tuple[slice, slice, Array], ...]
-    lengths: Array
-    solimp: Array
+    lengths: Array  # the norms (ideal,) of the columns of the matrices
+    solimp: Array  # (5,)
     stiffness: float
     damping: float
 
@@ -51,12 +52,11 @@ def declared(
 ) -> Callable[[Array, Array], RowRegularisation]:
     """The regularisation of the rows as a function of gaps (rows,) [m, rad] and a pose (bodies, 3).
 
-    directions (3 bodies, nv): the twists of unit velocities of MuJoCo's coordinates at the start, where its rows are
-    compared with the mechanism's: a row that is a multiple of ours has another compliance. drift (3 bodies,): the
-    accelerations of the bodies there with zero accelerations of the coordinates: these are the result of an equality of
-    a tendon, which has no velocity term (up to 4.0.1). `moved` returns a mujoco.MjData at a pose, after mj_fwdPosition;
-    it is used only with the flag `diagexact`, with which the diagonal depends on the pose. Otherwise the diagonal is
-    an estimate by the compiler.
+    `directions` (3 bodies, nv): the twists at t = 0 for unit velocities of MuJoCo's coordinates. They are needed to
+    compare MuJoCo's rows with the rows of the mechanism, since a multiple of a row has another compliance. `drift`
+    (3 bodies,): the accelerations at t = 0 for zero accelerations of the coordinates. An equality of a tendon gives
+    these accelerations, since it has no velocity term (up to 4.0.1). `moved(pose)`: a mujoco.MjData at a pose, after
+    mj_fwdPosition. It is called only if the flag `diagexact` is set, since the diagonal then depends on the pose.
     """
     begin = np.cumsum([0, *(joint.size for joint in mechanism.joints)])
     rows_of = {joint.name: list(range(at, at + joint.size)) for joint, at in zip(mechanism.joints, begin, strict=False)}
@@ -81,7 +81,7 @@ def declared(
             stiffness[rows.ideal], damping[rows.ideal] = rows.stiffness * d, rows.damping
             diagonal = _diagonal(data, rows.equality)
             for of_mujoco, of_ideal, multiples in rows.blocks:
-                # R f = a_ref - a in MuJoCo's rows, which are these multiples of ours.
+                # In MuJoCo's rows, which are multiples of ours, R f = a_ref - a.
                 inverse = multiples.T @ (multiples / diagonal[of_mujoco, None])
                 block = np.ix_(rows.ideal[of_ideal], rows.ideal[of_ideal])
                 compliance[block] = (1 - d) / d * np.linalg.inv(inverse)
@@ -91,7 +91,7 @@ def declared(
 
 
 def _equality_rows(planar: PlanarModel, equality: int, ideal: list[int], ours: Array, theirs: Array) -> _EqualityRows:
-    """The rows of an equality: those of a point (a connect or a weld) are along the axes of the world."""
+    """The rows of an equality. MuJoCo's rows for the point of a connect or a weld are along the axes of the world."""
     rows, blocks, lengths = equality_rows(planar.data, equality), [], np.ones(len(ideal))
     holds_point = len(ideal) > 1
     if holds_point:
@@ -108,14 +108,14 @@ def _equality_rows(planar: PlanarModel, equality: int, ideal: list[int], ours: A
 
 
 def _diagonal(data: Any, equality: int) -> Array:
-    """MuJoCo's estimate of the inverse inertia (rows,) of the rows of an equality."""
+    """MuJoCo's estimate (rows,) of the inverse inertia of the rows of an equality."""
     rows = equality_rows(data, equality)
     impedance = data.efc_KBIP[rows, 2]
     return data.efc_R[rows] * impedance / (1 - impedance)
 
 
 def impedance_of(solimp: Array, gap: float) -> float:
-    """The impedance of a row at a gap [m or rad], for a solimp (5,)."""
+    """The impedance of a row at a gap [m or rad] for `solimp` (5,)."""
     low, high = (float(np.clip(value, MIN_IMPEDANCE, MAX_IMPEDANCE)) for value in solimp[:2])
     width, middle, power = (float(value) for value in solimp[2:5])
     part = min(gap / width, 1.0) if width > 0 else 1.0
@@ -128,16 +128,15 @@ def impedance_of(solimp: Array, gap: float) -> float:
     return low + rise * (high - low)
 
 
-# The kinds of elements that a flag of MuJoCo switches off, and further kinds that have no flag.
 FLAGGED_ELEMENTS = ("contact", "limit", "frictionloss", "equality", "actuation", "spring", "damper", "gravity")
 UNFLAGGED_ELEMENTS = ("armature", "fluid", "forcelimit", "sleep")
-TIED_STEPS = 5.0  # time constant of the stiffer loops, in steps, as in the tuned variant
+TIED_STEPS = 5.0  # the time constant of stiff loops in steps, as in the method TUNED
 DEFAULT_EQUALITY = ((0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0))  # MuJoCo's default solref and solimp
-STEP_COUNT, FURTHER_STEP_COUNT = 6, 11  # numbers of steps that are tried, each half of the one before
+STEP_COUNT, FURTHER_STEP_COUNT = 6, 11  # how many steps are tried; each is half of the previous step
 
 
 def switch_off(model: Any, element: str) -> None:
-    """Switch off a kind of element in a model. Raises ValueError for another word."""
+    """Switch off a kind of element in a model. Raises ValueError for an unknown kind."""
     if element == "armature":
         model.dof_armature[:] = 0.0
     elif element == "forcelimit":
@@ -156,18 +155,16 @@ def switch_off(model: Any, element: str) -> None:
 
 
 def tied_values(dt: float) -> dict[str, str]:
-    """solref and solimp of loops that are as stiff as a step dt [s] allows."""
     return {"solref": f"{TIED_STEPS * dt:.9g} 1", "solimp": " ".join(f"{value:g}" for value in STIFFEST)}
 
 
 def changes(
     model: Any, soft: bool, smallest: float, urdf: bool = False, classes: bool = False, further: bool = False
 ) -> list[Change]:
-    """Steps down to `smallest` [s], by the model's own integrator and by RK4.
+    """Changes to steps of at least `smallest` [s], with the model's own integrator and with RK4.
 
-    `soft`: the model has loops, which are tried with their own stiffness and stiffer. `urdf`: the lines to copy have
-    the element in which a URDF file contains MuJoCo's options. `classes`: the file has classes of defaults, whose
-    values a new default does not change. `further`: smaller steps too.
+    `soft`: whether the model has loops, which are also tried with a larger stiffness. `urdf` and `classes`: as in
+    `OwnMuJoCo`. `further`: whether to try even smaller steps.
     """
     own_step = float(model.opt.timestep)
     solref, solimp = DEFAULT_EQUALITY
@@ -198,7 +195,7 @@ Tag = tuple[tuple[str, ...], int, int]  # the path of an element, and the begin 
 
 
 def rewritten(source: bytes, change: Change) -> bytes:
-    """The file with these settings; included files are not changed. Raises Unsupported if it is no XML."""
+    """The file with other settings; included files are not changed. Raises Unsupported if the file is no XML."""
     options = dict(change.options)
     option = {"timestep": f"{change.dt!r}", "integrator": options["integrator"]}
     tags = _tags(source)
@@ -225,7 +222,7 @@ def rewritten(source: bytes, change: Change) -> bytes:
 
 
 def _tags(source: bytes) -> list[Tag]:
-    """The start tags of all elements, in the order of the file. Raises Unsupported if it is no XML."""
+    """The start tags of all elements in the order of the file. Raises Unsupported if the file is no XML."""
     parser, path, tags = expat.ParserCreate(), list[str](), list[Tag]()
 
     def on_start(name: str, attributes: dict[str, str]) -> None:
@@ -245,7 +242,6 @@ def _tags(source: bytes) -> list[Tag]:
 
 
 def _with(tag: bytes, values: dict[str, str]) -> bytes:
-    """A start tag with these attributes."""
     for name, value in values.items():
         attribute = f'{name}="{value}"'.encode()
         tag, count = re.subn(rf"(?<=\s){name}\s*=\s*(\"[^\"]*\"|'[^']*')".encode(), attribute, tag)
