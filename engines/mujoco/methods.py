@@ -56,5 +56,5 @@ DRIVES = (replace(DEFAULT, variant="default, overwritten crank", drive="overwrit
 # The blade of DEFAULT, with friction that acts as fast as the step allows and with the integrator Euler.
 SKATES = (replace(TUNED, variant="friction blade", skates="blade", integrator="Euler"),)
 ROLLS = (replace(TUNED, variant="contact, stiff Euler", integrator="Euler"),)
-# TUNED has no user rows, since they are no setting of MuJoCo. Here a slot with a moving line is a user row.
+# A slot with a moving line is a user row in this method. TUNED has none, since user rows are no setting of MuJoCo.
 SLOTS = (replace(TUNED, variant="tuned, slots as rows", slots="rows"),)

@@ -57,7 +57,7 @@ class Shipped(_Spring):
 
 @dataclass(frozen=True)
 class TiedToStep(_Spring):
-    """Documented settings only: a time constant of some steps, and the largest impedance.
+    """Springs with documented settings only: a time constant of some steps, and the largest impedance.
 
     The gap is R f / k, so it falls as the square of the step. With no other documented setting does it vanish. MuJoCo
     increases a shorter time constant to two steps, unless the flag `refsafe` is disabled (mjDSBL_REFSAFE in mjtype.h).

@@ -63,7 +63,7 @@ def _joints_with_parent(planar: PlanarModel, group: int) -> list[Joint]:
         turned = planar.turned(parent, group)
         return [Slot(label, *names, *line), Drive(planar.names.new(f"{label}, no turning"), *names, 0.0, turned)]
     anchor = data.xanchor[hinges[0]]
-    # The line is in the parent if the slide comes first.
+    # The line of the slot is fixed in the parent if the slide comes before the hinge.
     first, second = (parent, group) if slides[0] < hinges[0] else (group, parent)
     line = planar.in_body(first, anchor), planar.direction(first, axis), planar.in_body(second, anchor)
     return [Slot(label, planar.name(first), planar.name(second), *line)]

@@ -20,8 +20,8 @@ from reference.joints import Body, Joint, Vector
 
 Array = NDArray[np.float64]
 PLANAR = 1e-9  # smaller components are rounding, relative to a unit vector or an inertia
-# The largest tilt [rad] of an axis that counts as normal to the plane. Numbers with six digits tilt an axis by 2e-6, and
-# 1.5708 for a right angle by 4e-6. Tilts add up along chains. The tilt of 1.57 for a right angle, 8e-4, is refused.
+# The largest tilt [rad] of an axis that counts as normal to the plane. Rounding to six digits tilts an axis by 2e-6,
+# and 1.5708 for a right angle by 4e-6. Tilts add up along chains. The tilt of 1.57 for a right angle, 8e-4, is refused.
 MAX_TILT = 1e-4
 MAX_ROUNDED_TILT = 1e-2  # rad, the largest tilt for which a message mentions rounding in the file
 

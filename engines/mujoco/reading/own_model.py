@@ -101,7 +101,7 @@ def _at_limits(model: Any, data: Any) -> list[str]:
 class OwnMuJoCo:
     """A compiled model and its initial state; see `engines.reading.OwnModel`."""
 
-    planar: PlanarModel  # with joints that move exactly in the plane
+    planar: PlanarModel  # a model with joints that move exactly in the plane
     mechanism: Mechanism
     users: Any  # the model that runs, with the joints of the user
     tilt: float = 0.0  # rad, the largest difference of the axes in these two models

@@ -56,7 +56,7 @@ def declared(
     compare MuJoCo's rows with the rows of the mechanism, since a multiple of a row has another compliance. `drift`
     (3 bodies,): the accelerations at t = 0 for zero accelerations of the coordinates. An equality of a tendon gives
     these accelerations, since it has no velocity term (up to 4.0.1). `moved(pose)`: a mujoco.MjData at a pose, after
-    mj_fwdPosition. It is called only if the flag `diagexact` is set, since the diagonal then depends on the pose.
+    mj_fwdPosition. `moved` is called only with the flag `diagexact`, since the diagonal then depends on the pose.
     """
     begin = np.cumsum([0, *(joint.size for joint in mechanism.joints)])
     rows_of = {joint.name: list(range(at, at + joint.size)) for joint, at in zip(mechanism.joints, begin, strict=False)}

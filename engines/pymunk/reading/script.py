@@ -70,8 +70,8 @@ def run_script(path: Path, file: str, name: str) -> ScriptSpace:
     """The space that a script calls `name`, or that a function of this name returns; "" for the only space.
 
     The script is stopped before it steps that space, and its output is discarded. If joints correct their whole gap,
-    the first step may be a half step that advances the velocities. The script is then run again, and the first step is
-    a half step if the second one is twice as long. Raises ValueError with a message of one line.
+    the first step may be a half step that advances the velocities. The script is then run again up to the second step.
+    If this step is twice as long as the first one, the first one is such a half step. Raises ValueError in one line.
     """
     script = _run_script(path, file, name)
     if script.dt is None or not any(joint.error_bias == 0 for joint in script.space.constraints):
@@ -213,7 +213,7 @@ class _FirstStep:
 def _stopped_at_step(is_wanted: Callable[[Any], bool], half: float | None) -> Iterator[_FirstStep]:
     """Make the first step of a wanted space raise _SpaceStepped. Copies of a space make their steps.
 
-    With `half`, the second step raises it. If it is twice as long as the first one, the first one is undone.
+    With `half`, the second step raises it. A first step that is half as long is then undone.
     """
     original_step, original_copy = pymunk.Space.step, pymunk.Space.copy
     copies: list[pymunk.Space] = []
