@@ -20,23 +20,9 @@ from reports.pages.findings import findings
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.plots.theme import svg
 from reports.plots.work_precision import ComparedRow, engines_compared
+from reports.write import columns as engine_tables
 from reports.write import unmeasured
-from reports.write.columns import (
-    CPU_BUDGET,
-    NO_JOINT,
-    NOT_BUILT,
-    Column,
-    EngineLine,
-    absence_reason,
-    describe_inner_runs,
-    engine_lines,
-    equal_cost,
-    equal_error,
-    equal_step,
-    error_by_cost,
-    remarks_of,
-    within_budget,
-)
+from reports.write.columns import Column, EngineLine
 from reports.write.page_tables import COMPARED_STEP, TARGETS
 from reports.write.provenance import machine, versions
 from reports.write.tables import DASH, error_words, markdown
@@ -86,7 +72,7 @@ def compared_lines(pages: Mapping[Page, Material]) -> list[EngineLine]:
                 if cell.scene == scene and cell.samples is None and cell.purpose in ("sweep", "beside")
             }
             with_extras = replace(page, scenes=(scene,), engines=(*page.engines, *registry.OTHERS))
-            lines += engine_lines([(with_extras, list(rows.values()))])
+            lines += engine_tables.engine_lines([(with_extras, list(rows.values()))])
     return lines
 
 
@@ -102,13 +88,17 @@ def compared_picture(lines: Sequence[EngineLine]) -> str:
         for column in COMPARED_COLUMNS:
             pairs = [(line, Column.WHOLE if Column.WHOLE in line.columns else column) for line in of_scene]
             errors[column] = {
-                line.engine: error_by_cost([rows for _, rows in line.columns.get(filled, ())], line.quantity)
+                line.engine: engine_tables.error_by_cost(
+                    [rows for _, rows in line.columns.get(filled, ())], line.quantity
+                )
                 for line, filled in pairs
             }
             if column is not Column.CODE:  # an engine may have no variant with our code
                 absent[column] = {
-                    reason: [line.engine for line, filled in pairs if absence_reason(line, filled) == reason]
-                    for reason in (NO_JOINT, NOT_BUILT)
+                    reason: [
+                        line.engine for line, filled in pairs if engine_tables.absence_reason(line, filled) == reason
+                    ]
+                    for reason in (engine_tables.NO_JOINT, engine_tables.NOT_BUILT)
                 }
         rows.append(ComparedRow(title, f"largest {quantity(of_scene[0].quantity).heading}", errors, absent))
     if not rows:
@@ -132,12 +122,13 @@ def compared_table(lines: Sequence[EngineLine]) -> str:
 def _compared_cell(line: EngineLine, column: Column) -> str:
     if column not in line.columns and (Column.WHOLE in line.columns or column is Column.CODE):
         return DASH  # no variant of this kind
-    if reason := absence_reason(line, column):
+    if reason := engine_tables.absence_reason(line, column):
         return f"*{reason}*"
     engine, rows = line.columns[column][-1]
     at_step = error_words(next((row for row in rows if is_step(row.step, COMPARED_STEP)), None), line.quantity)
-    runs = describe_inner_runs(engine, line.scene, COMPARED_STEP)
-    return f"{within_budget(line, column)} ({at_step}{'; ' + runs if runs else ''}){remarks_of(line, column)}"
+    runs = engine_tables.describe_inner_runs(engine, line.scene, COMPARED_STEP)
+    in_brackets = f"({at_step}; {runs})" if runs else f"({at_step})"
+    return f"{engine_tables.within_budget(line, column)} {in_brackets}{engine_tables.remarks_of(line, column)}"
 
 
 def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
@@ -161,10 +152,10 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
             compared=compared_table(lines),
             glance=glance_table(pages, lines, COMPARED_SCENES),
             absent_engines=sentences()["absent"],
-            equal_cost=equal_cost(entries),
-            equal_error=equal_error(entries),
-            equal_step=equal_step(entries),
-            budget=1e3 * CPU_BUDGET,
+            equal_cost=engine_tables.equal_cost(entries),
+            equal_error=engine_tables.equal_error(entries),
+            equal_step=engine_tables.equal_step(entries),
+            budget=1e3 * engine_tables.CPU_BUDGET,
             targets=TARGETS,
             steps=list(USUAL_STEPS),
             outcomes=list(Outcome),

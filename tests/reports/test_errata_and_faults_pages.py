@@ -18,18 +18,6 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Answer, answered
 from reports.pages.errata import page as referees
-from reports.pages.errata.page import (
-    CONFIRMED,
-    ERRATA,
-    REFEREES,
-    TASKS,
-    WORD_SLIPS,
-    Ruling,
-    SampleWindow,
-    digits,
-    rulings,
-    verdict,
-)
 from reports.pages.faults.page import (
     OFFSETS,
     PAGE,
@@ -112,22 +100,22 @@ LEAST = {19: 1e-3}
 
 
 @pytest.fixture(scope="module")
-def ruled() -> tuple[Ruling, ...]:
-    return rulings((task, answer_to(task)) for task in TASKS)[0]
+def ruled() -> tuple[referees.Ruling, ...]:
+    return referees.rulings((task, answer_to(task)) for task in referees.TASKS)[0]
 
 
 def test_the_correction_is_the_derivative_and_the_printed_formula_is_not():
-    assert [slip.number for slip in ERRATA] == [1, 2, 11, 19, 23, 24, 25, 26, 27, 28]
-    assert [slip.number for slip in WORD_SLIPS] == [10, 18]  # nothing to compute
+    assert [slip.number for slip in referees.ERRATA] == [1, 2, 11, 19, 23, 24, 25, 26, 27, 28]
+    assert [slip.number for slip in referees.WORD_SLIPS] == [10, 18]  # nothing to compute
     rolling = errata.rolling_acceleration()
-    for number, values in {0: rolling, **{slip.number: slip.values for slip in ERRATA}}.items():
+    for number, values in {0: rolling, **{slip.number: slip.values for slip in referees.ERRATA}}.items():
         # Numbers of the order of 1 to 10; Cauchy's integral divides rounding by radius^2 = 1/16.
         assert values.agreement < 1e-12, number
         assert values.miss > LEAST.get(number, 0.1), number
 
 
 def test_engines_check_the_formulas_of_the_scripts():
-    by_number = {erratum.number: erratum.values for erratum in ERRATA}
+    by_number = {erratum.number: erratum.values for erratum in referees.ERRATA}
     for number, (bar, printed) in errata.PENDULUM_SLIPS.items():
         state = errata.BarState(errata.BAR, errata.PHI[bar], errata.PHI_RATE[bar], errata.PHI_ACCELERATION[bar])
         assert printed(state) == pytest.approx(by_number[number].printed, abs=1e-12), number
@@ -135,49 +123,59 @@ def test_engines_check_the_formulas_of_the_scripts():
 
 
 def test_several_engines_confirm_each_right_formula_and_contradict_the_printed_one(ruled):
-    for number in (CONFIRMED, *(slip.number for slip in ERRATA)):
+    for number in (referees.CONFIRMED, *(slip.number for slip in referees.ERRATA)):
         of_slip = [ruling for ruling in ruled if ruling.number == number]
         assert len({ruling.method.split()[0] for ruling in of_slip}) >= 2, number
         # Accelerations are differences of velocities over 1e-3 s, and engines are exact to 1e-9 and better here.
         assert max(ruling.values.agreement for ruling in of_slip) < 1e-6, number
         # The rates of the four-bar are right as printed.
-        assert number == CONFIRMED or min(ruling.values.miss for ruling in of_slip) > LEAST.get(number, 0.1), number
+        assert number == referees.CONFIRMED or min(ruling.values.miss for ruling in of_slip) > LEAST.get(number, 0.1), (
+            number
+        )
 
 
 def test_the_motion_of_a_wrong_mechanism_contradicts_the_right_formula():
     """The referee must be able to fail: with a bar that is 1 % too long, no formula fits the ends of the bars."""
     mechanism = referees.double_pendulum()
     length = next(mistake for mistake in mistakes(mechanism) if mistake.kind == "length")
-    motion = mistaken(REFEREES[-1], length, 1e-2).build(mechanism, referees.WINDOW_SPACING)(referees.RUN_SAMPLES, 1)
-    result = referees._pendulum(SampleWindow(motion.pose[-referees.POINTS :], motion.twist[-referees.POINTS :]))
+    motion = mistaken(referees.REFEREES[-1], length, 1e-2).build(mechanism, referees.WINDOW_SPACING)(
+        referees.RUN_SAMPLES, 1
+    )
+    result = referees._pendulum(
+        referees.SampleWindow(motion.pose[-referees.POINTS :], motion.twist[-referees.POINTS :])
+    )
     assert max(result[number].agreement for number in (23, 25)) > 1e-3
 
 
 def test_an_engine_that_fails_is_reported_and_the_others_decide():
-    first, other = TASKS[0], TASKS[-1]
+    first, other = referees.TASKS[0], referees.TASKS[-1]
     aborted = Answer(Outcome.ABORTED, "no such thing")
-    ruled, missing = rulings([(first, aborted), (other, answer_to(other)), (other, Answer(Outcome.UNSUPPORTED))])
+    ruled, missing = referees.rulings(
+        [(first, aborted), (other, answer_to(other)), (other, Answer(Outcome.UNSUPPORTED))]
+    )
     assert missing == ["pymunk extended where a disc rolls off a round hill: **aborted**: no such thing"]
     assert {ruling.about for ruling in ruled} == {other.question}
     poses = np.full_like(answer_to(first).array("pose"), np.nan)
-    _, missing = rulings([(first, replace(answer_to(first), values={"pose": poses, "twist": poses}))])
+    _, missing = referees.rulings([(first, replace(answer_to(first), values={"pose": poses, "twist": poses}))])
     assert missing == ["pymunk extended where a disc rolls off a round hill: its motion is not finite"]
 
 
 def test_a_verdict_has_the_errors_of_both_formulas_against_derivative_and_engines():
-    erratum = ERRATA[0]
+    erratum = referees.ERRATA[0]
     computed = Values(np.array([3.0]), np.array([1.0]), np.array([1.25]))
     measured = [Values(np.array([3.0]), np.array([1.0]), np.array([value])) for value in (1.5, 1.4)]
-    text = verdict(erratum, computed, [Ruling(erratum.number, "toy", "a wheel", values) for values in measured])
+    text = referees.verdict(
+        erratum, computed, [referees.Ruling(erratum.number, "toy", "a wheel", values) for values in measured]
+    )
     assert re.findall(r"\d+\.\d+", text) == ["1.25", "1.8", "0.25", "1.5", "0.5"]
-    assert verdict(erratum, computed, []).endswith("by 0.25.")
+    assert referees.verdict(erratum, computed, []).endswith("by 0.25.")
 
 
 def test_the_command_prints_every_slip_once_and_refuses_an_unknown_one(capfd):
     assert call("errata") == FINE
     out = capfd.readouterr().out
     numbers = [int(result) for result in re.findall(r"^(\d+)\s", out, re.MULTILINE)]
-    assert numbers == sorted(slip.number for slip in (*ERRATA, *WORD_SLIPS))
-    assert digits(ERRATA[2].values.printed) in out
+    assert numbers == sorted(slip.number for slip in (*referees.ERRATA, *referees.WORD_SLIPS))
+    assert referees.digits(referees.ERRATA[2].values.printed) in out
     assert call("errata", "3") == REFUSED
     assert "there are 1, 2, 10" in one_line(capfd.readouterr().err)

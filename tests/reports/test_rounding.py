@@ -15,17 +15,7 @@ from reports.model.cells import Cell
 from reports.model.ending import BadInput
 from reports.model.outcomes import Outcome
 from reports.model.quantities import OF, QUANTITIES, agrees, quantity
-from reports.write.csv_files import (
-    ERROR_COLUMNS,
-    IDENTITY_COLUMNS,
-    TIMING_NOISE,
-    Published,
-    as_csv,
-    as_published,
-    cell_text,
-    read_published,
-    with_published_numbers,
-)
+from reports.write import csv_files
 from reports.write.provenance import machine
 from tests.rows import ROW
 from tests.toys import Disc, Toy
@@ -57,44 +47,50 @@ def test_the_numbers_of_two_processors_agree_with_either_as_the_baseline():
 @pytest.fixture
 def before(tmp_path: Path) -> dict[str, str]:
     """The published texts of a row."""
-    (tmp_path / "errors.csv").write_text(as_csv([ROW], timings=False))
-    (tmp_path / "timings.csv").write_text(as_csv([ROW], timings=True, header=f"a date\n{machine()}"))
-    published = read_published(tmp_path)
+    (tmp_path / "errors.csv").write_text(csv_files.as_csv([ROW], timings=False))
+    (tmp_path / "timings.csv").write_text(csv_files.as_csv([ROW], timings=True, header=f"a date\n{machine()}"))
+    published = csv_files.read_published(tmp_path)
     assert (published.machine, published.engines) == (machine(), ("toy",))
     (texts,) = published.rows.values()
     return dict(texts)
 
 
-@pytest.mark.parametrize("name", ERROR_COLUMNS)
+@pytest.mark.parametrize("name", csv_files.ERROR_COLUMNS)
 def test_an_error_keeps_its_published_text_only_within_rounding(name, before):
     published, rounding = getattr(ROW, name), quantity(OF.get(name, name)).rounding
     assert (
-        getattr(with_published_numbers(replace(ROW, **{name: published + 0.9 * rounding}), before, True), name)
+        getattr(
+            csv_files.with_published_numbers(replace(ROW, **{name: published + 0.9 * rounding}), before, True), name
+        )
         == published
     )
-    changed = getattr(with_published_numbers(replace(ROW, **{name: published * 1.0123456}), before, True), name)
+    changed = getattr(
+        csv_files.with_published_numbers(replace(ROW, **{name: published * 1.0123456}), before, True), name
+    )
     assert changed == float(f"{published * 1.0123456:.4g}") != published
 
 
-@pytest.mark.parametrize(("name", "noise"), TIMING_NOISE.items())
+@pytest.mark.parametrize(("name", "noise"), csv_files.TIMING_NOISE.items())
 def test_a_time_is_kept_within_noise_and_on_the_same_machine(name, noise, before):
     published = getattr(ROW, name)
     within, beyond = (replace(ROW, **{name: published * factor}) for factor in (0.99 * noise, 1.01 * noise))
     for where, same in ((machine(), True), ("another machine", False)):
-        of_run = Published({tuple(cell_text(ROW, column) for column in IDENTITY_COLUMNS): before}, where)
-        assert (getattr(as_published({CELL: within}, of_run)[CELL], name) == published) == same
-    assert getattr(with_published_numbers(beyond, before, True), name) != published
+        of_run = csv_files.Published(
+            {tuple(csv_files.cell_text(ROW, column) for column in csv_files.IDENTITY_COLUMNS): before}, where
+        )
+        assert (getattr(csv_files.as_published({CELL: within}, of_run)[CELL], name) == published) == same
+    assert getattr(csv_files.with_published_numbers(beyond, before, True), name) != published
 
 
 def test_a_new_row_or_another_outcome_keeps_no_published_number(before):
     moved = replace(ROW, position=ROW.position * (1 + 1e-12), cpu=1.01 * ROW.cpu)
-    torn = with_published_numbers(replace(moved, outcome=Outcome.TORN), before, True)
-    assert torn.cpu == with_published_numbers(moved, {}, True).cpu == float(f"{1.01 * ROW.cpu:.4g}")
+    torn = csv_files.with_published_numbers(replace(moved, outcome=Outcome.TORN), before, True)
+    assert torn.cpu == csv_files.with_published_numbers(moved, {}, True).cpu == float(f"{1.01 * ROW.cpu:.4g}")
     assert torn.outcome == Outcome.TORN
 
 
 def test_a_file_without_the_columns_of_rows_is_refused_by_name(tmp_path):
     (tmp_path / "errors.csv").write_text("scene,engine\na,b\n")
     with pytest.raises(BadInput, match=r"errors\.csv has no column 'variant'"):
-        read_published(tmp_path)
-    assert not read_published(tmp_path / "nowhere").rows
+        csv_files.read_published(tmp_path)
+    assert not csv_files.read_published(tmp_path / "nowhere").rows

@@ -33,21 +33,9 @@ from reports.model.quantities import quantity
 from reports.model.tasks import Answer, Task, answered
 from reports.pages.index import foot
 from reports.pages.skate.page import PAGE as SKATE
+from reports.write import columns as engine_tables
 from reports.write import csv_files, provenance, tables
-from reports.write.columns import (
-    Column,
-    column_of,
-    displayed_variant,
-    enforcement_by_method,
-    engine_lines,
-    equal_cost,
-    equal_error,
-    equal_step,
-    error_by_cost,
-    error_within,
-    remarks_of,
-    with_displayed_variants,
-)
+from reports.write.columns import Column
 from reports.write.experiments import render_experiment, without_incomparable_errors
 from reports.write.page_tables import advice, advice_table, compared_step, reliable, scene_table
 from reports.write.provenance import machine, still_installed, versions
@@ -132,7 +120,7 @@ def at_steps() -> Iterator[list[Measurement]]:
 
 
 def cell_of(rows: Iterable[Measurement]) -> str:
-    (text,) = equal_step([(page_of(), list(rows))], STEPS).values()
+    (text,) = engine_tables.equal_step([(page_of(), list(rows))], STEPS).values()
     head, line = table(text)
     return line[head.index("mujoco documented settings")]
 
@@ -197,7 +185,7 @@ def printed() -> Iterator[str]:
         for j, engine in enumerate(("pymunk", "mujoco"))
         for i, variant in enumerate(VARIANTS)
     ]
-    yield from equal_step([(page_of(scenes=(Disc(), OtherDisc())), rows)], {"usual": 1e-2}).values()
+    yield from engine_tables.equal_step([(page_of(scenes=(Disc(), OtherDisc())), rows)], {"usual": 1e-2}).values()
     yield "## No such joint: the engine's own columns are empty where our code alone holds the joint"
     naive = (
         HeldBy("default", by="ours"),
@@ -207,16 +195,18 @@ def printed() -> Iterator[str]:
     rows = [row for variant in VARIANTS for row in falling(f"toy {variant}", POWER)]
     other = [replace(row, scene="other_disc") for row in rows]
     beside = [*rows, *falling("other default", POWER)]
-    yield equal_cost([(page_of(*naive, Toy("default", name="other")), beside)])
-    yield equal_cost([(page_of(*naive), rows), (page_of(*map(Toy, VARIANTS), scenes=(OtherDisc(),)), other)])
+    yield engine_tables.equal_cost([(page_of(*naive, Toy("default", name="other")), beside)])
+    yield engine_tables.equal_cost(
+        [(page_of(*naive), rows), (page_of(*map(Toy, VARIANTS), scenes=(OtherDisc(),)), other)]
+    )
     yield "## No such joint in the engine, and not built by the adapter"
     unbuilt = [replace(row, outcome=Outcome.UNSUPPORTED) for row in falling("toy default", POWER)]
     for engine in (WithoutPin("default"), Toy("default")):
-        yield equal_cost([(page_of(engine), unbuilt)])
+        yield engine_tables.equal_cost([(page_of(engine), unbuilt)])
     yield "## Cost at equal error: of the cheapest method of a column"
     rows = [*falling("toy default", (1.0, 0.5)), *falling("toy tuned", (1e-3, 1e-5))]
     rows += [replace(row, cpu=0.05) for row in falling("toy extended", (1e-10,))]
-    yield equal_error([(page_of(Toy("default"), *naive[1:]), rows)])["toy"]
+    yield engine_tables.equal_error([(page_of(Toy("default"), *naive[1:]), rows)])["toy"]
     yield "## CSV: sorted, whatever order rows come in"
     rows = [row_of(f"{engine} x", scene=scene, every=every) for engine in "ba" for scene in "dc" for every in (3, 1)]
     for timings in (False, True):
@@ -292,46 +282,46 @@ COLUMNS: tuple[tuple[str, Enforcement, Column], ...] = (
 
 def test_the_enforcement_of_joints_determines_the_column_of_a_method():
     for variant, by, column in COLUMNS:
-        assert column_of(Disc(), HeldBy(variant, by=by)) is column
+        assert engine_tables.column_of(Disc(), HeldBy(variant, by=by)) is column
     cells = [
         Cell(FREE, HeldBy("x", by="ours"), 1),
         Cell(FREE, HeldBy("x"), 1),
         Cell(FREE, HeldBy("x", by="ours"), 10),
     ]
-    assert enforcement_by_method(cells) == {"toy x": "our code or engine"}
+    assert engine_tables.enforcement_by_method(cells) == {"toy x": "our code or engine"}
 
 
 def test_a_naive_method_is_never_printed_under_a_usual_name():
-    assert [displayed_variant(scene, pymunk.DEFAULT) for scene in (FREE, SLEIGH)] == ["default", "naive"]
-    assert displayed_variant(SLEIGH, mujoco.DEFAULT) == "default"  # a contact of its own
-    tricks = [displayed_variant(SLEIGH, HeldBy(variant, by="ours")) for variant in ("default", "tuned")]
+    assert [engine_tables.displayed_variant(scene, pymunk.DEFAULT) for scene in (FREE, SLEIGH)] == ["default", "naive"]
+    assert engine_tables.displayed_variant(SLEIGH, mujoco.DEFAULT) == "default"  # a contact of its own
+    tricks = [engine_tables.displayed_variant(SLEIGH, HeldBy(variant, by="ours")) for variant in ("default", "tuned")]
     assert tricks == ["naive", "naive, tuned"]  # rows of one name would be taken for one method
-    assert displayed_variant(SLEIGH, SKATE_POINT) == SKATE_POINT.variant
+    assert engine_tables.displayed_variant(SLEIGH, SKATE_POINT) == SKATE_POINT.variant
     cell = Cell(SLEIGH, pymunk.DEFAULT, 1)
-    assert with_displayed_variants({cell: row_of("pymunk default")})[cell].method == "pymunk naive"
+    assert engine_tables.with_displayed_variants({cell: row_of("pymunk default")})[cell].method == "pymunk naive"
     # An unusual variant under the documented settings is named, a usual one is not.
     (line,) = (
         line
-        for line in engine_lines([(SKATE, falling("mujoco default", POWER, "position", scene="sleigh"))])
+        for line in engine_tables.engine_lines([(SKATE, falling("mujoco default", POWER, "position", scene="sleigh"))])
         if line.engine == "mujoco"
     )
-    assert remarks_of(line, Column.SETTINGS) == ", contact, *friction blade*"
-    assert remarks_of(line, Column.SHIPPED) == ", contact"
-    assert remarks_of(line, Column.CODE) == ""
+    assert engine_tables.remarks_of(line, Column.SETTINGS) == ", contact, *friction blade*"
+    assert engine_tables.remarks_of(line, Column.SHIPPED) == ", contact"
+    assert engine_tables.remarks_of(line, Column.CODE) == ""
 
 
 def test_an_error_within_a_cpu_time_counts_only_if_no_smaller_step_exceeds_it():
     rows = falling("mujoco tuned", (1e-2, 1e-5, 1e-3, 1e-6))  # they cost 1, 10, 100 and 1000 ms; the second is luck
     for cost, error in ((0.1, 1e-3), (0.01, 1e-3), (0.001, 1e-2), (0.0009, math.inf), (9.0, 1e-6)):
-        assert error_within(rows, "angle", cost) == error
+        assert engine_tables.error_within(rows, "angle", cost) == error
     torn = [*rows[:3], replace(rows[3], outcome=Outcome.TORN)]
-    assert error_within(torn, "angle", 9.0) == math.inf
+    assert engine_tables.error_within(torn, "angle", 9.0) == math.inf
 
 
 def test_a_line_of_the_picture_never_runs_backwards():
     rough = falling("mujoco extended", (1e-2, 1e-5, 1e-7))
     rough[0] = replace(rough[0], cpu=0.05)  # a pilot run made the largest step cost more than the next one
-    points = error_by_cost([rough, falling("mujoco tuned", (1e-1, 1e-3, 1e-3))], "angle")
+    points = engine_tables.error_by_cost([rough, falling("mujoco tuned", (1e-1, 1e-3, 1e-3))], "angle")
     assert points == sorted(points)
     assert [error for _, error in points] == sorted((error for _, error in points), reverse=True)
     assert min(error for _, error in points) == 1e-7

@@ -18,27 +18,16 @@ from pymunk.constraints import RotaryLimitJoint
 from engines.mujoco.writers import MJCF
 from engines.pymunk.written_script import SCRIPT
 from reference.scene import Scene
+from reports.pages.your_loop import page
 from reports.pages.your_loop.experiments import MILLISECONDS_PER_SAMPLE, Fresh, draw, run_lines
 from reports.pages.your_loop.linkages import LINKAGES
-from reports.pages.your_loop.page import (
-    BUILT,
-    CHAIN,
-    DISC,
-    LINE_FILES,
-    LOOP,
-    MUJOCO_CASES,
-    PYMUNK_CASES,
-    PYMUNK_LINES,
-    SLIDER,
-    cell,
-)
 from tests.committed_rows import committed_rows
 
 STEP = 1e-3
 
 
 def lines(name: str) -> str:
-    return (LINE_FILES / f"{name}.txt").read_text(encoding="utf-8")
+    return (page.LINE_FILES / f"{name}.txt").read_text(encoding="utf-8")
 
 
 def error_of(scene: Scene, poses: Callable[[], list[tuple[float, float, float]]], advance: Callable[[], None]) -> float:
@@ -88,14 +77,14 @@ def in_pymunk(scene: Scene, pasted: str) -> float:
 
 
 def row(case, engine) -> float:
-    (result,) = committed_rows([cell(case, engine)]).values()
+    (result,) = committed_rows([page.cell(case, engine)]).values()
     return result.angle
 
 
-CASES = {case.scene.name: (case, other) for case, other in zip(MUJOCO_CASES, PYMUNK_CASES, strict=True)}
+CASES = {case.scene.name: (case, other) for case, other in zip(page.MUJOCO_CASES, page.PYMUNK_CASES, strict=True)}
 
 
-@pytest.mark.parametrize("scene", [LOOP, SLIDER, CHAIN], ids=lambda scene: scene.name)
+@pytest.mark.parametrize("scene", [page.LOOP, page.SLIDER, page.CHAIN], ids=lambda scene: scene.name)
 def test_the_lines_for_a_compiled_model_of_mujoco_give_the_error_of_the_page(scene):
     case, _ = CASES[scene.name]
     shipped = MJCF.write(scene.mechanism(), STEP, "default")
@@ -104,26 +93,26 @@ def test_the_lines_for_a_compiled_model_of_mujoco_give_the_error_of_the_page(sce
 
 
 def test_the_xml_lines_give_the_same_error_on_joints_without_own_settings():
-    case, _ = CASES[LOOP.name]
-    shipped = re.sub(r' sol(ref|imp)="[^"]*"', "", MJCF.write(LOOP.mechanism(), STEP, "default"))
-    assert in_mujoco(LOOP, shipped) > 0.005
+    case, _ = CASES[page.LOOP.name]
+    shipped = re.sub(r' sol(ref|imp)="[^"]*"', "", MJCF.write(page.LOOP.mechanism(), STEP, "default"))
+    assert in_mujoco(page.LOOP, shipped) > 0.005
     pasted = shipped.replace("</mujoco>", f"{lines('options')}</mujoco>")
-    assert in_mujoco(LOOP, pasted) == pytest.approx(row(case, case.after), rel=0.02)
+    assert in_mujoco(page.LOOP, pasted) == pytest.approx(row(case, case.after), rel=0.02)
 
 
 def test_the_pair_of_a_rolling_disc_gives_the_error_of_the_page():
-    case, _ = CASES[DISC.name]
-    shipped = MJCF.write(DISC.mechanism(), STEP, "default")
+    case, _ = CASES[page.DISC.name]
+    shipped = MJCF.write(page.DISC.mechanism(), STEP, "default")
     ground, wheel = re.findall(r'<geom name="(contact: \w+)"', shipped)[::-1]
     pasted = lines("rolling").replace('"ground"', f'"{ground}"').replace('"wheel"', f'"{wheel}"')
     text = re.sub(r"<contact>.*</contact>", "", shipped, flags=re.DOTALL).replace("</mujoco>", f"{pasted}</mujoco>")
-    assert in_mujoco(DISC, text) == pytest.approx(row(case, case.after), rel=0.02)
+    assert in_mujoco(page.DISC, text) == pytest.approx(row(case, case.after), rel=0.02)
 
 
-@pytest.mark.parametrize("scene", [LOOP, SLIDER, CHAIN], ids=lambda scene: scene.name)
+@pytest.mark.parametrize("scene", [page.LOOP, page.SLIDER, page.CHAIN], ids=lambda scene: scene.name)
 def test_the_lines_for_pymunk_give_the_error_of_the_page(scene):
     _, case = CASES[scene.name]
-    shipped, closed = in_pymunk(scene, ""), in_pymunk(scene, PYMUNK_LINES)
+    shipped, closed = in_pymunk(scene, ""), in_pymunk(scene, page.PYMUNK_LINES)
     # The row's iterations follow from the convergence factor, those of `choose` from trials: residuals differ.
     assert closed == pytest.approx(row(case, case.after), rel=0.2)
     assert closed < shipped / 8
@@ -147,7 +136,7 @@ def worst_gap(space: pymunk.Space, gaps: Callable, step: float, seconds: float =
 def test_with_the_lines_no_linkage_opens_more_than_as_shipped(linkage, step):
     make = LINKAGES[linkage]
     space = make()
-    names = run_lines(space, PYMUNK_LINES.replace("1e-3", repr(step)))
+    names = run_lines(space, page.PYMUNK_LINES.replace("1e-3", repr(step)))
     if names["choose"](make(), step) is None:
         assert state(space) == state(make())
     else:
@@ -158,7 +147,7 @@ def test_with_the_lines_no_linkage_opens_more_than_as_shipped(linkage, step):
 def test_eight_iterations_tear_a_walking_linkage_and_the_lines_avoid_them():
     step, jansen = 1e-3, LINKAGES["two legs of Jansen on a crank"]
     torn = jansen()
-    names = run_lines(jansen(), PYMUNK_LINES.replace("print(choose(space, 1e-3))", ""))
+    names = run_lines(jansen(), page.PYMUNK_LINES.replace("print(choose(space, 1e-3))", ""))
     names["close"](torn, step, 8)
     shipped = worst_gap(jansen(), names["gaps"], step, 1.0)
     assert worst_gap(torn, names["gaps"], step, 1.0) > 100 * shipped
@@ -176,35 +165,35 @@ def test_a_linkage_that_starts_open_or_cannot_be_copied_is_not_changed():
     next(iter(opened.bodies)).position += (0.05, 0)
     next(iter(pictured.bodies)).picture = Picture()
     earlier = state(opened), state(pictured)
-    assert run_lines(opened, PYMUNK_LINES)["choose"](opened, 1e-3) is None
+    assert run_lines(opened, page.PYMUNK_LINES)["choose"](opened, 1e-3) is None
     with pytest.raises(TypeError, match="picture"):
-        run_lines(pictured, PYMUNK_LINES)
+        run_lines(pictured, page.PYMUNK_LINES)
     assert (state(opened), state(pictured)) == earlier
 
 
 def test_limits_and_bodies_with_another_centre_of_gravity_are_not_changed():
     space = LINKAGES["ragdoll that hangs by a hand"]()
     limits = [joint.error_bias for joint in space.constraints if isinstance(joint, RotaryLimitJoint)]
-    run_lines(space, PYMUNK_LINES)
+    run_lines(space, page.PYMUNK_LINES)
     assert [j.error_bias for j in space.constraints if isinstance(j, RotaryLimitJoint)] == limits
     off = pymunk.Space()
     body = pymunk.Body(1, 1)
     body.center_of_gravity, body.angle, body.position = (3, 1), 0.7, (5, 2)
     body.velocity, body.angular_velocity = (2, 1), 3
     off.add(body)
-    run_lines(pymunk.Space(), PYMUNK_LINES)["close"](off, 1e-2, 16)
+    run_lines(pymunk.Space(), page.PYMUNK_LINES)["close"](off, 1e-2, 16)
     assert (*body.position, body.angle) == pytest.approx((5, 2, 0.7), abs=1e-14)
 
 
 def test_a_random_mechanism_depends_only_on_its_number():
-    first, again, other = draw(LOOP, 0), draw(LOOP, 0), draw(LOOP, 1)
+    first, again, other = draw(page.LOOP, 0), draw(page.LOOP, 0), draw(page.LOOP, 1)
     assert first == again != other
-    earlier, later = PYMUNK_CASES[0].engines
-    assert Fresh(later, LOOP).error(0) < Fresh(earlier, LOOP).error(0)
+    earlier, later = page.PYMUNK_CASES[0].engines
+    assert Fresh(later, page.LOOP).error(0) < Fresh(earlier, page.LOOP).error(0)
 
 
 def test_before_and_after_compares_gaps_and_angles_of_a_linkage_without_contact():
-    values = next(task for task in BUILT if task.linkage == "four-bar").run()
+    values = next(task for task in page.BUILT if task.linkage == "four-bar").run()
     gap, angle = np.asarray(values["gap"]), np.asarray(values["angle"])
     assert gap[1] < gap[0] / 10
     assert angle[1] < angle[0] / 10

@@ -12,19 +12,8 @@ from matplotlib.figure import Figure
 
 from engines import ConvergenceOrder, Engine
 from engines.registry import VARIANTS
+from reference.chapter import skates as theory
 from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
-from reference.chapter.skates import (
-    Move,
-    commutator,
-    commutator_displacement,
-    coriolis_factors,
-    frobenius,
-    park,
-    sidestep,
-    skate_of,
-    stops,
-    trace,
-)
 from reference.joints import Triple
 from reference.scene import Scene
 from reference.scenes.skates import ChaplyginSleigh, FreelyPinnedBody, PinnedBody, SkateOnSlope, SleighBackwards
@@ -52,12 +41,12 @@ def parking() -> Figure:
     """Manoeuvres by which a skate moves sideways, and the displacement of a commutator against its size."""
     start: Triple = (0.0, 0.0, 0.0)
     panels = [
-        _manoeuvre("turn, slide, turn", start, park(start, PARKED)),
-        _manoeuvre("sidestep, at most 0.6 rad", start, sidestep(PARKED[1], 0.5, 0.6)),
-        _manoeuvre("the commutator: 0.8 rad, 1 m", start, commutator(0.8, 1.0)),
+        _manoeuvre("turn, slide, turn", start, theory.park(start, PARKED)),
+        _manoeuvre("sidestep, at most 0.6 rad", start, theory.sidestep(PARKED[1], 0.5, 0.6)),
+        _manoeuvre("the commutator: 0.8 rad, 1 m", start, theory.commutator(0.8, 1.0)),
     ]
     sizes = np.geomspace(1.0, 1e-3, 60)
-    moved = commutator_displacement(sizes, sizes) / sizes[:, None] ** 2
+    moved = theory.commutator_displacement(sizes, sizes) / sizes[:, None] ** 2
     sideways = Path(np.column_stack([sizes, moved[:, 1]]), "sideways, towards 1", "third")
     along = Path(np.column_stack([sizes, moved[:, 0]]), "along, towards 0", "first", "--")
     title, across = "displacement of a commutator / product of its moves", "size of both moves [rad, m]"
@@ -65,8 +54,8 @@ def parking() -> Figure:
     return paths(panels, columns=2, height=2.6)
 
 
-def _manoeuvre(title: str, start: Triple, moves: tuple[Move, ...]) -> Panel:
-    path, poses = trace(start, moves), stops(start, moves)
+def _manoeuvre(title: str, start: Triple, moves: tuple[theory.Move, ...]) -> Panel:
+    path, poses = theory.trace(start, moves), theory.stops(start, moves)
     blades = [Blades(poses[1:-1], BLADE_LENGTH, "quiet", 1.6), Blades(poses[[0, -1]], BLADE_LENGTH, "ink", 3.4)]
     (x, y), (end_x, end_y) = poses[0][:2], poses[-1][:2]
     notes = [PanelNote((x, y - 0.16), "from", "center"), PanelNote((end_x, end_y + 0.16), "to", "center")]
@@ -202,7 +191,7 @@ def uniform_conditions() -> str:
     """A Markdown table of conditions w = (a, b, c) on one body, the equivalent skates, and the products w · curl w."""
     body = []
     for row in ((0.0, 1.0, 0.5), (1.0, 0.0, 0.0), (3.0, 4.0, -2.0), (0.0, 0.0, 1.0)):
-        skate, curl = skate_of(row), frobenius(row, np.array([0.3, -0.2, 0.8]))
+        skate, curl = theory.skate_of(row), theory.frobenius(row, np.array([0.3, -0.2, 0.8]))
         equivalent = "none"
         if skate is not None:  # + 0.0 turns -0 into 0
             numbers = (*skate.second_point, math.degrees(skate.angle))
@@ -224,7 +213,7 @@ def context(material: Material) -> Mapping[str, Any]:
     )
     return {
         "only": uniform_conditions(),
-        "coriolis": coriolis_factors(1.3, 1.7, -0.6),
+        "coriolis": theory.coriolis_factors(1.3, 1.7, -0.6),
         "constructions": constructions([row for row in rows if usual_series(row) or row.method in LISTED], enforcement),
         "counted": counted(SKATE_SCENES),
         "at": lambda method, step=COMPARED_STEP: rows.of(method=method).known("position").near(step),
@@ -232,7 +221,7 @@ def context(material: Material) -> Mapping[str, Any]:
         "finest": lambda method: rows.of(method=method).known("position").finest(),
         "sleigh": SLEIGH_AHEAD,
         "end": SLEIGH_AHEAD.motion([SLEIGH_AHEAD.duration]).pose[0, 0],
-        "commutator": commutator_displacement(0.1, 0.1),
+        "commutator": theory.commutator_displacement(0.1, 0.1),
     }
 
 

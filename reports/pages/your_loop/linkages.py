@@ -17,28 +17,19 @@ from pathlib import Path
 from typing import Any
 
 import pymunk
-from pymunk.constraints import (
-    Constraint,
-    DampedSpring,
-    GearJoint,
-    GrooveJoint,
-    PinJoint,
-    PivotJoint,
-    RotaryLimitJoint,
-    SimpleMotor,
-)
+from pymunk import constraints as joints
 
 PLANS: Mapping[str, list[list[Any]]] = json.loads(Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
 PIXEL_GRAVITY = (0, -900)  # px/s^2
 # The first word of an element -> its class. The other words are the arguments of the class.
-PYMUNK_JOINTS: Mapping[str, Callable[..., Constraint]] = {
-    "pin": PivotJoint,
-    "motor": SimpleMotor,
-    "gear": GearJoint,
-    "groove": GrooveJoint,
-    "spring": DampedSpring,
-    "rod": PinJoint,
-    "limit": RotaryLimitJoint,
+PYMUNK_JOINTS: Mapping[str, Callable[..., joints.Constraint]] = {
+    "pin": joints.PivotJoint,
+    "motor": joints.SimpleMotor,
+    "gear": joints.GearJoint,
+    "groove": joints.GrooveJoint,
+    "spring": joints.DampedSpring,
+    "rod": joints.PinJoint,
+    "limit": joints.RotaryLimitJoint,
 }
 
 
