@@ -1,6 +1,6 @@
-"""MuJoCo as an engine: its model and forces, the stiffness of its rows, and warnings of failures and faulty releases.
+"""The engine MuJoCo: its models, reactions and stiffness, and its warnings of failures and faulty releases.
 
-`test_matrix` has the order and the error of each construction.
+`test_matrix` tests the order and the error of each construction.
 """
 
 from __future__ import annotations
@@ -58,9 +58,9 @@ def test_reactions_by_newtons_law_are_the_forces_that_the_engine_applied(engine:
     compiled, data = built.model.compiled, built.data  # in the state of the last sample
     mujoco.mj_rnePostConstraint(compiled, data)
     rows = dict(zip(mechanism.row_names, motion.reaction[-1], strict=True))
-    unit = built.model.unit  # of masses, and so of forces, in the model
+    unit = built.model.unit  # the unit of masses and forces in the model
     loop = unit * data.efc_force[:2]
-    # Both are sums of forces of about 100 N, with the rounding of some hundred operations.
+    # Both reactions are sums of forces of about 100 N, with the rounding of some hundred operations.
     largest = np.abs(motion.reaction[-1]).max()
     assert np.abs(loop - [rows["C x"], rows["C y"]]).max() < 1e-9 * largest
     for pin, body in (("A", "crank"), ("B", "coupler"), ("D", "rocker")):
@@ -68,10 +68,10 @@ def test_reactions_by_newtons_law_are_the_forces_that_the_engine_applied(engine:
         assert np.abs(unit * data.cfrc_int[number, 3:5] - [rows[f"{pin} x"], rows[f"{pin} y"]]).max() < 1e-9 * largest
 
 
-def test_no_armature_lets_the_solver_end_before_it_has_begun() -> None:
+def test_the_solver_converges_with_the_armature_of_a_drive() -> None:
     linkage = four_bar(crank_rate=0.1)
     (crank, coupler), pins = linkage.bodies[:2], linkage.joints[:2]
-    # The rotation of the outer bar against the ground is a sum of two coordinates, which is driven by a clock.
+    # The rotation of the outer bar relative to the ground is a sum of two coordinates, which a clock drives.
     clocked = Drive("drive", None, "coupler", coupler.twist[2], coupler.pose[2])
     driven = Drive("drive", None, "crank", 0.1, crank.pose[2])
     for mechanism in (
@@ -82,7 +82,7 @@ def test_no_armature_lets_the_solver_end_before_it_has_begun() -> None:
         solved = model.start().qacc
         model.compiled.opt.tolerance = 0.0
         exact = model.start().qacc
-        # Newton's method solves linear rows in one iteration, to rounding.
+        # Newton's method solves linear rows in one iteration, except for rounding.
         assert np.abs(solved - exact).max() < 1e-12 * np.abs(exact).max()
         model.compiled.opt.tolerance = DEFAULT.tolerance
         assert np.abs(model.start().qacc - exact).max() > 1e-3 * np.abs(exact).max()
@@ -91,20 +91,20 @@ def test_no_armature_lets_the_solver_end_before_it_has_begun() -> None:
 @pytest.mark.parametrize(
     ("engine", "own", "size"),
     [
-        (EXTENDED, FREE.mechanism(), (3, 3, 2, 3)),  # a tree closes only the loops
+        (EXTENDED, FREE.mechanism(), (3, 3, 2, 3)),  # only the pin that closes the loop is a constraint
         (FREE_COORDINATES, FREE.mechanism(), (3, 9, 8, 12)),
         (EXTENDED, FreeSliderCrank().mechanism(), (3, 3, 2, 3)),  # a slider that keeps its angle is one coordinate
-        # Rows of four pins and of the slot; the slider's angle is driven at rate zero by an armature.
+        # Four pins and the slot have rows. The angle of the slider is driven at rate zero by an armature.
         (FREE_COORDINATES, FreeSliderCrank().mechanism(), (3, 9, 8, 10)),
-        (EXTENDED, far_drive(), (4, 4, 3, 4)),  # driven over two coordinates, by a clock
-        # A contact has four edges of a pyramid, or a normal row and two of friction, of which one is empty since it is
-        # across the plane. EXTENDED has two user rows.
+        (EXTENDED, far_drive(), (4, 4, 3, 4)),  # a clock drives the sum of two coordinates
+        # A contact has four rows for the edges of a pyramid, or a normal row and two friction rows. One of these is
+        # empty, since it is normal to the plane. EXTENDED has two user rows.
         *((engine, RollingDisc().mechanism(), (1, 3, 2, n)) for engine, n in ((DEFAULT, 4), (TUNED, 3), (EXTENDED, 2))),
         (TUNED, SlottedLever().mechanism(), (3, 4, 4, 6)),  # a split body and a weld
         (SLOTS[0], SlottedLever().mechanism(), (2, 2, 2, 1)),
     ],
 )
-def test_no_more_is_built_than_the_mechanism_has(engine: MuJoCo, own: Mechanism, size: tuple[int, ...]) -> None:
+def test_the_numbers_of_bodies_coordinates_and_rows(engine: MuJoCo, own: Mechanism, size: tuple[int, ...]) -> None:
     built = engine.build(own, 1e-3).size
     assert (built.bodies, built.coordinates, built.rows, built.solver_rows) == size
 
@@ -118,52 +118,52 @@ def test_a_pin_between_a_body_and_the_ground_is_the_same_whichever_is_named_firs
         for pin in mechanism.joints
     )
     motions = [FREE_COORDINATES.build(m, 1e-3)(20, 10) for m in (mechanism, replace(mechanism, joints=turned))]
-    # The rows have the other sign, and the anchor is rounded in another frame.
+    # The signs of the rows differ, and the anchor is rounded in another frame.
     assert np.abs(motions[0].pose - motions[1].pose).max() < 1e-9
     grounded = [name.startswith(("A", "D")) for name in mechanism.row_names]
     signs = np.where(grounded, -1.0, 1.0)
     assert np.abs(motions[0].reaction - signs * motions[1].reaction).max() < 1e-6
 
 
-def test_a_resting_line_at_any_angle_holds_the_centre_of_a_free_body() -> None:
+def test_a_slot_on_a_fixed_line_holds_the_centre_of_a_free_body() -> None:
     angle, along = 0.6, np.array([np.cos(0.6), np.sin(0.6)])
     bead = Body("bead", 2.0, 0.1, (0.2, 0.3, 0.0), (0.5 * along[0], 0.5 * along[1], 3.0))
     slot = Slot("wire", None, "bead", (0.2, 0.3), angle, (0.0, 0.0))
     mechanism = Mechanism((bead,), (slot,), (0.0, -9.81))
     motion = FREE_COORDINATES.build(mechanism, 1e-3)(20, 10)
     distance = 0.5 * motion.t - 9.81 * along[1] * motion.t**2 / 2
-    # The bound is the weight across the wire divided by the stiffness of the hardened spring.
+    # The bound is the weight across the wire divided by the stiffness of the spring.
     assert np.abs(motion.pose[:, 0, :2] - [0.2, 0.3] - distance[:, None] * along).max() < 1e-7
     assert np.abs(motion.pose[:, 0, 2] - 3.0 * motion.t).max() < 1e-9
 
 
-def test_a_rod_of_mujocos_own_lacks_the_velocity_term_and_ours_has_it() -> None:
-    # A rod that turns at 2 rad/s without gravity: its acceleration is the velocity term -(dJ/dt) v alone.
+def test_a_tendon_rod_has_no_velocity_term_and_a_user_row_has_it() -> None:
+    # The acceleration of a rod that turns at 2 rad/s without gravity is the velocity term -(dJ/dt) v.
     body = Body("b", 1.0, 1.0, (1.0, 0.0, 0.0), (0.0, 2.0, 0.0))
     mechanism = Mechanism((body,), (Rod("r", None, "b", (0.0, 0.0), (0.0, 0.0), 1.0),))
     ours, tendon = (replace(EXTENDED, rods=rods).build(mechanism, 1e-3)(1, 1) for rods in ("rows", "tendon"))
     assert ours.reaction[0, 0] == pytest.approx(-4.0, rel=1e-6)
-    # If this fails, the release has the term, and rods need no user rows.
+    # If this fails, the release of MuJoCo has the term, and rods need no user rows.
     assert abs(tendon.reaction[0, 0]) < 1e-6
 
 
 def test_a_hundred_links_keep_their_energy() -> None:
     mechanism = HundredLinks().mechanism()
     total = energy(mechanism, EXTENDED.build(mechanism, 5e-4)(2, 200))
-    # The potential energy can change by 5e4 J: m g L times the sum of heights.
+    # The potential energy can change by 5e4 J, which is m g L times the sum of heights.
     assert np.abs(total - total[0]).max() < 2e-8
 
 
-def test_an_overwritten_crank_tears_the_loop_at_any_step() -> None:
+def test_an_overwritten_crank_opens_the_loop_at_any_step() -> None:
     mechanism = DRIVEN.mechanism()
-    # MuJoCo's solver does not know that the crank is driven, so the loop has an error of its acceleration times the
-    # square of a time constant, at any step.
+    # MuJoCo's solver does not take the drive into account. For any step, the gap of the loop is about the acceleration
+    # times the square of the time constant.
     gaps = []
     for every in (10, 40):
         engine = replace(DEFAULT, drive="overwrite")
         motion = engine.build(mechanism, DRIVEN.spacing / every)(DRIVEN.samples, every)
         gaps.append(np.abs(mechanism.gap(motion.pose, motion.t)[:, :8]).max())
-        # The crank has the angle that is written at the time of the sample.
+        # The angle of the crank is that which is written at the time of the sample.
         assert np.abs(mechanism.gap(motion.pose, motion.t)[:, 8]).max() < 1e-12
         assert any(warning.startswith("ours:") for warning in motion.warnings)
     assert gaps[1] > 0.5 * gaps[0] > 5e-3
@@ -175,16 +175,16 @@ def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
     spring, damper = stiffness.gains(mechanism, dt)
     assert damper**2 == pytest.approx(4 * spring, rel=1e-14)
     first, second = stiffness.reference(mechanism, dt)
-    if first < 0:  # the direct form; the other is a time constant, at least two steps, and a damping ratio
+    if first < 0:  # the direct form; the other form is a time constant of at least two steps, and a damping ratio
         assert (-first, -second) == pytest.approx((spring, damper), rel=1e-14)
     else:
         assert (max(first, 2 * dt), second) == pytest.approx((2 / damper, 1.0), rel=1e-14)
 
 
 @pytest.mark.parametrize(("steps", "dt"), [(2.0, 1e-2), (5.0, 1e-4), (20.0, 1e-2)])
-def test_the_first_acceleration_of_a_loop_under_discrete_is_divided_by_what_its_spring_is_in_a_step(steps, dt):
-    # The exact loop has J a = -bias at a closed start. With a spring (stiffness k, damping b per inertia) by backward
-    # Euler it is divided by 1 + h b + h^2 k = (1 + 1 / steps)^2, which does not depend on the step.
+def test_the_first_acceleration_of_a_loop_with_the_integrator_discrete(steps, dt):
+    # For the exact loop J a = -bias at a closed start. Backward Euler divides this by 1 + h b + h^2 k for a spring with
+    # stiffness k and damping b per inertia. It is (1 + 1 / steps)^2, which does not depend on the step.
     def first(integrator):
         engine = MuJoCo("loop", integrator=integrator, stiffness=TiedToStep(steps))
         run = engine.build(DrivenFourBar().mechanism(), dt)
@@ -194,36 +194,36 @@ def test_the_first_acceleration_of_a_loop_under_discrete_is_divided_by_what_its_
     np.testing.assert_allclose(first("discrete") / first("implicitfast"), (1 + 1 / steps) ** -2, rtol=1e-4)
 
 
-# Failures, of which every run warns
+# Failures and their warnings
 
 
 @pytest.mark.parametrize("ratio", [1e-4, 1.0, 1e4])
-def test_the_extended_variant_takes_a_solver_that_solves_whatever_the_mass_ratio(ratio: float) -> None:
+def test_the_extended_variant_chooses_a_solver_that_converges_for_any_mass_ratio(ratio: float) -> None:
     motion = EXTENDED.build(heavy_coupler(ratio), 1e-3)(30, 10)
     assert motion.warnings == ()
     assert np.abs(heavy_coupler(ratio).gap(motion.pose, motion.t)).max() < 1e-7
 
 
-def test_a_solver_that_fails_is_reported_though_mujoco_says_nothing() -> None:
+def test_a_solver_that_fails_causes_a_warning() -> None:
     motion = replace(EXTENDED, solvers=("PGS",)).build(heavy_coupler(1e4), 1e-3)(30, 10)
     assert any(warning.startswith("ours: the solver missed") for warning in motion.warnings)
 
 
-def test_a_hundred_links_closed_by_one_loop_are_solved_by_the_first_solver_and_not_by_newton() -> None:
+def test_a_loop_of_a_hundred_links_is_solved_by_pgs_and_not_by_newton() -> None:
     chain = arch(100)
     built = EXTENDED.build(chain, 1e-3)
     assert built.model.compiled.opt.solver == mujoco.mjtSolver.mjSOL_PGS
     motion = built(2, 10)
-    # Steps of a millisecond are 1/45 of its time scale: the error is that of the order, not of the solver.
+    # A step of 1 ms is 1/45 of the time scale, so the error comes from the integrator and not from the solver.
     assert [warning for warning in motion.warnings if "unresolved" not in warning] == []
     assert np.abs(chain.gap(motion.pose, motion.t)).max() < 1e-8
     newton = replace(EXTENDED, solvers=("Newton",)).build(chain, 1e-3)
     assert solver_residual(newton.model.compiled, newton.data) > 1e-3
 
 
-def test_a_reset_is_noticed_and_the_samples_after_it_are_not_numbers(tmp_path, monkeypatch) -> None:
+def test_samples_after_a_reset_are_nan(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
-    rate = 0.999e10  # rad/s: MuJoCo resets above 1e10, and a torque brings it there
+    rate = 0.999e10  # rad/s; a torque increases it to 1e10, where MuJoCo resets the state
     body = Body("bar", 1.0, 1 / 12, (0.5, 0.0, 0.0), (0.0, rate / 2, rate))
     torque = Torque("torque", None, "bar", 3e9)
     mechanism = Mechanism((body,), (Pin("A", None, "bar", (0.0, 0.0), (-0.5, 0.0)),), (0.0, 0.0), (torque,))
@@ -233,11 +233,11 @@ def test_a_reset_is_noticed_and_the_samples_after_it_are_not_numbers(tmp_path, m
     assert np.isnan(motion.twist[1:]).all()
     assert np.isnan(motion.reaction[1:]).all()
     assert any("QVEL" in warning for warning in motion.warnings)
-    assert list(tmp_path.iterdir()) == []  # MuJoCo would write MUJOCO_LOG.TXT beside whatever it is run from
+    assert list(tmp_path.iterdir()) == []  # MuJoCo would write MUJOCO_LOG.TXT in the working folder
 
 
 @pytest.mark.parametrize(("version", "reason"), [("3.6.0", "velocity term"), ("4.0.0", "Hessian")])
-def test_motions_of_a_version_that_moves_wrongly_say_so(
+def test_a_release_with_a_known_fault_causes_a_warning(
     monkeypatch: pytest.MonkeyPatch, version: str, reason: str
 ) -> None:
     monkeypatch.setattr(mujoco, "__version__", version)

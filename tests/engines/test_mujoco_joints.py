@@ -1,6 +1,6 @@
-"""Rolling, skates and slots in MuJoCo by contacts, tendons and user rows, their limits, and extreme scales.
+"""Rolls, skates and drives in MuJoCo: contacts, tendons and user rows, their limits, and extreme scales.
 
-`test_matrix` has the order and the error of each construction.
+`test_matrix` tests the order and the error of each construction.
 """
 
 from __future__ import annotations
@@ -48,30 +48,30 @@ def run(engine: MuJoCo, scene: Any, dt: float) -> tuple[Trajectory, Trajectory]:
 
 
 def disc_in_ring(clearance: float, rate: float = 1.0) -> Mechanism:
-    """A disc in a ring, smaller by the relative `clearance`. Without gravity it turns steadily, as its arm is fixed."""
+    """A disc in a ring without gravity, which turns steadily. `clearance`: the relative difference of the radii."""
     rolling = Rolling.at_angle(Circle(1 - clearance), Placed(Ring(1.0), turn=-math.pi / 2))
     disc, roll = rolling_disc(rolling, rate)
     return Mechanism((disc,), (roll,), (0.0, 0.0))
 
 
 @pytest.mark.parametrize("engine", [DEFAULT, TUNED], ids=lambda engine: engine.variant)
-def test_reactions_by_newtons_law_are_the_contacts_forces(engine: MuJoCo) -> None:
+def test_reactions_by_newtons_law_are_the_contact_forces(engine: MuJoCo) -> None:
     built = engine.build(RollingDownhill().mechanism(), 1e-3)
     motion = built(3, 10)
-    force = np.zeros(6)  # in the contact's frame: normal first, from the ground to the body
+    force = np.zeros(6)  # in the frame of the contact; the first component is normal, from the ground to the body
     mujoco.mj_contactForce(built.model.compiled, built.data, 0, force)
     tangent, normal = motion.reaction[-1]
-    # `data` has the state of the last sample. Directions agree to the slip of 1e-3 m, that is 1e-3 rad.
+    # `data` has the state of the last sample. The slip of 1e-3 m changes directions by 1e-3 rad.
     assert normal == pytest.approx(force[0], rel=5e-3)
     assert abs(tangent) == pytest.approx(float(np.hypot(force[1], force[2])), abs=5e-3 * normal)
 
 
-def test_beyond_the_hop_and_only_there_real_contact_parts_from_the_ideal_one() -> None:
+def test_a_contact_differs_from_ideal_rolling_only_after_the_hop() -> None:
     hill = RollingOnCircle()
     assert hill.hop is not None
     motion, truth = run(TUNED, hill, dt=1e-3)
     error = np.abs(motion.pose - truth.pose)[:, 0, :2].max(axis=1)
-    # MuJoCo's friction cone keeps the body in contact while friction acts at a vanishing normal force: some 0.06 s.
+    # In MuJoCo's friction cone, friction at a vanishing normal force keeps the body in contact for some 0.06 s longer.
     assert error[motion.t < hill.hop].max() < 2e-3
     assert error[-1] > 0.05
     assert any("was lost" in warning for warning in motion.warnings)
@@ -80,7 +80,7 @@ def test_beyond_the_hop_and_only_there_real_contact_parts_from_the_ideal_one() -
     assert ideal.warnings == ()
 
 
-def test_a_nearly_conformal_contact_is_followed_until_it_turns_by_a_tenth_of_a_radian_a_step() -> None:
+def test_a_nearly_conformal_contact_causes_a_warning_above_a_tenth_of_a_radian_in_a_step() -> None:
     for step, error, doubted in ((2e-4, 1e-8, False), (5e-4, 1e-6, False), (4e-3, 1e-2, True)):
         motion = EXTENDED.build(disc_in_ring(0.01), step)(20, round(0.02 / step))
         assert np.abs(motion.pose[:, 0, 2] - motion.t).max() < error
@@ -94,7 +94,7 @@ def test_a_body_that_reaches_a_corner_ends_the_run() -> None:
     rolling = Rolling.at_angle(Circle(0.1), Placed(Side(0.08), turn=math.pi))
     disc, roll = rolling_disc(rolling, 4.0)
     motion = EXTENDED.build(Mechanism((disc,), (roll,)), 1e-3)(12, 10)
-    # At 4 rad/s the end of the side, 0.04 m away, comes after a tenth of a second.
+    # At 4 rad/s the disc reaches the end of the side, 0.04 m away, after 0.1 s.
     assert motion.reset_at == pytest.approx(0.1, abs=2e-3)
     assert np.all(np.isfinite(motion.pose[motion.t < 0.095]))
     assert np.all(np.isnan(motion.pose[motion.t > 0.105]))
@@ -103,13 +103,13 @@ def test_a_body_that_reaches_a_corner_ends_the_run() -> None:
 # Skates and slots
 
 
-def test_a_skate_on_a_moving_body_is_held_by_rows_and_nearly_by_a_tendon() -> None:
+def test_a_skate_on_a_moving_body_by_rows_and_by_a_tendon() -> None:
     rows, tendon = (engine.build(blade_on_a_board(), 1e-3)(10, 50) for engine in (EXTENDED, TUNED))
     assert 1e-6 < np.abs(tendon.pose - rows.pose).max() < 1e-2
 
 
 @pytest.mark.parametrize(("mass", "length"), [(1.0, 1.0), (1e5, 1.0), (1.0, 1e-3)])
-def test_a_blade_stands_on_one_end_however_deep_the_weight_presses_it(mass: float, length: float) -> None:
+def test_a_blade_touches_the_ground_at_one_end_for_any_weight(mass: float, length: float) -> None:
     """A blade that touches at two points could not turn."""
     sled = Body("sled", 1.0, 0.1 * length**2, (0.0, 0.0, 0.0))
     load = Body("load", mass, 0.1 * mass, (0.0, 2 * length, 0.0))
@@ -120,23 +120,23 @@ def test_a_blade_stands_on_one_end_however_deep_the_weight_presses_it(mass: floa
     assert data.efc_force[0] == pytest.approx(9.81 * data.model.body_mass.sum(), rel=1e-9)
 
 
-def test_the_softness_that_is_declared_of_a_written_row_is_what_it_slips_by():
+def test_the_slip_of_a_user_row_agrees_with_its_declared_regularisation():
     engine, mechanism = SOFT, CHAPLYGIN_SLEIGH.mechanism()
     soft = engine.regularisation(mechanism, 1e-3)
     assert soft is not None
     motion = engine.build(mechanism, 1e-3)(CHAPLYGIN_SLEIGH.samples, 10)
     rows = mechanism.rows(mechanism.pose)
     inverse = float(((rows / mechanism.inertias.reshape(-1)) @ rows.T)[0, 0])
-    # slip' + damping slip = compliance A F: for a force that rises and falls, the slip reaches half of its limit.
+    # The slip obeys slip' + damping slip = compliance A F. With a varying force it reaches half of its limit.
     limit = soft.compliance * inverse * np.abs(motion.reaction).max() / soft.damping
     assert 0.3 * limit < np.abs(mechanism.slip(motion.pose, motion.twist)).max() < limit
 
 
-# Very small arms, very large wheels, and very light bodies
+# Extreme scales
 
 
 def test_a_spring_at_an_arm_of_a_tenth_of_a_micrometre_turns_its_body() -> None:
-    """MuJoCo's compiler places a site within 1e-6 m at its body's origin, so that there is no arm."""
+    """MuJoCo's compiler moves a site within 1e-6 m of the origin of its body to the origin."""
     text = """<mujoco><worldbody><body><joint type="hinge" axis="0 0 1"/><inertial pos="0 0 0" mass="1"
         diaginertia="1 1 1"/><site pos="0 {} 0"/></body></worldbody></mujoco>"""
     as_compiled = [mujoco.MjModel.from_xml_string(text.format(arm)).site_sameframe[0] for arm in (0.99e-6, 1.01e-6)]
@@ -147,11 +147,11 @@ def test_a_spring_at_an_arm_of_a_tenth_of_a_micrometre_turns_its_body() -> None:
     mechanism = Mechanism((Body("body", 1.0, 1e-7, (0.0, 0.0, 0.0)),), (pin,), (0.0, 0.0), (spring,))
     for engine in (DEFAULT, EXTENDED):
         data = engine.build(mechanism, 1e-3).data
-        assert abs(data.qacc[0] + 1.0) < 1e-12  # 1 N at 1e-7 m of 1e-7 kg m^2, backwards
+        assert abs(data.qacc[0] + 1.0) < 1e-12  # a force of -1 N with an arm of 1e-7 m on an inertia of 1e-7 kg m^2
 
 
-def test_a_drive_of_wheels_as_large_as_a_town_is_no_softer_than_that_of_small_ones() -> None:
-    """In SI units the inverse inertia of its row would be so small that MuJoCo would clamp its compliance."""
+def test_the_compliance_of_a_drive_does_not_depend_on_the_size_of_the_wheels() -> None:
+    """In SI units the inverse inertia of the row would be so small that MuJoCo would increase the compliance."""
     missed = []
     for size in (1.0, 1e6):
         bodies = tuple(
@@ -168,8 +168,8 @@ def test_a_drive_of_wheels_as_large_as_a_town_is_no_softer_than_that_of_small_on
     assert missed[1] < 1e-10
 
 
-def test_extended_begins_with_accelerations_of_light_bodies_that_are_solved() -> None:
-    """Newton's method ends where its cost no longer falls: from zero, the light body's acceleration is 1e-5 wrong."""
+def test_the_first_accelerations_of_light_bodies_are_converged_in_extended() -> None:
+    """From a start at zero, Newton's method ends with a relative error of 1e-5 for light bodies."""
     mechanism = drawn(1199539626, 2, ALL_KINDS, 4)
     dt = 0.01 * mechanism.time_scale
     run, once = EXTENDED.build(mechanism, dt), EXTENDED.model(mechanism, dt)
@@ -185,7 +185,7 @@ def test_extended_begins_with_accelerations_of_light_bodies_that_are_solved() ->
 
 
 def test_dependent_rows_of_a_joint_declare_no_law_of_an_instant() -> None:
-    """Both wheels turn on fixed pins, so that one of the two rows of their contact moves nothing."""
+    """Both wheels turn on fixed pins, so one of the two rows of their contact is zero."""
     mechanism = EllipticGears().mechanism()
     answer = EXTENDED.instants(mechanism, 1e-3 * mechanism.time_scale, 2)
     assert answer == NotDeclared("the rows of joint 'mesh' depend on one another in the coordinates of the tree")

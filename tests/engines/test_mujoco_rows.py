@@ -1,4 +1,4 @@
-"""User rows in MuJoCo: they are the mechanism's rows, by numba and by Python, and a failure of them is reported."""
+"""User rows in MuJoCo: their agreement with the rows of the mechanism, with and without numba, and their failures."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ STIFFNESS, DAMPING = 5.0, 3.0
 
 
 def jumble() -> Mechanism:
-    """An arm on the ground, a block in its slot, a bar on the block, and a body that flies; skates between them all."""
+    """A mechanism with an arm, a block that slides in it, a bar on the block, a free body, and skates between them."""
     bodies = (
         bar("arm", (0.0, 0.0), (1.0, 0.4)),
         Body("block", 0.7, 0.05, (0.5, 0.2, 0.3)),
@@ -52,7 +52,7 @@ def jumble() -> Mechanism:
     return Mechanism(bodies, joints, (0.0, -9.81))
 
 
-# A slot and rods as rows, for pairs that no link joins.
+# A slot and rods between bodies that are not neighbours in the tree.
 CROSS = Slot("cross", "tail", "flyer", (0.1, 0.2), 0.4, (0.3, -0.1))
 RODS = (
     Rod("rod", "block", "flyer", (0.1, 0.0), (-0.2, 0.3), 0.5),
@@ -73,7 +73,7 @@ def written(joint: Any) -> UserRowJoint:
             return UserRowJoint("rod", *ends, numbers)
 
 
-def test_written_rows_are_the_mechanisms_rows_in_the_trees_coordinates() -> None:
+def test_user_rows_are_the_rows_of_the_mechanism_in_tree_coordinates() -> None:
     mechanism, random = jumble(), np.random.default_rng(0)
     tree = spanning_tree(mechanism)
     assert [link.kind for link in tree.links] == ["hinge", "slot", "hinge", "free"]
@@ -87,9 +87,9 @@ def test_written_rows_are_the_mechanisms_rows_in_the_trees_coordinates() -> None
         for predicted, expected in zip(late.rows(q - ahead * v, v), (jacobian, right), strict=True):
             assert np.abs(predicted - expected).max() < 1e-12 * np.abs(expected).max()
         index = dict(zip((None, *(body.name for body in mechanism.bodies)), range(5), strict=True))
-        # The first body is the ground, which is at rest.
+        # The first body is the ground.
         pose, twist, change = (np.vstack([np.zeros(3), values[0]]) for values in tree.motion(q[None], v[None], a[None]))
-        # The mechanism's rows in maximal coordinates, with the bias by a complex step.
+        # The mechanism's rows are in maximal coordinates. A complex step gives their rates of change.
         for row, joint in enumerate(joints):
             ends = [index[joint.first], index[joint.second]]
             poses, twists, velocity, step = pose[ends], twist[ends], twist[ends].ravel(), 1e-100
@@ -100,12 +100,12 @@ def test_written_rows_are_the_mechanisms_rows_in_the_trees_coordinates() -> None
             if not isinstance(joint, Skate):
                 wanted -= STIFFNESS * joint.gap(*poses, 0.0)[0]
             assert jacobian[row] @ v == pytest.approx(slip, rel=1e-12, abs=1e-12)
-            # J a - right is equal in both coordinates; the accelerations of bodies have velocity terms.
+            # J a - right is equal in both kinds of coordinates, since accelerations of bodies contain velocity terms.
             expected = line @ change[ends].ravel() - wanted
             assert jacobian[row] @ a - right[row] == pytest.approx(expected, rel=1e-11, abs=1e-11)
 
 
-def test_written_rows_of_rolling_are_those_of_the_joint_and_its_velocity_term() -> None:
+def test_user_rows_of_a_roll_are_those_of_the_joint_with_its_velocity_term() -> None:
     gears = EllipticGears()
     roll = next(joint for joint in gears.mechanism().joints if isinstance(joint, Roll))
     mechanism = Mechanism(gears.mechanism().bodies, (roll,))
@@ -118,7 +118,7 @@ def test_written_rows_of_rolling_are_those_of_the_joint_and_its_velocity_term() 
     for i in range(len(pose)):
         ours, right = writer.rows((pose[i] - mechanism.pose).ravel(), twist[i].ravel())
         basis = np.array([[np.cos(angle[i]), np.sin(angle[i])], [np.sin(angle[i]), -np.cos(angle[i])]])
-        # Exact motion has neither gap nor slip: the springs add rounding times the stiffness of 100 / s^2.
+        # Exact motion has no gap and no slip, so the springs add only rounding times the stiffness of 100 / s^2.
         assert np.abs(basis @ ours - mechanism.rows(pose[i])).max() < 1e-13
         assert np.abs(basis @ right - mechanism.bias(pose[i], twist[i])).max() < 1e-11
 
@@ -146,14 +146,14 @@ def test_without_numba_python_writes_the_same_rows() -> None:
     plain = json.loads(subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout)
     fast = moved()
     for (pose, reaction, reset, warnings), same in zip(fast, plain, strict=True):
-        # The operations differ in one or two roundings.
+        # Both results differ by one or two roundings.
         np.testing.assert_allclose(pose, same[0], rtol=0, atol=1e-13)
         np.testing.assert_allclose(reaction, same[1], rtol=0, atol=1e-11 * np.nanmax(np.abs(reaction)))
         assert [reset, list(warnings)] == same[2:]
     assert fast[-1][2] is not None
 
 
-def test_the_callback_is_as_it_was_even_after_a_failure() -> None:
+def test_the_previous_callback_is_restored_after_a_failure() -> None:
     run = EXTENDED.build(CHAPLYGIN_SLEIGH.mechanism(), 1e-2)
     with pytest.raises(RuntimeError, match="on purpose"), run.model.callback_installed():  # noqa: PT012
         assert mujoco.get_mjcb_control() is not None

@@ -1,4 +1,4 @@
-"""Properties of MuJoCo on which the adapter relies: clamps, impedances, friction, sparse factorisation."""
+"""Properties of MuJoCo on which the adapter relies: time constants, impedance, friction, sparse factorisation."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ EQUALITY_AND_CONTACT = """
 def one_of_each(
     integrator="Euler", refsafe="enable", constant=0.02, impedance="0.9 0.9 0.001", gap=0.0
 ) -> tuple[Any, Any]:
-    """MuJoCo's rows (stiffness, damping, impedance, ...) of an equality open by a gap, and of a contact."""
+    """MuJoCo's numbers (stiffness, damping, impedance, ...) for the rows of an equality with a gap and of a contact."""
     text = EQUALITY_AND_CONTACT.format(integrator=integrator, refsafe=refsafe, constant=constant, impedance=impedance)
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
@@ -42,7 +42,7 @@ def one_of_each(
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast", "discrete"])
-def test_upstream_short_time_constants_are_clamped_at_two_steps_but_not_all_by_the_discrete_integrator(
+def test_upstream_the_smallest_time_constants_of_equalities_and_contacts(
     integrator: str,
 ) -> None:
     for refsafe in ("enable", "disable"):
@@ -57,7 +57,7 @@ def test_upstream_short_time_constants_are_clamped_at_two_steps_but_not_all_by_t
             assert 2 / 0.9 / rows[:, 1] == pytest.approx(wanted)
 
 
-def test_upstream_the_shipped_impedance_grows_with_the_gap_from_nine_tenths() -> None:
+def test_upstream_the_default_impedance_grows_with_the_gap_from_nine_tenths() -> None:
     impedance = " ".join(map(str, Shipped().impedance))
     grown = [one_of_each(impedance=impedance, gap=gap)[0][:, 2].max() for gap in (0.0, 5e-4, 1e-3, 1e-2)]
     assert grown == pytest.approx([0.9, 0.925, 0.95, 0.95])
@@ -74,18 +74,19 @@ def test_upstream_friction_has_a_rate_of_its_own_in_the_elliptic_cone_only(cone:
     )
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    # MuJoCo divides both dampings by dmax, 0.95 as shipped.
+    # MuJoCo divides both dampings by dmax, whose default is 0.95.
     assert set(np.round(data.efc_KBIP[:, 1] * 0.95, 9)) == rates
 
 
-# MuJoCo's sparse factorisation: release 4.0.0's Newton solver had other accelerations, without a warning, for some
-# trees that branch: its Hessian's sparse Cholesky factor was wrong (changelog of 4.0.1,
-# github.com/google-deepmind/mujoco/issues/3767).
+# For some trees with branches, the Newton solver of release 4.0.0 computed wrong accelerations without a warning. The
+# sparse Cholesky factor of its Hessian was wrong (changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767).
 
-# Relative to the largest acceleration: the two differ in the order of their sums, so by rounding times a condition.
+# Largest difference of dense and sparse accelerations, relative to the largest one: rounding times a condition number.
 AGREEMENT = 1e-8
-STATE_SPREAD = 0.3  # rad or m: the distance of the states from the model's own, so that no symmetry hides an entry
-# Three links on the tip of the first, a fifth on one of them, and two loops: the smallest tree that 4.0.0 gets wrong.
+STATE_SPREAD = (
+    0.3  # rad or m, the distance of the random states from the initial one, so that no symmetry hides an error
+)
+# The smallest tree with the error in 4.0.0 has three links on the tip of the first link, a fifth link, and two loops.
 PARENTS = (-1, 0, 0, 0, 2)
 CROSSING = ((2, 1), (3, 1))
 
@@ -107,7 +108,7 @@ def branching_tree() -> Any:
 
 
 def disagreement(model: Any, states: int = 5) -> float:
-    """The largest relative difference of accelerations in the model's own state and random ones."""
+    """The largest relative difference of dense and sparse accelerations in the initial state and random states."""
     random, worst, pairs = np.random.default_rng(0), 0.0, []
     for kind in (mujoco.mjtJacobian.mjJAC_DENSE, mujoco.mjtJacobian.mjJAC_SPARSE):
         changed = copy.copy(model)

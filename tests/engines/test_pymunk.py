@@ -48,15 +48,15 @@ def largest(values: NDArray[np.float64]) -> float:
     return float(np.abs(values).max())
 
 
-def test_the_default_is_the_engine_as_shipped():
+def test_the_default_settings_are_those_of_pymunk():
     space, body = pymunk.Space(), pymunk.Body(1, 1)
     pivot = constraints.PivotJoint(space.static_body, body, (0, 0), (0, 0))
     assert space.iterations == DEFAULT.iterations == 10
-    assert pivot.error_bias == DEFAULT.error_bias == pytest.approx(0.9**60, rel=1e-5)  # it rounds 0.1 to single
+    assert pivot.error_bias == DEFAULT.error_bias == pytest.approx(0.9**60, rel=1e-5)  # pymunk rounds 0.1 to single
 
 
 def test_prescribed_motions_need_no_constraints():
-    # The motion of the crank and the angle of the block are prescribed; pins and a groove remain as constraints.
+    # The motion of the crank and the angle of the block are prescribed. Only pins and a groove are constraints.
     for mechanism, rows in ((FREE, 8), (DRIVEN, 6), (DrivenSliderCrank().mechanism(), 5)):
         for method in (DEFAULT, EXTENDED):
             assert method.build(mechanism, 1e-3).size == Size(3, 9, rows, rows)
@@ -64,7 +64,7 @@ def test_prescribed_motions_need_no_constraints():
 
 
 @pytest.mark.parametrize("grounded_first", [True, False])
-def test_a_crank_turns_about_its_pin_in_each_order_of_its_joints(grounded_first):
+def test_a_crank_turns_about_its_pin_whichever_body_is_first(grounded_first):
     centre, rate, own_point = np.array([2.0, -1.0]), -3.0, (0.3, 0.1)
     angle = 0.7
     arm = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ own_point
@@ -79,7 +79,7 @@ def test_a_crank_turns_about_its_pin_in_each_order_of_its_joints(grounded_first)
     mechanism = Mechanism((body,), joints, (0.0, -9.81))
     for method in METHODS:
         trajectory = method.build(mechanism, 1e-2)(30, 3)
-        # Rounding: the angle is a sum of at most 720 steps near one radian, weighted by less than 100 if extrapolated.
+        # The bound is rounding: the angle is a sum of at most 720 steps. Extrapolation multiplies it by less than 100.
         assert largest(mechanism.gap(trajectory.pose, trajectory.t)) < 1e-12
         assert largest(mechanism.slip(trajectory.pose, trajectory.twist)) < 1e-12
         # The pin carries weight and centripetal force, and the drive the moment of the weight about the pin.
@@ -90,13 +90,13 @@ def test_a_crank_turns_about_its_pin_in_each_order_of_its_joints(grounded_first)
         torque = sign * 2.0 * 9.81 * swing[:, 0]
         error = np.abs(trajectory.reaction[:, order] - np.column_stack([force, torque]))
         assert error[1:].max() < 1e-9  # rounding
-        # At the first sample: the third step's force, 0.09 rad later; in a leapfrog, extrapolated from the third and
-        # fourth steps, with an error of 6 (rate dt)^2; in extended, extrapolated again to zero step.
+        # The first reaction is that of the third step, where the angle differs by 0.09 rad. LEAPFROG extrapolates it
+        # from the third and fourth steps, with an error of 6 (rate dt)^2. EXTENDED extrapolates it to step size zero.
         assert error[0].max() < {DEFAULT: 0.09, TUNED: 0.09, LEAPFROG: 6e-3, EXTENDED: 1e-9}[method] * 2.0 * 9.81
 
 
 @every_method
-def test_an_unstable_motion_is_a_result_and_no_exception(method):
+def test_an_unstable_motion_raises_no_exception(method):
     heavy = replace(MOVING, bodies=(*MOVING.bodies[:2], replace(MOVING.bodies[2], mass=1e-6, inertia=1e-9)))
     trajectory = method.build(heavy, 1e200)(20, 2)
     assert trajectory.pose.shape == (21, 3, 3)
@@ -105,7 +105,7 @@ def test_an_unstable_motion_is_a_result_and_no_exception(method):
 
 
 def thrown(mass: float | None = None) -> Mechanism:
-    """A sleigh with a velocity beyond floating point, or two links with such a ratio of masses."""
+    """A sleigh with a velocity whose square overflows, or two links with an extreme ratio of masses."""
     if mass is None:
         sled = ChaplyginSleigh().mechanism()
         return replace(sled, bodies=(replace(sled.bodies[0], twist=(1e150, 0.0, 0.0)),))
@@ -124,22 +124,22 @@ def thrown(mass: float | None = None) -> Mechanism:
     ],
     ids=["ellipse", "hill", "sleigh", "light", "heavy"],
 )
-def test_an_unstable_motion_of_contacts_blades_or_extreme_masses_is_a_result(methods, wild, step):
+def test_an_unstable_motion_of_contacts_blades_or_extreme_masses_raises_no_exception(methods, wild, step):
     for method in methods:
         with np.errstate(all="ignore"):
             assert method.build(wild, step)(5, 2).pose.shape == (6, len(wild.bodies), 3)
 
 
 @pytest.mark.parametrize(("engine", "levels"), [(TUNED, (1,)), (Extrapolated(TUNED, "two", (1, 3), (1,)), (1, 3))])
-def test_the_bare_loop_takes_all_steps_of_a_run(engine, levels, monkeypatch):
+def test_the_bare_loop_makes_all_steps_of_a_run(engine, levels, monkeypatch):
     steps = []
     monkeypatch.setattr("engines.pymunk.repeat", lambda _, count: steps.append(count) or range(count))
     bare_loop(engine, FREE, 1e-4, 20)
     assert steps == [20 * level for level in levels]
 
 
-def test_the_import_leaves_no_space_or_body():
-    """Freeing one at the end of the interpreter may crash the process and change its exit status."""
+def test_the_import_of_the_engines_leaves_no_space_or_body():
+    """A space or body that is freed at the end of the interpreter may crash the process."""
     code = """
 import gc, pymunk, engines.registry
 gc.collect()
@@ -167,7 +167,7 @@ def angle_error(engine, scene: Scene, every: int) -> float:
 
 
 def test_a_pivot_is_placed_at_the_contact_after_the_drift_of_two_bodies():
-    """The anchors are those of bodies that are already at the poses after the drift."""
+    """The anchors are equal to those for bodies at the poses after the drift."""
     joint = next(joint for joint in EllipticGears().mechanism().joints if isinstance(joint, Roll))
 
     def anchors(ahead: float, elapsed: float) -> list[float]:
@@ -194,7 +194,7 @@ def test_the_error_of_a_polygon_falls_with_its_corners_and_not_with_the_step():
 
 
 def test_upstream_a_fine_polygon_stops_on_ground_without_thickness():
-    """Chipmunk computes a wrong normal at some contact; on a segment with a radius and the same surface it does not."""
+    """Chipmunk computes a wrong normal of some contact on a segment without a radius."""
     fine = methods.ROLL_FACETED[-1]
     on_thin_ground = replace(fine, contact=replace(fine.contact, thickness=0.0))
     thin, thick = (run(engine, ELLIPSE, 10).twist[5, 0, 2] for engine in (on_thin_ground, fine))
@@ -222,7 +222,7 @@ def side_by_side(places, rates) -> Mechanism:
 
 
 def test_shapes_of_different_rolls_do_not_collide():
-    """The second disc overlaps half of the first, and each rolls as if alone."""
+    """Two discs that overlap roll independently of each other."""
     for engine in METHODS:
         trajectory = engine.build(side_by_side((0.0, 0.4), (1.0, 2.0)), 1e-3)(10, 10)
         assert largest(trajectory.twist[:, :, 2] - [1.0, 2.0]) < 1e-2
@@ -236,7 +236,7 @@ def test_thirty_two_contacts_are_built_and_one_more_is_refused():
 
 
 def test_a_scaled_ellipse_turns_by_the_same_angles():
-    """With gravity scaled likewise. Ground of a fixed thickness would change the angle by a radian."""
+    """Lengths and gravity have the same factor. Ground of a fixed thickness would change the angle by a radian."""
     scale = 1e5
     x, y = ELLIPSE.gravity
     large = replace(ELLIPSE, along_x=scale * 0.5, along_y=scale * 0.3, gravity=(scale * x, scale * y))
@@ -245,8 +245,8 @@ def test_a_scaled_ellipse_turns_by_the_same_angles():
     assert largest(own - other) < 1e-10
 
 
-def test_a_pair_that_cannot_roll_on_is_stopped_with_a_warning():
-    """A disc rolls over the end of a flat side, beyond which there is no contact at which to place the pivot."""
+def test_a_run_ends_with_a_warning_where_the_curves_lose_contact():
+    """A disc rolls over the end of a flat side. Beyond it the curves have no contact for the pivot."""
     rolling = Rolling.at_arcs(Circle(0.4), Placed(Side(1.0), turn=math.pi), 0.0, 0.0)
     disc, roll = rolling_disc(rolling, 4.0)
     mechanism = Mechanism((disc,), (roll,))
@@ -261,7 +261,7 @@ def test_a_pair_that_cannot_roll_on_is_stopped_with_a_warning():
 @pytest.mark.parametrize("step", [1e-3, 3e-4])
 def test_the_first_force_of_a_contact_is_converged(step):
     run, truth = TUNED.build(DISC.mechanism(), step)(1, 1), DISC.motion(np.array([0.0]))
-    # First order in the step: 1.4e-3 of the force at a millisecond. With five iterations half of the force is missing.
+    # The error is of first order, 1.4e-3 of the force for a step of 1 ms. With five iterations it is half of the force.
     assert largest(run.reaction[0] - truth.reaction[0]) < 3e-3 * largest(truth.reaction[0])
 
 
@@ -274,9 +274,9 @@ def test_a_skate_on_a_moving_body_has_no_slip():
     assert largest(mechanism.slip(trajectory.pose, trajectory.twist)) < 1e-8
 
 
-def test_a_placed_blade_corrects_no_gap_and_adds_no_noise():
-    # A correction of a gap of 1e-16 m, which is rounding, within 1e-4 s changes reactions by 1e-6 N, since they are
-    # changes of velocity over a step. Without it the error is 2e-10 N.
+def test_the_groove_of_a_blade_corrects_no_gap_and_adds_no_noise():
+    # If a step of 1e-4 s corrected a gap of 1e-16 m, which is rounding, reactions would change by 1e-6 N. Without the
+    # correction the error is 2e-10 N.
     scene = ChaplyginSleigh(duration=3.0, horizon=3.0)
     trajectory = methods.SKATE_GROOVE_EXTRAPOLATED.build(scene.mechanism(), 1e-3)(100, 30)
     right = scene.motion(trajectory.t)
@@ -297,7 +297,7 @@ def with_blade_at_centre() -> Mechanism:
 
 
 DAMPER = TorsionDamper("damper", None, "rocker", 0.1)
-# For each row of `declared.ORDERS` a mechanism, and the constructions with which it belongs to the row.
+# A mechanism for each row of `declared.ORDERS`, and the constructions with which it belongs to the row.
 ORDER_CASES = {
     "contact": (DISC.mechanism(), {"roll": "contact"}),
     "set velocity": (with_blade_at_centre(), {"skate": "centre"}),
@@ -312,7 +312,7 @@ ORDER_CASES = {
 
 
 @pytest.mark.parametrize("kind", declared.ORDERS)
-def test_the_orders_of_each_kind_of_mechanism_are_those_of_its_row_in_the_table(kind):
+def test_the_declared_orders_of_each_kind_of_mechanism(kind):
     mechanism, constructions = ORDER_CASES[kind]
     fraction_of_gap, whole_gap = (replace(DEFAULT, iterations=1000, error_bias=b, **constructions) for b in (0.5, 0.0))
     leapfrog = replace(whole_gap, leapfrog=True)

@@ -1,4 +1,4 @@
-"""MuJoCo models as mechanisms: equal accelerations, element by element, or a refusal that names the element."""
+"""The reader of MuJoCo models: equal accelerations for each element, or a refusal that names the element."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from engines.mujoco.reading.settings import switch_off
 from engines.reading import Reading, ReadingTerms
 from reports.check.judging import pose_distance, refuse_disagreement, soft_motion
 
-# Engine and judge solve small systems of equations whose numbers differ by a factor of at most a thousand.
+# The rounding of small systems of equations whose coefficients differ by a factor of at most a thousand.
 SMALL_SYSTEM_ROUNDING = 1e-9
 TWO_LINKS = """
 <body name="upper"><joint name="A" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 .3 0 .1" size=".02"/>
@@ -32,7 +32,7 @@ CONNECT_EQUALITY = '<connect name="C" body1="coupler" body2="rocker" anchor=".8 
 
 
 def model_of(bodies, more="", option="", turned=""):
-    """A model without contact; joints turn about y unless they say otherwise. `turned`: the attributes of a frame."""
+    """A model without contact, whose default joints turn about y. `turned`: attributes of a body around the model."""
     inside = f'<site name="post" pos=".2 0 .9"/>{bodies}'
     inside = f"<body {turned}>{inside}</body>" if turned else inside
     return mujoco.MjModel.from_xml_string(f"""
@@ -64,7 +64,7 @@ BOX = '<inertial pos=".1 0 .05" mass="2" diaginertia=".02 .03 .03"/>'
 SLIDE, TURNED = '<joint type="slide" axis="1 0 2"/>', '<joint pos=".2 0 0"/>'
 ALONG = '<joint type="slide" axis="1 0 0"/>'
 CROSSED = f'{ALONG}<joint type="slide" axis="0 0 1"/>'
-# Each connection of a body with its parent; a body without joints, and a slide in a moving body.
+# All connections of a body with its parent.
 CONNECTIONS = (SLIDE, SLIDE + TURNED, TURNED + SLIDE, CROSSED + TURNED, CROSSED, '<joint axis="0 -1 0"/>')
 TREES = TWO_LINKS.replace(
     "<site",
@@ -125,17 +125,17 @@ def test_a_free_body_that_starts_in_the_plane_is_read():
         '<body name="a" pos="0 0 1"><freejoint/><inertial pos="0 0 0" mass="2" diaginertia=".1 .2 .3"/></body>'
     )
     data = mujoco.MjData(model)
-    data.qvel[:] = [1.0, 0.0, 2.0, 0.0, 3.0, 0.0]  # linear in the world, angular in the body's own frame
+    data.qvel[:] = [1.0, 0.0, 2.0, 0.0, 3.0, 0.0]  # linear velocity in the world, angular velocity in the body frame
     reading = read(model, data)
     assert refuse_disagreement(reading) < SMALL_SYSTEM_ROUNDING
     (body,) = reading.mechanism.bodies
     assert reading.mechanism.degrees_of_freedom() == (3, 3)
     assert body.inertia == pytest.approx(0.2)
-    run = reading.model.run(100, 10)  # 2 s, more than half a turn: the quaternion's angle is followed
+    run = reading.model.run(100, 10)  # 2 s, in which the body makes almost a turn, so the angle must be unwrapped
     assert run.pose[-1, 0, 2] - run.pose[0, 0, 2] == pytest.approx(np.sign(body.twist[2]) * 3.0 * run.t[-1], rel=1e-6)
 
 
-def test_the_first_keyframe_counts_and_any_can_be_named(tmp_path):
+def test_the_first_keyframe_is_the_default_and_a_name_chooses_another(tmp_path):
     file = tmp_path / "two_keys.xml"
     keys = '<keyframe><key name="low" qpos=".3 0"/><key name="high" qpos="2 0"/></keyframe>'
     file.write_text(f"<mujoco><worldbody>{TWO_LINKS}</worldbody>{keys}</mujoco>")
@@ -150,7 +150,7 @@ def test_the_first_keyframe_counts_and_any_can_be_named(tmp_path):
         READER.read("two_keys.xml", tmp_path, ReadingTerms(key="middle"))
 
 
-def test_a_wrong_reading_is_stopped_at_the_start():
+def test_a_wrong_reading_is_refused_with_the_name_of_a_body():
     reading = read(model_of(*MJCF_MODELS["a connect"]))
     (crank, *others), gravity = reading.mechanism.bodies, reading.mechanism.gravity
     for values in (
@@ -169,7 +169,7 @@ def test_an_element_that_explains_a_disagreement_is_named():
         refuse_disagreement(changed(reading, forces=()))
 
 
-def test_an_equality_of_which_mujoco_makes_no_row_is_left_out_with_a_note():
+def test_an_equality_without_a_row_in_mujoco_is_omitted_with_a_note():
     body = '<body name="a" {}><joint name="j" axis="0 1 0"/><geom size=".1" pos=".4 0 0"/></body>'
     for turned in ("", 'euler="0 30 0"'):
         model = f'<mujoco><worldbody>{body.format(turned)}</worldbody><equality><connect body1="a" anchor="0 0 0"/>'
@@ -180,7 +180,7 @@ def test_an_equality_of_which_mujoco_makes_no_row_is_left_out_with_a_note():
         assert not reading.model.regularisation(np.zeros(2), reading.mechanism.pose).stiffness.any()
 
 
-def test_a_fluid_that_is_switched_off_moves_nothing():
+def test_a_fluid_that_is_switched_off_exerts_no_force():
     model = model_of(TWO_LINKS, "", 'density="1000" viscosity="10"')
     data = moving(model)
     wet = data.qacc.copy()
@@ -191,18 +191,18 @@ def test_a_fluid_that_is_switched_off_moves_nothing():
     assert np.abs(wet - dry).max() > 1e-3 * np.abs(dry).max()
 
 
-def test_softness_as_declared_is_what_mujoco_does():
+def test_a_soft_loop_moves_according_to_its_declared_regularisation():
     reading = read(model_of(*MJCF_MODELS["a connect"], 'timestep="0.0002" integrator="RK4" tolerance="1e-15"'))
     run = reading.model.run(40, 50)
     soft = soft_motion(reading.mechanism, reading.model.regularisation, run.t)
-    # The error of RK4 at 0.2 ms is far smaller; the ideal motion differs by 1e-3.
+    # The error of RK4 with steps of 0.2 ms is far smaller, and the ideal motion differs by 1e-3.
     assert pose_distance(reading.mechanism, soft, run.pose).max() < 1e-6
     stiffer = [replace(reading.model.regularisation(np.zeros(8), reading.mechanism.pose), compliance=np.zeros((8, 8)))]
     wrong = soft_motion(reading.mechanism, lambda gap, pose: stiffer[0], run.t)
     assert pose_distance(reading.mechanism, wrong, run.pose).max() > 1e-5
 
 
-def test_a_contact_is_named_with_its_time_and_at_the_start_refused():
+def test_a_contact_is_reported_with_its_time_and_refused_at_the_start():
     def with_floor(height):
         return mujoco.MjModel.from_xml_string(
             f'<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" pos="0 0 {height}"/>{TWO_LINKS}'
@@ -248,7 +248,7 @@ TIP, HINGE = 'name="tip" pos=".4 0 0"', 'name="B" axis="0 1 0"'
         (TWO_LINKS, '<body><geom fromto="0 0 0 1 0 0"/></body>', "", "nothing in it can move"),
     ],
 )
-def test_what_has_no_ideal_counterpart_is_named(old, new, more, sentence):
+def test_an_element_without_planar_counterpart_is_refused_by_name(old, new, more, sentence):
     model = model_of(TWO_LINKS.replace(old, new) if old else TWO_LINKS, more)
     data = mujoco.MjData(model)
     data.ctrl[:] = 1.0
@@ -257,7 +257,7 @@ def test_what_has_no_ideal_counterpart_is_named(old, new, more, sentence):
     assert sentence in str(reason.value)
 
 
-def test_poses_go_back_to_mujocos_positions():
+def test_positions_follow_from_poses():
     model = model_of(TREES)
     data = moving(model)
     data.qpos[:] = 0.3 * np.arange(1, model.nq + 1)
@@ -268,8 +268,8 @@ def test_poses_go_back_to_mujocos_positions():
         mujoco.mj_step(model, again, nstep=10)
 
 
-def test_a_run_begins_with_the_mocap_body_where_the_state_has_it():
-    """A keyframe has moved the mocap body and the pin of the pendulum, and turned both about the body's origin."""
+def test_a_run_starts_with_the_mocap_body_of_the_state():
+    """A keyframe moves and turns the mocap body, which holds the pin of the pendulum."""
     model = model_of(
         f'<body name="post" mocap="true"/><body name="bob">{CROSSED}<joint/><inertial pos=".2 0 0" mass="1" '
         'diaginertia=".1 .1 .1"/></body>',
@@ -285,9 +285,9 @@ def test_a_run_begins_with_the_mocap_body_where_the_state_has_it():
     assert np.abs(reading.mechanism.gap(run.pose, run.t)).max() < 2e-3
 
 
-@pytest.mark.parametrize("sample", [11, 20])  # a sum of steps of 0.1 s is a rounding below 1.1, and above 2
-def test_the_samples_from_a_reset_on_are_no_numbers(sample):
-    """The state in which MuJoCo resets has a velocity above mjMAXVAL = 1e10, which is no error of the motion."""
+@pytest.mark.parametrize("sample", [11, 20])  # the rounded sum of steps of 0.1 s is below 1.1 s, and above 2 s
+def test_samples_from_a_reset_on_are_nan(sample):
+    """MuJoCo resets a state if a velocity exceeds mjMAXVAL = 1e10."""
     body = '<body><joint type="slide" axis="1 0 0"/><geom fromto="0 0 0 .1 0 0"/></body>'
     gravity = 1e10 / (0.1 * (sample - 0.5))
     run = read(model_of(body, option=f'gravity="{gravity} 0 0" timestep="0.1"')).model.run(30, 1)

@@ -1,10 +1,7 @@
-"""Reading of pymunk spaces: a mechanism with the same accelerations, or a refusal that names the element.
-
-Also scripts that start half a step ahead, and the settings that are offered for a space.
-"""
+"""The reader of pymunk spaces and scripts: equal accelerations, refusals by name, and changes of settings."""
 
 # pyright: reportAttributeAccessIssue=false
-# (`reading.model` is a pymunk model here.)
+# (`reading.model` is an OwnPymunk.)
 
 from __future__ import annotations
 
@@ -32,12 +29,12 @@ from engines.pymunk.reading import READER, read
 from engines.reading import AS_IT_IS
 from reports.check.judging import measure_errors, reference_motion, refuse_disagreement
 
-# The accelerations are extrapolated from two small steps: their error is about 1e-8, the square of the step.
+# The accelerations are extrapolated from two small steps, with an error of about 1e-8, the square of the step.
 ACCELERATION_ERROR = 1e-6
 
 
 def space_of(*makers, spin=0.7):
-    """Two bodies beside each other, the first pinned to the ground, and the constraints that the makers give."""
+    """A space with two bodies, a pin between the first body and the ground, and the constraints of the makers."""
     space = pymunk.Space()
     space.gravity = (0.5, -9.81)
     first, second = pymunk.Body(1.0, 0.05), pymunk.Body(2.0, 0.1)
@@ -56,20 +53,20 @@ def space_of(*makers, spin=0.7):
     return space
 
 
-def riding(space, first, second):
-    """Give the second body the velocity of a point of the first."""
+def move_with_first(first, second):
+    """Give the second body the velocity that it would have as a part of the first body."""
     spin = first.angular_velocity
     second.velocity, second.angular_velocity = (-spin * second.position.y, spin * second.position.x), spin
 
 
 def elbow(space, first, second):
-    riding(space, first, second)
+    move_with_first(first, second)
     at = (0.6, 0.3)
     return PivotJoint(first, second, first.world_to_local(at), second.world_to_local(at))
 
 
 def rod(space, first, second):
-    riding(space, first, second)
+    move_with_first(first, second)
     return PinJoint(first, second, (0.1, 0.0), (0.0, 0.05))
 
 
@@ -97,7 +94,7 @@ def spring(space, first, second):
 
 
 def damper(space, first, second):
-    riding(space, first, second)
+    move_with_first(first, second)
     second.angular_velocity = 3.0
     return DampedSpring(space.static_body, second, (0.1, 1.0), (0.0, 0.05), 0.4, 5.0, 0.8)
 
@@ -122,7 +119,7 @@ def steady(space, first, second):
 
 
 def off_centre(space, first, second):
-    """A body whose anchors are relative to another point than the centre of mass."""
+    """A body whose centre of mass is not the origin of its anchors."""
     odd = pymunk.Body(2.0, 0.3)
     odd.center_of_gravity = (0.1, -0.2)
     odd.position, odd.angle = (2.0, 2.0), 0.5
@@ -169,7 +166,7 @@ def test_a_force_on_a_body_is_read_as_constant_with_a_note():
     assert [type(force).__name__ for force in reading.mechanism.forces] == ["Force", "Torque"]
     assert any(note.element == "the force or torque that stands on body 2" for note in reading.notes)
     assert refuse_disagreement(reading) < ACCELERATION_ERROR
-    # The push alone moves the body by half a metre in a second, so a push in the first step only would be noticed.
+    # The force alone moves the body by 0.5 m in 1 s, so the test detects a force that acts only in the first step.
     linkage, ideal = reading.model.run(10, 10), TRUTH.build(reading.mechanism, 0.1)(10, 1)
     assert np.abs(linkage.pose - ideal.pose).max() < 0.1
 
@@ -254,7 +251,7 @@ def test_an_element_without_ideal_counterpart_is_refused_by_name(make, sentence)
     assert sentence in str(reason.value)
 
 
-def test_a_given_step_has_priority_over_the_last_and_that_over_the_usual_one():
+def test_a_given_step_has_priority_over_the_last_step_and_the_assumed_step():
     space = space_of()
     assert [read(space, step).model.dt for step in (None, 0.01)] == [1 / 60, 0.01]
     space.step(1e-6)
@@ -283,7 +280,7 @@ for a, b, at in (
 """
 LINE_FOLDER = Path(__file__).parents[2] / "reports" / "pages" / "your_loop" / "lines"
 CLOSE_CODE = (LINE_FOLDER / "close.txt").read_text(encoding="utf-8")
-# The lines of earlier releases, which stopped the drift by a position_func.
+# Earlier releases wrote these lines, which prevent the drift by a position_func.
 OLD_CODE = """
 for joint in space.constraints:
     joint.error_bias = 0
@@ -317,11 +314,11 @@ def test_a_script_that_starts_half_a_step_ahead_is_read_in_the_state_before(past
     assert mechanism.pose[0] == pytest.approx([0, 25, 0], abs=1e-12)
     assert np.abs(mechanism.twist).max() < 1e-12
     truth = reference_motion(mechanism, 50, 1e-2).trajectory
-    # With the shipped settings the error is 0.1; without the half step, 0.006.
+    # The error would be 0.1 with default settings, and 0.006 without the half step.
     assert measure_errors(mechanism, truth, reading.model.run(50, 10)).largest < 1e-3
 
 
-def test_a_start_ahead_of_a_moving_space_is_undone_and_no_other_first_step(tmp_path):
+def test_an_initial_half_step_is_undone_and_another_first_step_is_not(tmp_path):
     moving = FOUR_BAR_SCRIPT.replace("SPIN", "3")
     for lines, ahead in (
         (f"{CLOSE_CODE}\nclose(space, 1e-3, 16){LOOP_CODE}", True),
@@ -353,6 +350,6 @@ def rope():
 def test_unstable_settings_are_not_offered():
     changes = rope().changes(1e-4)
     closed = {dict(change.options)["iterations"] for change in changes if dict(change.options)["bias"] == 0}
-    # Thirty links: 1 - rho = pi^2 / (4 N^2), so a quarter of the slowest mode is left after about 500 iterations.
+    # For N = 30 links 1 - rho = pi^2 / (4 N^2), so a quarter of the slowest mode is left after about 500 iterations.
     assert min(closed) > 100
     assert {dict(change.options)["iterations"] for change in changes} >= {10, 50}

@@ -1,4 +1,4 @@
-"""Convergence and stability of pymunk's iterations: numbers of iterations, gains, and bodies of prescribed angle."""
+"""The convergence and stability of pymunk's iterations."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from reports.search.parts import ALL_KINDS
 from tests.engines.test_pymunk import every_method, largest
 from tests.mechanisms import four_bar
 
-WITH_MOTOR = (451161196, 54)  # seed and number of a motor among pins and a gear
+WITH_MOTOR = (451161196, 54)  # seed and number of a mechanism with a motor, pins and a gear
 
 
 @every_method
@@ -41,7 +41,7 @@ def test_a_load_on_a_body_that_is_driven_without_a_pin_does_not_turn_it(method):
         Pin("hook", "block", "pendulum", (0.3, 0.0), (-0.5, 0.0)),
     )
     trajectory = method.build(Mechanism((block, pendulum), joints, (0.0, -9.81)), 1e-3)(20, 10)
-    # The bar falls from a level position, 0.3 m off the block's middle: its weight would turn a free block.
+    # The weight of the bar acts 0.3 m from the middle of the block and would turn a free block.
     assert largest(trajectory.pose[:, 0, 2]) < 1e-12
     assert largest(trajectory.pose[-1, 1, 2]) > 0.1
 
@@ -49,20 +49,20 @@ def test_a_load_on_a_body_that_is_driven_without_a_pin_does_not_turn_it(method):
 @pytest.mark.parametrize("links", [2, 10, 80])
 def test_the_convergence_factor_of_a_chain_of_equal_links(links):
     rho = convergence_factor(LinkPendulum(links=links).mechanism())
-    # The slowest mode is the longest wave on a chain that is fixed at one end.
+    # The slowest mode is the longest wave of a chain that is fixed at one end.
     assert rho == pytest.approx(math.cos(math.pi / (2 * links)) ** 2, abs=1e-6)
 
 
-def test_the_convergence_factor_counts_no_prescribed_motion_and_depends_on_masses():
+def test_the_convergence_factor_ignores_prescribed_motions_and_depends_on_masses():
     assert convergence_factor(LinkPendulum(links=1).mechanism()) == 0  # a single joint
     driven, free = (convergence_factor(four_bar(10.0, drive=drive)) for drive in (10.0, None))
     assert driven < free < 1
-    # A hundredfold mass on a light link converges a hundred times slower.
+    # With a mass ratio of 100, the convergence is a hundred times slower.
     assert 1 - convergence_factor(LinkPendulum(tip=100.0).mechanism()) == pytest.approx(0.01, rel=0.05)
 
 
-def test_iterations_are_those_of_the_worst_pose_of_the_motion():
-    """The free four-bar of the chapter folds during its motion: there the factor is 0.81, at the start 0.59."""
+def test_the_number_of_iterations_follows_from_the_worst_pose_of_the_motion():
+    """The factor of the free four-bar is 0.59 at the start, and 0.81 where the linkage folds during its motion."""
     scene = FreeFourBar()
     mechanism = scene.mechanism()
     passed = scene.motion(np.linspace(0, scene.duration, 200)).pose
@@ -71,7 +71,7 @@ def test_iterations_are_those_of_the_worst_pose_of_the_motion():
     # The pilot run samples other poses than the motion, so the number of iterations may differ by one.
     assert abs(iterations_in_step(worst_factor(mechanism, scene.duration)) - iterations_in_step(worst)) <= 1
     assert worst_factor(mechanism, 0.0) == convergence_factor(mechanism)
-    # The same motion of bars a thousand times as long: the largest gap of the pilot run is relative to the length.
+    # Bars that are a thousand times as long have the same factor, since the largest gap is relative to the length.
     longer = {name: 1e3 * getattr(scene, name) for name in ("crank", "coupler", "rocker")}
     larger = replace(scene, **longer, ground=(1200.0, 0.0), gravity=(0.0, -9810.0)).mechanism()
     assert worst_factor(larger, scene.duration) == pytest.approx(worst_factor(mechanism, scene.duration))
@@ -80,14 +80,14 @@ def test_iterations_are_those_of_the_worst_pose_of_the_motion():
 
 
 @pytest.mark.parametrize("iterations", [2, 10])
-def test_the_gain_by_rule_is_stable_and_a_gain_of_one_adds_energy_with_few_iterations(iterations):
+def test_with_few_iterations_the_stable_gain_adds_no_energy_and_a_gain_of_one_does(iterations):
     mechanism, dt = TenLinks().mechanism(), 1e-3
 
     def gained(closed: float) -> float:
         engine = Pymunk("mine", iterations=iterations, error_bias=(1 - closed) ** (1 / dt), leapfrog=True)
         return float(np.ptp(energy(mechanism, engine.build(mechanism, dt)(300, 10))))
 
-    # J; the ten links of 1 kg and 1 m fall by 5 m: about 490 J turn from potential to kinetic.
+    # The ten links of 1 kg and 1 m fall by 5 m, so about 490 J of potential energy become kinetic energy.
     assert gained(stable_gain(convergence_factor(mechanism), iterations)) < 1
     assert gained(1.0) > 500
 
@@ -96,8 +96,8 @@ def test_the_gain_by_rule_is_stable_and_a_gain_of_one_adds_energy_with_few_itera
 def test_welds_and_motors_are_stable_at_short_steps_or_no_order_is_declared(seed, number):
     """Welds have complex modes, and motors correct no gap.
 
-    If complex modes counted as real ones, mechanism 255 would have an error of a thousand times its motion. If motors
-    counted as correcting a gap, the error would be five hundred times larger at a quarter of the step.
+    If complex modes were treated as real, the error of mechanism 255 would be a thousand times its motion. If motors
+    were treated as correcting a gap, the error at a quarter of the step would be five hundred times larger.
     """
     mixed = mechanism(seed, number, ALL_KINDS)
     span = 0.4 * mixed.time_scale
@@ -112,28 +112,28 @@ def test_welds_and_motors_are_stable_at_short_steps_or_no_order_is_declared(seed
 
 
 @pytest.mark.parametrize(("seed", "number", "few"), [(*WITH_MOTOR, 30), (31, 655, 9), (31, 981, 8)])
-def test_impulses_grow_by_the_spectral_radius_of_the_step_where_motors_and_blades_correct_no_gap(seed, number, few):
+def test_impulses_grow_by_the_spectral_radius_of_the_step_if_motors_and_blades_correct_no_gap(seed, number, few):
     mixed = mechanism(seed, number, ALL_KINDS)
     corrected = corrects_gap(mixed, rolls_are_contacts=True)
     assert 0 < corrected.mean() < 1
 
     def grown(iterations: int) -> float:
-        """The factor of a step, from the last two thirds of a run with steps in which rows hardly change."""
+        """The growth of impulses in a step, from the last two thirds of a run with very short steps."""
         twist = replace(TUNED, iterations=iterations, error_bias=0.0).build(mixed, 1e-7 * mixed.time_scale)(66, 1).twist
         change = np.abs(np.diff(twist, axis=0)).max(axis=(1, 2))
         return float((change[-1] / change[20]) ** (1 / 45))
 
-    # The growth is 5 to 25 per cent in a step; other modes change it by at most two per cent.
+    # Impulses grow by 5 to 25 % in a step. Other modes change this growth by at most 2 %.
     assert grown(few) == pytest.approx(step_spectral_radius(mixed, mixed.pose, few, corrected), abs=0.02)
     enough = TUNED.plan(mixed).iterations
     assert grown(enough) < 1.01
-    # With fewer iterations only a fraction of the gap is corrected, with a warning.
+    # With fewer iterations a step corrects only a fraction of the gap, and the run has a warning.
     short = replace(TUNED, iterations=few).build(mixed, 1e-3 * mixed.time_scale)(2, 2)
     assert any("not converged" in warning for warning in short.warnings)
 
 
 def test_a_small_gain_does_not_underflow_to_a_gain_of_one_at_small_steps():
-    """0.95 ** (1/dt) is zero as a double at dt = 1e-5 s, and zero closes all of a gap: the unit of time is the step."""
+    """0.9 ** (1/dt) underflows to zero for dt = 1e-5 s, and zero would correct the whole gap."""
     assert 0.9 ** (1 / 1e-5) == 0
     heavy = LinkPendulum(tip=1e4)
     model = LEAPFROG.model(heavy.mechanism(), 1e-5)
