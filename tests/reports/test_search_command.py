@@ -1,5 +1,4 @@
-"""`crosscheck search` from beginning to end: results are stored as they arrive, computed once, printed, reduced,
-and written as scripts, which run in a process that can't import this suite."""
+"""Tests of `crosscheck search`: storing, printing and reducing results, and the scripts of findings."""
 
 from __future__ import annotations
 
@@ -18,6 +17,7 @@ from reports.cli.options import SEARCH, STORE
 from reports.model.ending import FINE, REFUSED
 from reports.run.store import Store
 from reports.search import mujoco_alone, plan, relations
+from reports.search.parts import Recipe
 from reports.search.scripts import write_script
 from reports.search.shrinking import shrink_case
 from reports.search.subjects import Adapted, Alone
@@ -32,7 +32,7 @@ from engines.lagrange import Lagrange
 
 @dataclass(frozen=True)
 class Fatal(Lagrange):
-    """Ends its process where three bodies or more hang together."""
+    """An engine that ends its process for three or more bodies."""
 
     def build(self, mechanism, dt):
         if len(mechanism.bodies) > 2:
@@ -43,16 +43,15 @@ ENGINE = Fatal("euler", "projection")
 '''
 
 
-def test_findings_are_told_made_small_and_written_and_the_page_shows_them(
+def test_findings_are_printed_reduced_written_and_shown_on_the_page(
     here: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     assert call(*FEW, "--seed", "1") == FINE
     message = capfd.readouterr().out
     assert "mujoco alone" in message
     assert re.search(r"4 cases were asked in \d+ s\. The first finding came after [\d.]+ s, within 4 cases\.", message)
-    assert re.search(
-        r"mujoco alone │ acceleration, a known fault │ .* │ +1 │ +0 │ +[0-3] │ +joint", message
-    )  # what draws a finding again
+    # The columns are seed, decades, case and kinds.
+    assert re.search(r"mujoco alone │ acceleration, a known fault │ .* │ +1 │ +0 │ +[0-3] │ +joint", message)
     folder = here / "crosscheck-results" / SEARCH
     findings = sorted(folder.glob("*.json"))
     assert findings
@@ -61,7 +60,7 @@ def test_findings_are_told_made_small_and_written_and_the_page_shows_them(
         assert finding["error"] > finding["bound"]
         assert "mujoco.mj_forward" in path.with_suffix(".py").read_text()
     stored = (folder / STORE).stat().st_mtime_ns
-    assert call(*FEW, "--seed", "1") == FINE  # everything is stored: nothing is run again
+    assert call(*FEW, "--seed", "1") == FINE
     assert (folder / STORE).stat().st_mtime_ns == stored
     assert call("report") == FINE
     page = (here / "crosscheck-results" / "search.md").read_text()
@@ -71,7 +70,7 @@ def test_findings_are_told_made_small_and_written_and_the_page_shows_them(
     assert (here / "crosscheck-results" / "search_errors.svg").read_text().startswith("<?xml")
 
 
-def test_a_case_that_ends_its_process_is_found_and_the_others_are_kept(
+def test_a_case_that_ends_its_process_is_a_finding_and_the_other_results_are_stored(
     here: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     (here / "fatal.py").write_text(FATAL)
@@ -96,7 +95,7 @@ def test_a_case_that_ends_its_process_is_found_and_the_others_are_kept(
         (("--release", "latest"), "latest"),
     ],
 )
-def test_wrong_values_are_refused_in_a_line(
+def test_invalid_options_are_refused_in_one_line(
     words: tuple[str, ...], names: str, here: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     assert call("search", "--cases", "1", *words) == REFUSED
@@ -104,7 +103,7 @@ def test_wrong_values_are_refused_in_a_line(
     assert not (here / "crosscheck-results").exists()
 
 
-def test_fresh_seeds_are_drawn_until_the_time_is_over_and_told(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_fresh_seeds_are_drawn_until_the_time_limit_and_stored(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     command = ("--engine", "mujoco", "--variant", "alone", "--cases", "3", "--seconds", "0.1", "--workers", "1")
     assert call("search", "--fresh", *command) == FINE
     assert "cases were asked" in capfd.readouterr().out
@@ -114,7 +113,7 @@ def test_fresh_seeds_are_drawn_until_the_time_is_over_and_told(here: Path, capfd
     assert not seeds & {*plan.published_seeds()}
 
 
-def test_seeds_are_those_of_the_last_commit_and_without_git_of_the_sources(
+def test_published_seeds_depend_on_the_last_commit_or_without_git_on_the_sources(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "reports").mkdir()
@@ -135,16 +134,14 @@ def test_seeds_are_those_of_the_last_commit_and_without_git_of_the_sources(
     assert results[2][1][0] == int(hashlib.sha256(b"0123abcd 1").hexdigest()[:8], 16) // 2
 
 
-def test_what_is_published_is_drawn_from_seeds_that_nobody_chose() -> None:
-    pieces = plan.published_chunks()
-    assert {piece.seed for piece in pieces} == {*plan.published_seeds()}
-    assert {piece.decades for piece in pieces} == {*plan.SEED_DECADES}
-    names = {piece.subject.name for piece in pieces}
+def test_the_published_chunks_have_the_published_seeds_and_every_installed_method() -> None:
+    chunks = plan.published_chunks()
+    assert {chunk.seed for chunk in chunks} == {*plan.published_seeds()}
+    assert {chunk.decades for chunk in chunks} == {*plan.SEED_DECADES}
+    names = {chunk.subject.name for chunk in chunks}
     assert {method_name(engine) for engine in (*VARIANTS, *INSTALLED)} < names
-    assert any("toggle" in piece.kinds for piece in pieces)
+    assert any("toggle" in chunk.kinds for chunk in chunks)
 
-
-# Scripts
 
 SEED = 1
 ALONE = """
@@ -156,7 +153,7 @@ runpy.run_path(sys.argv[1], run_name="__main__")
 
 
 def differences(text: str, folder: Path) -> list[float]:
-    """The numbers that a script prints, in order."""
+    """Run a script and return the differences that it prints."""
     path = folder / "finding.py"
     path.write_text(text, encoding="utf-8")
     run = subprocess.run([sys.executable, "-c", ALONE, path], capture_output=True, text=True, check=False, cwd=folder)
@@ -166,18 +163,21 @@ def differences(text: str, folder: Path) -> list[float]:
 
 
 def script_of(engine: Engine, kinds: tuple[str, ...], check: str, number: int) -> str:
-    """The script of the first case from `number` on that can be shown."""
+    """The script of the first case from `number` on that has all kinds and a script."""
     if engine.missing:
         pytest.skip(engine.missing)
-    subject = Adapted(engine)
-    cases = (subject.draw(SEED, item, kinds, 0) for item in range(number, number + 20))
-    return next(
-        text for case in cases if set(kinds) <= set(case.kinds) and (text := write_script(subject, case, check, number))
-    )
+    texts = (write_script(Adapted(engine), case, check, number) for case in cases_with(engine, kinds, number))
+    return next(text for text in texts if text)
+
+
+def cases_with(engine: Engine, kinds: tuple[str, ...], first: int = 0) -> list[Recipe]:
+    """The cases with all of these kinds among twenty."""
+    drawn = [Adapted(engine).draw(SEED, number, kinds, 0) for number in range(first, first + 20)]
+    return [case for case in drawn if set(kinds) <= set(case.kinds)]
 
 
 @pytest.mark.parametrize(
-    ("engine", "kinds", "falls"),  # by how much the error falls at least with half the step
+    ("engine", "kinds", "falls"),  # falls: smallest factor by which half the step reduces the error
     [
         (pymunk.DEFAULT, ("pin", "spring"), 1.4),
         (mujoco.TUNED, ("pin", "damper"), 4.0),
@@ -185,49 +185,46 @@ def script_of(engine: Engine, kinds: tuple[str, ...], check: str, number: int) -
     ],
     ids=lambda value: getattr(value, "name", None),
 )
-def test_a_script_shows_an_engines_error_without_the_suite(
+def test_the_difference_that_a_script_prints_falls_with_the_step(
     engine: Engine, kinds: tuple[str, ...], falls: float, tmp_path: Path
 ) -> None:
-    """With a smaller step a right engine comes nearer to an independent calculation."""
     coarse, fine = differences(script_of(engine, kinds, "motion", 0), tmp_path)
     assert fine < max(coarse / falls, 1e-9)
     assert coarse < 0.1
 
 
-def test_a_script_of_two_descriptions_shows_both(tmp_path: Path) -> None:
+def test_a_script_of_a_relation_prints_the_same_error_for_both_descriptions(tmp_path: Path) -> None:
     text = script_of(mujoco.TUNED, ("pin", "force"), "turned", relations.RELATIONS.index("turned"))
     assert "original" in text
     assert "turned: 5 steps" in text
     first, second = differences(text, tmp_path)
-    assert second == pytest.approx(first, rel=1e-3, abs=1e-12)  # a right engine's error is the same in both
+    assert second == pytest.approx(first, rel=1e-3, abs=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("engine", "kinds", "check", "most"),
+    ("engine", "kinds", "check"),
     [
-        (pymunk.LEAPFROG, ("pin", "slot"), "velocity", 1e-9),
-        (mujoco.TUNED, ("pin", "weld", "spring", "torque"), "acceleration", 1e-9),
-        pytest.param(mjx.TUNED, ("pin", "force"), "without velocity terms", 1e-9, marks=pytest.mark.slow),
+        (pymunk.LEAPFROG, ("pin", "slot"), "velocity"),
+        (mujoco.TUNED, ("pin", "weld", "spring", "torque"), "acceleration"),
+        pytest.param(mjx.TUNED, ("pin", "force"), "without velocity terms", marks=pytest.mark.slow),
     ],
     ids=lambda value: getattr(value, "name", None),
 )
-def test_a_script_of_a_right_case_prints_what_the_law_asks_for(
-    engine: Engine, kinds: tuple[str, ...], check: str, most: float, tmp_path: Path
+def test_a_script_of_a_case_without_a_fault_prints_a_difference_at_rounding(
+    engine: Engine, kinds: tuple[str, ...], check: str, tmp_path: Path
 ) -> None:
-    assert max(differences(script_of(engine, kinds, check, 3), tmp_path)) < most
+    assert max(differences(script_of(engine, kinds, check, 3), tmp_path)) < 1e-9
 
 
-def test_where_our_code_takes_part_in_every_step_there_is_no_script_nor_of_other_engines() -> None:
+def test_a_method_with_our_code_in_every_step_and_an_engine_without_scripts_give_an_empty_script() -> None:
     for engine, kinds in ((mujoco.EXTENDED, ("pin", "skate")), (exudyn.TUNED, ("pin",))):
-        subject = Adapted(engine)
-        cases = (subject.draw(SEED, number, kinds, 0) for number in range(20))
-        assert write_script(subject, next(case for case in cases if set(kinds) <= set(case.kinds)), "motion", 0) == ""
+        assert write_script(Adapted(engine), cases_with(engine, kinds)[0], "motion", 0) == ""
 
 
-def test_curved_equalities_without_their_velocity_term_are_found_made_small_and_written_as_a_script(
+def test_the_missing_velocity_term_of_curved_equalities_is_found_reduced_and_written_as_a_script(
     tmp_path: Path,
 ) -> None:
-    """MuJoCo up to 4.0.1: polycoef beyond the slope. One body is left, and the script shows it without our code."""
+    """MuJoCo up to 4.0.1 omits the term. The reduced model has one equality and at most two bodies."""
     subject = Alone()
     models = ((n, mujoco_alone.draw_model(SEED, n, ("joint",))) for n in range(20))
     number, case = next((n, model) for n, model in models if subject.ask(model, n, ("instant",)).faults)
@@ -242,4 +239,4 @@ def test_curved_equalities_without_their_velocity_term_are_found_made_small_and_
     assert len(small.parts) <= 2
     assert len(small.links) == 1
     assert sum(abs(value) for part in small.parts for value in (*part.offset, *part.centre, part.mass)) <= 1
-    assert differences(write_script(subject, small, "acceleration", number), tmp_path)[0] > 1e-4  # of about 0.01
+    assert differences(write_script(subject, small, "acceleration", number), tmp_path)[0] > 1e-4

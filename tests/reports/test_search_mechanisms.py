@@ -1,4 +1,4 @@
-"""Random mechanisms: the same from the same numbers, right at the start, as wide as they say."""
+"""Tests of the random mechanisms of the search."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from reports.search.parts import (
 from reports.search.recipe import DEPENDENCE_LIMIT, SINGULAR_LIMIT, build, dependence
 
 CASES = range(40)
-# The digest of the recipes below. It changes with any change of the drawing: seeds in documents would then name other
+# The digest of the recipes in the first test. A change of it means that published seeds no longer give the same
 # mechanisms.
 DIGEST = "a70ba875a1348f267414ef4ca0cc7f05393aa4b0745440069cc1fdfeeff82ed7"
 
 
-def test_a_seed_and_a_number_give_the_same_mechanism_for_ever():
+def test_the_recipe_of_a_seed_and_a_number_never_changes():
     drawing = [
         case_to_json(recipe(seed, number, kinds, decades))
         for seed in (3, 1001)
@@ -43,8 +43,7 @@ def test_a_seed_and_a_number_give_the_same_mechanism_for_ever():
     assert recipe(3, 41, ("slot", "pin")) == recipe(3, 41, ("pin", "slot"))
 
 
-def test_the_point_of_a_slots_line_lies_beside_the_slide():
-    """Adapters meet lines whose own point is elsewhere: at `more` tenths of the size along it."""
+def test_the_point_that_defines_the_line_of_a_slot_is_not_the_position_of_the_slider():
     slot = build(
         Recipe((RecipeBody(offset=(3, 4)),), (RecipeLink("slot", 0, 1, (1, 2), turn=2, more=-8),), (0, -10))
     ).joints[0]
@@ -54,17 +53,16 @@ def test_the_point_of_a_slots_line_lies_beside_the_slide():
 
 
 @pytest.mark.parametrize("decades", [0, 2])
-def test_every_start_fulfils_its_joints_and_none_hold_the_same(decades):
+def test_rows_are_independent_and_every_mechanism_moves_or_has_gravity(decades):
     for number in CASES:
-        drawing = mechanism(5, number, decades=decades)  # a start off its joints is refused by Mechanism itself
+        drawing = mechanism(5, number, decades=decades)  # Mechanism refuses joints that are open at the start
         rows = drawing.rows(drawing.pose) / np.tile([1, 1, drawing.length_scale], len(drawing.bodies))
         sizes = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True), compute_uv=False)
-        assert sizes[-1] >= 0.999 * DEPENDENCE_LIMIT * sizes[0]  # the last digits of the threshold
+        assert sizes[-1] >= 0.999 * DEPENDENCE_LIMIT * sizes[0]  # 0.999: rounding
         assert drawing.twist.any() or np.hypot(*drawing.gravity) > 0
 
 
-def test_a_toggle_holds_its_bodies_together_by_rows_that_nearly_depend_on_each_other():
-    """A rod that misses the pin of its bodies by d of their length: its moment is d, beside a force of 1."""
+def test_the_rows_of_a_toggle_are_nearly_dependent_and_toggles_are_drawn_only_if_selected():
     seen = 0
     for number in range(30):
         drawing = recipe(5, number, ("pin", "toggle"))
@@ -77,13 +75,12 @@ def test_a_toggle_holds_its_bodies_together_by_rows_that_nearly_depend_on_each_o
 
 
 @pytest.mark.parametrize("kind", ["all", *FORCE_KINDS])
-def test_units_are_units(kind):
-    """In other units of length, mass and time rows, masses, rates and accelerations scale, and nothing else changes."""
+def test_poses_velocities_inertias_and_accelerations_scale_with_the_units(kind):
     for number in CASES if kind == "all" else range(12):
         drawing = recipe(8, number, FIRST_KINDS if kind == "all" else ("pin", kind))
         plain, scaled = build(drawing), build(replace(drawing, decades=(-3, 2, 1)))
         assert np.allclose(scaled.pose, plain.pose * [1e-3, 1e-3, 1], rtol=1e-12, atol=1e-15)
-        # Velocities are solved for: rounding times the condition of the rows, of the largest.
+        # The solution for the velocities has an error of rounding times the condition number of the rows.
         speed = np.abs(plain.twist[:, 2]).max() + np.abs(plain.twist[:, :2]).max() + 1
         assert np.allclose(scaled.twist, plain.twist * [1e-4, 1e-4, 0.1], rtol=1e-9, atol=1e-12 * speed)
         assert np.allclose(scaled.inertias, plain.inertias * [1e2, 1e2, 1e-4], rtol=1e-12)
@@ -91,28 +88,28 @@ def test_units_are_units(kind):
         size = np.array([1e-5, 1e-5, 1e-2])  # m/s^2 and rad/s^2: 1e-3 / 10^2, 1 / 10^2
         largest = np.abs(earlier).max(axis=(0, 1)) + np.abs(plain.twist).max() + 1
         assert np.allclose(later / size, earlier, rtol=1e-9, atol=1e-11 * largest)
-        if plain.length_scale != 1:  # a length scale of 1 m is the default without lengths
+        if plain.length_scale != 1:  # 1 m is the default scale of a mechanism without lengths
             assert scaled.time_scale == pytest.approx(10 * plain.time_scale, rel=1e-9)
 
 
-def test_a_shape_keeps_its_ratios_of_gears_and_gets_other_numbers_for_all_else():
+def test_renumber_changes_all_numbers_except_gear_ratios_and_zeros():
     random = np.random.default_rng(3)
     shape = next(drawing for n in CASES if "gear" in (drawing := recipe(5, n, ("pin", "gear", "drive"))).kinds)
     others = [renumber(shape, lambda low, high: int(random.integers(low, high + 1))) for _ in range(5)]
     for link, *changed in zip(shape.links, *(other.links for other in others), strict=True):
-        assert {item.kind for item in changed} == {link.kind}
-        assert ({item.more for item in changed} == {link.more}) == (link.kind == "gear" or not link.more)
-    assert len({case_to_json(item) for item in (shape, *others)}) == 6
+        assert {new.kind for new in changed} == {link.kind}
+        assert ({new.more for new in changed} == {link.more}) == (link.kind == "gear" or not link.more)
+    assert len({case_to_json(case) for case in (shape, *others)}) == 6
 
 
-def test_a_recipe_survives_being_written():
+def test_a_recipe_is_read_back_from_its_json():
     for number in CASES:
         drawing = recipe(7, number, decades=1)
         assert case_from_json(case_to_json(drawing), Recipe) == drawing
 
 
 @pytest.mark.parametrize(
-    ("told", "why"),
+    ("invalid", "why"),
     [
         (Recipe((RecipeBody(parent=1),), ()), "parent"),
         (Recipe((RecipeBody(),), (RecipeLink("pin", 1, 1),)), "differ"),
@@ -124,12 +121,12 @@ def test_a_recipe_survives_being_written():
         (Recipe((RecipeBody(),), (RecipeLink("roll", 0, 1, rims=(Rim("line"), Rim("line"))),)), "curvatures"),
     ],
 )
-def test_a_recipe_that_is_none_is_refused(told, why):
+def test_an_invalid_recipe_is_refused(invalid, why):
     with pytest.raises(InvalidMechanism, match=why):
-        build(told)
+        build(invalid)
 
 
-def test_kinds_that_are_none_are_refused():
+def test_unknown_kinds_and_unknown_fields_are_refused():
     with pytest.raises(InvalidMechanism, match="glue"):
         recipe(0, 0, ("pin", "glue"))
     with pytest.raises(InvalidMechanism, match="one or some of"):

@@ -1,4 +1,4 @@
-"""The static site and pictures that move: what they carry is the reference's motion, and no link is dead."""
+"""Tests of the site without a browser, and of animations."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def require_packages():
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory):
-    """The published pages without motions and without packages, so that npm is not called."""
+    """The published pages without motions of engines."""
     cache = tmp_path_factory.mktemp("cache")
     options = {"answers": {}, "cache": cache, "foot": "Made by a test.", "contributing": CONTRIBUTING, "api": False}
     return SiteSource(**texts_of(RESULTS), **options)
@@ -84,11 +84,11 @@ def test_the_forces_at_the_coupler_sum_to_mass_times_acceleration():
     acceleration = (dense.twist[2] - dense.twist[0]) / 2e-5
     coupler = mechanism.bodies[1]
     wanted = coupler.mass * (acceleration[1, :2] - np.array(mechanism.gravity))
-    # B acts on the coupler, C on the rocker, so its opposite acts on the coupler.
+    # The force at C acts on the rocker. The coupler gets the opposite force.
     assert by_joint["B"][1] - by_joint["C"][1] == pytest.approx(wanted, rel=1e-6)
 
 
-def test_a_part_of_a_lesson_has_text_question_and_explanation():
+def test_the_texts_of_an_experiment_are_parsed_and_need_one_right_answer():
     text = "Heading\n\nWords\nmore.\n\n> What?\n>\n> - one\n> - **two**\n> - three\n\nBecause."
     answers = (("one", False), ("two", True), ("three", False))
     assert part_of(text) == Part("Heading", "Words\nmore.", "What?", answers, "Because.")
@@ -96,13 +96,13 @@ def test_a_part_of_a_lesson_has_text_question_and_explanation():
         part_of(text.replace("**", ""))
 
 
-def test_a_comment_in_code_ends_no_section_and_a_heading_of_a_higher_rank_does():
+def test_a_section_ends_at_a_heading_of_its_rank_or_above_and_not_at_a_comment_in_code():
     page = "# Top\n## Part\nbefore\n```\n# a comment\n```\nafter\n### Below\nmore\n# Next\nother\n"
     assert section(page, "Part") == "before\n```\n# a comment\n```\nafter\n### Below\nmore"
     assert section(page, "Nothing") is None
 
 
-def test_lessons_quote_parts_of_their_pages_of_results_whose_links_lead_there(files):
+def test_lessons_quote_sections_of_results_pages_with_working_links(files):
     for lesson in LESSONS:
         page = unescape(files[f"lessons/{lesson.name}.html"].decode())
         headings = [experiment.section for experiment in lesson.experiments if experiment.section]
@@ -130,7 +130,7 @@ def test_no_link_of_the_site_is_dead(files):
     assert dead == []
 
 
-def test_nothing_is_fetched_from_elsewhere_when_a_page_is_read_and_the_site_says_what_is_missing(files):
+def test_pages_load_nothing_from_other_servers_and_the_site_names_missing_packages(files):
     loading = re.compile(r'(?:src|<link[^>]*href)="(?:https?:)?//|@import|url\((?!["\']?data:)')
     texts = {name: text.decode() for name, text in files.items() if name.endswith((".html", ".css"))}
     assert [name for name, text in texts.items() if loading.search(text)] == []
@@ -138,14 +138,14 @@ def test_nothing_is_fetched_from_elsewhere_when_a_page_is_read_and_the_site_says
     assert json.loads(files[MARKER])["troubles"]
 
 
-def test_a_notebook_becomes_a_page_with_the_output_and_the_pictures_of_its_cells():
+def test_the_page_of_a_notebook_has_the_output_and_the_pictures_of_its_cells():
     codes = ["import matplotlib.pyplot as plt\nplt.plot([1, 2])\nprint('a <b>')", "1 / 0"]
     cells = [{"cell_type": "markdown", "source": ["# A $x$"]}, *({"cell_type": "code", "source": [c]} for c in codes)]
     pages = render_lecture(json.dumps({"cells": cells[:2]}))
     page = pages["lecture.md"]
     assert page.index("plt.plot") < page.index("```text\na <b>\n```") < page.index("](lecture_0.svg)")
     assert pages["lecture_0.svg"].rstrip().endswith("</svg>")
-    assert page.endswith("</details>")  # the last cell has the solutions
+    assert page.endswith("</details>")  # the last cell is collapsed
     with pytest.raises(NotFetched, match="a cell fails: ZeroDivisionError"):
         render_lecture(json.dumps({"cells": cells}))
     with pytest.raises(NotFetched, match="a cell fails: it did not end within"):
@@ -160,13 +160,13 @@ def test_formulas_become_mathml_and_code_does_not(files):
         render_html("$\\nothing$")
 
 
-def test_without_a_package_of_the_extra_the_site_is_refused_in_a_line(monkeypatch):
+def test_a_site_without_the_packages_of_its_extra_is_refused_in_one_line(monkeypatch):
     monkeypatch.setattr("reports.site.generator.find_spec", lambda asked: None)
     with pytest.raises(BadInput, match=rf"not installed \({', '.join(NEEDED)}\): pip install '\.\[site\]'"):
         build_html(Documents({}, {}, {}, lambda app: iter(())))
 
 
-def test_a_package_of_another_digest_is_refused(tmp_path):
+def test_a_package_with_a_wrong_digest_is_refused(tmp_path):
     package = Package("some", "1.0", "AAAA", "MIT", "a test", ())
     path = tmp_path / "some-1.0.tgz"
     path.write_bytes(b"something else")
@@ -175,7 +175,7 @@ def test_a_package_of_another_digest_is_refused(tmp_path):
     assert not path.exists()
 
 
-def test_a_folder_of_somebody_else_is_not_replaced(tmp_path):
+def test_a_folder_with_other_files_is_refused_and_an_earlier_site_is_replaced(tmp_path):
     (tmp_path / "own.txt").write_text("mine")
     with pytest.raises(FileTrouble, match="files that no site wrote: give another --output"):
         refuse_strangers(tmp_path)
@@ -193,7 +193,7 @@ HOWTOS = sorted((ROOT / "reports" / "site" / "howto").glob("*.md"))
 @pytest.mark.parametrize("path", HOWTOS, ids=lambda path: path.stem)
 def test_the_code_of_a_how_to_page_runs(path, capsys, monkeypatch):
     blocks = re.findall(r"```python\n(.*?)```", path.read_text("utf-8"), re.DOTALL)
-    module = ModuleType("howto")  # dataclasses look their module up
+    module = ModuleType("howto")  # dataclasses need the module of a class
     monkeypatch.setitem(sys.modules, "howto", module)
     namespace: dict[str, Any] = vars(module)
     for block in blocks:
@@ -217,12 +217,12 @@ def test_every_stored_row_has_its_cost_and_settings():
     assert len(rows) > 500
     free = ("free_four_bar", "pymunk", "default")
     (row,) = [r for r in rows if (r["scene"], r["engine"], r["variant"]) == free and abs(r["step"] - 1e-3) < 1e-6]
-    assert row["angle"] == pytest.approx(0.19, rel=0.1)  # as on the page of the four-bar
+    assert row["angle"] == pytest.approx(0.19, rel=0.1)  # the value on the page of the four-bar
     assert row["cpu"] > 0
     assert "Pymunk(" in row["settings"]
 
 
-def test_the_reference_is_made_of_docstrings():
+def test_the_reference_contains_docstrings():
     require_packages()
     names = ("reference/reference.mechanism.rst", "reference/index.rst")
     sources = {name: text for name, text in reference_sources().items() if name in names} | {"index.md": b"# Site\n"}
@@ -240,14 +240,14 @@ def falling() -> Shown:
 
 
 def keys(text: str, label: str) -> np.ndarray:
-    """(instants, 4): share of the round [percent], how far a body went right and down [pt], and turned [degrees]."""
+    """(key frames, 4): time [percent of a repetition], displacement right and down [pt], rotation [degrees]."""
     rule = re.search(rf"@keyframes {label}{{(.*?)}}}}", text)
     assert rule is not None
     pattern = r"([\d.]+)%{transform:translate\(([-\d.]+)px,([-\d.]+)px\) rotate\(([-\d.]+)deg\)"
     return np.array(re.findall(pattern, rule[1] + "}"), dtype=float)
 
 
-def test_the_truth_and_each_method_pass_through_their_poses(falling):
+def test_key_frames_of_the_exact_motion_and_of_each_method_are_their_poses(falling):
     text = animation(falling, "A title")
     scales = []
     for index, pose in enumerate([*falling.motions.values(), falling.truth.pose]):
@@ -255,18 +255,18 @@ def test_the_truth_and_each_method_pass_through_their_poses(falling):
             places = keys(text, f"m{index}b{body}")[:-1]
             frames = np.interp(places[:, 0] / 100 / (1 - PAUSE) * falling.t[-1], falling.t, np.arange(len(falling.t)))
             expected = (pose[frames.round().astype(int), body] - pose[0, body]) * (1, -1, -180 / np.pi)
-            # Instants are rounded to a hundredth of a percent, at most half a frame, in which the motion is small.
+            # Times are rounded to a hundredth of a percent, and the expected pose to the nearest frame.
             assert np.abs(places[:, 3] - expected[:, 2]).max() < 2.0
             scales.append(np.vdot(places[:, 1:3], expected[:, :2]) / np.vdot(expected[:, :2], expected[:, :2]))
             assert np.abs(places[:, 1:3] / scales[-1] - expected[:, :2]).max() < 0.02
-    assert np.ptp(scales) < 1e-3 * min(scales)  # points a metre, the same for all
+    assert np.ptp(scales) < 1e-3 * min(scales)  # points per metre
 
 
-def test_a_picture_is_xml_without_script_and_the_same_every_time(falling):
+def test_an_animation_is_deterministic_xml_without_scripts_and_external_files(falling):
     text = animation(falling, 'A <title> & "more"')
     ElementTree.fromstring(text)
     assert "<script" not in text
-    assert not re.search(r'href="(?!#)|url\((?!#)|@import', text)  # nothing is fetched for it
+    assert not re.search(r'href="(?!#)|url\((?!#)|@import', text)
     assert "prefers-reduced-motion" in text
     assert text == animation(falling, 'A <title> & "more"')
 
@@ -280,7 +280,7 @@ def test_a_method_that_fails_keeps_its_last_pose(falling):
     assert np.all(places[-5:, 1:] == places[-1, 1:])
 
 
-def test_a_film_is_written(falling, tmp_path, monkeypatch):
+def test_a_gif_has_its_frames_and_an_mp4_without_ffmpeg_is_refused(falling, tmp_path, monkeypatch):
     monkeypatch.setattr("reports.site.animated.SECONDS", 0.16)
     film(falling, "A title", tmp_path / "one.gif")
     from PIL import Image
@@ -288,7 +288,7 @@ def test_a_film_is_written(falling, tmp_path, monkeypatch):
     with Image.open(tmp_path / "one.gif") as image:
         assert (getattr(image, "n_frames", 1), image.size, image.info["duration"]) == (4, (1280, 560), 40)
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)  # as if it were not installed
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(BadInput, match="needs the program ffmpeg"):
         film(falling, "A title", tmp_path / "one.mp4")
 
@@ -305,7 +305,9 @@ def test_a_film_is_written(falling, tmp_path, monkeypatch):
         (["free_four_bar", "--output", "mine.svg/x.svg"], FileTrouble, "give another --output"),
     ],
 )
-def test_bad_words_are_refused_in_a_line_before_anything_is_run(words, refusal, told, tmp_path, monkeypatch):
+def test_invalid_arguments_of_animate_are_refused_in_one_line_before_any_run(
+    words, refusal, told, tmp_path, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("reports.site.animated.shutil.which", lambda name: None)
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)

@@ -1,15 +1,9 @@
-"""The site in Chromium: every page loads, the engines in it give Python's numbers, and keys alone are enough.
-
-Skipped where there is no Chromium, no playwright, or no packages of npm: `tests/tools/browser.sh` installs them.
-"""
+"""Tests of the site in Chromium; `tests/tools/browser.sh` installs what they need."""
 
 from __future__ import annotations
 
 import re
-import shutil
-import threading
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,156 +13,26 @@ from engines import Unsupported, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco.stiffness import STIFFEST, TiedToStep
 from reference.mechanism import Mechanism
-from reference.scene import Scene
 from reference.scenes.four_bar.scenes import DrivenFourBar
-from reports.cli.site import texts_of
-from reports.model.tasks import answered
-from reports.site.build import build, tasks
-from reports.site.folder import compressed_size, server, write_site
-from reports.site.lesson import SiteSource
+from reports.site.folder import compressed_size
 from reports.site.lessons import LESSONS
 from reports.site.lessons.skates import NAIVE
-from reports.site.live.sliders import DOCUMENTED, ENGINES, INTEGRATORS, Live
-from tests import RESULTS
+from reports.site.live.sliders import DOCUMENTED, ENGINES, Live
+from tests.reports.site_in_browser import (
+    BY_NAME,
+    PHONE,
+    QUICK,
+    TALL,
+    address,
+    chromium,
+    files,
+    opened,
+    python_of,
+    run_engines,
+    running,
+)
 
-BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
-if BROWSER is None:
-    pytest.skip("no Chromium is installed: tests/tools/browser.sh installs it on Debian", allow_module_level=True)
-playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: pip install '.[browser]'")
-pytest.importorskip("furo", reason="furo is not installed: pip install '.[site]'")
-
-PHONE = {"width": 390, "height": 844}
-TALL = {"width": 1200, "height": 8000}  # nothing scrolls, and so no other part comes to the middle and is shown
-LONGEST = 300_000.0  # ms to wait for what never comes: a loaded machine may take any time for what does
-
-
-# A linkage, a skate and bodies that roll; the slow tests open the other lessons too.
-QUICK = ("four_bar", "skate", "rolling")
-
-
-@pytest.fixture(scope="module")
-def files(request):
-    """The site with the quick lessons and those of the selected tests."""
-    parameters = (vars(item).get("callspec") for item in request.session.items if item.path == request.path)
-    wanted = {*QUICK, *(call.params.get("lesson") for call in parameters if call is not None)}
-    answers = {motion: answered(motion) for motion in tasks(LESSONS[:1])}
-    cache = Path(request.config.cache.mkdir("site"))
-    source = SiteSource(**texts_of(RESULTS), answers=answers, cache=cache, foot="Made by a test.", api=False)
-    return build(source, [lesson for lesson in LESSONS if lesson.name in wanted])
-
-
-@pytest.fixture(scope="module")
-def address(files, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("site") / "site"
-    write_site(folder, files)
-    running = server(folder, 0)
-    threading.Thread(target=running.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{running.server_address[1]}/"
-    running.shutdown()
-    running.server_close()
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    with playwright.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path=BROWSER, args=["--no-sandbox"], timeout=LONGEST)
-        yield browser
-        browser.close()
-
-
-def new_page(chromium: Any, **options: Any) -> Any:
-    context = chromium.new_context(**{"viewport": {"width": 1200, "height": 900}, **options})
-    context.set_default_timeout(LONGEST)
-    return context.new_page()
-
-
-@pytest.fixture
-def opened(chromium, address):
-    """A function that opens a page in a new context; an error or a warning of the browser fails the test."""
-    contexts: list[Any] = []
-    complaints: list[str] = []
-
-    def open_page(name: str, **options: Any) -> Any:
-        page = new_page(chromium, **options)
-        contexts.append(page.context)
-        page.on(
-            "console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") else None
-        )
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on(
-            "response",
-            lambda response: complaints.append(f"{response.status} {response.url}") if response.status >= 400 else None,
-        )
-        page.on("request", lambda request: complaints.append(request.url) if not local(request.url, address) else None)
-        page.goto(address + name)
-        return page
-
-    yield open_page
-    for context in contexts:
-        context.close()
-    assert complaints == []
-
-
-def local(url: str, address: str) -> bool:
-    return url.startswith((address, "data:", "blob:"))
-
-
-@pytest.fixture(scope="module")
-def running(chromium, address, files):
-    """A function that returns the page of a lesson with its engines loaded; each is opened once."""
-    if not {"packages/mujoco.wasm", "packages/munk2d.js"} <= set(files):
-        pytest.skip("the site was built without its engines: tests/tools/browser.sh installs npm and emscripten")
-    pages: dict[str, Any] = {}
-
-    def page_of(lesson: str) -> Any:
-        if lesson not in pages:
-            pages[lesson] = new_page(chromium)
-            pages[lesson].goto(f"{address}lessons/{lesson}.html")
-            pages[lesson].wait_for_selector("#lesson.ready")
-        return pages[lesson]
-
-    yield page_of
-    for page in pages.values():
-        page.context.close()
-
-
-# Runs the engines of the page: indices of the controls, the others at their start values, and the pose of release.
-ASKED = """async ([scene, places, start]) => {
-  const { ask, form } = window.crosscheck;
-  form.move(scene, places);
-  const told = await ask({ setting: form.setting(start) });
-  return { exact: { pose: [...told.exact.pose], missed: told.exact.missed }, lost: told.lost, idle: told.idle,
-    motions: Object.fromEntries(told.motions.map(({ name, pose, twist, error, from, apart }) =>
-      [name, { pose: [...pose], twist: [...twist], error, from, apart }])) };
-}"""
-
-
-def asked(page: Any, lesson: str, scene: str, values: dict[str, Any], start: list[float] | None = None) -> Any:
-    """Return the motions of the engines in the page for a scene with these values of its controls."""
-    live = BY_NAME[lesson].scene(scene)
-    return page.evaluate(ASKED, [BY_NAME[lesson].scenes.index(live), live.located(values), start])
-
-
-def python_of(live: Live, values: dict[str, Any]) -> tuple[Scene, dict[str, Any], float]:
-    """Return the scene, pymunk and MuJoCo in Python (or a sentence) with these values, and the step [s]."""
-    changed: Any = {name: value for name, value in values.items() if name in {slider.field for slider in live.sliders}}
-    scene: Any = replace(live.scene, **changed)  # type: ignore[type-var]
-    step = scene.duration / values.get("steps", live.steps[live.start])
-    engines: dict[str, Any] = {
-        name: next(engine for label, engine in live.ways(name) if label == values.get(name, live.ways(name)[0][0]))
-        for name in ENGINES
-    }
-    fields = {"munk": {"iterations": "iterations", "bias": "error_bias"}, "mujoco": {"tolerance": "tolerance"}}
-    for name, names in fields.items():
-        settings = {field: values[name] for name, field in names.items() if name in values}
-        if name == "mujoco" and "integrator" in values:
-            settings["integrator"] = dict(INTEGRATORS)[values["integrator"]]
-        if settings and not isinstance(engines[name], str):
-            engines[name] = replace(engines[name], **settings)
-    return scene, engines, step
-
-
-BY_NAME = {lesson.name: lesson for lesson in LESSONS}
+__all__ = ["address", "chromium", "files", "opened", "running"]
 
 
 def marked(*arguments: Any) -> Any:
@@ -177,17 +41,17 @@ def marked(*arguments: Any) -> Any:
 
 
 SCENES = [marked(lesson.name, live.word) for lesson in LESSONS for live in lesson.scenes]
-# Largest difference of an engine in the page and in Python, relative to the size of the motion. Both do the same
-# operations, but MuJoCo's releases differ, and compilers order some sums differently: measured are 1e-17 to 1e-13.
-# Some motions amplify the last digits: a car on contacts at coarse steps (5e-8), a blade on contacts (2e-11), a crank
-# with a heavy slider (8e-10), an ellipse on a stiff contact (4e-9), gears as polygons (3e-7). MuJoCo iterates for the
-# contact of two ellipses until it moves by less than ccd_tolerance, 1e-6, and releases iterate differently (1.3e-2).
+# Largest difference between an engine in the page and in Python, relative to the size of the motion. Measured
+# differences are 1e-17 to 1e-13, since releases and compilers differ. Some motions amplify rounding. The measured
+# differences are 5e-8 for the car, 2e-11 for the skate, 8e-10 for the heavy slider, 4e-9 for the ellipse and 3e-7 for
+# polygonal gears. The contact of two ellipses has 1.3e-2, since MuJoCo's iteration ends at ccd_tolerance (1e-6) and
+# depends on the release.
 APART = {"gears": 5e-2, "rolling": 1e-7, "wheels": 1e-6, "skate": 1e-9, "slider_crank": 1e-8}
 MUNK_APART = {"gears": 1e-5}
 
 
 def moved(live: Live) -> dict[str, Any]:
-    """Return other settings than the first ones: the last value of every slider."""
+    """Return settings with the last value of every slider."""
     way = {name: live.ways(name)[-1][0] for name in ENGINES} if len(live.munk) > 2 else {}
     engines = {"iterations": 20, "bias": 1e-6, "integrator": 3, "tolerance": 1e-15}
     return {"steps": live.steps[2], **engines, **way, **{slider.field: slider.values[-1] for slider in live.sliders}}
@@ -205,27 +69,27 @@ GIVEN = {
 def test_the_engines_in_the_page_compute_the_motions_of_python(running, lesson, word, variant):
     live = BY_NAME[lesson].scene(word)
     values = GIVEN[variant](live)
-    answer = asked(running(lesson), lesson, word, values)
+    answer = run_engines(running(lesson), lesson, word, values)
     scene, engines, step = python_of(live, values)
     samples = live.samples(round(scene.duration / step))
     every = round(scene.duration / step) // samples
     truth = scene.motion(np.arange(samples + 1) * (scene.duration / samples)).pose
     size = max(1.0, float(np.abs(truth).max()))
-    # The page estimates the error of its own integration, about ten times too large.
+    # The page estimates the error of its integration, by a factor of about ten too large.
     missed = answer["exact"]["missed"] or 0.0
     assert np.abs(np.reshape(answer["exact"]["pose"], truth.shape) - truth).max() < missed + 1e-12 * size
     assert missed < 1e-5
     for name, method in engines.items():
         try:
             python = method.build(scene.mechanism(), step)(samples, every)
-        except (Unsupported, AttributeError):  # a sentence builds nothing
+        except (Unsupported, AttributeError):  # AttributeError: the engine is a string
             assert name in answer["lost"]
             continue
         if name in answer["lost"]:
             assert re.search("needs Python code in every step|writes rows while it steps", answer["lost"][name])
             continue
         page = np.reshape(np.array(answer["motions"][name]["pose"], dtype=float), python.pose.shape)
-        is_missing = np.isnan(page)  # after MuJoCo has reset itself, or the motion has diverged
+        is_missing = np.isnan(page)  # MuJoCo has reset the motion, or the motion has diverged
         is_compared = ~is_missing & np.isfinite(python.pose)
         assert np.array_equal(is_missing, ~np.isfinite(python.pose) | (np.abs(python.pose) > 1e6))
         difference = np.abs(page - python.pose)[is_compared].max() / max(
@@ -238,19 +102,13 @@ EXPERIMENTS = [marked(lesson.name, number) for lesson in LESSONS for number, _ i
 
 
 @pytest.mark.parametrize(("lesson", "number"), EXPERIMENTS)
-def test_the_claims_of_an_experiment_hold_and_its_causes_too(running, lesson, number):
+def test_the_claims_and_the_causes_of_an_experiment_hold(running, lesson, number):
     experiment = BY_NAME[lesson].experiments[number]
 
     def errors(*changes: Any) -> dict[str, float]:
-        answer = asked(
-            running(lesson),
-            lesson,
-            experiment.scene,
-            {name: value for change in changes for name, value in change.items()},
-        )
-        return {
-            name: np.inf if motion["error"] is None else motion["error"] for name, motion in answer["motions"].items()
-        }
+        values = {name: value for change in changes for name, value in change.items()}
+        motions = run_engines(running(lesson), lesson, experiment.scene, values)["motions"]
+        return {name: np.inf if motion["error"] is None else motion["error"] for name, motion in motions.items()}
 
     start, end = errors(experiment.before), errors(experiment.before, experiment.after)
     for claim in experiment.claims:
@@ -264,11 +122,11 @@ LET_GO = (("four_bar", "let go"), ("slider_crank", "let go"), ("pendulum", "two 
 
 
 @pytest.mark.parametrize(("lesson", "word"), [marked(*each) for each in LET_GO])
-def test_a_mechanism_released_elsewhere_moves_from_there_exactly_and_in_engines(running, lesson, word):
+def test_a_mechanism_that_the_reader_releases_moves_as_in_python(running, lesson, word):
     page, live = running(lesson), BY_NAME[lesson].scene(word)
     mechanism = live.scene.mechanism()
     start = live.scene.motion([0.37 * live.scene.duration]).pose[0]
-    answer = asked(page, lesson, word, {}, start.ravel().tolist())
+    answer = run_engines(page, lesson, word, {}, start.ravel().tolist())
     bodies = [
         replace(b, pose=tuple(p), twist=(0.0,) * 3) for b, p in zip(mechanism.bodies, start.tolist(), strict=True)
     ]
@@ -280,14 +138,14 @@ def test_a_mechanism_released_elsewhere_moves_from_there_exactly_and_in_engines(
     assert answer["exact"]["missed"] < 1e-8
     python = pymunk.DEFAULT.build(released, step)(samples, steps // samples).pose
     assert np.abs(np.reshape(answer["motions"]["munk"]["pose"], python.shape) - python).max() < 1e-9
-    # The stiffness of a loop in MuJoCo depends on the pose in which the model is compiled, which differs here.
-    tuned = asked(page, lesson, word, {"mujoco": DOCUMENTED}, start.ravel().tolist())
+    # MuJoCo's stiffness of a loop depends on the pose at which the model is compiled, so Python's motion differs.
+    tuned = run_engines(page, lesson, word, {"mujoco": DOCUMENTED}, start.ravel().tolist())
     assert np.abs(np.array(tuned["motions"]["mujoco"]["pose"][: start.size]) - start.ravel()).max() < 1e-12
     assert tuned["motions"]["mujoco"]["error"] < 0.01 < answer["motions"]["mujoco"]["error"] < 3
 
 
-def test_a_joint_is_dragged_and_the_linkage_stays_closed(opened):
-    page = opened("lessons/four_bar.html", reduced_motion="reduce")  # nothing plays by itself
+def test_a_dragged_linkage_stays_closed(opened):
+    page = opened("lessons/four_bar.html", reduced_motion="reduce")  # the motion does not start by itself
     page.wait_for_selector("#lesson.ready")
     pin = page.locator(".motion.truth .body").nth(1).locator("circle").first.bounding_box()
     page.mouse.move(pin["x"] + pin["width"] / 2, pin["y"] + pin["height"] / 2)
@@ -299,7 +157,7 @@ def test_a_joint_is_dragged_and_the_linkage_stays_closed(opened):
     assert np.abs(DrivenFourBar().mechanism().gap(np.reshape(pose, (3, 3)), 0.0)[:8]).max() < 1e-9
 
 
-def test_the_first_step_of_pymunk_is_shown_by_iterations(running):
+def test_the_last_iteration_of_a_pymunk_step_is_the_result_of_the_step(running):
     answer = running("four_bar").evaluate(
         """async () => {
           const { ask, form } = window.crosscheck;
@@ -313,7 +171,6 @@ def test_the_first_step_of_pymunk_is_shown_by_iterations(running):
         }"""
     )
     assert answer["whole"] == len(answer["swept"]) == pymunk.SHIPPED_ITERATIONS
-    # The last sweep is the step itself, and each adds less than the one before.
     assert answer["swept"][-1] == pytest.approx(answer["after"], rel=1e-9)
     added = np.linalg.norm(np.diff(answer["impulses"], axis=0), axis=1)
     assert added[-1] < added[0]
@@ -322,19 +179,19 @@ def test_the_first_step_of_pymunk_is_shown_by_iterations(running):
 def test_springs_of_mujoco_follow_the_sliders_and_sliders_without_effect_are_disabled(running):
     live = BY_NAME["four_bar"].scene("driven")
     springs = {"integrator": 1, "timeConstant": 0.01, "impedance": STIFFEST[0]}
-    answer = asked(running("four_bar"), "four_bar", "driven", springs)
+    answer = run_engines(running("four_bar"), "four_bar", "driven", springs)
     step = live.scene.duration / live.steps[live.start]
     engine = replace(mujoco.DEFAULT, integrator="RK4", stiffness=TiedToStep(0.01 / step))
     python = engine.build(live.scene.mechanism(), step)(live.frames, live.steps[live.start] // live.frames)
     assert np.abs(np.reshape(answer["motions"]["mujoco"]["pose"], python.pose.shape) - python.pose).max() < 1e-12
     assert answer["idle"] == []
-    # pymunk has nothing there; the capsule has a solver and a spring.
-    assert set(asked(running("skate"), "skate", "the sleigh", {})["idle"]) == {"iterations", "bias"}
-    other = asked(running("skate"), "skate", "the sleigh", {"munk": NAIVE, "mujoco": DOCUMENTED})
+    # pymunk's default has no skate. MuJoCo's capsule has a contact, so its settings have an effect.
+    assert set(run_engines(running("skate"), "skate", "the sleigh", {})["idle"]) == {"iterations", "bias"}
+    other = run_engines(running("skate"), "skate", "the sleigh", {"munk": NAIVE, "mujoco": DOCUMENTED})
     assert {"iterations", "bias", "integrator", "timeConstant"} <= set(other["idle"])
 
 
-def test_the_address_stores_the_changes_of_the_reader_alone(opened):
+def test_the_address_stores_only_changes_by_the_reader(opened):
     page = opened("lessons/four_bar.html", viewport=TALL)
     page.wait_for_selector("#lesson.ready")
     page.locator("#part-2 .set").click()
@@ -349,7 +206,7 @@ def test_the_address_stores_the_changes_of_the_reader_alone(opened):
     assert "up to" in linked.inner_text(".legend .method-1")
 
 
-def test_a_guess_is_answered_with_measured_errors(opened):
+def test_the_answer_to_a_guess_shows_measured_errors(opened):
     page = opened("lessons/four_bar.html", viewport=TALL, reduced_motion="reduce")
     page.wait_for_selector("#lesson.ready")
     page.locator("#part-5 .answers button").first.click()
@@ -358,13 +215,13 @@ def test_a_guess_is_answered_with_measured_errors(opened):
     assert text.startswith("Not so. pymunk: ")
     assert "times as large" in text
     assert page.locator("#part-5 [data-right].right").count() == 1
-    # The legend has the settings of the picture, which comes after the answer.
+    # The picture and its legend change after the answer.
     page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('iterations 1')")
 
 
 @pytest.mark.parametrize("stride", [4, pytest.param(1, marks=pytest.mark.slow)])
-def test_every_page_loads_without_a_complaint_and_fits_a_phone(files, opened, stride):
-    """Open every lesson, and each fourth of the other pages, which share templates; the slow test opens all."""
+def test_every_page_loads_without_errors_and_fits_a_phone(files, opened, stride):
+    """Open every lesson and every fourth of the other pages; the slow test opens all pages."""
     names = sorted(name for name in files if name.endswith(".html") and not name.startswith("reference/"))
     lessons = [name for name in names if name.startswith("lessons/")]
     for name in dict.fromkeys([*lessons, *names[::stride]]):
@@ -375,7 +232,7 @@ def test_every_page_loads_without_a_complaint_and_fits_a_phone(files, opened, st
         page.context.close()
 
 
-def test_a_motion_is_played_moved_and_switched_by_keys(opened):
+def test_the_keyboard_plays_a_motion_moves_the_time_and_switches_overlays(opened):
     page = opened("lessons/four_bar.html", reduced_motion="reduce")
     page.wait_for_selector("#lesson.ready")
     clock = page.locator(".clock")
@@ -396,7 +253,7 @@ def test_a_motion_is_played_moved_and_switched_by_keys(opened):
     page.keyboard.press("Enter")
 
 
-def test_texts_pictures_and_tables_need_no_script(opened):
+def test_texts_pictures_and_tables_are_shown_without_javascript(opened):
     page = opened("lessons/four_bar.html", java_script_enabled=False)
     assert "Three bars and four pins" in page.inner_text("main")
     assert page.locator(".motion.truth .body").count() == 3
@@ -408,7 +265,7 @@ def test_texts_pictures_and_tables_need_no_script(opened):
     assert page.locator("img").first.evaluate("image => image.complete && image.naturalWidth > 0")
 
 
-def test_tables_and_charts_are_sorted_and_filtered(opened):
+def test_tables_are_sorted_and_filtered_and_the_address_stores_the_choice(opened):
     page = opened("results/index.html")
     table = page.locator("table").filter(has=page.locator("tbody tr:nth-child(6)")).first
     count = table.locator("tbody tr").count()
@@ -422,9 +279,9 @@ def test_tables_and_charts_are_sorted_and_filtered(opened):
     page = opened("results/rows.html")
     page.wait_for_selector("html[data-ready]")
     methods = set(page.locator("#rows tbody td:nth-child(2)").all_inner_texts())
-    assert methods == {"as shipped", "documented settings", "with our code"}  # variants first
+    assert methods == {"as shipped", "documented settings", "with our code"}  # the methods that are shown first
     page.locator("input[name=all]").check()
-    page.reload()  # the address holds it
+    page.reload()
     page.wait_for_selector("html[data-ready]")
     assert "lagrange" in set(page.locator("#rows tbody td:nth-child(1)").all_inner_texts())
     page.locator("#rows th button").nth(5).click()
@@ -434,7 +291,7 @@ def test_tables_and_charts_are_sorted_and_filtered(opened):
     assert errors == sorted(errors)
 
 
-def test_the_site_is_small(files):
+def test_the_compressed_size_of_the_site_is_limited(files):
     assert compressed_size(files) < 6_000_000
-    engines = ("packages/munk2d", "packages/mujoco", "live/")  # they are loaded when a lesson is opened
+    engines = ("packages/munk2d", "packages/mujoco", "live/")  # only lessons load these
     assert compressed_size({name: text for name, text in files.items() if not name.startswith(engines)}) < 2_500_000

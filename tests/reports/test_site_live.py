@@ -1,4 +1,4 @@
-"""What engines in the page are given: the adapters' models to the last bit, the truth, sliders that fit."""
+"""Tests of the data that a page loads: models, exact motions, forces and controls."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from reports.site.live.sliders import Live
 LIVE = {f"{lesson.name}: {live.word}": live for lesson in LESSONS for live in lesson.scenes}
 
 
-def test_a_scene_is_a_position_of_its_sliders_and_sliders_that_do_not_fit_are_refused():
+def test_the_scene_of_a_live_is_a_position_of_its_sliders_and_invalid_lives_are_refused():
     for live in LIVE.values():
         assert live.scene in live.places()
         assert live.steps[live.start] % live.frames == 0
@@ -48,13 +48,13 @@ def test_a_scene_is_a_position_of_its_sliders_and_sliders_that_do_not_fit_are_re
 
 
 @pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.name)
-def test_experiments_set_controls_that_are_there_and_have_their_words(lesson):
+def test_experiments_and_their_texts_use_existing_controls(lesson):
     for part, experiment in zip(lesson.parts, lesson.experiments, strict=True):
         live = lesson.scene(experiment.scene)
         for values in (experiment.before, experiment.after, *(change for change, _ in experiment.causes)):
             assert len(live.located(values)) == len(values)
-        assert bool(part.question) == bool(experiment.after), part.heading  # what changes is guessed first
-        # A change has a claim that is measured, but where it is the exact motion that changes.
+        assert bool(part.question) == bool(experiment.after), part.heading
+        # A change of the method has a claim. A change of the mechanism changes the exact motion and needs none.
         assert experiment.claims or not set(experiment.after) - {slider.field for slider in live.sliders}, part.heading
         numbers = re.findall(r"{(\w+)}", part.text + part.after)
         assert set(numbers) <= set(live.controls()), part.heading
@@ -69,7 +69,7 @@ def test_a_method_with_python_code_in_every_step_is_refused():
 
 
 def records(engine: Any, scene: Any) -> tuple[tuple[float, ...], np.ndarray, list[tuple[float, ...]]]:
-    """The head, the bodies and the records of a plan, which have to fill it."""
+    """The head, the bodies and the records of the list of numbers."""
     plan = space_of(engine, scene.mechanism(), scene.duration).numbers
     position, out = 8 + 11 * int(plan[4]), []
     while position < len(plan):
@@ -107,13 +107,13 @@ def test_the_space_for_munk2d_equals_that_of_pymunk():
         (pymunk_engine.DEFAULT, DrivenSliderCrank(), [RecordKind.PIVOT, RecordKind.PIVOT, RecordKind.GROOVE]),
     ],
 )
-def test_a_space_has_the_kind_of_each_shape_and_of_each_code_around_a_step(engine, scene, parts):
+def test_a_space_has_a_record_for_each_constraint_shape_and_code_around_a_step(engine, scene, parts):
     assert [record[0] for record in records(engine, scene)[2]] == parts
 
 
 def test_a_live_scene_has_the_exact_motion_at_every_position_of_its_sliders():
     sleigh = LIVE["skate: the sleigh"]
-    live = replace(sleigh, sliders=sleigh.sliders[-1:])  # every place has a model of each engine, which takes its time
+    live = replace(sleigh, sliders=sleigh.sliders[-1:])  # fewer positions take less time
     loaded = json.loads(json.dumps(live_data(live, {}), allow_nan=False))
     frames = np.arange(live.frames + 1)
     for index, scene in enumerate(live.places()):

@@ -1,5 +1,5 @@
 // @ts-check
-/** Errors over time on a logarithmic scale, as an SVG that needs no library. */
+/** The chart of errors over time, as an SVG with a logarithmic scale. */
 
 const WIDEST = 640;
 const NARROWEST = 280;
@@ -11,7 +11,7 @@ const FLOOR = 1e-16; // errors below rounding are not drawn
 
 /** @typedef {{name: string, mark: number, values: ArrayLike<number>}} Line */
 
-/** Return the width of a chart for its element, so that letters have the same size on all screens. @param {Element} place */
+/** Return the width of the chart in its element. @param {Element} place */
 const widthIn = (place) => Math.min(WIDEST, Math.max(NARROWEST, place.clientWidth || WIDEST));
 
 /** @param {string} tag @param {Record<string, string|number>} attributes @param {string} [text] */
@@ -25,7 +25,7 @@ export function svg(tag, attributes, text) {
 /** @typedef {"angle"|"position"} Measure */
 const MEASURES = { angle: "largest error of an angle [rad]", position: "largest error of a place [m]" };
 
-/** Draw lines over time. Returns a function that moves the mark of the present instant.
+/** Draw lines over time; return a function that moves the mark of the shown instant.
  * @param {Element} place @param {ArrayLike<number>} t @param {Line[]} lines @param {Measure} measure
  * @returns {(time: number) => void} */
 export function errorChart(place, t, lines, measure) {
@@ -34,7 +34,7 @@ export function errorChart(place, t, lines, measure) {
   const positive = lines.flatMap((line) => Array.from(line.values).filter((v) => v > FLOOR && Number.isFinite(v)));
   if (!positive.length) return () => {};
   const high = Math.ceil(Math.log10(Math.max(...positive)));
-  // The scale covers nine of ten values: the first instants alone would take half of it.
+  // The scale covers nine of ten values, since errors at the first instants are very small.
   const tenth = positive.sort((a, b) => a - b)[Math.floor(positive.length / 10)];
   const low = Math.min(high - 1, Math.max(Math.floor(Math.log10(tenth)), high - 9));
   const last = t[t.length - 1];

@@ -1,8 +1,8 @@
 // @ts-check
-/** The exact motion of ideal pins, slots of the ground and drives, by Lagrange multipliers.
+/** The exact motion of mechanisms with ideal pins, slots of the ground and drives.
  *
- * M a = f + J' l, J a = -J. v, solved for l; the classical Runge-Kutta method, and after each step a projection onto the
- * joints in the metric of the masses. tests/reports/test_site_in_browser.py compares it with the reference. */
+ * The Lagrange multipliers l solve M a = f + J' l and J a = -J. v. The integrator is the classical Runge-Kutta method with
+ * a projection onto the joints after each step. tests/reports/test_site_in_browser.py compares it with the reference. */
 
 import { placed } from "./motion.js";
 
@@ -11,8 +11,8 @@ import { placed } from "./motion.js";
  *   drives: {first: number, second: number, rate: number}[]}} Mechanism inertia: m, m, I of each body [kg, kg m^2] */
 /** @typedef {{columns: number[], gap: number, rate: number, bias: number}} Row one equation: J v = rate, J a = bias */
 
-const STEP = 5e-4; // s, at most
-const ROUNDS = 3; // of Newton's method after a step, whose start differs by the error of the step
+const STEP = 5e-4; // largest step [s]
+const ROUNDS = 3; // number of Newton iterations that close the joints after a step
 
 /** Return the vector from the centre of a body to its point, in world directions; for the ground the point itself. @param {ArrayLike<number>} pose @param {number} body @param {number[]} point */
 function arm(pose, body, point) {

@@ -1,5 +1,5 @@
 // @ts-check
-/** The controls of a lesson, the numbers in the text that move them, and the link that stores them. */
+/** The controls of a lesson, the numbers in the text that set them, and the link that stores them. */
 
 /** @typedef {import("./live_data.js").Setting} Setting */
 
@@ -23,7 +23,7 @@ export class Form {
     return Number(this.choice.value);
   }
 
-  /** Return a slider of the present scene or of an engine. @param {string} name */
+  /** Return a slider of the selected scene or of an engine. @param {string} name */
   input(name) {
     const own = `${this.index}.${name}`;
     return this.inputs.find((input) => input.name === own) ?? this.inputs.find((input) => input.name === name);
@@ -44,13 +44,13 @@ export class Form {
     return JSON.parse(this.input(name)?.dataset.words ?? '[""]')[this.place(name)];
   }
 
-  /** Return texts of the settings of an engine that differ from those of the method. @param {string} engine */
+  /** Return labels of an engine's settings that differ from the method's settings. @param {string} engine */
   changed(engine) {
     const own = this.inputs.filter((input) => input.closest("fieldset")?.dataset.engine === engine && input.value !== input.defaultValue && !input.disabled);
     return own.map(({ name }) => `${(this.input(name)?.closest("label")?.dataset.name ?? name)} ${this.words(name)}`);
   }
 
-  /** Return the present positions and values of all sliders. @param {number[]|null} start @returns {Setting} */
+  /** Return the positions and values of all sliders. @param {number[]|null} start @returns {Setting} */
   setting(start) {
     const { key, fields } = this.scenes[this.index];
     const place = fields.reduce((/** @type {number} */ sum, /** @type {string} */ name) => sum * (Number(this.input(name)?.max) + 1) + this.place(name), 0);
@@ -62,12 +62,12 @@ export class Form {
     };
   }
 
-  /** Return the sliders of the present scene and of the engines. */
+  /** Return the sliders of the selected scene and of the engines. */
   shown() {
     return this.inputs.filter(({ name }) => !name.includes(".") || name.startsWith(`${this.index}.`));
   }
 
-  /** Write the value of each slider beside it and in the text; disable the sliders without an effect here. @param {string[]} idle */
+  /** Write the value of each slider beside it and in the text; disable the sliders in `idle`. @param {string[]} idle */
   label(idle) {
     for (const group of this.form.querySelectorAll("fieldset[data-scene]")) {
       if (group instanceof HTMLElement) group.hidden = group.dataset.scene !== this.choice.value;
@@ -90,7 +90,7 @@ export class Form {
     }
   }
 
-  /** Make a number in the text move its slider: by dragging it to either side, or by the arrow keys. @param {HTMLElement} number */
+  /** Let the reader set a slider by dragging a number in the text, or by the arrow keys. @param {HTMLElement} number */
   draggable(number) {
     const part = /** @type {HTMLElement|null} */ (number.closest(".part"));
     const to = (/** @type {number} */ place) => {
@@ -121,7 +121,7 @@ export class Form {
     });
   }
 
-  /** Choose a scene and positions of its sliders; the others get their start positions. @param {number} scene @param {Record<string, number>} places */
+  /** Select a scene and positions of sliders; the other sliders get their start positions. @param {number} scene @param {Record<string, number>} places */
   move(scene, places) {
     this.choice.value = String(scene);
     for (const input of this.shown()) input.value = input.defaultValue;
@@ -136,7 +136,7 @@ export class Form {
     return `${LINK}${[`scene=${this.index}`, ...this.shown().filter(({ value, defaultValue }) => value !== defaultValue).map(({ name, value }) => `${name}=${value}`)].join("&")}`;
   }
 
-  /** Set the sliders from a link; invalid parts of a link are ignored. Returns whether it is such a link. @param {string} link */
+  /** Set the sliders from a link and return whether the link stores sliders; invalid parts are ignored. @param {string} link */
   restore(link) {
     if (!link.startsWith(LINK)) return false;
     const given = link.slice(LINK.length).split("&").map((part) => part.split("=")).filter(([, value]) => /^\d+$/.test(value ?? ""));

@@ -1,5 +1,5 @@
 // @ts-check
-/** A magnifier on one joint: its gap in each engine, and the iterations of one step of pymunk. */
+/** The magnified gap of one joint in each engine, and the iterations of one step of pymunk. */
 
 import { svg } from "./chart.js";
 import { rows } from "./exact.js";
@@ -8,8 +8,8 @@ import { ends, slip, told } from "./motion.js";
 /** @typedef {import("./motion.js").Take} Take */
 /** @typedef {{pose: Float64Array, twist: Float64Array, impulses: Float64Array, left: number}} Sweep */
 
-const SIZE = 200; // of the picture, whose centre is the ideal joint
-const TRAIL = 12; // frames
+const SIZE = 200; // size of the picture; its centre is the ideal joint
+const TRAIL = 12; // number of earlier frames that are drawn
 
 export class Lens {
   /** @param {HTMLElement} place */
@@ -101,14 +101,14 @@ export class Lens {
     this.words.textContent = `${joint.unit === "m" ? "Open" : "Slips"} by: ${remarks.join(", ")}${times}.`;
   }
 
-  /** Return the length of a metre of the main picture in units of this one. */
+  /** Return the length of a metre of the main picture in units of the magnified picture. */
   get drawn() {
     const stage = /** @type {SVGGraphicsElement|null} */ (this.place.closest("figure")?.querySelector("svg.stage .world"));
     const own = this.picture.clientWidth / SIZE;
     return stage && own ? Math.abs(stage.getScreenCTM()?.a ?? 0) / own : 0;
   }
 
-  /** Fill the table with one iteration of a step: the impulse that it adds to each joint, and the opening velocity left.
+  /** Fill the table of one iteration with the impulse that it adds to each joint and the remaining opening velocity.
    * Returns the caption.
    * @param {{found: Sweep[], whole: number, which: number[], step: number}} step @param {number} number from 0 @param {Element} table */
   sweep({ found, whole, which, step }, number, table) {
@@ -138,7 +138,7 @@ function remaining(joint, { pose, twist, left }, step) {
   return Math.hypot(...equations.map(({ columns, gap }) => ((1 - left) / step) * gap + columns.reduce((sum, value, k) => sum + value * twist[k], 0)));
 }
 
-/** Return a line between two points, as a zigzag for a spring. @param {number} x1 @param {number} y1 @param {number} x2 @param {number} y2 @param {boolean} spring */
+/** Return a straight line between two points, or a zigzag line for a spring. @param {number} x1 @param {number} y1 @param {number} x2 @param {number} y2 @param {boolean} spring */
 function zigzag(x1, y1, x2, y2, spring) {
   const points = spring ? 12 : 1;
   const length = Math.hypot(x2 - x1, y2 - y1) || 1;

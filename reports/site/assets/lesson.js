@@ -1,5 +1,5 @@
 // @ts-check
-/** A lesson: one picture for all experiments, questions, numbers that can be dragged, and the engines in a worker. */
+/** A lesson: a picture for all experiments, questions, numbers that can be dragged, and a worker for the engines. */
 
 import { svg } from "./chart.js";
 import { dragged } from "./exact.js";
@@ -8,7 +8,7 @@ import { placed, told, UNITS } from "./motion.js";
 import { Player } from "./player.js";
 
 /** @typedef {import("./live_data.js").Setting} Setting */
-/** @typedef {any} Answer what the worker tells of a setting, see worker.js */
+/** @typedef {any} Answer the result of `answer` in worker.js */
 
 /** @type {Record<string, string>} */
 const NAMES = { munk: "pymunk", mujoco: "MuJoCo" };
@@ -28,10 +28,10 @@ const asked = new Map();
 let number = 0;
 /** @type {Answer} */
 let shown = null;
-/** @type {number[]|null} the pose at which the reader let go */
+/** @type {number[]|null} the poses at which the reader released the mechanism */
 let start = null;
-/** @type {{setting: Setting, play: boolean, ways: Record<string, string>}|null} what is wanted next: of settings that wait,
- * the last one, with the label of each engine's method */
+/** @type {{setting: Setting, play: boolean, ways: Record<string, string>}|null} the last
+ * request that waits for a run to end, with the label of each engine's method */
 let waiting = null;
 let busy = false;
 
@@ -43,7 +43,7 @@ function ask(message) {
   });
 }
 
-/** Start the worker, which loads the engines, when the page needs them first. */
+/** Start the worker, which loads the engines. */
 function load() {
   if (worker) return;
   const base = new URL(root.dataset.folder ?? "", document.baseURI).href;
@@ -64,7 +64,7 @@ function failed(reason) {
   find(".status").textContent = `The engines could not be run: ${reason instanceof Error ? reason.message : reason}`;
 }
 
-/** Run the settings of the form; while a run lasts, later requests replace each other. @param {boolean} play */
+/** Run the settings of the form; of the requests during a run, only the last one is answered. @param {boolean} play */
 function run(play) {
   const ways = Object.fromEntries(Object.keys(NAMES).map((name) => [name, [form.words(name), ...form.changed(name)].join(", ")]));
   waiting = { setting: form.setting(start), play, ways };
@@ -85,7 +85,7 @@ async function next() {
   if (waiting) requestAnimationFrame(next);
 }
 
-/** Return the drawing at a position of the sliders: the bodies of each run, and those of the exact motion over them. @param {Answer} answer */
+/** Return the SVG of the bodies in each motion; the exact motion is above the others. @param {Answer} answer */
 function stage({ drawing, motions }) {
   const bodies = drawing.bodies.map((/** @type {string} */ shape) => `<g class="body">${shape}</g>`).join("");
   const kinds = [...motions.map((/** @type {any} */ { name }) => `method method-${MARKS[name]}`), "truth"];
@@ -142,7 +142,7 @@ function show(answer, play, ways) {
   }
 }
 
-/** Return a sentence on the spring that closes MuJoCo's loop. @param {any} spring @param {Answer} answer */
+/** Return a text on the spring that closes MuJoCo's loop. @param {any} spring @param {Answer} answer */
 function springWords(spring, { joints, blades, motions, forces }) {
   if (!(joints.length + blades.length) || !motions.some((/** @type {any} */ { name }) => name === "mujoco")) return "";
   const contact = blades.length || forces.some((/** @type {any} */ each) => each.contact);
@@ -159,7 +159,7 @@ function statusOf({ exact, motions, versions, release }) {
   return missed + apart.join(" ");
 }
 
-/** Show one part of the lesson in the picture. @param {HTMLElement} part @param {"before"|"after"} which @param {boolean} play */
+/** Show an experiment in the picture. @param {HTMLElement} part @param {"before"|"after"} which @param {boolean} play */
 function stageOf(part, which, play) {
   start = null;
   const { scene, before, after, shown: on } = part.dataset;
@@ -170,7 +170,7 @@ function stageOf(part, which, play) {
   run(play);
 }
 
-/** Answer a guess: run the settings before and after the change, show both errors and the explanation. @param {HTMLElement} part @param {HTMLElement} button */
+/** Run the settings before and after the change; show both errors and the explanation. @param {HTMLElement} part @param {HTMLElement} button */
 async function guessed(part, button) {
   for (const each of part.querySelectorAll(".answers button")) {
     each.classList.toggle("chosen", each === button);
@@ -203,7 +203,7 @@ function compared(before, after) {
   }).join(" ");
 }
 
-/** Store in the address what the reader changes; changes by the page itself are not stored. */
+/** Store changes by the reader in the address. */
 function changed() {
   history.replaceState(history.state, "", form.link);
   run(true);
@@ -252,11 +252,11 @@ function begin() {
     held = null;
     run(true);
   });
-  // The picture shows the part that is being read; the engines are loaded for the first one.
+  // The picture shows the experiment in the middle of the window. The first experiment loads the engines.
   const linked = form.restore(location.hash);
   const parts = [...root.querySelectorAll(".part")];
   if (linked) run(false);
-  let moved = linked; // until the reader leaves the parts at which the link has opened the page
+  let moved = linked; // becomes false when the reader scrolls away from the experiment that the link has opened
   const looking = new IntersectionObserver((entries) => {
     const near = entries.filter(({ target, isIntersecting }) => isIntersecting && !target.classList.contains("shown"));
     for (const { target } of moved ? [] : near) {

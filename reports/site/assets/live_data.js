@@ -18,7 +18,7 @@ import { motion, released } from "./exact.js";
  * @typedef {{key: string, place: number, stepPlace: number, steps: number, munk: number, mujoco: number,
  *   integrator: number|null, timeConstant: number|null, impedance: number|null, solverIterations: number|null,
  *   tolerance: number|null, iterations: number|null, bias: number|null, start: number[]|null, own: boolean}} Setting
- *   the settings of a run; start: poses at which the reader released the mechanism; own: whether only methods were changed
+ *   the settings of a run. start: poses at which the reader released the mechanism. own: whether only methods were changed
  * @typedef {Setting & {scene: Scene, at: Place, every: number, samples: number, step: number}} Run
  */
 
@@ -40,7 +40,7 @@ export function modelOf({ scene, place, stepPlace, ...run }, engine) {
   return "why" in way ? way : way.models[place][Math.min(stepPlace, way.models[place].length - 1)];
 }
 
-/** Return the equations of a pinned linkage, from the pose at which the reader released it; null for other mechanisms.
+/** Return the equations of a pinned linkage, with the start at which the reader released it; null for other mechanisms.
  * @param {Run} run @returns {import("./exact.js").Mechanism|null} */
 export function mechanismOf(run) {
   const { at: { equations, joints }, start } = run;
@@ -48,8 +48,8 @@ export function mechanismOf(run) {
   return start ? released({ ...equations, joints }, start) : { ...equations, joints };
 }
 
-/** Return the exact motion at the samples, from the reference or computed by the page. `missed`: the change of the
- * page's motion when its steps are halved. @param {Run} run
+/** Return the exact motion at the samples, from the reference or by the page. `missed`: change of the page's motion with
+ * half the step; null for the reference. @param {Run} run
  * @returns {{pose: Float64Array, twist: Float64Array, forces: import("./motion.js").Force[], missed: number|null}} */
 export function truth(run) {
   const { scene, at, start, samples } = run;

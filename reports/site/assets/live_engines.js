@@ -1,5 +1,5 @@
 // @ts-check
-/** The engines MuJoCo and Munk2D in WebAssembly, run as by the Python adapters. */
+/** Runs of MuJoCo and Munk2D in WebAssembly, with the models of the Python adapters. */
 
 import { doubles, mechanismOf, modelOf, split, truth } from "./live_data.js";
 
@@ -42,7 +42,7 @@ function set(model, run) {
   }
 }
 
-/** Start at the pose of release: hinges and slides from the poses of bodies. @param {Run} run @param {Text} told @param {any} data */
+/** Set the coordinates from the poses at which the reader released the mechanism. @param {Run} run @param {Text} told @param {any} data */
 function begin(run, told, data) {
   const now = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
   const old = /** @type {import("./exact.js").Mechanism} */ (mechanismOf({ ...run, start: null }));
@@ -66,7 +66,7 @@ function states(run, told, mujoco, model, data) {
   const compiled = { ...run, start: null };
   const first = mechanismOf(compiled)?.pose ?? truth(compiled).pose; // tree coordinates are changes of angles
   const state = () => {
-    // After a step, the positions and velocities of bodies in `data` are those before it.
+    // After a step, `data` has the positions and velocities of bodies before the step.
     for (const renew of ["mj_kinematics", "mj_comPos", "mj_comVel"]) mujoco[renew](model, data);
     const { xpos, qpos, cvel, subtree_com: com } = data;
     /** @type {number[]} */
@@ -74,7 +74,7 @@ function states(run, told, mujoco, model, data) {
     for (const [body, parent, rotation] of told.links) turned[body] = (turned[parent] ?? 0) + (rotation < 0 ? 0 : qpos[rotation]);
     return told.bodies.flatMap((own, body) => {
       const [x, y] = [xpos[3 * own], xpos[3 * own + 1]];
-      const [rate, vx, vy] = cvel.subarray(6 * own + 2, 6 * own + 5); // of the point at the centre of mass of the tree
+      const [rate, vx, vy] = cvel.subarray(6 * own + 2, 6 * own + 5); // velocity at the centre of mass of the tree
       const root = 3 * model.body_rootid[own];
       return [x, y, first[3 * body + 2] + turned[body], vx - rate * (y - com[root + 1]), vy + rate * (x - com[root]), rate];
     });
@@ -83,7 +83,7 @@ function states(run, told, mujoco, model, data) {
   const found = [];
   for (let sample = 0; sample <= samples; sample++) {
     for (let count = 0; sample > 0 && count < every; count++) mujoco.mj_step(model, data);
-    // MuJoCo resets itself, its time too, when numbers become too large: the motion has ended.
+    // MuJoCo resets its state and its time if numbers become too large.
     if (!(Math.abs(data.time - sample * every * step) < step / 2)) break;
     found.push(state());
   }
@@ -91,15 +91,15 @@ function states(run, told, mujoco, model, data) {
   return split(found);
 }
 
-/** Return poses and twists at the samples by Munk2D; with `last`, one further step with that many iterations, and the
- * impulse of each joint after it [N s]. @param {any} munk @param {Run} run @param {number} last */
+/** Return poses and twists at the samples by Munk2D. `last`: number of iterations of an additional last step, after which the
+ * impulse of each joint is returned [N s]; 0 for no such step. @param {any} munk @param {Run} run @param {number} last */
 export function runMunk(munk, run, last = 0) {
   const plan = doubles(/** @type {Space} */ (modelOf(run, "munk")).numbers);
   const bodies = plan[HEAD - 4];
   if (run.start) place(run, plan);
   const iterations = run.iterations ?? plan[HEAD - 3];
   const bias = run.bias ?? plan[HEAD - 2];
-  // For a residual gap after a step instead of a second, the space has the step as its unit of time.
+  // The unit of time is the step if error_bias is the residual after a step.
   const unit = run.bias === null && plan[HEAD - 1] ? run.step : 1;
   const states_ = run.samples + 1 + (last ? 1 : 0);
   const size = states_ * 6 * bodies + (last ? 2 * plan.length : 0);
@@ -117,7 +117,7 @@ export function runMunk(munk, run, last = 0) {
   }
 }
 
-/** Start at the pose of release. @param {Run} run @param {Float64Array} plan */
+/** Set the poses at which the reader released the mechanism. @param {Run} run @param {Float64Array} plan */
 function place(run, plan) {
   const { pose, twist } = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
   for (let at = HEAD, body = 0; body < run.scene.bodies.length; at += BODY, body++) {
@@ -145,7 +145,7 @@ function fromOrigins(state, plan) {
   return state;
 }
 
-/** Load the engines of this site; null for one that it was built without. @param {string} packages @param {string[]} wanted */
+/** Load the engines; null for an engine that this site does not contain. @param {string} packages @param {string[]} wanted */
 export async function load(packages, wanted) {
   const one = async (/** @type {string} */ name, /** @type {object} */ given) => (await import(`${packages}${name}`)).default(given);
   const [mujoco, munk] = await Promise.all([

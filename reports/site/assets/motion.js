@@ -33,8 +33,7 @@ export function placed([x, y, angle], [a, b]) {
   return [x + cosine * a - sine * b, y + sine * a + cosine * b];
 }
 
-/** Return the two points of a pin at an instant, or the point of a slot and the nearest one of its line; body -1 is the
- * ground.
+/** Return the two points of a pin at an instant, or the nearest point of a slot's line and the point on the second body.
  * @param {Joint} joint @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frame
  * @returns {[Point, Point]} */
 export function ends(joint, pose, bodies, frame) {
@@ -67,7 +66,7 @@ export function errors(truth, pose, bodies, frames) {
   return { angle, position };
 }
 
-/** Replace values that are too large by NaN. @param {Float64Array} pose */
+/** Replace values of at least 1e6 by NaN. @param {Float64Array} pose */
 export const finite = (pose) => pose.map((value) => (Math.abs(value) < 1e6 ? value : NaN));
 
 /** Return the visible difference of two motions at every instant [m]; NaN after a method has failed.
@@ -89,13 +88,13 @@ export function slip({ body, point, angle }, pose, twist, bodies, frame) {
   return [across * nx, across * ny];
 }
 
-/** Return the instant centre of a body for its pose and twist; null where it does not turn.
+/** Return the instant centre of a body for its pose and twist; null if the body does not turn.
  * @param {number[]} pose @param {number[]} twist @returns {Point|null} */
 export function instantCentre([x, y], [vx, vy, rate]) {
   return Math.abs(rate) < 1e-9 ? null : [x - vy / rate, y + vx / rate];
 }
 
-/** Format a number with two digits, with a power of ten where that is shorter. @param {number} value */
+/** Format a number with two digits; a small or large number has a power of ten. @param {number} value */
 export function told(value) {
   if (!Number.isFinite(value)) return "lost";
   if (value === 0) return "0";

@@ -5,7 +5,7 @@ import { svg } from "./chart.js";
 import { instantCentre, poseAt, told } from "./motion.js";
 
 /** @typedef {import("./motion.js").Take} Take @typedef {import("./motion.js").Point} Point */
-/** @typedef {{take: Take, frame: number, overlay: SVGGElement, width: number}} Scene what is drawn on */
+/** @typedef {{take: Take, frame: number, overlay: SVGGElement, width: number}} Scene the target of a drawing */
 /** @typedef {{there: (take: Take) => boolean, draw: (scene: Scene) => string}} Overlay */
 
 const ARROW = 0.3; // length of the longest arrow as a fraction of the picture's width
@@ -27,7 +27,7 @@ function norms(flat) {
   return found;
 }
 
-/** Return the largest of the numbers that are not null. @param {(number|null)[]} values */
+/** Return the largest number that is not null. @param {(number|null)[]} values */
 const most = (values) => [...values].reduce((/** @type {number} */ a, b) => (b !== null && b > a ? b : a), 0);
 
 /** @param {Scene} scene @param {Point} from @param {Point} by @param {string} kind */
@@ -75,8 +75,8 @@ function drawFriction(scene) {
     const now = friction[frame];
     const largest = `the most in this motion is ${told(most(friction))}`;
     remarks.push(
-      now === null ? `The contact would have to pull here: no friction is enough; elsewhere ${largest}.`
-      : `To roll here the contact needs a coefficient of friction of ${told(now)}; ${largest}.`,
+      now === null ? `The contact would have to pull at this instant, and no friction coefficient is sufficient; otherwise ${largest}.`
+      : `Rolling requires a friction coefficient of ${told(now)} at this instant; ${largest}.`,
     );
   }
   return remarks.join(" ");
@@ -92,7 +92,7 @@ function drawCentre({ take, frame, overlay, width }) {
     const now = poseAt(pose, bodies, frame, body);
     const centre = instantCentre(now, poseAt(twist, bodies, frame, body));
     const own = take.motions[index];
-    if (!own) remark = centre ? `By the truth the ${take.bodies[body]} turns about (${centre[0].toFixed(2)}, ${centre[1].toFixed(2)}) m.` : "At this instant the body does not turn: its instant centre is infinitely far away.";
+    if (!own) remark = centre ? `In the exact motion the ${take.bodies[body]} turns about (${centre[0].toFixed(2)}, ${centre[1].toFixed(2)}) m.` : "At this instant the body does not turn: its instant centre is infinitely far away.";
     if (!centre || !Number.isFinite(centre[0] + centre[1])) continue;
     const [x, y] = centre;
     const group = svg("g", { class: own ? `method-${own.mark}` : "truth" });

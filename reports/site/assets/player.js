@@ -1,5 +1,5 @@
 // @ts-check
-/** An animated picture: played slower where errors grow; a reader can drag the mechanism and switch overlays on. */
+/** An animated picture with overlays, whose mechanism the reader can drag. */
 
 import { errorChart } from "./chart.js";
 import { Lens } from "./lens.js";
@@ -8,8 +8,8 @@ import { OVERLAYS } from "./overlays.js";
 
 /** @typedef {import("./motion.js").Take} Take */
 
-const SHORTEST = 5; // s: a shorter motion is played in slow motion of this duration
-const GROWING = 3; // factor of slow motion where the visible difference grows fastest
+const SHORTEST = 5; // shortest duration of a playback [s]; shorter motions are shown in slow motion
+const GROWING = 3; // factor of slow motion at the fastest growth of the visible difference
 const SLOWER = [1, 2, 5, 10, 20, 50, 100];
 
 /** @param {Element} element @param {number} x @param {number} y @param {number} angle [rad] */
@@ -52,7 +52,7 @@ export class Player {
     return /** @type {SVGSVGElement} */ (this.figure.querySelector("svg.stage"));
   }
 
-  /** Use a drawing whose groups have the order of the motions, the exact one last. @param {Take} take */
+  /** Use a drawing with a group for each motion; the exact motion is last. @param {Take} take */
   load(take) {
     this.take = take;
     this.groups = [...this.stage.querySelectorAll(".motion")].map((group) => [...group.querySelectorAll(".body")]);
@@ -69,7 +69,7 @@ export class Player {
     this.show();
   }
 
-  /** Draw and write the errors; set the speed of each part of the motion and the last frame. @param {Take} take */
+  /** Show the errors of a take; compute the playback time of each frame and the last frame. @param {Take} take */
   measure(take) {
     const { bodies: { length: bodies }, t: { length: frames }, truth, window: [first, last] } = take;
     const lines = take.motions.map(({ name, mark, pose }) => ({ name, mark, values: errors(truth.pose, pose, bodies, frames)[take.measure] }));
@@ -85,7 +85,7 @@ export class Player {
     const far = apart.map((value) => Math.min(value, take.size));
     this.stopAt = last;
     for (let frame = last; frame >= first; frame--) if (far[frame] > far[this.stopAt]) this.stopAt = frame;
-    // Where the largest difference is at the beginning, the motion is played to its end.
+    // If the largest difference is at the beginning, the motion is played to its end.
     if (this.stopAt < first + 0.3 * (last - first)) this.stopAt = last;
     const real = take.t[last] - take.t[first];
     this.slower = SLOWER.find((by) => real * by >= SHORTEST) ?? 100;
@@ -132,7 +132,7 @@ export class Player {
     return this.boxes.some((box) => box.value === overlay && box.checked && !box.disabled);
   }
 
-  /** Draw the present instant. */
+  /** Draw the shown instant. */
   show() {
     const { take, frame } = this;
     if (!take) return;
@@ -158,7 +158,7 @@ export class Player {
     this.remark.textContent = remarks.filter(Boolean).join(" ");
   }
 
-  /** Let the reader drag the mechanism: `pull` gets the body, its point and the place of the pointer; `release` ends it.
+  /** Let the reader drag the mechanism; `pull` gets the body, its point and the position of the pointer.
    * @param {(body: number, point: number[], wanted: number[]) => Float64Array|null} pull @param {() => void} release */
   grabbed(pull, release) {
     const frame_ = /** @type {HTMLElement} */ (this.figure.querySelector(".frame"));

@@ -1,5 +1,5 @@
 // @ts-check
-/** The stored rows as a chart with tooltips and a table; the link stores the choice of the reader. */
+/** The stored rows as a chart and a table; the address stores the choice of the reader. */
 
 import { equip } from "./tables.js";
 
@@ -8,13 +8,13 @@ const form = /** @type {HTMLFormElement} */ (document.getElementById("choice"));
 const chart = /** @type {HTMLElement} */ (document.getElementById("chart"));
 const body = /** @type {HTMLTableSectionElement} */ (document.querySelector("#rows tbody"));
 const count = /** @type {HTMLElement} */ (document.getElementById("count"));
-const MOST = 400; // rows in the table at once
+const MOST = 400; // largest number of rows in the table
 
 /** @typedef {Record<string, string|number|null>} Row */
 
-/** Of each engine the role of its colour, and whether it solves the equations as they are. @type {Record<string, {role: string, exact: boolean}>} */
+/** The role of each engine's colour, and whether the engine is an exact solver. @type {Record<string, {role: string, exact: boolean}>} */
 let looks = {};
-// A method has the same look in every chart: a colour for the engine, dashes for the variant.
+// The colour of a line depends on the engine, its dashes on the variant.
 const DASHES = /** @type {Record<string, string>} */ ({ default: "2 3", tuned: "7 4", extended: "" });
 /** @type {Record<string, string>} */
 let headings = {};
@@ -42,7 +42,6 @@ function draw(rows) {
     .filter((row) => Number(row[x]) > 0 && Number(row[y]) > 0)
     .map((row) => ({ ...row, method: nameOf(row) }));
   const engines = [...new Set(points.map((row) => String(row.engine)))];
-  // The labels of the choices have units.
   const [across, error] = ["x", "y"].map((name) => /** @type {HTMLSelectElement} */ (form.elements.namedItem(name)).selectedOptions[0].text);
   chart.replaceChildren(
     points.length
@@ -55,7 +54,7 @@ function draw(rows) {
           marks: [
             ...[...new Set(points.map((row) => String(row.variant)))].map((variant) =>
               Plot.line(points.filter((row) => row.variant === variant), { x, y, z: "method", stroke: "engine", sort: x, strokeDasharray: DASHES[variant] ?? "1 2 6 2" })),
-            // Lines of engines as shipped meet at short steps, the others at long ones: labels are at the other end.
+            // Default methods have nearly equal errors at short steps, other methods at long steps. Labels are at the other end.
             Plot.text(points.filter(({ variant }) => variant !== "default"), Plot.selectMinX({ x, y, z: "method", text: "method", fill: "engine", textAnchor: "start", dx: 6, dy: -7 })),
             Plot.text(points.filter(({ variant }) => variant === "default"), Plot.selectMaxX({ x, y, z: "method", text: "method", fill: "engine", textAnchor: "end", dx: -6, dy: -7 })),
             Plot.dot(points, {

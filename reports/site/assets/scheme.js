@@ -1,13 +1,13 @@
-// Light or dark: the choice of the reader, else that of the system. It runs before the page is drawn.
+// The colour scheme that the reader or the system has selected. This script runs before the page is drawn.
 (() => {
   const root = document.documentElement;
-  /** Without access to the storage the choice holds for this page. @param {(store: Storage) => void} use */
+  /** Use the storage; without access to it the choice is valid for this page only. @param {(store: Storage) => void} use */
   const kept = (use) => {
     try {
       use(localStorage);
     } catch {}
   };
-  // The documents of the site store the choice under this name, "auto" without one.
+  // Furo stores the choice under the name "theme"; its third value is "auto".
   kept(({ theme }) => Object.assign(root.dataset, /^(light|dark)$/.test(theme) && { scheme: theme }));
   const dark = () => (root.dataset.scheme ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "")) === "dark";
   addEventListener("DOMContentLoaded", () => {

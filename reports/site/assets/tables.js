@@ -1,7 +1,7 @@
 // @ts-check
-/** Tables of the pages: a click on a heading sorts, a text filters. Without JavaScript they stay unsorted. */
+/** Sorting and filtering of tables. */
 
-const SHORT = 6; // rows: shorter tables have no filter
+const SHORT = 6; // a table with fewer rows has no filter
 
 /** Return the sort key of a cell: its first number, else its text. @param {HTMLTableCellElement|undefined} cell */
 function key(cell) {
@@ -15,14 +15,14 @@ function sort(table, column, rising) {
   const body = table.tBodies[0];
   const rows = [...body.rows].map((row) => ({ row, key: key(row.cells[column]) }));
   rows.sort((a, b) => {
-    if (typeof a.key !== typeof b.key) return typeof a.key === "number" ? -1 : 1; // numbers first in both directions
+    if (typeof a.key !== typeof b.key) return typeof a.key === "number" ? -1 : 1; // numbers come first in both directions
     const order = a.key < b.key ? -1 : a.key > b.key ? 1 : 0;
     return rising ? order : -order;
   });
   body.append(...rows.map(({ row }) => row));
 }
 
-/** Add headings that sort, and a filter. @param {HTMLTableElement} table */
+/** Add headings that sort the table, and a filter. @param {HTMLTableElement} table */
 export function equip(table) {
   const body = table.tBodies[0];
   if (!table.tHead || !body || body.rows.length < 2) return;

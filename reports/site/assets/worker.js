@@ -1,5 +1,5 @@
 // @ts-check
-/** Runs the engines in a worker, so that the page never waits: it receives settings and sends motions. */
+/** A worker that runs the engines: it receives settings and sends motions. */
 
 import { doubles, mechanismOf, modelOf, runOf, truth } from "./live_data.js";
 import { load, runMujoco, runMunk } from "./live_engines.js";
@@ -59,7 +59,7 @@ async function answer(setting, engines) {
   };
 }
 
-/** Return the iterations of one step of Munk2D: velocities and impulses after each; `which`: index of each joint's impulse.
+/** Return velocities and impulses after each iteration of one step of Munk2D; `which`: index of each joint's impulse.
  * @param {Setting} setting @param {number} frame */
 async function sweeps(setting, frame) {
   const { munk } = await /** @type {Promise<{mujoco: any, munk: any}>} */ (loading);

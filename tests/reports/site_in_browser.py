@@ -1,0 +1,159 @@
+"""Fixtures of a site in Chromium, and its engines in the page and in Python; `tests/tools/browser.sh` installs all."""
+
+from __future__ import annotations
+
+import shutil
+import threading
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from reference.scene import Scene
+from reports.cli.site import texts_of
+from reports.model.tasks import answered
+from reports.site.build import build, tasks
+from reports.site.folder import server, write_site
+from reports.site.lesson import SiteSource
+from reports.site.lessons import LESSONS
+from reports.site.live.sliders import ENGINES, INTEGRATORS, Live
+from tests import RESULTS
+
+BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
+if BROWSER is None:
+    pytest.skip("no Chromium is installed: tests/tools/browser.sh installs it on Debian", allow_module_level=True)
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: pip install '.[browser]'")
+pytest.importorskip("furo", reason="furo is not installed: pip install '.[site]'")
+
+PHONE = {"width": 390, "height": 844}
+TALL = {"width": 1200, "height": 8000}  # without scrolling, the picture does not switch to another experiment
+LONGEST = 300_000.0  # timeout [ms], long enough for a loaded machine
+
+# The slow tests use the other lessons too.
+QUICK = ("four_bar", "skate", "rolling")
+
+
+@pytest.fixture(scope="module")
+def files(request):
+    """The site with the quick lessons and those of the selected tests."""
+    parameters = (vars(item).get("callspec") for item in request.session.items if item.path == request.path)
+    wanted = {*QUICK, *(call.params.get("lesson") for call in parameters if call is not None)}
+    answers = {motion: answered(motion) for motion in tasks(LESSONS[:1])}
+    cache = Path(request.config.cache.mkdir("site"))
+    source = SiteSource(**texts_of(RESULTS), answers=answers, cache=cache, foot="Made by a test.", api=False)
+    return build(source, [lesson for lesson in LESSONS if lesson.name in wanted])
+
+
+@pytest.fixture(scope="module")
+def address(files, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("site") / "site"
+    write_site(folder, files)
+    running = server(folder, 0)
+    threading.Thread(target=running.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{running.server_address[1]}/"
+    running.shutdown()
+    running.server_close()
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with playwright.sync_playwright() as started:
+        browser = started.chromium.launch(executable_path=BROWSER, args=["--no-sandbox"], timeout=LONGEST)
+        yield browser
+        browser.close()
+
+
+def new_page(chromium: Any, **options: Any) -> Any:
+    context = chromium.new_context(**{"viewport": {"width": 1200, "height": 900}, **options})
+    context.set_default_timeout(LONGEST)
+    return context.new_page()
+
+
+@pytest.fixture
+def opened(chromium, address):
+    """A function that opens a page in a new context; an error or a warning of the browser fails the test."""
+    contexts: list[Any] = []
+    complaints: list[str] = []
+
+    def open_page(name: str, **options: Any) -> Any:
+        page = new_page(chromium, **options)
+        contexts.append(page.context)
+        page.on(
+            "console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") else None
+        )
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on(
+            "response",
+            lambda response: complaints.append(f"{response.status} {response.url}") if response.status >= 400 else None,
+        )
+        page.on("request", lambda request: complaints.append(request.url) if not local(request.url, address) else None)
+        page.goto(address + name)
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert complaints == []
+
+
+def local(url: str, address: str) -> bool:
+    return url.startswith((address, "data:", "blob:"))
+
+
+@pytest.fixture(scope="module")
+def running(chromium, address, files):
+    """A function that returns the page of a lesson with its engines loaded; each is opened once."""
+    if not {"packages/mujoco.wasm", "packages/munk2d.js"} <= set(files):
+        pytest.skip("the site was built without its engines: tests/tools/browser.sh installs npm and emscripten")
+    pages: dict[str, Any] = {}
+
+    def page_of(lesson: str) -> Any:
+        if lesson not in pages:
+            pages[lesson] = new_page(chromium)
+            pages[lesson].goto(f"{address}lessons/{lesson}.html")
+            pages[lesson].wait_for_selector("#lesson.ready")
+        return pages[lesson]
+
+    yield page_of
+    for page in pages.values():
+        page.context.close()
+
+
+BY_NAME = {lesson.name: lesson for lesson in LESSONS}
+
+
+# Runs the engines of the page; `places`: indices of some controls, `start`: the pose of release.
+RUN_ENGINES = """async ([scene, places, start]) => {
+  const { ask, form } = window.crosscheck;
+  form.move(scene, places);
+  const told = await ask({ setting: form.setting(start) });
+  return { exact: { pose: [...told.exact.pose], missed: told.exact.missed }, lost: told.lost, idle: told.idle,
+    motions: Object.fromEntries(told.motions.map(({ name, pose, twist, error, from, apart }) =>
+      [name, { pose: [...pose], twist: [...twist], error, from, apart }])) };
+}"""
+
+
+def run_engines(page: Any, lesson: str, scene: str, values: dict[str, Any], start: list[float] | None = None) -> Any:
+    """Return the motions of the engines in the page for a scene with these values of its controls."""
+    live = BY_NAME[lesson].scene(scene)
+    return page.evaluate(RUN_ENGINES, [BY_NAME[lesson].scenes.index(live), live.located(values), start])
+
+
+def python_of(live: Live, values: dict[str, Any]) -> tuple[Scene, dict[str, Any], float]:
+    """Return the scene, Python's engines and the step [s] for these values; a missing engine is a string."""
+    changed: Any = {name: value for name, value in values.items() if name in {slider.field for slider in live.sliders}}
+    scene: Any = replace(live.scene, **changed)  # type: ignore[type-var]
+    step = scene.duration / values.get("steps", live.steps[live.start])
+    engines: dict[str, Any] = {
+        name: next(engine for label, engine in live.ways(name) if label == values.get(name, live.ways(name)[0][0]))
+        for name in ENGINES
+    }
+    fields = {"munk": {"iterations": "iterations", "bias": "error_bias"}, "mujoco": {"tolerance": "tolerance"}}
+    for name, names in fields.items():
+        settings = {field: values[name] for name, field in names.items() if name in values}
+        if name == "mujoco" and "integrator" in values:
+            settings["integrator"] = dict(INTEGRATORS)[values["integrator"]]
+        if settings and not isinstance(engines[name], str):
+            engines[name] = replace(engines[name], **settings)
+    return scene, engines, step
