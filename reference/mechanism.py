@@ -14,6 +14,7 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.applied_forces import AppliedForces
 from reference.checks import (
     AnyComplexes,
     InvalidMechanism,
@@ -24,7 +25,7 @@ from reference.checks import (
     require_room,
     validated,
 )
-from reference.forces import AppliedForces, ForceElement
+from reference.forces import ForceElement
 from reference.joints import Body, Joint, Vector
 from reference.plane import COMPLEX_STEP
 from reference.rows import MANY_ROWS, JointRows, banded_reaction, rank, reactions

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.elements import BetweenTwo, JointElement
 from reference.plane import components, rotation_velocity
+from reference.rolling.contact import Contact
 from reference.rolling.curves import Vector
-from reference.rolling.kinematics import Contact, Rolling
+from reference.rolling.kinematics import Rolling
 
 
 @dataclass(frozen=True)

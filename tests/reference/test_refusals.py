@@ -16,8 +16,9 @@ from reference.forces import Damper, Spring, Torque
 from reference.joints import Gear, Joint, Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.contact import NEAR_CONFORMAL
 from reference.rolling.curves import Circle, Line, Placed, Ring, Side
-from reference.rolling.kinematics import NEAR_CONFORMAL, Rolling
+from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import LogSpiral, Parabola
 from reference.rolling.roll import Roll
 from reference.rolling.traced import Traced

@@ -16,8 +16,9 @@ from reference.numerics import gauss_collocation as gauss
 from reference.numerics.integration import IntegrationFailed, units_of_motion
 from reference.numerics.roots import first_below
 from reference.plane import rotation_acceleration
+from reference.rolling.contact import Contact
 from reference.rolling.curves import Array, Vector
-from reference.rolling.kinematics import Contact, Rolling
+from reference.rolling.kinematics import Rolling
 
 GRAVITY = 9.81
 
