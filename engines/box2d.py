@@ -1,32 +1,35 @@
-"""Box2D v3 under test, by its binding pyb2d3: soft joints in single precision, solved by sub-steps of impulses.
+"""Box2D v3 under test, by its binding pyb2d3: soft joints in single precision, solved by impulses in sub-steps.
 
-A body is a dynamic body whose mass, centre and inertia are set directly; it may not sleep, and no shape is made, since
-no contact is the subject. A Pin is a revolute joint, a Weld a weld joint, a Rod a distance joint, a Slot a wheel joint
-without its spring (a point on a line that is free to turn), or a prismatic joint where a Drive of rate zero keeps the
-angle. A Drive is the motor of the Pin or Slot between the same two bodies, with more torque than it can need. The
-stiffness of the engine's springs depends on the effective mass, and so on the pose; so our code evaluates springs,
-dampers, forces and torques before each step and applies forces to the bodies, as users do.
+The mass, centre and inertia of a dynamic body are set directly. It never sleeps and has no shape, so there are no
+contacts. A Pin is a revolute joint, a Weld is a weld joint, and a Rod is a distance joint. A Slot is a wheel joint
+without its spring, or a prismatic joint if a Drive of rate zero keeps the angle. A Drive is the motor of the Pin or
+Slot between the same two bodies, with a torque limit that is never reached. The stiffness of the engine's springs
+depends on the effective mass and so on the pose. Therefore our code evaluates springs, dampers, forces and torques
+before each step and applies forces to the bodies, as users do.
 
-One step (its solver.c) repeats `substeps` times, with h = dt / substeps: apply forces; correct the velocities once for
-every joint, with a soft term against its gap (see below); integrate the poses, p += v h; correct the velocities again
-without the soft term. The state belongs to its instant, and the motion is that of semi-implicit Euler with the step h.
+One step (its solver.c) has `substeps` sub-steps of h = dt / substeps. A sub-step applies forces, corrects the
+velocities once for every joint with a soft term against its gap, integrates the poses (p += v h), and corrects the
+velocities again without the soft term. The state belongs to its instant, and the motion is that of the semi-implicit
+Euler method with the step h.
 
-Joints are springs of 60 Hz, or of a quarter of the rate of sub-steps where that is less, with a damping ratio of 2,
-solved implicitly (b2MakeSoft in its solver.h; `crosscheck search` holds single joints to it): frequency w and ratio z
-give the velocity w / (2 z + h w) times the gap, times h w (2 z + h w) / (1 + h w (2 z + h w)). Since this velocity is
-removed after the integration, a gap closes at the rate w^2 h, w^2 = 1.4e5 / s^2: the shorter the sub-step, the slower,
-while the error that opens the gap falls with h too. So no order is declared. pyb2d3 0.11.1 has no function for the
-frequency of joints (`b2World_SetJointTuning`). But a weld joint has its own frequencies, which the second correction
-includes. With `closing`, a Pin without a drive is a weld joint with almost no angular stiffness (SLACK), whose points
-have the frequency closing / h; so have Rods and Welds. The engine's maximum for contacts is closing = 1/4; at 1/2 a
-chain of ten pins diverges. So stiff a pin turns the rounding of positions into forces: the shorter the step, the larger
-is the noise of reactions. The page of engines shows the effect of frequency and of sub-steps.
+A joint is a spring with a damping ratio of 2, solved implicitly (b2MakeSoft in its solver.h). Its frequency is 60 Hz,
+or a quarter of the rate of sub-steps if that is less. Frequency w and ratio z give the velocity w / (2 z + h w) times
+the gap, times h w (2 z + h w) / (1 + h w (2 z + h w)). This velocity is removed after the integration, so that a gap
+closes at the rate w^2 h with w^2 = 1.4e5 / s^2, more slowly for a shorter sub-step. The error that opens the gap falls
+with h too. Therefore no order is declared.
+
+pyb2d3 0.11.1 has no function for the frequency of joints (`b2World_SetJointTuning`). But a weld joint has frequencies
+of its own, which the second correction includes. With `closing`, a Pin without a drive is a weld joint with almost no
+angular stiffness (SLACK), and the points of Pins, Rods and Welds have the frequency closing / h. The engine's maximum
+for contacts is closing = 1/4; at 1/2 a chain of ten pins diverges. Such a stiff pin turns the rounding of positions
+into forces, so that the noise of reactions is larger for shorter steps. The page of engines shows the effect of the
+frequency and of sub-steps.
 
 A body turns by at most an eighth of a turn in a step: the engine reduces a larger rate, and the run has a warning.
 
-Numbers are in single precision: an error below about 1e-6 of the motion, and an acceleration below 1e-7 of the speed
-over the step, are rounding. The engine's functions between angles and rotations are approximations with errors of
-1.6e-3 and 3e-5 rad, so both are computed here; whole turns, which a rotation does not contain, are restored.
+The engine uses single precision. Errors below about 1e-6 of the motion, and accelerations below 1e-7 of the speed over
+the step, are rounding. The engine's functions for angles and rotations have errors of 1.6e-3 and 3e-5 rad, so this
+adapter computes both itself. It also restores whole turns, which a rotation does not contain.
 """
 
 from __future__ import annotations
@@ -49,27 +52,27 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
-# CPU time of a step of three bodies without its sub-steps [s], of a sub-step, and of the force elements in numpy.
+# CPU times [s]: a step of three bodies without its sub-steps, a sub-step, and the force elements in numpy.
 BOX2D_STEP_COST = 3e-6
 SUBSTEP_COST = 0.8e-6
 NUMPY_FORCES_COST = 150e-6
 # The shortest distance of a joint [m].
 SLOP = 0.005
-# The torque of a motor [N m]; single precision ends at 3e38.
+# The largest torque of a motor [N m]; the largest number of single precision is 3e38.
 MOTOR_TORQUE = 1e30
 # The engine's limit on speeds [m/s], 400 as shipped. The square must be a number of single precision.
 SPEED_LIMIT = 1e18
-# The largest turn of a body in a step [rad]: the engine reduces larger rates, and the binding can't switch this off.
+# The largest rotation of a body in a step [rad]. The engine reduces larger rates, and the binding can't prevent this.
 TURN_LIMIT = math.pi / 4
-# Angular frequency of a weld joint that stands for a pin, relative to that of its points: it turns the body by less
-# than rounding in any number of steps. 0 would be the stiffest value.
+# Angular frequency of a weld joint in place of a pin, relative to that of its points. Its effect on the body is below
+# rounding in any number of steps. The value 0 would mean the largest stiffness.
 SLACK = 4e-9
 RATE_CUT = RunWarning("upstream: a rate was cut to an eighth of a turn in a step", "rate limit", "upstream")
 JOINT_LIST = "https://box2d.org/documentation/group__joint.html"
 
 
 class Box2DWorld:
-    """The engine's objects for one mechanism; `hertz`: the frequency of stiffened joints, 0 for joints as shipped."""
+    """The engine's objects for one mechanism; `hertz` is the frequency of joints, or 0 for joints as shipped."""
 
     def __init__(self, mechanism: Mechanism, dt: float, substeps: int, hertz: float) -> None:
         import pyb2d3
@@ -82,12 +85,12 @@ class Box2DWorld:
         self.bodies = [self._body(body) for body in mechanism.bodies]
         joints = [joint for joint in mechanism.joints if not isinstance(joint, Drive)]
         self.joints = [BOX2D_JOINTS[type(joint)](self, joint) for joint in joints]
-        self.angles = mechanism.pose[:, 2].copy()  # of the last step, not wrapped
+        self.angles = mechanism.pose[:, 2].copy()  # unwrapped angles of the last step [rad]
         count, rows = len(self.bodies), mechanism.row_count
         self.size = Size(count, 3 * count, rows, rows)
 
     def _motors(self) -> dict[frozenset[str | None], Drive]:
-        """The drive of each pair of bodies; raises Unsupported for a drive that can be no motor."""
+        """The drive of each pair of bodies; raises Unsupported for a drive between bodies without pin or slot."""
         joints = self.mechanism.joints
         held = {frozenset((joint.first, joint.second)) for joint in joints if isinstance(joint, Pin | Slot)}
         drives = [joint for joint in joints if isinstance(joint, Drive)]
@@ -166,7 +169,7 @@ class Box2DWorld:
         return self.world.create_weld_joint(**ends, **{**frequencies, "angular_damping_ratio": 1.0, **further})
 
     def _poses(self) -> list[tuple[float, float, float]]:
-        """x, y and the angle within a turn."""
+        """x, y and the wrapped angle of each body [m, m, rad]."""
         states = ((body.position, body.rotation) for body in self.bodies)
         return [(at.x, at.y, math.atan2(turned.s, turned.c)) for at, turned in states]
 
@@ -205,7 +208,6 @@ class Box2DWorld:
         return Recorded(pose, twist, acceleration, stepping, inertias, gravity, warnings)
 
 
-# The construction of each kind of joint.
 BOX2D_JOINTS: Mapping[type, Callable[[Box2DWorld, Any], Any]] = {
     Pin: Box2DWorld.add_pin,
     Slot: Box2DWorld.add_slot,
@@ -218,7 +220,7 @@ BOX2D_JOINTS: Mapping[type, Callable[[Box2DWorld, Any], Any]] = {
 class Box2D(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    substeps: in a step, 4 as in the engine's manual
+    substeps: number of sub-steps in a step, 4 as in the engine's manual
     closing: the frequency of pins, welds and rods times the length of a sub-step; 0 for joints as shipped
     """
 
@@ -246,12 +248,10 @@ class Box2D(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """Not declared; the module says why."""
         return NotDeclared("a joint of box2d closes its gap the more slowly the shorter the sub-step is")
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s]."""
         forces = NUMPY_FORCES_COST if mechanism.forces else 0.0
         return (BOX2D_STEP_COST + SUBSTEP_COST * self.substeps) * over_three(mechanism) + forces
 

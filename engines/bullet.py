@@ -1,19 +1,18 @@
-"""Bullet under test, by its binding PyBullet: a tree in reduced coordinates, loops closed by impulses at points.
+"""Bullet under test, by its binding PyBullet: a tree in reduced coordinates, with loops closed by impulses at points.
 
-PyBullet is more widely used than ODE, and pip installs all of it, while ode-python needs a library of the system. Its
-wheels end with Python 3.11; they are built in double precision.
+The wheels of PyBullet are built in double precision, up to Python 3.11.
 
-The tree is that of `engines.tree`. It is loaded from a URDF file, the only way to set a link's inertia: continuous
-joints, prismatic ones for slots with a fixed angle, fixed ones for welds. A Pin that closes a loop is a
-JOINT_POINT2POINT, a Weld a JOINT_FIXED, a Drive the velocity motor of a joint, a Gear a JOINT_GEAR between two joints
-of the tree. This adapter creates no link of mass zero, so a body that slides and turns, or that has no joint, is
-refused; Bullet itself would accept one. Our code evaluates force elements before each step, as users do, and passes
-them to the engine as external forces. All damping and the limit on joint velocities are off.
+The tree is that of `engines.tree`. It is loaded from a URDF file, since PyBullet has no other way to set a link's
+inertia. It has continuous joints, prismatic joints for slots with a fixed angle, and fixed joints for welds. A Pin that
+closes a loop is a JOINT_POINT2POINT, and such a Weld is a JOINT_FIXED. A Drive is the velocity motor of a joint. A Gear
+is a JOINT_GEAR between two joints of the tree. A body that slides and turns, or that has no joint, is refused: it would
+need links of mass zero, which this adapter does not create. Our code evaluates force elements before each step, as
+users do, and passes them to the engine as external forces. All damping and the limit on joint velocities are off.
 
-One step (btMultiBodyDynamicsWorld) applies the forces at the old positions, corrects the velocities by impulses that
-also reduce the gap (by the share erp in a step, 0.2 as shipped), and integrates the positions with the new velocities:
-semi-implicit Euler of first order. Accelerations are changes of velocity over the last step, so there are none at
-t = 0.
+One step (btMultiBodyDynamicsWorld) applies the forces at the old positions and corrects the velocities by impulses,
+which also reduce the gap (by the share erp in a step, 0.2 as shipped). Then it integrates the positions with the new
+velocities. This is the semi-implicit Euler method of first order. Accelerations are changes of velocity over the last
+step, so they are unknown at t = 0.
 
 A joint whose articulated inertia is below 2.2e-16 (SIMD_EPSILON) in the model's units, for example that of a
 millimetre-sized body in SI, is not accelerated by any force (btMultiBody.cpp). A motor has no effect on a joint whose
@@ -44,16 +43,16 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
-# The largest force [N] or torque [N m] of a loop's point and of a motor: above those of a mechanism in any unit.
+# The largest force [N] or torque [N m] of a loop's point or a motor. It is never reached.
 MAX_FORCE = 1e30
-# The engine's limit on the rate of a joint [rad/s]: above those of any mechanism.
+# The engine's limit on the rate of a joint [rad/s]. It is never reached.
 RATE_LIMIT = 1e9
 # CPU time of a step of three bodies as shipped [s], and of an iteration for one row.
 BULLET_STEP_COST = 9e-6
 ITERATION_COST = 0.1e-6
 SHIPPED_ITERATIONS = 50
 SHIPPED_ERP = 0.2
-# SIMD_EPSILON: below this inertia [kg, kg m^2] the engine takes the inverse for zero.
+# SIMD_EPSILON of the engine, which replaces the inverse of a smaller inertia [kg, kg m^2] by zero.
 SMALLEST_INERTIA = float(np.finfo(float).eps)
 UNMOVED = unresolved(0.0, "bullet takes an inertia below 2.2e-16 for none and moves it by no force")
 UNTURNED = unresolved(0.0, "a motor of bullet does nothing to an inertia above 4.5e15")
@@ -66,8 +65,8 @@ BULLET_LOOPS = {Pin: "JOINT_POINT2POINT", Weld: "JOINT_FIXED"}
 class Bullet(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    iterations: of the solver over its rows
-    residual: the iterations end early below this residual
+    iterations: largest number of the solver's iterations over the rows
+    residual: the solver ends below this residual
     erp: the share of a gap that a step closes
     """
 
@@ -92,10 +91,10 @@ class Bullet(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """1, of semi-implicit Euler; joints of the tree are exact.
+        """Order 1 of the semi-implicit Euler method; joints of the tree are exact.
 
-        Iterations end when the square of the slip [m/s, rad/s] is below `residual`, at every step. In a prescribed
-        motion that is the whole error of a loop.
+        Not declared for loops in a prescribed motion: their only error is the slip at which the iterations end, and it
+        does not depend on the step.
         """
         loops = spanning_tree(mechanism).loops
         if loops and is_prescribed(mechanism) and self.residual:
@@ -110,13 +109,12 @@ class Bullet(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s]."""
         rows = 3 * len(spanning_tree(mechanism).loops)
         forces = TREE_FORCES_COST if mechanism.forces else 0.0
         return BULLET_STEP_COST * over_three(mechanism) + ITERATION_COST * self.iterations * rows + forces
 
     def stricter(self, mechanism: Mechanism) -> Bullet | None:
-        """With twenty times as many iterations; None without rows that they solve."""
+        """The method with twenty times as many iterations; None without rows for the solver."""
         if not spanning_tree(mechanism).loops and not any(isinstance(joint, Drive) for joint in mechanism.joints):
             return None
         return replace(self, iterations=20 * self.iterations, residual=0.0)
@@ -128,7 +126,7 @@ class Bullet(ExtraEngine):
 
 
 def inertia_warnings(tree: Tree, motors: Iterable[int]) -> tuple[RunWarning, ...]:
-    """Warnings of inertias that the engine takes for zero or infinity, in the pose of the start.
+    """Warnings about inertias that are too small or too large for the engine, at the start.
 
     The inertia of a joint is Featherstone's articulated inertia, 1 / (M^-1)_jj with M of the coordinates from the joint
     outwards. The inertia of a motor is 1 / (M^-1)_jj with M of all coordinates.
@@ -177,7 +175,7 @@ def motor_rates(tree: Tree) -> dict[int, float]:
 
 
 def geared_columns(tree: Tree, gear: Gear) -> tuple[int, int]:
-    """The tree coordinates of the second and of the first body's angle; raises Unsupported."""
+    """The tree coordinates of the angles of the second and first body; raises Unsupported."""
     coordinates = [tree.turning(None, name) for name in (gear.second, gear.first)]
     if any(len(columns) != 1 for columns in coordinates):
         raise Unsupported(
@@ -200,7 +198,7 @@ class BulletWorld:
     """The engine's objects for one mechanism, in a separate server in this process."""
 
     def __init__(self, tree: Tree, motors: dict[int, float], dt: float, parameters: dict[str, float]) -> None:
-        """`motors`: rates [rad/s] of tree coordinates that a motor turns; `parameters`: the engine's own, by name."""
+        """`motors`: rates [rad/s] by tree coordinate; `parameters`: parameters of the engine by name."""
         self.mechanism, self.tree, self.dt, self.motors, self.bullet = tree.mechanism, tree, dt, motors, package()
         self.server: int = self.bullet.connect(self.bullet.DIRECT)
         self._call("setGravity", *self.mechanism.gravity, 0.0)
@@ -269,7 +267,7 @@ class BulletWorld:
         )
 
     def _close(self, loop: Any) -> None:
-        """Constrain a point of two links, or all of both; points [m] are from the centres of mass."""
+        """Add the loop-closing constraint of a joint; points [m] are relative to the centres of mass."""
         numbers = {link.body: index for link, index in zip(self.tree.links, self.links, strict=True)}
         ends = [
             (
@@ -323,6 +321,6 @@ class BulletWorld:
 
 DEFAULT = Bullet("default")
 TUNED = Bullet("tuned", iterations=200, residual=0.0, erp=1.0)
-# Every step closes all of a gap: with erp < 1 the remaining gap has no error expansion in the step.
+# With erp = 1 a step closes the whole gap. With a smaller erp the remaining gap has no error expansion in the step.
 EXTENDED = Extrapolated(TUNED, "extended", levels=(1, 2, 3, 4), powers=(1, 2, 3))
 VARIANTS = (DEFAULT, TUNED, EXTENDED)

@@ -1,29 +1,29 @@
 """Exudyn under test: planar rigid bodies in maximal coordinates, joints as algebraic equations, implicit integrators.
 
-A body is a NodeRigidBody2D with an ObjectRigidBody2D, a Pin an ObjectJointRevolute2D, a Slot an ObjectJointPrismatic2D
-that leaves the rotation free, a Rod an ObjectConnectorDistance. An ObjectConnectorCoordinate couples two rotations: a
-Drive at velocity level, a Gear, and, together with a revolute joint, a Weld. A Skate is the engine's rolling disc
-(ObjectJointRollingDisc) with a constraint on the velocity along the axle alone; the disc is perpendicular to the plane,
-so that its radius has no effect. A Roll of a circle on a straight line is the same joint with the disc in the plane and
-constraints on the rolling velocity and on the velocity along the line's normal; the engine has no equation for a
-contact of other shapes. Springs, dampers, forces and torques are the engine's own too.
+A body is a NodeRigidBody2D with an ObjectRigidBody2D. A Pin is an ObjectJointRevolute2D, and a Rod is an
+ObjectConnectorDistance. A Slot is an ObjectJointPrismatic2D with free rotation. An ObjectConnectorCoordinate couples
+two rotations in a Drive (at velocity level), in a Gear, and, with a revolute joint, in a Weld. A Skate is the engine's
+rolling disc (ObjectJointRollingDisc) with a constraint on the velocity along the axle alone. The disc is perpendicular
+to the plane, so that its radius has no effect. A Roll of a circle on a straight line is the same joint with the disc in
+the plane, and with constraints on the rolling velocity and on the velocity along the line's normal. The engine has no
+equation for a contact of other shapes. Springs, dampers, forces and torques are elements of the engine.
 `timeIntegration.adaptiveStep`, which halves a step in which Newton's method fails, is off in every variant.
 
-The joints are exact up to the tolerance of Newton's method. "GeneralizedAlpha" holds them in positions (index 3),
-"TrapezoidalIndex2" in velocities (index 2); both are of second order. The engine's explicit integrators accept only
+The joints are exact up to the tolerance of Newton's method. "GeneralizedAlpha" satisfies them for positions (index 3),
+"TrapezoidalIndex2" for velocities (index 2). Both are of second order. The engine's explicit integrators accept only
 equations between single coordinates and the ground, which excludes every joint here.
 
-Accelerations are the engine's own, so that reactions belong to the sampled instant. Both integrators use those of the
-last step, and those that the engine computes for the start ignore constraints on velocities (skates, rolling, drives).
-Poses and twists do not have this error. GeneralizedAlpha reduces it by about a tenth in every step, the trapezoidal
-rule does not reduce it. So as shipped, reactions are NaN for such mechanisms; the other variants pass consistent
-accelerations of the start to the engine by its public settings.
+Accelerations are those of the engine, so that reactions belong to the sampled instant. Both integrators use the
+accelerations of the last step. The engine's accelerations at the start ignore constraints on velocities (skates,
+rolling, drives). GeneralizedAlpha reduces this error by about a tenth in every step, and the trapezoidal rule does not
+reduce it. Poses and twists do not have this error. Therefore reactions of such mechanisms are NaN as shipped. The other
+variants pass consistent accelerations of the start to the engine by its public settings.
 
 As shipped, one norm combines the residuals of forces, torques and constraints, so that the tolerance depends on units
-and masses: a body of 2e-11 kg m^2 beside one of 0.8 had an error of 6e-7 of the motion at every step, and no estimate
-showed it. All other variants use the norm of the increment of an iteration (`residualMode` 1), in units of the
+and masses. A body of 2e-11 kg m^2 beside one of 0.8 kg m^2 had an error of 6e-7 of the motion at every step, and no
+estimate showed it. All other variants use the norm of the increment of an iteration (`residualMode` 1), in units of the
 mechanism's length. An increment d of a pose changes its rate by 2 d / dt for the rest of the motion, and `absolute` is
-a tolerance of that rate.
+the tolerance of that rate.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class Exudyn(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """2; reactions are unknown if velocities are constrained and accelerations of the start are inconsistent."""
+        """Order 2; reactions are unknown if velocities are constrained and the start has inconsistent accelerations."""
         velocities = holds_velocities(mechanism)
         reaction = math.nan if velocities and not self.consistent else None
         if self.integrator == "TrapezoidalIndex2":
@@ -93,12 +93,12 @@ class Exudyn(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s]; with a dense matrix it grows with the cube of the bodies."""
+        """Approximate CPU time of a step [s]; with a dense matrix it grows with the cube of the number of bodies."""
         size = over_three(mechanism)
         return EXUDYN_STEP_COST * size * (1.0 if self.sparse else max(1.0, size / 5) ** 2)
 
     def stricter(self, mechanism: Mechanism) -> Exudyn | None:
-        """With Newton's tolerances divided by 1000; None with `own_units`."""
+        """The method with the tolerances of Newton's method divided by 1000; None with `own_units`."""
         if self.own_units:
             return None
         return replace(self, relative=1e-3 * self.relative, absolute=1e-3 * self.absolute)
@@ -108,12 +108,12 @@ class Exudyn(ExtraEngine):
 
 
 DEFAULT = Exudyn("default")
-# A rate of 1e-13 is 450 units of rounding, the residual of constraints. Newton's residual is the same at all levels, so
-# that no estimate shows it: in 1e4 steps it adds up to a rate of 1e-9, a hundredth of the claim.
+# A rate of 1e-13 is 450 units of rounding. The error of Newton's method is the same at all levels, so that the estimate
+# does not show it. In 1e4 steps it adds up to a rate of 1e-9, which is a hundredth of the claim.
 TUNED = Exudyn(
     "tuned", "TrapezoidalIndex2", relative=1e-10, absolute=1e-13, consistent=True, sparse=True, own_units=True
 )
-# Reactions have an error h^2 (-1)^n after n steps, which the powers remove if it has the same sign in all runs: all
+# Reactions have an error h^2 (-1)^n after n steps. Extrapolation removes it if it has the same sign in all runs, so all
 # levels are odd. With the levels (1, 2, 3, 4) the estimate of reactions was 6.8 times too small.
 EXTENDED = Extrapolated(replace(TUNED, relative=1e-12), "extended", levels=(1, 3, 5, 7), powers=(2, 4, 6))
 VARIANTS = (DEFAULT, TUNED, EXTENDED)

@@ -33,7 +33,7 @@ NO_REACTIONS = RunWarning(
 
 
 def resolved_ratio(mechanism: Mechanism) -> float:
-    """The largest mass times the largest inverse mass; inertias count as masses at the mechanism's length.
+    """The largest mass times the largest inverse mass, with inertias divided by the square of the mechanism's length.
 
     Newton's tolerance is relative to the forces on the heaviest body. If its product with this ratio is above 1, the
     error of the lightest body's acceleration may be as large as the largest acceleration.
@@ -43,7 +43,7 @@ def resolved_ratio(mechanism: Mechanism) -> float:
 
 
 def holds_velocities(mechanism: Mechanism) -> bool:
-    """Whether some joint is an equation between velocities."""
+    """Whether a joint constrains velocities."""
     return any(isinstance(joint, Skate | Roll | Drive) for joint in mechanism.joints)
 
 
@@ -62,7 +62,7 @@ class ExudynSystem:
         self.length, self.seconds, self.dt = length, seconds, dt / seconds
         self.mechanism = counted_in(mechanism, mass, seconds)
         self.exudyn, self.items, self.unit = exudyn, itemInterface, np.array([length, length, 1.0])
-        self.container = exudyn.SystemContainer()  # owns the system, so it has to stay
+        self.container = exudyn.SystemContainer()  # it owns the system
         self.system: Any = self.container.AddSystem()
         self.nodes: dict[str, int] = {}
         self.bodies: dict[str | None, int] = {None: self.system.AddObject(itemInterface.ObjectGround())}
@@ -207,11 +207,11 @@ class ExudynSystem:
             raise Unsupported(
                 f"joint {joint.name!r}: exudyn's rolling joint is a disc on a plane, and our adapter builds no other"
             )
-        # Material is on the left of a boundary: the disc is on the right of the line, its centre on its own left.
+        # Material is on the left of a boundary, so the centre of the disc is on the left of its own boundary.
         heading, inward = float(ground.angle(joint.rolling.ground_arc)), float(body.angle(arc)) + math.pi / 2
         (x, y), radius = joint.second_point, 1 / low
         centre = (x + radius * math.cos(inward), y + radius * math.sin(inward))
-        # Velocities alone are constrained, so any point of the plane will do; in a body the engine accepts only this.
+        # Only velocities are constrained, so any point of the plane can be used. In a body it must be (0, 0).
         ends = [self._point(joint.first, (0.0, 0.0), True), self._point(joint.second, centre, True)]
         self._disc(ends, [0, 1, 1], radius / self.length, PLANE_NORMAL, [math.sin(heading), -math.cos(heading), 0.0])
         return 3
@@ -245,7 +245,7 @@ class ExudynSystem:
         try:
             with quiet():
                 self.system.SolveDynamic(settings, solverType=solver)
-        except Exception:  # the message is pages long
+        except Exception:  # a message of the engine has many lines
             gave_up = True
             warnings.append(GAVE_UP)
         stepping = time.process_time() - begin
@@ -265,7 +265,7 @@ class ExudynSystem:
         return Recorded(states[0], *rates, stepping, loads.inertias, np.array(loads.gravity), tuple(warnings))
 
 
-# The construction of each kind of joint, which returns its number of equations, and of each kind of force element.
+# Functions that create each kind of joint, and return its number of equations, or force element.
 EXUDYN_JOINTS: Mapping[type, Callable[[ExudynSystem, Any], int]] = {
     Pin: ExudynSystem.add_pin,
     Weld: ExudynSystem.add_weld,

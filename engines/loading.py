@@ -96,7 +96,7 @@ def _unhashable(value: Any) -> str:
 
 
 def _at_top(module: ModuleType, kind: Kind, reference: str) -> Iterator[Any]:
-    """The values of a module in their order, and its own classes by their defaults where no value is of that class."""
+    """The values of a module in their order, and default instances of its classes without an instance among them."""
     values = list(vars(module).values())
     classes = {type(value) for value in values}
     for value in values:
@@ -132,10 +132,10 @@ def _module_of_file(path: Path) -> ModuleType:
 def _imported(name: str, owner: str, folder: Path) -> ModuleType:
     """Import a module, also from this folder. Raises ValueError."""
     if str(folder) not in sys.path:
-        sys.path.append(str(folder))  # at the end: it must not hide what is installed
+        sys.path.append(str(folder))  # at the end, so that it does not hide installed modules
     try:
         return import_module(name)
-    except (Exception, SystemExit) as error:  # the code of the module may raise anything
+    except (Exception, SystemExit) as error:  # the module may raise any exception
         raise ValueError(f"{owner} can't be imported: {describe(error)}") from None
 
 
@@ -173,7 +173,7 @@ def registered(
     known: Mapping[str, Any] = MappingProxyType({}),
     extras: bool = False,
 ) -> Registered:
-    """All values of a group with unique names. Of two with one name, ours is used, or that of the first distribution.
+    """All values of a group with unique names. If two have the same name, ours or the first distribution's is used.
 
     known: values of other groups by name; a different value with such a name is left out
     extras: whether to use the entry points with an extra, such as `engines.exudyn:VARIANTS [exudyn]`, or the others
@@ -218,7 +218,7 @@ def registered_by_key(group: str, kind: Kind) -> dict[str, Any]:
 
 
 def _lacks_a_package(error: BaseException | None) -> bool:
-    """Whether an import failed because another package than ours is not installed."""
+    """Whether an import failed because a package of another project is not installed."""
     package = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
     return package not in ("", "reference", "engines", "reports")
 

@@ -5,23 +5,23 @@ differs from `mujoco`. MJX cannot call the callbacks of that adapter, so models 
 rolling are refused too: this adapter builds no contact, though MJX has contacts. So is every model that MJX itself
 refuses, with its message.
 
-MJX leaves out the velocity term J-dot v of loops, which C MuJoCo has since 3.7. MJX's own tests say "Jdotv effect (not
-in MJX)". At any step this opens a loop by J-dot v over the row's stiffness, the inverse square of its time constant.
+MJX omits the velocity term J-dot v of loops, which C MuJoCo has since 3.7. MJX's own tests say "Jdotv effect (not in
+MJX)". At any step a loop therefore has a gap of J-dot v times the square of the row's time constant.
 Runs with loops have a warning, and `reports/pages/engines` compares the forces. If the time constant is proportional to
 the step, the error falls with its square: for the free four-bar with RK4 at 1e-3 s it is 7.40e-4 rad with a time
 constant of two steps, as in MuJoCo before 3.7, and 4.58e-3 rad with the five of our tuned variant.
 
-Its solver ends when no residual of the forces is above 1e-8, whatever the tolerance: `mjx.math.norm` takes such a
-vector for zero. This number has a unit, so the model is in the smallest unit of mass that its rows admit
-(`_smallest_unit`). In the unit of `mujoco`, about the mass of the mechanism, a gear would have no effect on light
-bodies next to heavy ones: they would have the same acceleration in every step.
+The solver ends if no residual of the forces is above 1e-8, since `mjx.math.norm` returns zero for such a vector. The
+tolerance has no effect then. This limit has a unit, so the model is in the smallest unit of mass that its rows admit
+(`_smallest_unit`). The adapter of MuJoCo uses about the mass of the mechanism. With that unit a gear would have no
+effect on light bodies next to heavy ones.
 
-A program is compiled for each model, in 5 to 30 s, which counts as building. JAX caches it for models of the same
-structure with other numbers, and for other processes in the user's cache folder, or in the folder of the environment
-variable JAX_COMPILATION_CACHE_DIR. It runs on the processor, with one thread and in double precision.
+The compilation of a model takes 5 to 30 s, which counts as building. JAX caches the program for models of the same
+structure with other numbers. For other processes it caches it in the user's cache folder, or in the folder of the
+environment variable JAX_COMPILATION_CACHE_DIR.
 
-The package mujoco-mjx requires the package mujoco, which overwrites the files of mujoco-core with an older release. So
-install it without dependencies: pip install --no-deps mujoco-mjx.
+The package mujoco-mjx requires the package mujoco, which overwrites the files of mujoco-core with an older release.
+Therefore install it without dependencies: pip install --no-deps mujoco-mjx.
 """
 
 from __future__ import annotations
@@ -68,10 +68,10 @@ from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
-# CPU time of an evaluation with three bodies, once compiled [s].
+# CPU time of a compiled evaluation with three bodies [s].
 MJX_EVALUATION_COST = 50e-6
-# The compliance R of the hardest row at the start, relative to mjMINVAL, the smallest R in MuJoCo and MJX. As shipped R
-# is halved at a gap of a millimetre, and a unit that is a power of two changes R by at most a factor of sqrt(2).
+# The compliance R of the stiffest row at the start, relative to mjMINVAL, the smallest R in MuJoCo and MJX. The margin
+# is for a gap of a millimetre, which halves R as shipped, and for the unit's rounding to a power of two.
 LEAST_COMPLIANCE = 4.0
 NO_VELOCITY_TERM = RunWarning(
     "upstream: loops lack the velocity term J-dot v in MJX, so that they are wrong at any step",
@@ -82,7 +82,7 @@ NO_VELOCITY_TERM = RunWarning(
 
 @dataclass(frozen=True)
 class Mjx(ExtraEngine):
-    """An engine in the sense of `engines.Engine`; `settings`: the MuJoCo method whose model and options are taken."""
+    """An engine in the sense of `engines.Engine`; `settings` is the MuJoCo method with the same model and options."""
 
     name = "mjx"
     packages = ("mujoco-mjx", "jax", "mujoco-core")
@@ -104,11 +104,11 @@ class Mjx(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The integrator's where there is no loop."""
+        """The order of the integrator if there is no loop; not declared for loops."""
         tree = spanning_tree(mechanism)
         if lacks_velocity_terms(tree):
             return NotDeclared("MJX leaves out the velocity term of loops, which no step makes smaller")
-        if tree.closed:  # sums of angles, which need no such term
+        if tree.closed:  # the rows are sums of angles without velocity terms
             return self.settings.order(mechanism)
         if turns_steadily(mechanism) or is_prescribed(mechanism):
             return ConvergenceOrder(EXACT)
@@ -116,22 +116,20 @@ class Mjx(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s], once compiled."""
         return MJX_EVALUATION_COST * (4 if self.settings.integrator == "RK4" else 1) * over_three(mechanism)
 
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
-        """As in MuJoCo."""
         return self.settings.enforcement(joint, mechanism)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """That of MuJoCo with these settings; it does not declare that the velocity term is missing."""
+        """The regularisation of MuJoCo with these settings, which has the velocity term that MJX omits."""
         return self.settings.regularisation(mechanism, dt)
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
     ) -> tuple[Instant, ...] | NotDeclared:
-        """Accelerations in the states that MuJoCo steps to; those of loops and rods lack their velocity terms."""
+        """Accelerations in the states of MuJoCo's steps. Those of loops and rods lack their velocity terms."""
         settings = replace(self.settings, tolerance=min(self.settings.tolerance, declared.ROUNDING_TOLERANCE))
         self.capability.require(built or mechanism)
         self.require()
@@ -144,12 +142,12 @@ class Mjx(ExtraEngine):
         return declared.instants(settings, mechanism, dt, steps, built or mechanism, accelerations, check)
 
     def stricter(self, mechanism: Mechanism) -> Mjx | None:
-        """As MuJoCo with these settings."""
+        """The method with the stricter settings of MuJoCo."""
         settings = self.settings.stricter(mechanism)
         return None if settings is None else replace(self, settings=settings)
 
     def model(self, mechanism: Mechanism, dt: float) -> DeviceModel:
-        """The model on the device, not yet compiled; raises Unsupported."""
+        """The model on the device before compilation; raises Unsupported."""
         model = self.settings.model(mechanism, dt)
         if unit := _smallest_unit(model):
             model = self.settings.model(mechanism, dt, unit=unit)
@@ -165,10 +163,10 @@ class Mjx(ExtraEngine):
 
 
 def _smallest_unit(model: MuJoCoModel) -> float | None:
-    """The unit of mass [kg] in which the hardest row's compliance R, an inverse mass, is LEAST_COMPLIANCE mjMINVAL.
+    """The unit of mass [kg] in which the compliance R of the stiffest row is LEAST_COMPLIANCE mjMINVAL, or None.
 
-    None where there are no rows, and so nothing to solve. A force of 1e-8 of it is then 4e-23 / R [N, R in 1/kg]: with
-    R at least 1e-4 of the row's own inverse inertia, 4e-19 of that inertia times 1 m/s^2 or rad/s^2.
+    The solver's limit of 1e-8 on forces is then 4e-23 / R [N, with R in 1/kg]. R is at least 1e-4 of the row's inverse
+    inertia, so the limit is at most 4e-19 of the inertia times 1 m/s^2 or 1 rad/s^2.
     """
     compliance = model.start().efc_R
     if not len(compliance):
@@ -177,27 +175,27 @@ def _smallest_unit(model: MuJoCoModel) -> float | None:
 
 
 def lacks_velocity_terms(tree: Tree) -> bool:
-    """Whether MJX leaves out a velocity term that is not zero: that of a loop or of a rod."""
+    """Whether MJX omits a velocity term, which loops and rods have."""
     return bool(tree.loops) or any(isinstance(joint, Rod) for joint in tree.mechanism.joints)
 
 
 @cache
 def _programs() -> tuple[Any, Any, Any]:
-    """(mjx, steps(model, data, count), forward(model, data)); JAX is imported here and nowhere else."""
+    """The module mjx and the functions steps(model, data, count) and forward(model, data); imports JAX."""
     os.environ.setdefault("JAX_PLATFORMS", "cpu")
     os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1")
-    with quiet():  # it tells that another back end is not installed
+    with quiet():  # JAX prints that another back end is not installed
         import jax
 
         jax.config.update("jax_enable_x64", True)
         if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
-            # Programs are of this machine's instructions: a home that several machines share has one folder for each.
+            # Programs have the instructions of one machine, so machines with a shared home have separate folders.
             jax.config.update("jax_compilation_cache_dir", str(cache_folder() / "mjx" / platform.node()))
             jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
         from mujoco import mjx
 
     def step(model: Any, now: Any) -> Any:
-        # With doubles, whole numbers that it writes (of tendons' paths) become longer than those that it was given.
+        # In double precision MJX widens some integers (of tendon paths), so that types would change within the loop.
         return jax.tree.map(lambda new, old: new.astype(old.dtype), mjx.step(model, now), now)
 
     def steps(model: Any, data: Any, count: Any) -> Any:
@@ -207,7 +205,7 @@ def _programs() -> tuple[Any, Any, Any]:
 
 
 class DeviceModel:
-    """MuJoCo's model, and the same on the device."""
+    """A model of MuJoCo and its copy on the device."""
 
     def __init__(self, model: MuJoCoModel) -> None:
         self.mujoco, (self.mjx, self._steps, self._forward) = model, _programs()
@@ -216,9 +214,9 @@ class DeviceModel:
         self.size = Size(model.compiled.nbody - 1, model.compiled.nq, rows, self._data.nefc)
 
     def accelerations(self, model: MuJoCoModel, data: Any) -> Array:
-        """The accelerations (nv,) that MJX gives the state of a mujoco.MjData of `model`.
+        """The accelerations (nv,) by MJX in the state of a mujoco.MjData of `model`.
 
-        It compiles a program for each structure of a model, about 10 s, and keeps it.
+        The first call for each structure of a model compiles a program in about 10 s.
         """
         answer = self._forward(self._held, self.mjx.put_data(model.compiled, data))
         return np.asarray(answer.qacc, dtype=np.float64)
@@ -250,10 +248,10 @@ class DeviceModel:
 
 
 def _solver_residual(model: MuJoCoModel, data: Any, answer: Any) -> float:
-    """The residual of MJX's `answer` in the equations that it solves, relative to the accelerations in them.
+    """The error of MJX's solution `answer` of its equations, relative to the accelerations.
 
-    Its cost is a parabola, whose least is one step of Newton's away: H^-1 g, H = M + J^T R^-1 J, and g the residual of
-    the forces. `data`: a mujoco.MjData in the state, for M.
+    The cost of MJX is quadratic, so the error is one Newton step, H^-1 g with H = M + J^T R^-1 J and the residual g of
+    the forces. `data` is a mujoco.MjData in the state, for M.
     """
     rows, solved = np.asarray(answer._impl.efc_J), np.asarray(answer.qacc)
     if not len(rows):

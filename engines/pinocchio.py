@@ -4,24 +4,25 @@ Pinocchio (the package is called `pin`) computes accelerations and has no time s
 displacement to a configuration). The integrators here are our own, semi-implicit Euler and the classical Runge-Kutta
 method of fourth order, as in its examples.
 
-The tree is that of `engines.tree`: revolute joints about z, prismatic ones along a slot, and for a free body two
-prismatic ones and a revolute one. A welded body has no joint: its inertia is added to the other body's. A Pin that
-closes a loop is a RigidConstraintModel of the type CONTACT_3D, a Weld one of CONTACT_6D. `constraintDynamics` satisfies
-their accelerations exactly, and gaps are the integrator's error. Their rows out of the plane are empty, which the
-proximal solver permits. There is no counterpart of a Drive: in every evaluation our code computes the torque that keeps
-its rate, from the accelerations due to a unit torque at rest without gravity. There are no force elements either: our
-code evaluates them, as users do, and passes them as external forces. Accelerations, and so reactions, are those at the
-sampled instant. A gear would be the engine's JointModelMimic, which `crba` accepts and `constraintDynamics` refuses.
+The tree is that of `engines.tree`, with revolute joints about z and prismatic joints along slots. A free body has two
+prismatic joints and a revolute joint. A welded body has no joint; its inertia is added to that of the other body. A Pin
+that closes a loop is a RigidConstraintModel of the type CONTACT_3D, and such a Weld is one of the type CONTACT_6D.
+`constraintDynamics` satisfies their accelerations exactly, so that gaps are errors of the integrator. The proximal
+solver permits their empty rows out of the plane.
 
-`constraintDynamics` sums forces, and torques about the world's origin, along the tree: a light body with a heavy one
-that moves against it, or a mechanism far from the origin, loses digits. A body of 2e-7 kg in which 200 kg slide has an
-error of 2e-6 of its motion at 144 m from the origin, at any step. Its angle has an error of 2e-7 rad there, and of
-4e-11 rad at the origin.
+The engine has no counterpart of a Drive. In every evaluation our code computes the torque that keeps its rate, from the
+accelerations due to a unit torque at rest without gravity. The engine has no force elements either: our code evaluates
+them, as users do, and passes them as external forces. Accelerations and reactions belong to the sampled instant. A gear
+would be the engine's JointModelMimic, which `constraintDynamics` refuses.
 
-As shipped nothing reduces the gap of a loop. With a `correction` c [1/s] the engine's Baumgarte gains are c^2 and 2 c.
-They multiply the errors of both integrators by a factor above or below 1, depending on the motion and the step, so no
-variant sets them; the page of engines shows them for the free four-bar. The choice of the pin that closes the loop has
-no effect.
+`constraintDynamics` sums forces, and torques about the world's origin, along the tree. Rounding is therefore large for
+a light body on which a heavy body moves, and for a mechanism far from the origin. A body of 2e-7 kg in which 200 kg
+slide has an error of 2e-6 of its motion at 144 m from the origin, at any step. Its angle has an error of 2e-7 rad
+there, and of 4e-11 rad at the origin.
+
+As shipped the engine does not reduce the gap of a loop. With a `correction` c [1/s] its Baumgarte gains are c^2 and
+2 c. They multiply the errors of both integrators by a factor above or below 1, depending on the motion and the step, so
+no variant sets them. The page of engines shows them for the free four-bar.
 """
 
 from __future__ import annotations
@@ -46,11 +47,10 @@ from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4"]
-# Regularisation of the proximal solver: far above rounding, since the rows out of the plane are empty.
+# Regularisation of the proximal solver. It is far above rounding, since the rows out of the plane are empty.
 PROXIMAL_REGULARISATION = 1e-10
-# Residual at which the proximal solver ends, and its largest number of iterations: a loop of four bars takes two.
-PROXIMAL_TOLERANCE = 1e-14
-PROXIMAL_ITERATIONS = 20
+PROXIMAL_TOLERANCE = 1e-14  # residual at which the proximal solver ends
+PROXIMAL_ITERATIONS = 20  # largest number of its iterations; a four-bar linkage needs two
 # CPU time [s] of an evaluation with three bodies.
 PINOCCHIO_EVALUATION_COST = 6e-6
 # The engine's constraint for each kind of joint that closes a loop.
@@ -62,7 +62,7 @@ class Pinocchio(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
     integrator: "euler" (semi-implicit, order 1) or "rk4" (order 4)
-    correction: of loops [1/s]; the module describes it
+    correction: Baumgarte correction of loops [1/s], see the module
     """
 
     name = "pinocchio"
@@ -86,7 +86,7 @@ class Pinocchio(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The integrator's; joints of the tree are exact."""
+        """The order of the integrator; joints of the tree are exact."""
         tree = spanning_tree(mechanism)
         order = 4 if self.integrator == "rk4" else 1
         if tree.loops:
@@ -97,7 +97,7 @@ class Pinocchio(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s]: its evaluations, and one more for each drive."""
+        """Approximate CPU time of a step [s], with one more evaluation for each drive."""
         drives = sum(isinstance(joint, Drive) for joint in mechanism.joints)
         stages = 4 if self.integrator == "rk4" else 1
         evaluation = PINOCCHIO_EVALUATION_COST * (1 + drives) * over_three(mechanism)
@@ -105,7 +105,6 @@ class Pinocchio(ExtraEngine):
 
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
-        """Our code for drives; the engine for all other joints."""
         return "ours" if joint in spanning_tree(mechanism).drives else "engine"
 
     def model(self, mechanism: Mechanism, dt: float) -> PinocchioModel:
@@ -126,7 +125,7 @@ class PinocchioModel:
         self.model = pinocchio.Model()
         self.model.gravity.linear = np.array([*mechanism.gravity, 0.0])
         self.joints: dict[int | None, int] = {None: 0}  # the last joint of each body; the ground is the universe
-        self.anchors: dict[int | None, Array] = {None: np.zeros(2)}  # of that joint, from the centre of mass
+        self.anchors: dict[int | None, Array] = {None: np.zeros(2)}  # from the centre of mass to that joint [m]
         self.address: list[int] = [0] * tree.coordinates  # index of each tree coordinate in the engine's vectors
         self._add_children(None)
         self.data = self.model.createData()
@@ -150,7 +149,7 @@ class PinocchioModel:
         return self.pin.SE3(np.eye(3), np.array([offset[0], offset[1], 0.0]))
 
     def _add_children(self, parent: int | None) -> None:
-        """Depth first: the engine's sparse factorisation of loops requires this order of the joints."""
+        """Add the bodies depth first, as the engine's sparse factorisation of loops requires."""
         for link in self.tree.links:
             if link.parent == parent:
                 self._add(link)
@@ -166,7 +165,7 @@ class PinocchioModel:
             kinds = [pin.JointModelPrismaticUnaligned(np.array([*link.direction, 0.0]))]
         kinds += [pin.JointModelRZ()] if link.turns else []
         joint, anchor = self.joints[link.parent], np.array(link.anchor)
-        if not kinds:  # welded: it belongs to the joint of its parent
+        if not kinds:  # a welded body belongs to the joint of its parent
             anchor, at = anchor - at, (0.0, 0.0)
         for number, (kind, column) in enumerate(zip(kinds, link.columns, strict=True)):
             self.address[column] = self.model.nv
@@ -209,10 +208,7 @@ class PinocchioModel:
         return free + torques @ responses
 
     def _responses(self, position: Array) -> Array:
-        """Accelerations (drives, coordinates) due to a unit torque of each drive, at rest and without gravity.
-
-        With the other forces they would be small differences of large numbers.
-        """
+        """Accelerations (drives, coordinates) due to a unit torque of each drive, at rest and without gravity."""
         rest, weight = np.zeros(self.tree.coordinates), self.model.gravity.linear.copy()
         self.model.gravity.linear = np.zeros(3)
         correction = self._constrained(position, rest, rest) if self.correction else 0.0
@@ -221,7 +217,7 @@ class PinocchioModel:
         return responses
 
     def _torques(self, position: Array, velocity: Array) -> Array:
-        """Generalised forces of the force elements: static torques of gravity minus those of gravity and elements."""
+        """Generalised forces of the force elements, as a difference of the engine's static torques."""
         if not self.mechanism.forces:
             return np.zeros(self.tree.coordinates)
         pin = self.pin
@@ -260,7 +256,7 @@ class PinocchioModel:
         return Recorded(*states, stepping, self._inertias(), np.array(self.model.gravity.linear[:2]))
 
     def _inertias(self) -> Array:
-        """The inertias of the model, in the order of bodies; NaN for welded ones, whose sum alone it has."""
+        """The inertias of the model in the order of bodies; NaN for welded bodies, which the model combines."""
         inertias = [self.model.inertias[joint] for joint in self.joint_of]
         by_body = np.array([(inertia.mass, inertia.mass, inertia.inertia[2, 2]) for inertia in inertias])
         by_body[[self.joint_of.count(joint) > 1 or joint == 0 for joint in self.joint_of]] = np.nan
@@ -271,13 +267,13 @@ Acceleration = Callable[[Array, Array], Array]
 
 
 def euler_step(acceleration: Acceleration, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
-    """Semi-implicit Euler: positions are integrated with the new velocities."""
+    """A step of the semi-implicit Euler method."""
     v = v + dt * acceleration(q, v)
     return q + dt * v, v
 
 
 def runge_kutta_step(acceleration: Acceleration, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
-    """The classical method of fourth order for q'' = acceleration(q, q')."""
+    """A step of the classical Runge-Kutta method of fourth order for q'' = acceleration(q, q')."""
     first = acceleration(q, v)
     half = dt / 2
     v2 = v + half * first

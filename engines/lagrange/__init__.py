@@ -1,12 +1,12 @@
-"""Exact multipliers on the mechanism's own rows: the ideal constraint with ordinary numerical integration.
+"""Ideal constraints with exact Lagrange multipliers and explicit integrators.
 
-The rows J v = rate, differentiated, give J a = -(dJ/dt) v. With Newton's law M a = f + J^T reaction this determines the
-reactions: an index-1 system for any integrator. It uses no scene, so it checks the scenes. In the charts it shows what
-integration alone does to an ideal constraint: without stabilisation, with Baumgarte's (1972), and with a projection
-onto the joints after each step.
+The derivative of the rows J v = rate is J a = -(dJ/dt) v. Together with Newton's law M a = f + J^T reaction it
+determines the reactions (an index-1 system). The engine uses only the mechanism, so it checks the scenes independently.
+It shows the integration error of ideal constraints without stabilisation, with Baumgarte's stabilisation (1972), and
+with a projection onto the joints after each step.
 
-Steps are machine code if the extra `fast` (numba) is installed, otherwise numpy. Both give the same numbers up to
-rounding, which tests compare.
+Steps are compiled by numba if the extra `fast` is installed, and otherwise computed in numpy. The results are equal to
+rounding.
 """
 
 from engines.lagrange.engine import METHODS, VARIANTS, Integrator, Lagrange, Stabilisation

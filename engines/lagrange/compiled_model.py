@@ -1,4 +1,4 @@
-"""A mechanism that is stepped by compiled code: the calls, the cells of its tables, and the warnings of a run."""
+"""A mechanism for compiled code: the calls, the cells of rolling tables, and the warnings of a run."""
 
 from __future__ import annotations
 
@@ -32,26 +32,26 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 
-# The tolerance of a step as a share of that of the run: errors of steps add up to about the tolerance.
+# Ratio of the tolerance of a step to that of the run. The errors of all steps then add up to about the tolerance.
 STEP_SHARE = 0.1
-# The smallest tolerance of a step: about ten roundings.
+# The smallest tolerance of a step: about ten rounding errors.
 LEAST_STEP_TOLERANCE = 2e-15
-# Moves of a table's window for one sample; a body that turns farther between two samples has diverged.
+# Largest number of moves of a table's window for one sample. More are needed only in a diverged motion.
 MOST_MOVES = 8
-# Cells in the window of a table: 10 MB.
+# Largest number of cells in the window of a table (10 MB).
 MOST_CELLS = 2**15
 
 
 class CellWindows:
-    """The cells of tables that compiled code may use: a window around the rotations so far.
+    """For each rolling table, a window of cells for compiled code.
 
-    Compiled code stops at a rotation without a cell, and the window is moved. Near the end of a curve, or where the
-    curves nearly fit, there are no cells; there only the exact contacts of the reference can be used.
+    Compiled code stops at a rotation outside the window, and the window is moved. A table has no cells near the end of
+    a curve, where only the exact contacts of `reference.rolling` can be used.
     """
 
     def __init__(self, rolls: Sequence[Rolling], records: Records) -> None:
         self._tables = [rolled(rolling) for rolling in rolls]
-        self._records = records  # (rolls,) ROLLING_RECORDs, changed here
+        self._records = records  # (rolls,) of ROLLING_RECORD, whose windows are updated here
         self._parts = [np.zeros((0, CELL_SIZE), dtype=complex) for _ in rolls]
         self.cells = np.zeros((0, CELL_SIZE), dtype=complex)
         for number, rolling in enumerate(rolls):
@@ -63,22 +63,22 @@ class CellWindows:
         table, record = self._tables[number], self._records[number]
         if not isinstance(table, Table) or not abs(theta) < FARTHEST:
             return False
-        wanted = math.floor(theta / table.width)
+        cell = math.floor(theta / table.width)
         first, count = int(record["first_cell"]), int(record["cell_count"])
-        if first <= wanted < first + count:  # a cell of the window, without numbers
+        if first <= cell < first + count:  # the cell is in the window, but it is beyond the limits of rolling
             return False
-        if abs(wanted - first) * table.width > 2 * math.pi:  # a diverged motion: the old window is not needed again
+        if abs(cell - first) * table.width > 2 * math.pi:  # a diverged motion, which does not return
             count = 0
-        # One block on either side at first, then twice as far each time: making cells takes longer than a short motion.
-        reach = min(max(CELLS_IN_BLOCK, count), MOST_CELLS // 2)
-        low, high = wanted - reach, wanted + reach
+        # The first window has one block on either side of the rotation. Each move doubles the width.
+        half_width = min(max(CELLS_IN_BLOCK, count), MOST_CELLS // 2)
+        low, high = cell - half_width, cell + half_width
         if count and high - low + count <= MOST_CELLS:
             low, high = min(low, first), max(high, first + count)
         try:
             cells = table.cells(low, high - low)
         except (ValueError, ArithmeticError):  # the curves cannot touch somewhere in the window
             return False
-        if np.isnan(cells[wanted - low, 0].real):
+        if np.isnan(cells[cell - low, 0].real):
             return False
         self._parts[number] = cells
         record["first_cell"], record["cell_count"] = low, high - low
@@ -89,7 +89,7 @@ class CellWindows:
 
 
 def stopped_warning(tolerance: float | None, t: float) -> RunWarning:
-    """The warning of a run that stopped at t [s]; tolerance None: of a run with steps of one length."""
+    """The warning of a run that stopped at t [s]; `tolerance` is None if its steps are fixed."""
     if tolerance is None:
         text = f"lagrange: the motion is lost at {t:.6g} s; give a shorter step, or end the run there"
     else:
@@ -101,7 +101,7 @@ def stopped_warning(tolerance: float | None, t: float) -> RunWarning:
 
 
 def open_warning(t: float) -> RunWarning:
-    """The warning of a run in which a projection at t [s] did not close the joints."""
+    """The warning of a run in which the projection at t [s] did not converge."""
     text = (
         f"lagrange: at {t:.6g} s the projection onto the joints does not converge: "
         "the step is too long, or they are in a singular position"
@@ -111,19 +111,20 @@ def open_warning(t: float) -> RunWarning:
 
 @dataclass
 class CompiledModel:
-    """A mechanism's records, and the compiled functions that step them."""
+    """The records of a mechanism, and the compiled functions that use them."""
 
     mechanism: Mechanism
     system: System
     storage: StepStorage
-    positions: NDArray[np.int64]  # (rows,) of the mechanism's rows in the system
+    positions: NDArray[np.int64]  # (rows,) row of the system for each row of the mechanism
     windows: CellWindows
     functions: CompiledFunctions = field(default_factory=compiled)
 
     @classmethod
     def of(cls, mechanism: Mechanism) -> CompiledModel | None:
-        """None if numpy has to evaluate the mechanism: for a pair of curves that no table represents, and for a type of
-        joint or force without a compiled function.
+        """The compiled model of a mechanism.
+
+        None if a joint or a force element has no compiled function, or if a rolling pair has no accurate table.
         """
         if not {*map(type, mechanism.joints)} <= {*JOINT_FIELDS}:
             return None
@@ -137,7 +138,7 @@ class CompiledModel:
         return cls(mechanism, system, new_storage(mechanism), positions, windows)
 
     def regularise(self, regularisation: Regularisation, rows: NDArray[np.bool_]) -> None:
-        """Regularise the rows that the mask (rows,) selects, by springs, dampers and a compliance."""
+        """Regularise the rows that the mask `rows` (rows,) selects."""
         system, selected = self.system, self.positions[rows]
         system.constants["regularised"] = RowLaw.COMPLIANT if regularisation.compliance > 0 else RowLaw.SPRINGS
         for name in ("stiffness", "damping", "compliance"):
@@ -146,12 +147,12 @@ class CompiledModel:
 
     @property
     def has_dependent_rows(self) -> bool:
-        """Whether some rows follow from others at the start."""
+        """Whether rows are linearly dependent at the start."""
         return bool(self.system.constants["dependent"])
 
     @property
     def lacks_contact(self) -> bool:
-        """Whether the last call ended at a contact that no table has."""
+        """Whether the last call ended at a rotation for which no table has a cell."""
         return bool(self.system.status["missing_roll"] >= 0)
 
     @property
@@ -187,15 +188,16 @@ class CompiledModel:
     def fixed_steps(
         self, tableau: Tableau, iterations: int, dt: float, every: int, begin: int, poses: Array, twists: Array
     ) -> int:
-        """Fill samples after `begin` by steps of dt [s], `every` for a sample, with up to `iterations` of projection.
+        """Fill the samples after `begin` with `every` steps of dt [s] each; returns the last completed sample.
 
-        poses, twists: contiguous arrays (samples, bodies, 3). Returns the last completed sample; at the next one only
-        numpy can evaluate a contact, or the motion is lost.
+        iterations: the largest number of Newton iterations of a projection
+        poses, twists: contiguous arrays (samples, bodies, 3)
+        A run stops early if a contact has no cell or if the motion diverges.
         """
         return self._call(self.functions.fixed_steps, begin, poses, twists, tableau, iterations, dt, every)
 
     def adaptive_steps(self, tolerance: float, spacing: float, begin: int, poses: Array, twists: Array) -> int:
-        """Fill samples `spacing` [s] apart by adaptive steps; otherwise as `fixed_steps`."""
+        """Fill the samples, `spacing` [s] apart, with adaptive steps; see `fixed_steps`."""
         step_tolerance = max(STEP_SHARE * tolerance, LEAST_STEP_TOLERANCE)
         self.system.status["accepted_steps"] = 0
         settings = ADAPTIVE_DOP853, PROJECTION_ITERATIONS, step_tolerance, spacing
@@ -209,9 +211,9 @@ class CompiledModel:
         return reactions[:, self.positions], accelerations.reshape(poses.shape)
 
     def _call(self, function: Callable[..., int], begin: int, poses: Array, twists: Array, *settings: Any) -> int:
-        """Call from the last completed sample, as long as the window of a missing contact can be moved."""
+        """Call the function again from the last completed sample after each move of a window."""
         if not (poses.flags.c_contiguous and twists.flags.c_contiguous):
-            raise ValueError("poses and twists are written to, so they must be contiguous arrays")
+            raise ValueError("poses and twists are not contiguous arrays; copy them, since the function fills them")
         states = poses.reshape(len(poses), -1), twists.reshape(len(twists), -1)
         status = self.system.status
         done, moves = begin, 0
@@ -227,7 +229,7 @@ class CompiledModel:
 
 @cache
 def compile_functions(adaptive: bool) -> None:
-    """Compile the functions of a run, or read their machine code: ten seconds of CPU time at first."""
+    """Compile the functions of a run (ten seconds of CPU time), or read their machine code."""
     model = CompiledModel.of(Mechanism((Body("body", 1.0, 1.0, (0.0, 0.0, 0.0)),), ()))
     if model is None:
         return

@@ -1,4 +1,4 @@
-"""Exact multipliers in numpy: used without numba, and the comparison for the compiled code."""
+"""Dynamics with exact multipliers in numpy, for use without numba and as a reference for the compiled code."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from reference.rows import RANK_TOLERANCE, rank, solve_symmetric
 Array = NDArray[np.float64]
 
 PROJECTION_ITERATIONS = 8
-# Accepted steps of an adaptive run in numpy: at first, and further ones for each sample. They take some seconds for a
-# few bodies; compiled code, which is faster, allows ten times as many.
+# Largest number of steps of an adaptive run in numpy, and the additional number for each sample. They take a few
+# seconds for a few bodies.
 MOST_NUMPY_STEPS, NUMPY_STEPS_PER_SAMPLE = 2_000, 100
 
 (_solve_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
@@ -43,16 +43,16 @@ FIXED_DOP853 = Tableau(DOP853.A.copy(), DOP853.B.copy(), DOP853.C.copy())
 
 
 class Embedded(NamedTuple):
-    """DOP853 with its error estimates and its dense output: Hairer, Norsett and Wanner, part I, section II.6.
+    """DOP853 with error estimates and dense output (Hairer, Norsett and Wanner, part I, section II.6).
 
-    The thirteenth stage is at the end of the step; the last three are for dense output only.
+    The thirteenth stage is at the end of the step. The last three stages are for dense output.
     """
 
     stages: Array  # (16, 16)
     weights: Array  # (12,)
     nodes: Array  # (16,)
-    third: Array  # (13,) error estimates of order 3 and 5
-    fifth: Array  # (13,)
+    third: Array  # (13,) weights of the error estimate of order 3
+    fifth: Array  # (13,) weights of the error estimate of order 5
     dense: Array  # (4, 16)
 
 
@@ -67,10 +67,11 @@ ADAPTIVE_DOP853 = _embedded()
 
 
 def solve_rows(matrix: Array, right: Array, dependent: bool = False, least_pivot: float = 0.0) -> Array:
-    """Solve matrix x = right, (rows,) or (rows, n), for a symmetric, positive semidefinite matrix (rows, rows).
+    """The solution x of matrix x = right for a symmetric, positive semidefinite matrix (rows, rows).
 
-    By Cholesky's factors; the minimum-norm solution if rows are known to be `dependent`, or if a pivot is below
-    `least_pivot` times its row's diagonal. NaN for a matrix that is not finite.
+    right: (rows,) or (rows, n)
+    The Cholesky factorisation is used. The solution is that of minimum norm if rows are known to be `dependent`, or if
+    a pivot is below `least_pivot` times the diagonal. It is NaN if the matrix is not finite.
     """
     if not dependent:
         factor, solution, failed = _solve_positive(matrix, right, lower=True)
@@ -91,9 +92,10 @@ def constrained_acceleration(
 ) -> tuple[Array, Array]:
     """Accelerations a (bodies, 3) and reactions r (rows,) with M a = f + J^T r and J a + compliance r = target.
 
-    pose, twist (bodies, 3); target (rows,): by default the bias -J_dot v of ideal rows. For rows with a spring and a
-    damper, subtract damping times slip and stiffness times gap. compliance: 0, or symmetric (rows, rows) [1/kg, or
-    1/(kg m^2) in rows of torque]. Minimum-norm reactions if a row's pivot is below `least_pivot` times its diagonal.
+    pose, twist (bodies, 3)
+    target (rows,): by default the bias -(dJ/dt) v of ideal rows
+    compliance: 0, or a symmetric matrix (rows, rows) [1/kg, or 1/(kg m^2) in rows of torque]
+    least_pivot: see `solve_rows`
     """
     free = np.broadcast_to(mechanism.unconstrained(pose, twist), pose.shape)
     if not mechanism.row_count:
@@ -106,9 +108,10 @@ def constrained_acceleration(
 
 
 def inverse_inertia(matrix: Array, soft: NDArray[np.bool_], least: float = LEAST_INVERSE_INERTIA) -> Array:
-    """The inverse inertia (rows,) of each soft row while the rigid rows hold, from J M^-1 J^T (rows, rows).
+    """The inverse inertia (rows,) of each soft row under the constraints of the rigid rows, from J M^-1 J^T.
 
-    It is the diagonal of the Schur complement, and at least `least` times the diagonal; rigid rows keep their diagonal.
+    It is the diagonal of the Schur complement, but at least `least` times the diagonal of J M^-1 J^T. For rigid rows it
+    is the diagonal of J M^-1 J^T.
     """
     out = np.diag(matrix).copy()
     if not soft.all():
@@ -121,17 +124,17 @@ def inverse_inertia(matrix: Array, soft: NDArray[np.bool_], least: float = LEAST
 def regularised_bias(
     regularisation: Regularisation, soft: NDArray[np.bool_], bias: Array, slip: Array, gap: Array
 ) -> Array:
-    """The bias (..., rows) of rows; the mask `soft` (rows,) selects the regularised ones."""
+    """The bias (..., rows) with the spring and damper terms of the rows that the mask `soft` (rows,) selects."""
     ideal = bias if regularisation.complete else np.where(soft, 0.0, bias)
     return ideal - soft * (regularisation.damping * slip + regularisation.stiffness * gap)
 
 
 class Dynamics:
-    """Accelerations and projections of one mechanism, arranged for speed: one call is one evaluation of the rows.
+    """Accelerations and projections of one mechanism.
 
-    `soft` (rows,) is the mask of the regularised rows, by default all; the compliance of a soft row is in units of its
-    `inverse_inertia`, which is at least `least_inverse_inertia` times that of the row alone. `least_pivot` as in
-    `solve_rows`.
+    soft (rows,): the mask of the regularised rows, by default all
+    least_inverse_inertia: see `inverse_inertia`, which is the unit of the compliance of a soft row
+    least_pivot: see `solve_rows`
     """
 
     def __init__(
@@ -145,11 +148,10 @@ class Dynamics:
         self.mechanism, self.regularisation = mechanism, regularisation
         self.least_inverse_inertia, self.least_pivot = least_inverse_inertia, least_pivot
         self.soft = np.ones(mechanism.row_count, dtype=bool) if soft is None else soft
-        self.open_from = float("nan")  # s, the first time at which a projection left joints open
+        self.open_from = float("nan")  # the first time at which a projection did not converge [s]
         self.weight = 1 / mechanism.inertias.reshape(-1)
         self.holonomic = mechanism.holonomic
         self.unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
-        # Dependent rows (two wheels on one axle) make the row system singular; its minimum-norm solution is used.
         rows = mechanism.rows(mechanism.pose)
         self.has_dependent_rows = rows.size > 0 and rank(rows, mechanism.length_scale) < rows.shape[0]
 
@@ -160,7 +162,7 @@ class Dynamics:
         """Accelerations (bodies, 3) under gravity, forces and the joints' reactions."""
         if not self.mechanism.row_count:
             return self.mechanism.unconstrained(pose, twist)
-        if not (np.isfinite(pose).all() and np.isfinite(twist).all()):  # curves have no contact there
+        if not (np.isfinite(pose).all() and np.isfinite(twist).all()):  # rolling curves would raise an exception
             return np.full_like(pose, np.nan)
         return self.acceleration_under(*self.reaction(pose, twist, t), pose, twist)
 
@@ -186,9 +188,9 @@ class Dynamics:
         return rows, solve_rows(matrix, right, least_pivot=RANK_TOLERANCE)
 
     def project(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
-        """The nearest pose (by Newton's method) and twist, in the metric of the mass matrix, that satisfy the joints.
+        """The nearest pose and twist, in the norm of the mass matrix, that satisfy the joints.
 
-        Sets `open_from` if the iterations leave joints open.
+        Newton's method closes the gaps. If it does not converge, `open_from` is set.
         """
         mechanism = self.mechanism
         if not mechanism.row_count or not np.all(np.isfinite(pose)):
@@ -214,7 +216,7 @@ Step = Callable[[Array, Array, float, float], tuple[Array, Array]]
 
 
 def semi_implicit_euler(dynamics: Dynamics) -> Step:
-    """The velocity changes first, and the pose by the new velocity."""
+    """Steps of the semi-implicit Euler method, which moves the pose by the new velocity."""
 
     def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
         twist = twist + dt * dynamics.acceleration(pose, twist, t)
@@ -224,7 +226,7 @@ def semi_implicit_euler(dynamics: Dynamics) -> Step:
 
 
 def runge_kutta(dynamics: Dynamics, tableau: Tableau) -> Step:
-    """One step of an explicit method."""
+    """Steps of an explicit Runge-Kutta method."""
     stages, weights, nodes = tableau
 
     def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
@@ -240,8 +242,8 @@ def runge_kutta(dynamics: Dynamics, tableau: Tableau) -> Step:
 
 
 def adaptive(dynamics: Dynamics, tolerance: float) -> Step:
-    """Adaptive steps of DOP853 from one sample to the next; NaN if they become too small or too many."""
-    tolerance = max(tolerance, 100 * float(np.finfo(float).eps))  # the smallest that scipy accepts
+    """Adaptive steps of DOP853 from one sample to the next; the state is NaN if steps become too small or too many."""
+    tolerance = max(tolerance, 100 * float(np.finfo(float).eps))  # the smallest tolerance of scipy's DOP853
     steps_left = MOST_NUMPY_STEPS
     allowed: Any = tolerance * np.append(dynamics.unit, dynamics.unit / dynamics.mechanism.time_scale)
 

@@ -1,4 +1,4 @@
-"""Exact multipliers as an engine: its settings and its convergence orders."""
+"""The engine with exact multipliers: its settings and convergence orders."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ Stabilisation = Literal["none", "baumgarte", "projection"]
 Tolerance = Annotated[float, Rule(lambda value: 1e-14 <= value < 1, "from 1e-14 to below 1")]
 
 INTEGRATOR_ORDERS: dict[Integrator, int] = {"euler": 1, "rk4": 4, "dop853": 8}
-# The time constant of Baumgarte's correction, in steps: the same rule as that of the tuned MuJoCo variant.
+# The time constant of Baumgarte's correction, in steps, as in the tuned variant of MuJoCo.
 BAUMGARTE_STEPS = 5.0
-# Nominal CPU time of a step of three bodies [s], by `compiled`: in compiled code, and in numpy. The grid of cells
-# follows from it, so it is not adjusted to faster code, which takes a third of the first three today.
+# Nominal CPU time of a step of three bodies [s], with and without compiled code. The published steps follow from it, so
+# it stays unchanged although the compiled code now takes a third of it.
 STEP_COSTS: dict[bool, dict[Integrator, float]] = {
     True: {"euler": 4e-6, "rk4": 8e-6, "dop853": 2e-5},
     False: {"euler": 2e-4, "rk4": 6e-4, "dop853": 1.5e-3},
@@ -32,15 +32,14 @@ STEP_COSTS: dict[bool, dict[Integrator, float]] = {
 
 @dataclass(frozen=True)
 class Lagrange(Engine, Valid):
-    """Ideal constraints by exact multipliers; raises ValueError for settings that don't exist.
+    """Ideal constraints by exact multipliers. Raises ValueError for settings that don't exist.
 
-    integrator: "euler" (semi-implicit, order 1), "rk4" (order 4), "dop853" (order 8), all with the given fixed step.
-    stabilisation: "none" (the joints drift apart), "baumgarte" (a spring and a damper tied to the step) or "projection"
-    (onto the joints after each step).
-    tolerance: for "dop853" only, relative and absolute, for about the error that a step adds: steps are adaptive, and
-    dt is the time between samples. The error of a run grows from it as any perturbation does; to estimate it, compare
-    with a run at another tolerance.
-    compiled: in machine code if numba is installed; False: in numpy, with the same numbers up to rounding.
+    integrator: "euler" (semi-implicit, order 1), "rk4" (order 4) or "dop853" (order 8)
+    stabilisation: "none" (gaps grow), "baumgarte" (a spring and a damper that depend on the step) or "projection" (onto
+        the joints after each step)
+    tolerance: None for fixed steps of dt, or for "dop853" the relative and absolute tolerance of adaptive steps; dt is
+        then the time between samples. To estimate the error of a run, compare it with a run at another tolerance.
+    compiled: whether steps are machine code if numba is installed; otherwise they are computed in numpy
     """
 
     name = "lagrange"
@@ -54,7 +53,7 @@ class Lagrange(Engine, Valid):
         super().__post_init__()
         if self.tolerance is not None and (self.integrator != "dop853" or self.stabilisation == "baumgarte"):
             raise InvalidMechanism(
-                "lagrange: a tolerance goes with dop853, without baumgarte: only those adapt their steps"
+                "lagrange: a tolerance needs dop853 without baumgarte, since other methods have fixed steps"
             )
 
     @property
@@ -63,23 +62,21 @@ class Lagrange(Engine, Valid):
 
     @property
     def in_machine_code(self) -> bool:
-        """Whether runs are compiled."""
         return self.compiled and installed()
 
     def prepare(self) -> None:
-        """Compile the functions of a run, or read their machine code, so that no run's CPU time contains this."""
         if self.in_machine_code:
             compile_functions(self.tolerance is not None)
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The integrator's order; a projection leaves no gap, and a prescribed motion no error at all.
+        """The integrator's order. With a projection gaps are zero, and a prescribed motion has no error.
 
-        Baumgarte's spring has a stiffness of 1/dt^2. It turns a gap into an acceleration divided by the squared step:
-        poses lose two orders, and reactions have none.
+        The stiffness of Baumgarte's spring is proportional to 1/dt^2. Poses therefore lose up to two orders, and
+        reactions may not converge.
         """
         if self.tolerance is not None:
-            return NotDeclared("its steps are its own: the error is that of its tolerance, whatever the step asked for")
+            return NotDeclared("its steps are adaptive, so the error depends on the tolerance and not on dt")
         order, prescribed = INTEGRATOR_ORDERS[self.integrator], is_prescribed(mechanism)
         match self.stabilisation:
             case "projection":
@@ -99,12 +96,11 @@ class Lagrange(Engine, Valid):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """The nominal CPU time of a step [s] with numba, also if it is not installed: the grid is the same then."""
+        """The nominal CPU time of a step [s]. It does not depend on whether numba is installed."""
         return STEP_COSTS[self.compiled][self.integrator] * over_three(mechanism)
 
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
-        """The engine itself: it is nothing but the ideal constraint."""
         return "engine"
 
     @property
@@ -113,7 +109,7 @@ class Lagrange(Engine, Valid):
         return f"{self.integrator} {self.stabilisation}{adaptive}{slow}"
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """Baumgarte's spring and damper in each row, critically damped; None for the other methods."""
+        """Baumgarte's critically damped spring and damper in each row; None for other methods."""
         if self.stabilisation != "baumgarte":
             return None
         rate = 1 / (BAUMGARTE_STEPS * dt)
@@ -121,7 +117,6 @@ class Lagrange(Engine, Valid):
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> LagrangeRun:
-        """A run with steps of dt [s]; raises ValueError for a step that is not a finite time above zero."""
         return LagrangeRun(self, mechanism, dt)
 
 
@@ -130,5 +125,4 @@ METHODS = tuple(
     for integrator in get_args(Integrator)
     for stabilisation in get_args(Stabilisation)
 )
-# For each scene: orders 1, 4 and 8.
 VARIANTS = (Lagrange("euler", "projection"), Lagrange("rk4", "projection"), Lagrange("dop853", "projection"))

@@ -1,4 +1,4 @@
-"""The judge: exact multipliers at the tightest tolerance, with an error estimate from a second run."""
+"""The judge: exact multipliers at a tolerance near rounding, with an error estimate from a second run."""
 
 from __future__ import annotations
 
@@ -16,25 +16,24 @@ from reference.trajectory import RunWarning, Trajectory
 
 Array = NDArray[np.float64]
 
-# The claimed accuracy: of poses in radians and in units of the mechanism's length, of velocities in its own time.
+# The claimed accuracy of poses and velocities, in rad and in units of the mechanism's length and time scale.
 JUDGE_CLAIM = 1e-10
-# The tolerance of the second run, relative to the first.
+# The ratio of the tolerance of the second run to that of the first.
 SECOND_RUN_FACTOR = 10.0
-# The tolerance of a run that replaces one in which rounding disturbs the step control, relative to that.
+# The ratio of tolerances if a run with larger tolerance replaces one in which rounding disturbs the step control.
 FALLBACK_FACTOR = 100.0
 
 
 @dataclass(frozen=True)
 class Judge(Lagrange):
-    """The tightest tolerance that double precision allows, and an `estimate` of the error.
+    """The engine with a tolerance near rounding and an `estimate` of its error.
 
-    The estimate is the difference to a second run with other steps: its tolerance is SECOND_RUN_FACTOR times as large,
-    and it has samples twice as often and one more at the end, since steps end at samples where the tolerance allows it.
-    So the estimate is about SECOND_RUN_FACTOR times the error if the tolerance determines it, and about the error if
-    rounding does. The motion is unresolved, with a warning, from the first sample at which the estimate of poses or of
-    velocities exceeds JUDGE_CLAIM.
+    The estimate is the difference from a second run with SECOND_RUN_FACTOR times the tolerance. The second run has
+    twice as many samples and one more, so that it takes other steps. The estimate is about SECOND_RUN_FACTOR times the
+    error if the tolerance determines the error, and about the error if rounding determines it. The motion is
+    unresolved, with a warning, from the first sample at which the estimate of poses or velocities exceeds JUDGE_CLAIM.
 
-    If rows are nearly dependent, rounding may exceed the tolerance, and steps become too small. The run is then
+    If rows are nearly dependent, rounding may exceed the tolerance, so that steps become too small. The run is then
     repeated with FALLBACK_FACTOR times the tolerance.
     """
 
@@ -42,7 +41,6 @@ class Judge(Lagrange):
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> _JudgeRun:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """A run with samples dt [s] apart; raises ValueError for a dt that is not a finite time above zero."""
         return _JudgeRun(self, mechanism, dt)
 
 
@@ -68,9 +66,9 @@ class _JudgeRun(OneShot):
         estimate = np.abs(trajectory.pose - second.pose[:-1:2])
         rate_estimate = np.abs(trajectory.twist - second.twist[:-1:2]) * self._mechanism.time_scale
         errors = np.maximum(estimate, rate_estimate) / self._mechanism.pose_unit
-        # Both runs may leave the same joint open: its row is lost if masses are too far apart.
+        # Both runs may have the same open joint: its row is lost if masses differ by too large a factor.
         errors = np.concatenate([errors.reshape(len(errors), -1), self._violations(trajectory)], axis=1)
-        is_unresolved = ~(errors < JUDGE_CLAIM).all(axis=1)  # also if an error is NaN
+        is_unresolved = ~(errors < JUDGE_CLAIM).all(axis=1)  # True for NaN
         unresolved_at, warnings = None, trajectory.warnings
         if is_unresolved.any():
             unresolved_at = float(trajectory.t[int(np.argmax(is_unresolved))])
@@ -79,9 +77,9 @@ class _JudgeRun(OneShot):
         return replace(trajectory, stepping=stepping, warnings=warnings, estimate=estimate, unresolved_at=unresolved_at)
 
     def _violations(self, trajectory: Trajectory) -> Array:
-        """Gaps and slips (times, 2 rows) in the mechanism's own length and time, less the rounding of positions.
+        """Gaps and slips (times, 2 rows) in the mechanism's length and time scale, minus the rounding of positions.
 
-        NaN where the motion is lost.
+        They are NaN at times at which the state is not finite.
         """
         mechanism, out = self._mechanism, np.full((len(trajectory.t), 2 * self._mechanism.row_count), np.nan)
         finite = np.isfinite(trajectory.pose).all(axis=(1, 2)) & np.isfinite(trajectory.twist).all(axis=(1, 2))
@@ -94,10 +92,9 @@ class _JudgeRun(OneShot):
         return out
 
     def _looser_run(self, factor: float, parts: int) -> LagrangeRun:
-        """A run with `factor` times the tolerance, and samples that divide dt in `parts`."""
+        """A run with `factor` times the tolerance and samples dt / parts apart."""
         tolerance = None if self._engine.tolerance is None else factor * self._engine.tolerance
         return LagrangeRun(replace(self._engine, tolerance=tolerance), self._mechanism, self._dt / parts)
 
 
 TRUTH = Judge()
-"""The judge with which scenes and engines are compared."""

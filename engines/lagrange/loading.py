@@ -1,13 +1,12 @@
 """Loading of the compiled functions, and the folder in which numba caches their machine code.
 
-numba compiles Python functions, has wheels for all systems of this suite, and needs no compiler. The types of the
-arguments are the same for every mechanism, so each function is compiled once, and read from files in a fraction of a
-second afterwards. numba is imported when something is stepped, not before.
+The argument types are the same for every mechanism, so each function is compiled once. Later processes read its machine
+code from files in a fraction of a second. numba is imported at the first step.
 
-numba's own cache checks the file of the called function only, and would use old machine code after a change in one of
-the functions that it calls. The folder's name therefore contains a digest of all sources. The folder is in
-NUMBA_CACHE_DIR if that is set; else beside the sources; else, for a read-only installation, in the user's cache.
-Processes that start at once may each compile: numba replaces whole files only.
+The cache of numba checks only the source file of the called function, not of the functions that it calls. The name of
+the folder therefore contains a digest of all sources. The folder is in NUMBA_CACHE_DIR if that is set. Otherwise it is
+beside the sources, or in the user's cache folder if the installation is read-only. Two processes may compile at the
+same time, since numba replaces whole files.
 """
 
 from __future__ import annotations
@@ -29,12 +28,12 @@ SOURCE_FOLDER = Path(__file__).parent
 
 @cache
 def installed() -> bool:
-    """Whether numba is installed; it is not imported."""
+    """Whether numba is installed."""
     return find_spec("numba") is not None
 
 
 def is_cold(adaptive: bool) -> bool:
-    """Whether a first run with adaptive (the judge) or fixed steps has to wait for the compiler: up to two minutes."""
+    """Whether the next run with adaptive or fixed steps has to be compiled first, which may take two minutes."""
     index = "*adaptive_steps*.nbi" if adaptive else "*fixed_steps*.nbi"
     return installed() and not any(_cache_folder().rglob(index))
 
@@ -61,7 +60,6 @@ def compiled() -> CompiledFunctions:
 
 
 def _digest() -> str:
-    """A digest of the sources of the compiled functions and of their records."""
     digest = hashlib.sha256()
     for source in (SOURCE_FOLDER / "records.py", *sorted((SOURCE_FOLDER / "compiled").glob("*.py"))):
         digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
@@ -70,13 +68,13 @@ def _digest() -> str:
 
 @cache
 def _temporary_folder() -> tempfile.TemporaryDirectory[str]:
-    """A folder of this process, if no other one can be written to."""
+    """A folder for this process alone."""
     return tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
 
 
 @cache
 def _cache_folder() -> Path:
-    """The folder for machine code; it exists and can be written to."""
+    """The existing, writable folder for machine code."""
     configured = os.environ.get("NUMBA_CACHE_DIR")
     for parent in [Path(configured)] if configured else [SOURCE_FOLDER / "__pycache__", cache_folder()]:
         folder = parent / f"lagrange-{_digest()}"

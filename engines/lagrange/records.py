@@ -1,6 +1,6 @@
-"""The records of a mechanism, on which compiled functions work: their types are the same for every mechanism.
+"""The data of a mechanism for compiled functions, as records whose types are the same for every mechanism.
 
-Bodies are numbered as in `Mechanism.bodies`; the ground is the body after the last. Vectors of coordinates have three
+Bodies are numbered as in `Mechanism.bodies`, and the ground has the last number. Vectors of coordinates have three
 entries for each body, and three zeros for the ground.
 """
 
@@ -19,14 +19,10 @@ Records = NDArray[np.void]
 
 
 class JointKind(IntEnum):
-    """The types of joints."""
-
     PIN, SLOT, SKATE, ROLL, DRIVE, ROD, GEAR, WELD, COUPLING = range(9)
 
 
 class ForceKind(IntEnum):
-    """The types of force elements."""
-
     SPRING, DAMPER, TORSION_SPRING, TORSION_DAMPER, TORQUE, FORCE, COUPLED_FORCE = range(7)
 
 
@@ -37,7 +33,7 @@ class RollingForm(IntEnum):
 
 
 class RowLaw(IntEnum):
-    """The regularisation of a mechanism: none; springs and dampers in some rows; and a compliance in some rows too."""
+    """The regularisation of the rows: none, springs and dampers, or springs and dampers with compliance."""
 
     IDEAL, SPRINGS, COMPLIANT = range(3)
 
@@ -48,14 +44,14 @@ class RowSelection(IntEnum):
     ALL, HOLONOMIC, RIGID = range(3)
 
 
-# Newton's method converges quadratically: after a correction of this size, in units of the mechanism's length, the next
-# one is below rounding.
+# Newton's method stops after a correction of this size in units of the mechanism's length. It converges quadratically,
+# so the next correction would be below rounding.
 CLOSED = 1e-9
-# The compliance of a soft row is in units of its inverse inertia while the rigid rows hold. This is zero if they hold
-# the row already; then this share of the inverse inertia of the row alone is used.
+# Least ratio of the inverse inertia of a soft row under the constraints of the rigid rows to that of the row alone. It
+# is used if the soft row depends on the rigid rows.
 LEAST_INVERSE_INERTIA = 0.1
-CELL_SIZE = 20  # complex numbers in a cell of a table of `engines.rolling_table`
-MOST_STAGES = 16  # of the largest tableau, with those for dense output
+CELL_SIZE = 20  # number of complex numbers in a cell of `engines.rolling_table`
+MOST_STAGES = 16  # largest number of stages of a method, including those for dense output
 
 
 def _record(integers: str, reals: str = "", complexes: str = "", unsigned: str = "") -> np.dtype[np.void]:
@@ -63,36 +59,39 @@ def _record(integers: str, reals: str = "", complexes: str = "", unsigned: str =
     return np.dtype([(name, kind) for text, kind in names for name in text.split()])
 
 
-# Points of the first and of the second body, in their own frames [m].
+# Points of the first and second body in their own frames [m].
 POINT_FIELDS = "first_x first_y second_x second_y "
 # Units are those of the fields of `reference.joints`, `reference.forces` and `reference.couplings`.
 # `dependent`: whether rows are dependent at the start; `regularised`: a RowLaw.
 CONSTANT_RECORD = _record("dependent regularised holonomic_rows", "gravity_x gravity_y")
-# The state is that of the last call of `set_bodies`.
+# The inverse inertias of a body, and its state at the last call of `set_bodies`.
 BODY_RECORD = _record("", "inverse_mass inverse_inertia x y angle cos sin vx vy omega")
 JOINT_RECORD = _record("kind first second row roll", POINT_FIELDS + "angle length ratio offset rate")
 FORCE_RECORD = _record("kind first second first_term term_count", POINT_FIELDS + "x y stiffness rest damping load")
 TERM_RECORD = _record("row first second first_end second_end sliding", "factor line_angle offset " + POINT_FIELDS)
 # `column` is the first column of the row's envelope; the entry in a column is matrix[begin + column].
 ROW_RECORD = _record("first second holonomic column begin")
-# The state and the regularisation of a row; its bias is left out if `without_bias` is 1.
+# The state and the regularisation of a row. The row has no bias if `without_bias` is 1.
 EQUATION_RECORD = _record("", "gap bias rate stiffness damping compliance without_bias inverse_inertia")
-# The derivatives of a row by the coordinates of one body.
+# The derivatives of a row with respect to the coordinates of one body.
 END_RECORD = _record("", "x y turn")
 # The third and further ends of a row.
 FURTHER_END_RECORD = _record("row body end")
-# A product of two ends on one body, to be added to an entry of the matrix.
+# Two ends on one body, whose product is added to an entry of the matrix.
 PRODUCT_RECORD = _record("", unsigned="entry end other body")
-# The constants of a closed form of `engines.rolling_table`, or the cells of a table that are loaded.
+# The constants of a closed form of `engines.rolling_table`, or the window of cells of a table.
 ROLLING_RECORD = _record(
     "form first second first_cell cell_count cell_begin", "start angle turning width", "origin along radius middle"
 )
-# Results of calls; a time is NaN if there was none.
-# missing_roll, missing_angle [rad]: a roll, by number, whose table has no cell at this rotation; -1 if none is missing
-# selection: the RowSelection of the last factor
-# smallest_pivot, factor_pivot: relative to the diagonal, in a step, and in the last factor
-# stopped_at, stiff_from, open_from [s]: steps became too small or too many; the motion stiff; joints stayed open
-# rounding: the change of speeds by rounding, in units of the mechanism's own speed
+# Results of calls. Times are NaN for events that did not happen.
+# missing_roll: the number of a roll whose table has no cell at the rotation `missing_angle` [rad], or -1
+# selection: the RowSelection of the last factorisation
+# smallest_pivot: the smallest pivot relative to the diagonal since the beginning of a step
+# factor_pivot: the smallest pivot relative to the diagonal in the last factorisation
+# stopped_at [s]: the time at which steps became too small or too many
+# stiff_from [s]: the time from which the motion is stiff
+# open_from [s]: the time of the first projection that did not converge
+# rounding: the change of speeds by rounding, in units of the mechanism's speed
 STATUS_RECORD = _record(
     "missing_roll accepted_steps selection",
     "missing_angle smallest_pivot factor_pivot stopped_at stiff_from rounding open_from",
@@ -100,22 +99,22 @@ STATUS_RECORD = _record(
 
 
 class System(NamedTuple):
-    """A mechanism, the room for its row system, and the status of its evaluation."""
+    """The records of a mechanism, the arrays of its row system, and the status of the calls."""
 
     constants: Any  # a CONSTANT_RECORD
     status: Any  # a STATUS_RECORD
     bodies: Records  # (bodies + 1,)
     joints: Records
     forces: Records
-    terms: Records  # those of couplings, then those of coupled forces
+    terms: Records  # terms of couplings, then terms of coupled forces
     rolls: Records
     cells: NDArray[np.complex128]  # (cells, CELL_SIZE) of all tables
     rows: Records
     equations: Records  # (rows,)
-    ends: Records  # two for each row, further ones, and one for the ground's
+    ends: Records  # two ends of each row, further ends of couplings, and one unused end
     further_ends: Records
     products: Records
-    matrix: Reals  # J M^-1 J^T in its envelope; then its factor
+    matrix: Reals  # J M^-1 J^T in its envelope, overwritten by its factor
     inverse_pivots: Reals  # (rows,)
     right: Reals  # (rows,) right side
     reaction: Reals  # (rows,)
@@ -124,7 +123,7 @@ class System(NamedTuple):
 
 
 class StepStorage(NamedTuple):
-    """Units and states (coordinates,) of a step, and the velocities and accelerations of its stages."""
+    """Arrays of a step: units and states (coordinates,), and the velocities and accelerations of the stages."""
 
     pose_unit: Reals
     twist_unit: Reals
@@ -140,7 +139,6 @@ class StepStorage(NamedTuple):
 
 
 def new_status() -> Any:
-    """The status before the first call: no contact is missing, no event has happened."""
     status = np.zeros(1, STATUS_RECORD)[0]
     status["missing_roll"], status["smallest_pivot"] = -1, 1.0
     status["stopped_at"] = status["stiff_from"] = status["open_from"] = np.nan
@@ -148,7 +146,6 @@ def new_status() -> Any:
 
 
 def new_storage(mechanism: Mechanism) -> StepStorage:
-    """The storage of steps of a mechanism; all states are zero."""
     unit = np.tile(mechanism.pose_unit, len(mechanism.bodies) + 1)
     names = ("pose", "twist", "stage_pose", "stage_twist", "new_pose", "new_twist", "acceleration")
     states = {name: np.zeros_like(unit) for name in names}

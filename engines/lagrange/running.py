@@ -1,4 +1,4 @@
-"""A run of `Lagrange`: in compiled code, or in numpy, and the warnings about its rows."""
+"""A run of `Lagrange` in compiled code or in numpy, and its warnings."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 FIXED_STEP_TABLEAUS = {"euler": NO_STAGES, "rk4": RK4, "dop853": FIXED_DOP853}
-# Half of a double's digits: a row is lost if its slip after a projection, or its acceleration without one, is larger
-# than this share of the largest speed or acceleration.
+# A row is lost if its slip after a projection, or the error of its acceleration without one, exceeds this share of the
+# largest speed or acceleration. The value is the square root of the rounding.
 LOST_ROW = 1.5e-8
-# Slower motions, in units of the mechanism's own length and time, have no digits to lose.
+# Least speed to which a slip is compared, in units of the mechanism's length and time scale.
 SLOW_MOTION = 1e-4
 
 
 class LagrangeRun(OneShot):
-    """A run of exact multipliers, with steps of dt [s]."""
+    """A run with exact multipliers; see `engines.Run`."""
 
     def __init__(self, engine: Lagrange, mechanism: Mechanism, dt: float) -> None:
         self._engine, self._mechanism, self._dt = engine, mechanism, dt
@@ -57,7 +57,7 @@ class LagrangeRun(OneShot):
 
     @property
     def dynamics(self) -> Dynamics:
-        """The equations of motion in numpy, made at first use."""
+        """The equations of motion in numpy."""
         if self._dynamics is None:
             self._dynamics = Dynamics(self._mechanism, self._regularisation)
         return self._dynamics
@@ -69,7 +69,7 @@ class LagrangeRun(OneShot):
         self.begin()
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
         started = time.process_time()
-        with np.errstate(all="ignore"):  # the results of a diverging run are infinite or NaN, and say so
+        with np.errstate(all="ignore"):  # a diverging run has a warning of its own
             poses, twists = self._motion(samples, every)
             stepping = time.process_time() - started
             warnings = self._model.warnings(self._engine.tolerance) if self._model is not None else ()
@@ -120,9 +120,9 @@ class LagrangeRun(OneShot):
             poses[sample + 1], twists[sample + 1] = pose, twist
 
     def _reactions(self, t: Array, poses: Array, twists: Array) -> tuple[Array, Array]:
-        """Reactions (samples, rows) and accelerations (samples, bodies, 3); NaN where the motion is lost.
+        """Reactions (samples, rows) and accelerations (samples, bodies, 3); NaN for states that are not finite.
 
-        Reactions of dependent rows are the minimum-norm solution, as in `Mechanism.reaction`.
+        Reactions of dependent rows are those of minimum norm, as in `Mechanism.reaction`.
         """
         mechanism = self._mechanism
         reactions, accelerations = np.full((len(t), mechanism.row_count), np.nan), np.full_like(poses, np.nan)
@@ -145,25 +145,24 @@ class LagrangeRun(OneShot):
         return reactions, accelerations
 
     def _incomplete(self, t: Array, poses: Array) -> tuple[RunWarning, ...]:
-        """The warning of a run that stopped before its end, or in which numpy left joints open."""
+        """The warning of a run that stopped early, or whose projection in numpy did not converge."""
         if self._dynamics is not None and not np.isnan(self._dynamics.open_from):
             return (open_warning(self._dynamics.open_from),)
         finite = np.all(np.isfinite(poses), axis=(1, 2))
         return () if finite[-1] else (stopped_warning(self._engine.tolerance, float(t[int(np.argmin(finite)) - 1])),)
 
     def _lost_rows(self, t: Array, poses: Array, twists: Array, accelerations: Array) -> tuple[RunWarning, ...]:
-        """The warning about joints that slip after a projection, or, without projections, that accelerations open.
+        """The warning about joints that slip after a projection, or whose accelerations violate the rows without one.
 
-        J M^-1 J^T keeps few digits of the mass of a body whose distance from a joint is large compared with its radius
-        of gyration. If these digits are below the rounding of the matrix, the row seems to follow from others, and is
-        left out.
+        If the distance of a body from a joint is large compared with its radius of gyration, its mass has a small
+        effect on J M^-1 J^T. If the effect is below rounding, the row seems to depend on others and is ignored.
         """
         mechanism, regularisation = self._mechanism, self._regularisation
         slow_speed = SLOW_MOTION * mechanism.length_scale / mechanism.time_scale
         if self._engine.stabilisation == "projection":
             is_lost = self._exceeds(mechanism.slip(poses, twists), twists, slow_speed)
             return _lost_row_warning("joints slip after the projection", t[1:][is_lost[1:]])
-        # Curves that touch at the start may have parted later, and their equations hold for curves that touch.
+        # Without projection rolling curves may separate, and their equations are valid only in contact.
         if any(isinstance(joint, Roll) for joint in mechanism.joints):
             t, poses, twists, accelerations = t[:1], poses[:1], twists[:1], accelerations[:1]
         expected = mechanism.bias(poses, twists)
@@ -176,7 +175,10 @@ class LagrangeRun(OneShot):
         return _lost_row_warning("accelerations open joints", t[is_lost])
 
     def _exceeds(self, rows: Array, rates: Array, slow: float) -> NDArray[np.bool_]:
-        """(times,) whether a row is above LOST_ROW times the largest rate plus `slow`, angles times the length."""
+        """Whether a row exceeds LOST_ROW times (the largest rate + slow) at each time (times,).
+
+        Angular values are multiplied by the mechanism's length.
+        """
         mechanism = self._mechanism
         size = np.array([1.0, 1.0, mechanism.length_scale])
         row = np.abs(rows) * np.where(mechanism.is_angular, mechanism.length_scale, 1.0)

@@ -1,7 +1,7 @@
-"""The records of a mechanism.
+"""The records of a mechanism for compiled code.
 
-The rows are in reversed Cuthill-McKee order, so that the matrix J M^-1 J^T has a narrow envelope: O(bodies) entries for
-a chain. Its entries are sums of products of two ends of rows on one body; the list of these products is made here once.
+The rows are in reverse Cuthill-McKee order, so that the matrix J M^-1 J^T has a narrow envelope: O(bodies) entries for
+a chain. Each entry is a sum of products of two ends of rows on one body. This module creates the list of products.
 """
 
 from __future__ import annotations
@@ -44,10 +44,9 @@ from reference.rolling.roll import Roll
 from reference.rows import rank
 
 Integers = NDArray[np.int64]
-Numbers = Mapping[str | None, int]  # of bodies by their names, and of the ground
-Fields = dict[str, str]  # a record's fields, and the attributes from which they come
+Numbers = Mapping[str | None, int]  # number of each body by name; None is the ground
+Fields = dict[str, str]  # attribute of a joint or force for each field of its record
 
-# Rolls and couplings have records of their own.
 JOINT_FIELDS: dict[type, tuple[JointKind, Fields]] = {
     Pin: (JointKind.PIN, {}),
     Slot: (JointKind.SLOT, {"angle": "line_angle"}),
@@ -71,11 +70,11 @@ FORCE_FIELDS: dict[type, tuple[ForceKind, Fields]] = {
         {"load": "force", "stiffness": "stiffness", "damping": "damping", "rest": "rest"},
     ),
 }
-MOST_RANKED_ROWS = 400  # the rank of more rows would take longer than a run
+MOST_RANKED_ROWS = 400  # the computation of the rank of more rows would take longer than a run
 
 
 def system_of(mechanism: Mechanism) -> tuple[System, Integers]:
-    """The system of a mechanism without cells of tables, and the position (rows,) of each of its rows in the system."""
+    """The system of a mechanism without cells of tables, and the row of the system for each row of the mechanism."""
     joints, body_count = mechanism.joints, len(mechanism.bodies)
     numbers = {body.name: number for number, body in enumerate(mechanism.bodies)} | {None: body_count}
     first_rows = _first_rows(joints, numbers)
@@ -119,7 +118,7 @@ def system_of(mechanism: Mechanism) -> tuple[System, Integers]:
 
 
 def _table(record: np.dtype[np.void], values: Sequence[Mapping[str, Any]]) -> Records:
-    """Records with these values; other fields are zero."""
+    """A table of records with the given values; other fields are zero."""
     table = np.zeros(len(values), record)
     for row, fields in zip(table, values, strict=True):
         for name, value in fields.items():
@@ -170,7 +169,7 @@ def _forces(mechanism: Mechanism, numbers: Numbers) -> Records:
 
 
 def _first_rows(joints: Sequence[Joint], numbers: Numbers) -> Integers:
-    """(joints,) the first row of each joint, such that joints on one body have rows near each other."""
+    """The first row of each joint (joints,); joints on the same body have rows near each other."""
     if not joints:
         return np.zeros(0, dtype=np.int64)
     ground = numbers[None]
@@ -191,7 +190,7 @@ def _bodies_of(terms: Iterable[Term], numbers: Numbers) -> list[int]:
 
 
 def _rows(joints: Sequence[Joint], numbers: Numbers, positions: Integers) -> Records:
-    """The rows without their envelope; the row of a coupling has the first two of its bodies."""
+    """The records of the rows without their envelope. The row of a coupling has the first two of its bodies."""
     rows = np.zeros(len(positions), ROW_RECORD)
     owners = [joint for joint in joints for _ in range(joint.size)]
     for position, joint in zip(positions, owners, strict=True):
@@ -203,7 +202,7 @@ def _rows(joints: Sequence[Joint], numbers: Numbers, positions: Integers) -> Rec
 
 
 def _terms(mechanism: Mechanism, numbers: Numbers, first_rows: Integers) -> tuple[Records, Records]:
-    """The terms of couplings, then those of coupled forces; and the further ends of rows."""
+    """The terms of couplings and of coupled forces, and the third and further ends of rows."""
     terms, further_ends = list[dict[str, Any]](), list[dict[str, Any]]()
     numbered = zip(mechanism.joints, first_rows.tolist(), strict=True)
     couplings = [(joint, row) for joint, row in numbered if isinstance(joint, Coupling)]
@@ -213,7 +212,7 @@ def _terms(mechanism: Mechanism, numbers: Numbers, first_rows: Integers) -> tupl
             ends[body] = 2 * row + k if k < 2 else 2 * mechanism.row_count + len(further_ends)
             if k >= 2:
                 further_ends.append({"row": row, "body": body, "end": ends[body]})
-        # Index -1: all couplings write their ends on the ground to the last record, which is not used.
+        # Index -1 is the unused last record, which takes the ends on the ground.
         for k, term in enumerate(coupling.terms):
             first_end, second_end = (ends.get(numbers[name], -1) for name in (term.first, term.second))
             offset = coupling.offset if k == 0 else 0.0
@@ -231,7 +230,7 @@ def _term(term: Term, numbers: Numbers) -> dict[str, Any]:
 
 
 def _envelope(rows: Records, further_ends: Records, body_count: int) -> tuple[Records, int]:
-    """The products of ends on one body, and the number of entries of the envelope. Sets the envelope of the rows."""
+    """The products of two ends on one body, and the number of entries of the envelope. Sets the rows' envelope."""
     on_body: list[list[tuple[int, int]]] = [[] for _ in range(body_count + 1)]  # (row, end)
     for row, (first, second) in enumerate(zip(rows["first"].tolist(), rows["second"].tolist(), strict=True)):
         on_body[first].append((row, 2 * row))
@@ -256,9 +255,10 @@ def _envelope(rows: Records, further_ends: Records, body_count: int) -> tuple[Re
 
 
 def _has_dependent_rows(mechanism: Mechanism) -> bool:
-    """Whether some rows follow from others at the start: two wheels on one axle, a parallelogram's third crank.
+    """Whether rows are linearly dependent at the start, such as those of two wheels on one axle.
 
-    False if the rank would take seconds; the factorisation itself finds dependent rows.
+    False for more than MOST_RANKED_ROWS, unless there are more rows than coordinates. The factorisation then detects
+    dependent rows.
     """
     rows = mechanism.row_count
     if rows > 3 * len(mechanism.bodies):
@@ -279,7 +279,7 @@ def _rolling_constants(rolling: Rolling) -> dict[str, Any]:
     """The form of a pair and its constants, by the fields of ROLLING_RECORD."""
     try:
         fast = rolled(rolling)
-    except (ValueError, ArithmeticError):  # the curves cannot touch everywhere around the start
+    except (ValueError, ArithmeticError):  # there is no contact at some rotations near the start
         return {"form": RollingForm.NOT_TABULATED}
     match fast:
         case RoundOnLine():

@@ -1,18 +1,19 @@
-"""The equations of motion and the steps as functions that numba compiles; imported by `engines.lagrange.loading` only.
+"""The equations of motion and the steps as functions that numba compiles. Only `engines.lagrange.loading` imports them.
 
-They change the arrays of a `records.System` and a `records.StepStorage`, and return numbers or booleans. A division by
-zero gives an infinity or NaN, as in numpy. Sums are not reordered, so that results are the same on every processor.
+The functions change the arrays of a `records.System` and a `records.StepStorage`, and return numbers or booleans. A
+division by zero gives an infinity or NaN, as in numpy. Sums are not reordered, so that results are the same on every
+processor.
 
-No function counts references (`_nrt`), since counting those of the twenty arrays of a system at each call would take
-longer than the work; none of them creates an array. Inner functions have no wrappers for Python, which would double
-the time of compiling. The decorators differ in the speed of calls and of compiling, not in results:
+Reference counting is off (`_nrt`), since it would take longer than the computation; no function creates an array. Inner
+functions have no wrappers for Python, which would double the compilation time. The decorators affect the speed of calls
+and of compilation, not the results:
 
-- `inner`: a function of its own;
-- `inlined`: LLVM puts it into its callers, since passing a system costs as much as a short function;
-- `merged`: numba puts it into its caller before types are inferred: less to compile where there is one caller;
-- `entry`: called by Python; compiled at its first call, and cached with copies of all functions that it calls.
+- `inner`: compiled as a separate function
+- `inlined`: inlined by LLVM, for short functions, since passing a system takes as long as their computation
+- `merged`: inlined by numba before type inference, for functions with one caller, which reduces the compilation time
+- `entry`: called by Python, compiled at the first call, and cached with copies of all functions that it calls
 
-`unsigned(index)` spares numba's test for a negative index, which costs a sixth of the time of a long chain.
+`unsigned(index)` avoids numba's test for a negative index, which takes a sixth of the time for a long chain.
 """
 
 from typing import Any

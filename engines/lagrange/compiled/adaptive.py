@@ -1,7 +1,7 @@
 """DOP853 with adaptive steps, each projected onto the joints.
 
 Step control and the test for stiffness are those of Hairer, Norsett and Wanner's program (part I, section II.6), as in
-scipy. Errors are measured in units of the mechanism's own length and speed.
+scipy. Errors are in units of the mechanism's length and speed.
 """
 
 from __future__ import annotations
@@ -14,23 +14,24 @@ from engines.lagrange.compiled.steps import accelerate, add_stages, copy_state, 
 
 # The next step is this share of the step for which the error estimate equals the tolerance.
 STEP_SAFETY = 0.9
-# The smallest and the largest ratio of a step to the step before.
+# The smallest and the largest ratio of successive steps.
 LEAST_STEP_FACTOR, LARGEST_STEP_FACTOR = 0.2, 10.0
-# Steps between two samples, accepted or rejected: a second of CPU time for a few bodies.
+# Largest number of accepted and rejected steps between two samples, which take a second for a few bodies.
 MOST_TRIES = 20_000
-# A run may have MOST_TRIES accepted steps, and this number for each completed sample.
+# A run may have MOST_TRIES accepted steps, and this additional number for each completed sample.
 FURTHER_STEPS_PER_SAMPLE = 1_000
 # The relative rounding of double precision.
 DOUBLE_EPSILON = 2.2e-16
-# A stage that needs a contact at a rotation [rad] so far from the start of the step shows that the step is too long.
+# If a stage needs a contact at a rotation [rad] further from that at the start of the step, the step is too long.
 FARTHEST_STAGE = 1.0
-# Step times largest eigenvalue at the border of stability, and the consecutive steps there that make a motion stiff.
+# The step times the largest eigenvalue at the stability limit, and the number of consecutive steps there that make a
+# motion stiff.
 STIFF_PRODUCT, STIFF_STEPS = 6.1, 15
 
 
 @entry
 def adaptive_steps(system, storage, begin, poses, twists, method, iterations, tolerance, spacing):
-    """Fill poses and twists (samples, 3 bodies), `spacing` apart, after the sample `begin`; returns the last one."""
+    """Fill poses and twists (samples, 3 bodies), `spacing` apart, after `begin`; returns the last completed sample."""
     status, last = system.status, len(poses) - 1
     copy_state(poses[begin], twists[begin], storage.pose, storage.twist)
     t, sample, tries, stiff, step = spacing * begin, begin, 0, 0, -1.0
@@ -71,7 +72,7 @@ def adaptive_steps(system, storage, begin, poses, twists, method, iterations, to
         status.accepted_steps += 1
         done = fill_samples(system, storage, method, iterations, t, dt, end, spacing, sample, poses, twists)
         tries, sample = (0 if done > sample else tries), done
-        if sample < last and end >= spacing * (sample + 1):  # a sample that is due is lost
+        if sample < last and end >= spacing * (sample + 1):  # a sample in this step is not finite
             return sample
         t = end
         advance(storage)
@@ -80,19 +81,20 @@ def adaptive_steps(system, storage, begin, poses, twists, method, iterations, to
 
 @merged
 def step_length(step, t, spacing, sample, last):
-    """The length of a step and its end: at the next sample, if samples are about a step apart, or at the last one.
+    """The length of a step and the time at its end.
 
-    Two equal steps replace a step that would leave a short rest.
+    The target is the next sample if the step is below twice the spacing of samples, and otherwise the last sample. If
+    the step is more than half of the remaining time, but not all of it, it is replaced by two equal steps.
     """
     target = spacing * (sample + 1) if step < 2 * spacing else spacing * last
-    rest = target - t
-    dt = rest if 1.01 * step >= rest else (0.5 * rest if 2 * step > rest else step)
-    return dt, (target if dt == rest else t + dt)
+    remaining = target - t
+    dt = remaining if 1.01 * step >= remaining else (0.5 * remaining if 2 * step > remaining else step)
+    return dt, (target if dt == remaining else t + dt)
 
 
 @merged
 def evaluate_stages(system, storage, method, t, dt):
-    """All stages but the first, which is that at the end of the step before; ends at a contact without a cell."""
+    """Evaluate stages 2 to 12; the first stage is the last of the previous step. Ends at a contact without a cell."""
     system.status.smallest_pivot = 1.0
     for stage in range(1, 12):
         evaluate_stage(system, storage, method.stages, method.nodes, stage, t, dt)
@@ -111,7 +113,7 @@ def finish_step(system, storage, iterations, end):
 
 @merged
 def advance(storage):
-    """The end of a step is the start of the next one, with its first stage."""
+    """Copy the end of a step, with its last stage, to the start of the next step."""
     copy_state(storage.new_pose, storage.new_twist, storage.pose, storage.twist)
     for k in range(len(storage.pose)):
         storage.velocities[0, k], storage.accelerations[0, k] = storage.velocities[12, k], storage.accelerations[12, k]
@@ -119,7 +121,7 @@ def advance(storage):
 
 @merged
 def step_rounding(storage, smallest_pivot):
-    """The largest change of a speed in a step by rounding alone, in units of the mechanism's own speed."""
+    """The largest change of a speed by rounding in a step, in units of the mechanism's speed."""
     moved = 0.0
     for k in range(len(storage.pose)):
         moved = max(moved, abs(storage.new_twist[k] - storage.twist[k]) / storage.twist_unit[k])
@@ -128,7 +130,7 @@ def step_rounding(storage, smallest_pivot):
 
 @merged
 def is_stiff(storage, dt):
-    """Whether step times largest eigenvalue, estimated from the last two stages, is at the border of stability."""
+    """Whether the step is at the stability limit, with the largest eigenvalue estimated from the last two stages."""
     velocities, accelerations = storage.velocities, storage.accelerations
     rates = states = 0.0
     for k in range(len(storage.pose)):
@@ -142,7 +144,7 @@ def is_stiff(storage, dt):
 
 @inlined
 def is_astray(system, pose):
-    """Whether a stage needed a contact too far from that in a pose to belong to the motion; then resets the status."""
+    """Whether a stage needed a contact more than FARTHEST_STAGE from that at `pose`; if so, the status is reset."""
     status = system.status
     if status.missing_roll < 0:
         return False
@@ -161,7 +163,7 @@ def square(value):
 
 @inlined
 def error_norm(storage, pose, twist, tolerance):
-    """The root mean square of a pose and a twist in units of the error allowed at the current state."""
+    """The root mean square of a pose and a twist in units of the tolerated error at the current state."""
     total, moving = 0.0, len(storage.pose) - 3
     for k in range(moving):
         pose_error = pose[k] / (tolerance * (storage.pose_unit[k] + abs(storage.pose[k])))
@@ -172,7 +174,7 @@ def error_norm(storage, pose, twist, tolerance):
 
 @merged
 def first_step(system, storage, t, tolerance, longest):
-    """Hairer, Norsett and Wanner's guess of a step; it evaluates the first stage."""
+    """The first step by Hairer, Norsett and Wanner's rule. Evaluates the first stage."""
     pose, twist, acceleration = storage.pose, storage.twist, storage.acceleration
     new_pose, new_twist = storage.new_pose, storage.new_twist
     accelerate(system, pose, twist, t, acceleration)
@@ -196,7 +198,7 @@ def first_step(system, storage, t, tolerance, longest):
 
 @merged
 def error_rate(storage, method, tolerance):
-    """The error estimate of a step of one second, in units of the error allowed."""
+    """The error estimate of a step, divided by its length, in units of the tolerated error."""
     threes = fives = 0.0
     moving = len(storage.pose) - 3
     for k in range(moving):
@@ -215,7 +217,7 @@ def error_rate(storage, method, tolerance):
 
 @inlined
 def stage_errors(rates, method, k):
-    """The error estimates of order 3 and 5 of one coordinate in a step of one second."""
+    """The error estimates of order 3 and 5 of one coordinate, divided by the length of the step."""
     third = fifth = 0.0
     for stage in range(12):
         third += method.third[stage] * rates[stage, k]

@@ -1,6 +1,6 @@
-"""Sums of `reference.couplings`: the rows of couplings, and coupled forces.
+"""The rows of couplings, and the terms of coupled forces, as in `reference.couplings`.
 
-A term is a body's angle against another's, or the place of a body's point along a line of another body.
+A term is the angle of a body relative to another, or the position of a body's point along a line of another body.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from engines.lagrange.compiled import inlined, inner
 
 @inner
 def coupling_equations(system):
-    """Set ends, gap and bias of each coupling's row: the sum of its terms."""
+    """Set the ends, gap and bias of the row of each coupling."""
     bodies, equations, ends = system.bodies, system.equations, system.ends
     for index in range(len(system.terms)):
         term = system.terms[index]
@@ -55,9 +55,9 @@ def sliding_bias(term, first, second, x, y):
 
 @inlined
 def term_value(term, first, second):
-    """The value of a term and its derivatives by the second body's x and y, by the first angle, by the second angle.
+    """The value of a term, and its derivatives by the second body's x and y, the first angle and the second angle.
 
-    The derivatives by the first body's x and y are the opposite ones.
+    The derivatives by the first body's x and y are the negative of those by the second body's.
     """
     factor = term.factor
     if term.sliding == 0:

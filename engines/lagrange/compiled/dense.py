@@ -22,9 +22,9 @@ def fill_samples(system, storage, method, iterations, t, dt, end, spacing, sampl
                 for stage in range(13, 16):
                     evaluate_stage(system, storage, method.stages, method.nodes, stage, t, dt)
                 has_stages = True
-            part = (instant - t) / dt
-            interpolate(storage.pose, storage.new_pose, storage.velocities, method.dense, dt, part, pose)
-            interpolate(storage.twist, storage.new_twist, storage.accelerations, method.dense, dt, part, twist)
+            share = (instant - t) / dt
+            interpolate(storage.pose, storage.new_pose, storage.velocities, method.dense, dt, share, pose)
+            interpolate(storage.twist, storage.new_twist, storage.accelerations, method.dense, dt, share, twist)
             project(system, pose, twist, instant, iterations, storage.pose_unit)
             for k in range(poses.shape[1]):
                 poses[sample + 1, k], twists[sample + 1, k] = pose[k], twist[k]
@@ -38,9 +38,12 @@ def fill_samples(system, storage, method, iterations, t, dt, end, spacing, sampl
 
 
 @inlined
-def interpolate(old, new, rates, dense, dt, part, out):
-    """Set `out` to the state at a part of the step from `old` to `new`, from the rates (16, coordinates) of stages."""
-    rest = 1 - part
+def interpolate(old, new, rates, dense, dt, share, out):
+    """Set `out` to the state at a share of the step from `old` to `new`, by the rates (16, coordinates) of the stages.
+
+    The factors `share` and `remaining` alternate, as in scipy's Dop853DenseOutput.
+    """
+    remaining = 1 - share
     for k in range(len(out)):
         change, at_start, at_end = new[k] - old[k], dt * rates[0, k], dt * rates[12, k]
         high = 0.0
@@ -48,7 +51,6 @@ def interpolate(old, new, rates, dense, dt, part, out):
             value = 0.0
             for stage in range(16):
                 value += dense[power, stage] * rates[stage, k]
-            high = (high + dt * value) * (part if power % 2 == 1 else rest)
-        # The factors `part` and `rest` alternate, as in scipy's Dop853DenseOutput.
-        value = ((high + 2 * change - (at_end + at_start)) * part + at_start - change) * rest + change
-        out[k] = old[k] + value * part
+            high = (high + dt * value) * (share if power % 2 == 1 else remaining)
+        value = ((high + 2 * change - (at_end + at_start)) * share + at_start - change) * remaining + change
+        out[k] = old[k] + value * share

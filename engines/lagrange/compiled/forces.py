@@ -11,7 +11,7 @@ from engines.lagrange.records import ForceKind
 
 @merged
 def applied_accelerations(system, out):
-    """Set `out` (coordinates,) to the accelerations without joints, for the state of the bodies."""
+    """Set `out` (coordinates,) to the accelerations that the bodies would have without joints."""
     bodies = system.bodies
     for at in range(0, 3 * (len(bodies) - 1), 3):
         out[at], out[at + 1], out[at + 2] = system.constants.gravity_x, system.constants.gravity_y, 0.0
@@ -37,7 +37,7 @@ def applied_accelerations(system, out):
 
 @inlined
 def point_force(bodies, force, first, second, out):
-    """A given force at the second point, or a spring or a damper between both points."""
+    """Add a constant force at the second point, or a spring or damper between both points."""
     ax = first.cos * force.first_x - first.sin * force.first_y
     ay = first.sin * force.first_x + first.cos * force.first_y
     bx = second.cos * force.second_x - second.sin * force.second_y
@@ -61,7 +61,7 @@ def point_force(bodies, force, first, second, out):
 
 @inner
 def coupled_force(system, force, out):
-    """A force along the gradient of a sum of terms, of a strength that depends on the sum and on its rate."""
+    """Add a force along the gradient of a sum of terms, whose size depends on the sum and its rate."""
     bodies, last = system.bodies, force.first_term + force.term_count
     strength = force.load + force.stiffness * force.rest
     for index in range(force.first_term, last):
@@ -80,7 +80,7 @@ def coupled_force(system, force, out):
 
 @inlined
 def push(bodies, index, x, y, torque, out):
-    """Add the acceleration of a body by a force and a torque at its centre of mass; the ground's inverse mass is 0."""
+    """Add the acceleration of a body by a force and a torque at its centre of mass; zero for the ground."""
     body, at = bodies[index], 3 * index
     out[at] += body.inverse_mass * x
     out[at + 1] += body.inverse_mass * y

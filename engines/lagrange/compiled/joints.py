@@ -16,7 +16,6 @@ from engines.lagrange.records import JointKind
 
 @inlined
 def set_bodies(bodies, pose, twist):
-    """Set the state of the moving bodies."""
     for index in range(len(bodies) - 1):
         body, at = bodies[index], 3 * index
         body.x, body.y, body.angle = pose[at], pose[at + 1], pose[at + 2]
@@ -26,7 +25,7 @@ def set_bodies(bodies, pose, twist):
 
 @inlined
 def set_equations(system, t):
-    """Set ends, gap and bias of each row for the state of the bodies; the gap of a row that limits no position is 0."""
+    """Set the ends, gap and bias of each row; the gap of a nonholonomic row is 0."""
     bodies, equations, ends = system.bodies, system.equations, system.ends
     for index in range(len(system.joints)):
         joint = system.joints[index]
@@ -63,7 +62,7 @@ def set_end(end, x, y, turn):
 
 @inlined
 def angle_equation(joint, first, second, t, equation, ends, end):
-    """The angle of the second body is `ratio` times that of the first, plus offset + rate t: drive, gear, weld."""
+    """The row of a drive, gear or weld: second angle = ratio * first angle + offset + rate * t."""
     ends[end].turn, ends[end + 1].turn = -joint.ratio, 1.0
     equation.gap = second.angle - joint.ratio * first.angle - (joint.offset + joint.rate * t)
     equation.bias = 0.0
@@ -86,7 +85,7 @@ def pin_equations(first, second, ax, ay, bx, by, equations, ends, row):
 
 @inlined
 def rod_equation(joint, first, second, ax, ay, bx, by, equation, at_first, at_second):
-    """The distance of the two points is `length`; (x, y) is the direction from the first to the second."""
+    """The distance between the two points is `length`; (x, y) is the direction from the first to the second."""
     omega, spin = first.omega, second.omega
     x, y = second.x + bx - first.x - ax, second.y + by - first.y - ay
     distance = math.sqrt(x * x + y * y)

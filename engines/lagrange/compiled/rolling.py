@@ -14,7 +14,7 @@ from engines.lagrange.records import RollingForm
 
 @merged
 def roll_equations(system, roll, number, first, second, row):
-    """Set ends, gaps and biases of the rows along e_t and then e_n = -i e_t."""
+    """Set the ends, gaps and biases of the two rows, along e_t and e_n = -i e_t."""
     omega, spin = first.omega, second.omega
     position, once, twice, tangent, turning = contact(system, roll, number, second.angle - first.angle)
     frame = complex(first.cos, first.sin)

@@ -13,23 +13,23 @@ import math
 from engines.lagrange.compiled import inlined, inner, merged, unsigned
 from engines.lagrange.records import LEAST_INVERSE_INERTIA, RowLaw, RowSelection
 
-# The largest pivot, relative to the diagonal, of a row that follows from others, where all rows are independent at the
-# start: a thousand times the rounding of the product.
+# The largest pivot, relative to the diagonal, of a dependent row, if all rows are independent at the start: a thousand
+# times the rounding of the product.
 INDEPENDENT_PIVOT = 1e-13
-# The limit if some rows are dependent at the start: RANK_TOLERANCE of `reference.rows`. Within a step joints are open,
-# and each perturbs such a pivot by the square of its gap.
+# The limit if rows are dependent at the start, as RANK_TOLERANCE of `reference.rows`. The stages of a step have gaps,
+# whose squares perturb the pivots.
 DEPENDENT_PIVOT = 1e-9
-# Above this smallest pivot rounding costs less than two digits, and no correction is made.
+# If the smallest pivot is above this value, rounding costs less than two digits, and no correction is needed.
 WELL_CONDITIONED = 1e-2
-# More rows than this are always corrected once: the condition of a long chain is not visible in its pivots.
+# Systems with more rows are always corrected once, since the pivots of a long chain do not show its condition.
 FEW_ROWS = 24
-# Each correction has to halve the residual; four of them reach rounding.
+# Each correction has to halve the residual. Four corrections are enough to reach rounding.
 MOST_CORRECTIONS = 4
 
 
 @inlined
 def is_left_out(system, row):
-    """Whether a row does not belong to the selected rows; it then gets a diagonal of one and no coupling."""
+    """Whether a row is not selected; its diagonal is then 1, without coupling to other rows."""
     selection = system.status.selection
     if selection == RowSelection.HOLONOMIC:
         return system.rows[row].holonomic == 0
@@ -56,7 +56,7 @@ def assemble(system):
 
 @inlined
 def factorise(system):
-    """Replace the matrix by its factor; the smallest pivot, relative to its row's diagonal, of independent rows."""
+    """Replace the matrix by its factor; returns the smallest pivot of independent rows, relative to the diagonal."""
     matrix, inverse_pivots, rows = system.matrix, system.inverse_pivots, system.rows
     limit = DEPENDENT_PIVOT if system.constants.dependent != 0 else INDEPENDENT_PIVOT
     smallest = 1.0
@@ -123,7 +123,7 @@ def substitute(system, vector):
 
 @inlined
 def apply_reactions(system):
-    """Set the change to M^-1 J^T reaction."""
+    """Set `change` to M^-1 J^T reaction."""
     change, ends, bodies = system.change, system.ends, system.bodies
     for k in range(len(change)):
         change[k] = 0.0
@@ -184,7 +184,7 @@ def factorise_rows(system):
 
 @inner
 def solve(system, corrections):
-    """Set the change to the smallest one, by mass, with J change = right, and set its reactions, by the factor.
+    """Set `change` to the least solution of J change = right in the norm of the masses, and set the reactions.
 
     corrections: how many are made where all pivots are large; otherwise there are up to MOST_CORRECTIONS.
     """

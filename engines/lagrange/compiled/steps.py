@@ -1,4 +1,4 @@
-"""Accelerations, projections and steps of fixed size, for any mechanism and any explicit tableau."""
+"""Accelerations, projections, and fixed steps of explicit Runge-Kutta methods."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from engines.lagrange.compiled.joints import set_bodies, set_equations
 from engines.lagrange.compiled.solve import FEW_ROWS, WELL_CONDITIONED, factorise_rows, row_times, solve
 from engines.lagrange.records import CLOSED, RowLaw, RowSelection
 
-# numba would compile `solve` a second time for the literal 0.
+# A constant, since numba would compile `solve` a second time for the literal 0.
 NO_CORRECTIONS = np.int64(0)
 
 
 @inner
 def accelerate(system, pose, twist, t, out):
-    """Set `out` (coordinates,) to the accelerations under forces and joints; rows and reactions stay in the system."""
+    """Set `out` (coordinates,) to the accelerations, and the reactions and rows of the system."""
     set_bodies(system.bodies, pose, twist)
     applied_accelerations(system, out)
     ground = len(out) - 3
@@ -30,13 +30,13 @@ def accelerate(system, pose, twist, t, out):
         solve(system, 1 if len(system.rows) > FEW_ROWS else 0)
         for k in range(ground):
             out[k] += system.change[k]
-    for k in range(ground, ground + 3):  # 0 times NaN of a lost stage would stay there
+    for k in range(ground, ground + 3):  # they may be NaN in a diverged stage
         out[k] = 0.0
 
 
 @merged
 def set_right_side(system, twist, applied):
-    """Set the right side: the bias, less the applied accelerations, less those of springs and dampers in soft rows."""
+    """Set the right side: bias - J applied, and for soft rows minus the terms of spring and damper."""
     rows = len(system.rows)
     for row in range(rows):
         system.right[row] = system.equations[row].bias - row_times(system, row, applied)
@@ -51,7 +51,7 @@ def set_right_side(system, twist, applied):
 
 @inner
 def project(system, pose, twist, t, iterations, pose_unit):
-    """Move a pose and a twist to the nearest ones, by mass, that satisfy the joints."""
+    """Move a pose and a twist to the nearest ones, in the norm of the masses, that satisfy the joints."""
     rows, moving = len(system.rows), len(pose) - 3
     if rows == 0:
         return
@@ -70,7 +70,7 @@ def project(system, pose, twist, t, iterations, pose_unit):
 
 @merged
 def project_pose(system, pose, twist, t, iterations, pose_unit):
-    """Newton's method for the pose; returns whether its last factor is good enough for the twist.
+    """Close the gaps by Newton's method; returns whether the last factorisation is accurate enough for the twist.
 
     `open_from` of the status is the first time at which the iterations did not close the joints: the step ended too far
     from any pose of the joints, or at a singular one.
@@ -127,7 +127,7 @@ def store_stage(storage, stage, velocity):
 
 @inlined
 def add_stages(storage, weights, dt, pose, twist):
-    """Add the weighted velocities and accelerations of the stages to a state; their sum comes first, to round once."""
+    """Add the weighted sums of the stages to a state; each sum is computed first, so that the state is rounded once."""
     for k in range(len(pose)):
         moved = gained = 0.0
         for stage in range(len(weights)):
@@ -172,7 +172,7 @@ def fixed_steps(system, storage, begin, poses, twists, tableau, iterations, dt, 
 
 @entry
 def evaluate_samples(system, storage, begin, poses, twists, dt, reactions, accelerations):
-    """Set the reactions and accelerations at samples `dt` apart; returns the last one completed, as `fixed_steps`."""
+    """Set the reactions and accelerations at samples `dt` apart; returns the last completed sample."""
     for sample in range(begin, len(poses)):
         copy_state(poses[sample], twists[sample], storage.pose, storage.twist)
         accelerate(system, storage.pose, storage.twist, sample * dt, storage.acceleration)
