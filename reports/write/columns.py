@@ -195,7 +195,9 @@ def _format_cell(line: EngineLine, column: Column, format_rows: FormatCell) -> s
 def remarks_of(line: EngineLine, column: Column) -> str:
     """The end of a cell's text, with ', contact' if a contact replaces a joint, and the names of unusual variants."""
     joints = mechanism_of(line.scene).joints
-    contact = column in (Column.SHIPPED, Column.SETTINGS) and any(isinstance(joint, Skate | Roll) for joint in joints)
+    by_contact = any(engine.uses_contacts for engine, _ in line.columns[column])
+    by_contact &= column in (Column.SHIPPED, Column.SETTINGS)
+    contact = by_contact and any(isinstance(joint, Skate | Roll) for joint in joints)
     variants = [engine.variant for engine, _ in line.columns[column]]
     unusual = [] if column is Column.WHOLE else [f"*{name}*" for name in variants if name not in COLUMN_OF_VARIANT]
     return "".join(f", {remark}" for remark in [*(["contact"] if contact else []), *dict.fromkeys(unusual)])

@@ -19,6 +19,7 @@ import pytest
 from engines import Enforcement, Regularisation, mujoco, pymunk
 from engines.lagrange import loading
 from engines.pymunk.methods import SKATE_POINT
+from engines.registry import OTHERS
 from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
 from reference.scenes.catalogue import SCENES
@@ -308,6 +309,9 @@ def test_a_naive_method_is_never_printed_under_a_usual_name():
     assert engine_tables.remarks_of(line, Column.SETTINGS) == ", contact, *friction blade*"
     assert engine_tables.remarks_of(line, Column.SHIPPED) == ", contact"
     assert engine_tables.remarks_of(line, Column.CODE) == ""
+    # Exudyn has a joint for a skate, so no contact replaces it.
+    of_exudyn = {Column.SHIPPED: ((next(engine for engine in OTHERS if engine.name == "exudyn"), ()),)}
+    assert engine_tables.remarks_of(engine_tables.EngineLine(SKATE, SLEIGH, "exudyn", of_exudyn), Column.SHIPPED) == ""
 
 
 def test_an_error_within_a_cpu_time_counts_only_if_no_smaller_step_exceeds_it():
