@@ -1,7 +1,4 @@
-"""Charts and drawings read back from their axes: which numbers and poses are drawn, where, and by which method.
-
-The numbers of the charts of invented rows are in tests/golden/charts.md.
-"""
+"""Charts and drawings, read back from their axes. Those of invented rows are compared with tests/golden/charts.md."""
 
 from __future__ import annotations
 
@@ -40,11 +37,11 @@ def points(line: Line2D) -> list[tuple[float, float]]:
 
 
 ROLES = {to_hex(getattr(LIGHT, field.name)): field.name for field in fields(LIGHT)}
-GUIDE = 0.8  # pt, the width of the lines whose place depends on the limits of the axes
+GUIDE = 0.8  # line width of guides, whose position depends on the limits of the axes
 
 
 def described(figure: Figure) -> Iterator[str]:
-    """Every panel with its titles, scales, lines and words, and the legend; colours by their role in the theme."""
+    """The titles, scales, lines, texts and legend of each panel; colours have the names of their roles."""
     for panel in figure.axes:
         if not panel.get_visible():
             continue
@@ -61,9 +58,7 @@ def described(figure: Figure) -> Iterator[str]:
                 numbers = " ".join(f"({round(x, 12):.4g}, {round(y, 12):.4g})" for x, y in points(line))
                 yield f"- {look_of(line)} {line.get_drawstyle()}: {numbers}"
         for text in panel.texts:
-            at = (
-                getattr(text, "xy", ()) if not text.get_text().isdigit() else ()
-            )  # the number of a guide is beside its line
+            at = () if text.get_text().isdigit() else getattr(text, "xy", ())  # a digit is the number of a guide
             yield f"- {text.get_text()!r} {at}"
     for legend in figure.legends:
         lines = [handle for handle in legend.legend_handles if isinstance(handle, Line2D)]
@@ -83,7 +78,7 @@ FACTORS = {"one_scene": 1.0, "other": 7.0}
 
 
 def rows():
-    """Two scenes and three methods, another number in each point; failures, maps and zeros that must not be drawn."""
+    """Rows of two scenes and three methods with different numbers, and rows that must not be drawn."""
     results = []
     for scene, factor in FACTORS.items():
         for method, errors in METHODS.items():
@@ -93,7 +88,6 @@ def rows():
         results.append(row_of("pymunk default", scene=scene, step=1e-5, angle=1e-9, purpose="map"))
         results.append(row_of("pymunk default", scene=scene, step=1e-6, angle=0.0))
         results.append(row_of("lagrange rk4", scene=scene, outcome=Outcome.TORN, angle=1e-9))
-    # Not in the order of steps, and the first scene's last.
     return results[::-1]
 
 
@@ -113,7 +107,7 @@ def compared() -> Figure:
 
 
 def posed() -> Figure:
-    """Three poses; a method has an error in one of them."""
+    """Three poses, with a method that has an error in one pose and a method without errors."""
     mechanism = four_bar()
     truth = np.stack([mechanism.pose, mechanism.pose + 0.1, mechanism.pose - 0.1])
     other = truth + np.array([0.2, 0.0, 0.0]) * np.array([0, 1, 0])[:, None, None]
@@ -122,7 +116,7 @@ def posed() -> Figure:
 
 
 def planes() -> Figure:
-    """A path, one that ends in NaN and is not framed, a blade of 0.2 m upright, words, and a chart beside them."""
+    """A panel with two paths, a blade and a note, and a panel with a curve."""
     wrong = Path([[0.0, 0.0], [math.nan, 0.0], [9.0, 8.0]], "wrong", "first", "--", framed=False, dot=True)
     blades = Blades([[0.5, 0.5, math.pi / 2]], 0.2, "quiet")
     right = Path([[0.0, 0.0], [1.0, 2.0]], "truth")
@@ -144,7 +138,7 @@ def test_each_chart_has_its_numbers_with_the_look_of_their_method(golden):
     golden(
         "charts.md", "\n".join(line for name, figure in results.items() for line in (f"## {name}", *described(figure)))
     )
-    # A path that is not framed does not enlarge the picture.
+    # A path that is not framed does not change the limits of the axes.
     panel = results["Paths in a plane"].axes[0]
     assert panel.get_xlim()[1] < 2
     assert panel.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
@@ -154,7 +148,7 @@ def test_each_chart_has_its_numbers_with_the_look_of_their_method(golden):
         assert all(not panel.get_lines() for panel in draw(failed).axes)
 
 
-def test_a_series_never_runs_backwards_in_cpu_time():
+def test_the_cpu_time_of_a_series_increases_as_the_step_decreases():
     steps = ((1e-2, 12.0), (3e-3, 9.0), (1e-3, 9.0), (3e-4, 30.0), (1e-4, 20.0))
     rough = [row_of("mujoco extended", step=step, angle=step, cpu=cpu) for step, cpu in steps]
     assert [row.step for row in charts.forwards(rough[::-1])] == [1e-3, 1e-4]
@@ -162,23 +156,22 @@ def test_a_series_never_runs_backwards_in_cpu_time():
     assert charts.forwards(plain) == plain
 
 
-def test_families_have_different_looks_and_registered_ones_never_change():
+def test_families_have_different_looks_and_the_looks_of_registered_families_are_fixed():
     strangers = [f"engine {number:02}" for number in range(60)]
     pairs = {name: (families.role(name, strangers), families.mark(name, strangers)) for name in ("mujoco", *strangers)}
     assert len(set(pairs.values())) == len(pairs)
     assert pairs["mujoco"] == (families.role("mujoco"), families.mark("mujoco"))
     assert pairs["engine 03"] == (families.role("engine 03", strangers[::-1]), families.mark("engine 03", strangers))
-    # The first nine differ in their marks alone, as on paper without colours.
     assert len(set(families.MARKS)) == 9
 
 
 def has(panel: Axes, wanted: Any) -> bool:
-    """Whether one line of a panel goes through these points and no others."""
+    """Whether a line of the panel has exactly these points."""
     lines = [np.asarray(line.get_xydata(), dtype=float) for line in panel.get_lines()]
     return any(line.shape == np.shape(wanted) and np.allclose(line, wanted, equal_nan=True) for line in lines)
 
 
-def test_a_bodys_points_are_its_joints_turned_and_moved():
+def test_the_points_of_a_body_are_its_joints_at_its_pose():
     mechanism = four_bar()
     result = outlines.body_points(mechanism, mechanism.pose)
     # A = (0, 0), B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0).
@@ -193,7 +186,7 @@ def test_a_bodys_points_are_its_joints_turned_and_moved():
 
 
 def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
-    """A wheel of 0.5 m that rolls on a line, held by no joint but a pin of another body."""
+    """A wheel of 0.5 m without a joint rolls on a line; another body has a pin."""
     bodies = (Body("wheel", 1.0, 1.0, (0.0, 1.0, 0.0)), Body("crank", 1.0, 1.0, (0.0, 0.0, 0.0)))
     mechanism = Mechanism(bodies, (Pin("A", None, "crank", (0.0, 0.0), (0.0, 0.0)),))
     theta = np.linspace(0.1, 1.1, 41)
@@ -207,9 +200,9 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
         assert has(panel, [space[index]])
         c, s = math.cos(theta[index]), math.sin(theta[index])
         assert has(panel, body_curve @ np.array([[c, s], [-s, c]]) + poses[index, 0, :2])
-        assert has(panel, [[0.0, 0.0], space[index]])  # the crank's line, produced to the centre
+        assert has(panel, [[0.0, 0.0], space[index]])  # the crank's line, extended to the centre
     run, total = (np.array(points(line)) for line in draw_rate(curves).axes[0].get_lines())
-    # The centre moves by one radius per radian; splines of the curves give that to 1e-6, except near their ends.
+    # The centre moves by one radius per radian; except near the ends, splines reproduce this within 1e-6.
     assert run[5:-5] == pytest.approx(np.column_stack([np.degrees(theta), np.full(41, 0.5)])[5:-5], abs=1e-6)
     assert total[:, 1] == pytest.approx(1 / (curves.space_curvature + curves.body_curvature))
     [missed] = draw_rate(replace(curves, body=2 * body_curve)).axes[1].get_lines()
@@ -231,8 +224,8 @@ def test_the_band_ends_at_rounding_and_guides_have_their_slopes():
     assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
 
 
-def test_an_outline_has_further_points_in_order_and_a_strip_its_poses_at_equal_times():
-    mechanism = pendulum(angle=math.pi / 2)  # from the origin straight up, one metre
+def test_an_outline_is_sorted_along_the_body_and_a_strip_has_equally_spaced_times():
+    mechanism = pendulum(angle=math.pi / 2)  # its bar of 1 m points upwards from the origin
     result = drawings.outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
     assert result == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
     strip = drawings.Strip(Disc(duration=2.0), "Turning", 5, start=0.5, end=1.5)

@@ -1,4 +1,4 @@
-"""Faults of engines and slips of the book: scripts print the documented output; derivatives confirm the verdicts."""
+"""Faults of engines and slips of the chapter: scripts print the documented output, derivatives confirm corrections."""
 
 from __future__ import annotations
 
@@ -72,7 +72,6 @@ def test_the_output_of_a_script_agrees_with_its_document(name):
 
 
 def test_a_groove_drives_the_wrong_velocity_to_zero():
-    """Bound of the rounding errors of about twenty operations and of the velocity itself."""
     for offset in OFFSETS.offsets:
         assert measured_across(offset) == pytest.approx(predicted_across(offset), rel=1e-12)
 
@@ -95,7 +94,7 @@ def test_a_script_whose_extra_is_missing_is_not_run_and_its_page_and_answer_name
     assert sentence in render_page(PAGE, Material({}), "crosscheck run")["faults.md"]
 
 
-# An integration is off by its tolerance, 1e-3; every other slip by something of the motion's own size.
+# Least error of a printed formula. Slip 19 is an integration with the tolerance 1e-3.
 LEAST = {19: 1e-3}
 
 
@@ -106,10 +105,10 @@ def ruled() -> tuple[referees.Ruling, ...]:
 
 def test_the_correction_is_the_derivative_and_the_printed_formula_is_not():
     assert [slip.number for slip in referees.ERRATA] == [1, 2, 11, 19, 23, 24, 25, 26, 27, 28]
-    assert [slip.number for slip in referees.WORD_SLIPS] == [10, 18]  # nothing to compute
+    assert [slip.number for slip in referees.WORD_SLIPS] == [10, 18]
     rolling = errata.rolling_acceleration()
     for number, values in {0: rolling, **{slip.number: slip.values for slip in referees.ERRATA}}.items():
-        # Numbers of the order of 1 to 10; Cauchy's integral divides rounding by radius^2 = 1/16.
+        # The values are 1 to 10, and Cauchy's integral divides rounding by radius^2 = 1/16.
         assert values.agreement < 1e-12, number
         assert values.miss > LEAST.get(number, 0.1), number
 
@@ -122,11 +121,11 @@ def test_engines_check_the_formulas_of_the_scripts():
         assert errata.right(state) == pytest.approx(by_number[number].right, abs=1e-12), number
 
 
-def test_several_engines_confirm_each_right_formula_and_contradict_the_printed_one(ruled):
+def test_two_engines_or_more_confirm_each_right_formula_and_contradict_the_printed_one(ruled):
     for number in (referees.CONFIRMED, *(slip.number for slip in referees.ERRATA)):
         of_slip = [ruling for ruling in ruled if ruling.number == number]
         assert len({ruling.method.split()[0] for ruling in of_slip}) >= 2, number
-        # Accelerations are differences of velocities over 1e-3 s, and engines are exact to 1e-9 and better here.
+        # Accelerations are differences of velocities over 1e-3 s, and the errors of these velocities are below 1e-9.
         assert max(ruling.values.agreement for ruling in of_slip) < 1e-6, number
         # The rates of the four-bar are right as printed.
         assert number == referees.CONFIRMED or min(ruling.values.miss for ruling in of_slip) > LEAST.get(number, 0.1), (
@@ -135,7 +134,7 @@ def test_several_engines_confirm_each_right_formula_and_contradict_the_printed_o
 
 
 def test_the_motion_of_a_wrong_mechanism_contradicts_the_right_formula():
-    """The referee must be able to fail: with a bar that is 1 % too long, no formula fits the ends of the bars."""
+    """With a bar that is 1 % too long, neither formula agrees with the accelerations of the bars' ends."""
     mechanism = referees.double_pendulum()
     length = next(mistake for mistake in mistakes(mechanism) if mistake.kind == "length")
     motion = mistaken(referees.REFEREES[-1], length, 1e-2).build(mechanism, referees.WINDOW_SPACING)(

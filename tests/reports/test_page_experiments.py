@@ -1,4 +1,4 @@
-"""Experiments of pages: the truth of scenes made for failure, numbers of remarks, claims, and readings of motions."""
+"""Experiments of pages: their reference motions, observations and claims; and capabilities of engines."""
 
 from __future__ import annotations
 

@@ -58,17 +58,15 @@ from tests.toys import Disc, Toy
 SUBSETS = 3  # of every page
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
 NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name != "step"]
-FROM_ROWS = tuple(page for page in PAGES if shown_cells(page))  # the others have none, or compute when written
-
-
-# Some errors have a plateau and others fall; only for a plateau can a sentence give its value.
+FROM_ROWS = tuple(page for page in PAGES if shown_cells(page))
+# Texts of clauses that are left out if an error has no plateau.
 PLATEAU = ("however small the step", "at every step", "(plateau ")
 
 Rows = Mapping[Cell, Measurement]
 
 
 def some(rows: Rows, chance: random.Random) -> Rows:
-    """A part of the rows: rows, engines, variants, scenes, steps and purposes are removed, other rows have failed."""
+    """A random part of the rows, in which some rows have failed and some numbers are NaN."""
     remaining = dict(rows)
     for of in (
         lambda cell: cell.engine.name,
@@ -92,12 +90,12 @@ def some(rows: Rows, chance: random.Random) -> Rows:
 
 
 def prose(text: str) -> str:
-    """The text of a page in which a placeholder stands for each block and span of code."""
+    """The text of a page with CODE in place of code."""
     return re.sub(r"`[^`\n]+`", "CODE", re.sub(r"^```.*?^```$", "CODE", text, flags=re.DOTALL | re.MULTILINE))
 
 
 def complaints(page: str, files: Mapping[str, str]) -> list[str]:
-    """Defects of a page that a reader would notice."""
+    """The defects of a page: missing numbers, torn sentences, dead links."""
     text = prose(files[f"{page}.md"])
     sentences = re.sub(r"^\|.*$", "TABLE", text, flags=re.MULTILINE)
     results = [f"{label} in the text" for label in ("{{", "{%", UNKNOWN_MARK, NOT_MEASURED) if label in text]
@@ -119,7 +117,7 @@ def complaints(page: str, files: Mapping[str, str]) -> list[str]:
 
 @pytest.fixture
 def undrawn(monkeypatch):
-    """Pictures are empty, since drawing is slow; the set of pictures is that of a real report."""
+    """Replace pictures by empty ones, since drawing is slow."""
     drawn_picture = theme.svg
     for module in [module for name, module in sys.modules.items() if name.startswith("reports")]:
         for name, value in list(vars(module).items()):
@@ -148,7 +146,6 @@ def test_a_page_is_readable_with_any_rows_and_answers(page, undrawn):
 
 @pytest.mark.parametrize("page", FROM_ROWS[::3], ids=lambda page: page.name)
 def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
-    """Charts of few rows are drawn, because these break axes and legends, and are cheap."""
     chance, rows = random.Random(page.name), page_rows(page)
     chosen_rows = {cell: rows[cell] for cell in chance.sample(list(rows), 12)}
     for cell in list(chosen_rows)[::2]:
@@ -178,13 +175,13 @@ def test_no_clause_is_left_out_if_all_rows_are_there(page, undrawn, monkeypatch)
 
     monkeypatch.setitem(FILTERS, "if_measured", record_clause)
     answers = {task: still(task) for task in all_tasks(page)}
-    # A body at rest does not slip, so remarks about motions need the real motions.
+    # Remarks with a context need the real motions.
     observed = (
         task
         for failure in page.failures
         if failure.context is not no_context
         for task in failure.tasks
-        if not isinstance(task, NeighbourGrowth)  # takes seconds, and any growth makes a sentence
+        if not isinstance(task, NeighbourGrowth)  # takes seconds
     )
     material = Material(page_rows(page), answers | {task: answer_to(task) for task in observed})
     assert complaints(page.name, render_page(page, material, "the command")) == []
@@ -218,7 +215,7 @@ def test_a_missing_number_is_marked_and_removes_its_clause(template, said):
     assert without_marks(environment().from_string(template).render(options)) == said
 
 
-# The check of a user's model for which no setting is accurate enough and one run failed.
+# A check in which no setting is accurate enough and one run has failed.
 STILL = Pose([[[0.0, 0.0], [1.0, 0.0]]], [], [])
 ERRORS = {"angle": [0.0, 1e-3]}
 SHOWN = PictureData([0.0, 1.0], ERRORS, [0.0, 1.0], ERRORS, [], None, None, 1.0, [[0.0, 0.0]], STILL, STILL)
@@ -235,7 +232,7 @@ WALKED = {
 
 
 def still(task: Task, lost: bool = False) -> Answer:
-    """An invented answer: a body at rest, or one whose numbers are NaN from the middle on."""
+    """An invented answer, such as a motion of bodies at rest; with `lost`, its second half is NaN."""
     values: dict[str, Any]
     match task:
         case Motion(cell=cell):
@@ -275,7 +272,7 @@ def still(task: Task, lost: bool = False) -> Answer:
 
 
 def some_answers(tasks: Iterable[Task], chance: random.Random) -> dict[Task, Answer]:
-    """Answers to a part of the tasks; some of them have failed."""
+    """Answers to a random part of the tasks, some of which have failed."""
     results = {}
     for task in tasks:
         match chance.choice(["missing", "failed", "lost", "still", "still"]):
@@ -291,7 +288,7 @@ def some_answers(tasks: Iterable[Task], chance: random.Random) -> dict[Task, Ans
 def test_a_motion_that_is_not_finite_is_reported_in_its_line():
     cell = Motion(turning_round.TURNING_ROUND[0]).cell
     material = Material({}, {Motion(cell): still(Motion(cell))})
-    with pytest.raises(ZeroDivisionError):  # an error of our code must not become an observation
+    with pytest.raises(ZeroDivisionError):  # a programming error is not an observation
         observe(material, cell, "a step", lambda run: f"{1 / 0}")
     missing = Material({}, {Motion(cell): still(Motion(cell), lost=True)})
     [line] = observe(missing, cell, "a step", lambda run: "all is well")
@@ -306,16 +303,13 @@ MECHANISMS = tuple(page for page in FROM_ROWS if page.scenes)
 
 @cache
 def texts(page: Page) -> dict[str, str]:
-    """The Markdown files of a page from the committed rows, without its pictures; call under `undrawn`."""
+    """The Markdown files of a page from the committed rows. The caller needs the fixture `undrawn`."""
     return {name: text for name, text in written(page, page_rows(page)).items() if name.endswith(".md")}
 
 
 @cache
 def anchors(file: str) -> frozenset[str]:
-    """What links to a page's file may end with, whichever page it is; call under `undrawn`.
-
-    Raises FileNotFoundError for a file of no page.
-    """
+    """The anchors of headings in a page's file. Raises FileNotFoundError for another file."""
     page = next((page for page in PAGES if file == page.document), None)
     # The index contains all pages.
     text = (RESULTS / file).read_text(encoding="utf-8") if page is None else texts(page)[file]

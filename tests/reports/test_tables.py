@@ -84,7 +84,7 @@ def page_of(*methods: Toy, **changes) -> Page:
         (0.1256, "0.126", 3),
     ],
 )
-def test_numbers_are_printed_with_as_many_digits_as_asked(value, text, digits):
+def test_a_number_has_the_requested_significant_digits(value, text, digits):
     assert tables.number(value, digits) == text
 
 
@@ -97,20 +97,20 @@ def tuned(step: float, **changes):
 
 
 def at_steps() -> Iterator[list[Measurement]]:
-    """Rows of MuJoCo's documented settings, each set for another content of a cell in the table at equal step."""
+    """Sets of rows of MuJoCo's documented settings, with different contents of the cell in the table at equal step."""
     yield falling("mujoco tuned", POWER)
     yield falling("mujoco tuned", (1e-2, 1e-13))  # falls to rounding
     yield falling("mujoco tuned", (1e-2, 3e-5, 2e-5, 2e-5))
     yield falling("mujoco tuned", (1e-2, 3e-5, 2.9e-5))  # levels off
     yield falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3))  # least at 1 ms
-    # Two errors cancel at the second step: the cell has the limit, and the remark that a smaller error is luck.
+    # Two errors cancel at the second step, so the cell has the plateau and the remark that less is luck.
     yield falling("mujoco tuned", (1e-2, 1e-4, 1e-3, 1.1e-3, 1.11e-3))
-    # The remark refers only to errors in the cell.
+    # Here they cancel at a step that is not in the cell, so there is no remark.
     yield falling("mujoco tuned", (1e-2, 2e-3, 1.6e-3, 1e-5, 1.4e-3, 1.5e-3, 1.5e-3))
-    # A row at a usual step leaves the order alone.
+    # A row with the purpose "usual" does not change the order.
     yield [*falling("mujoco tuned", POWER), tuned(1e-4, angle=0.3, purpose="usual")]
     yield [*falling("mujoco tuned", POWER[:1]), tuned(1e-2, angle=1e-4, purpose="usual"), tuned(1e-3, angle=1e-6)]
-    # What fails says so in its place, and at the finest step; at all usual steps once.
+    # A failed run has its outcome; equal outcomes at all steps are printed once.
     yield [*falling("mujoco tuned", POWER[:2]), tuned(1e-3, outcome=Outcome.TORN)]
     failed = [tuned(10.0**-i, outcome=Outcome.SATURATED) for i in (1, 2, 3)]
     yield failed + [tuned(10.0**-i, angle=10.0 ** (2 - i)) for i in (4, 5, 6)]
@@ -127,7 +127,7 @@ def cell_of(rows: Iterable[Measurement]) -> str:
 
 
 def printed() -> Iterator[str]:
-    """Everything that is printed of rows, in blocks."""
+    """All tables, each below a heading."""
     yield "## On a terminal"
     yield "\n".join(
         tables.text_table(["case", "error"], [["四節", "1e-3"], ["θ", "12"]], 1, (" ┃ ", " │ "), ("━", "━╇━"))
@@ -224,7 +224,7 @@ def test_printed_tables_equal_the_golden_file(golden):
 
 
 def test_the_order_of_rows_changes_no_cell():
-    for rows in list(at_steps())[:-2]:  # outcomes alone have the order of their rows
+    for rows in list(at_steps())[:-2]:  # in the last two sets, a cell with outcomes has the order of the rows
         assert cell_of(rows[::-1]) == cell_of(rows)
 
 
@@ -235,7 +235,7 @@ def test_two_rows_for_one_cell_are_refused():
 
 @pytest.fixture
 def other_versions(monkeypatch):
-    """Versions are looked up once in a process: here they change, and are those of this installation afterwards."""
+    """A `monkeypatch` with which a test can change the cached versions."""
     provenance._version.cache_clear()
     yield monkeypatch
     provenance._version.cache_clear()
@@ -294,13 +294,13 @@ def test_the_enforcement_of_joints_determines_the_column_of_a_method():
 
 def test_a_naive_method_is_never_printed_under_a_usual_name():
     assert [engine_tables.displayed_variant(scene, pymunk.DEFAULT) for scene in (FREE, SLEIGH)] == ["default", "naive"]
-    assert engine_tables.displayed_variant(SLEIGH, mujoco.DEFAULT) == "default"  # a contact of its own
+    assert engine_tables.displayed_variant(SLEIGH, mujoco.DEFAULT) == "default"
     tricks = [engine_tables.displayed_variant(SLEIGH, HeldBy(variant, by="ours")) for variant in ("default", "tuned")]
-    assert tricks == ["naive", "naive, tuned"]  # rows of one name would be taken for one method
+    assert tricks == ["naive", "naive, tuned"]
     assert engine_tables.displayed_variant(SLEIGH, SKATE_POINT) == SKATE_POINT.variant
     cell = Cell(SLEIGH, pymunk.DEFAULT, 1)
     assert engine_tables.with_displayed_variants({cell: row_of("pymunk default")})[cell].method == "pymunk naive"
-    # An unusual variant under the documented settings is named, a usual one is not.
+    # A remark names an unusual variant, such as the friction blade.
     (line,) = (
         line
         for line in engine_tables.engine_lines([(SKATE, falling("mujoco default", POWER, "position", scene="sleigh"))])
@@ -315,23 +315,23 @@ def test_a_naive_method_is_never_printed_under_a_usual_name():
 
 
 def test_an_error_within_a_cpu_time_counts_only_if_no_smaller_step_exceeds_it():
-    rows = falling("mujoco tuned", (1e-2, 1e-5, 1e-3, 1e-6))  # they cost 1, 10, 100 and 1000 ms; the second is luck
+    rows = falling("mujoco tuned", (1e-2, 1e-5, 1e-3, 1e-6))  # with CPU times of 1, 10, 100 and 1000 ms
     for cost, error in ((0.1, 1e-3), (0.01, 1e-3), (0.001, 1e-2), (0.0009, math.inf), (9.0, 1e-6)):
         assert engine_tables.error_within(rows, "angle", cost) == error
     torn = [*rows[:3], replace(rows[3], outcome=Outcome.TORN)]
     assert engine_tables.error_within(torn, "angle", 9.0) == math.inf
 
 
-def test_a_line_of_the_picture_never_runs_backwards():
+def test_the_least_error_falls_as_the_cpu_time_increases():
     rough = falling("mujoco extended", (1e-2, 1e-5, 1e-7))
-    rough[0] = replace(rough[0], cpu=0.05)  # a pilot run made the largest step cost more than the next one
+    rough[0] = replace(rough[0], cpu=0.05)  # more than at the next smaller step
     points = engine_tables.error_by_cost([rough, falling("mujoco tuned", (1e-1, 1e-3, 1e-3))], "angle")
     assert points == sorted(points)
     assert [error for _, error in points] == sorted((error for _, error in points), reverse=True)
     assert min(error for _, error in points) == 1e-7
 
 
-def test_a_small_error_that_a_finer_step_exceeds_is_not_reliable():
+def test_a_step_is_not_reliable_if_a_smaller_step_has_a_larger_error():
     lucky = falling("a lucky", (1e-5, 1e-2, 1e-3))
     assert [row.step for row in reliable(lucky, "angle", 1e-2)] == [1e-3, 1e-2, 1e-1]
     assert [row.step for row in reliable(lucky, "angle", 5e-3)] == [1e-3]
@@ -349,7 +349,6 @@ def test_among_equal_costs_the_first_method_of_the_page_is_recommended():
     ):
         (result,) = advice(rows, "angle", order)
         assert present(result.row).method == expected
-    # Methods are compared at the step that is nearest by its ratio.
     assert compared_step([row_of("a x", step=step) for step in (3e-4, 2.9e-3)]) == 2.9e-3
 
 
