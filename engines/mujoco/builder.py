@@ -23,8 +23,6 @@ PLACEHOLDER = "written row"  # the name, without a number, of a tendon that rese
 
 @dataclass(frozen=True)
 class Hooks:
-    """Our callbacks for the steps of a model."""
-
     control: Callback | None = None  # called in every stage of the integrator, as `mjcb_control`
     before_step: Callback | None = None
 
@@ -59,10 +57,8 @@ class UserRowJoint:
 
 @dataclass(frozen=True)
 class DrivenCoordinate:
-    """A tree coordinate that turns at a prescribed rate [rad/s]."""
-
     column: int
-    rate: float
+    rate: float  # rad/s
 
 
 @dataclass
@@ -111,7 +107,6 @@ class ModelBuilder:
         return name
 
     def add_spatial_tendon(self, name: str, element: Any) -> Any:
-        """Add a tendon between the two points of a joint or a force element."""
         tendon = self.spec.add_tendon(name=name)
         tendon.wrap_site(self.add_site(f"{name} first", element.first, element.first_point))
         tendon.wrap_site(self.add_site(f"{name} second", element.second, element.second_point))
@@ -138,11 +133,16 @@ class ModelBuilder:
         )
 
     def hold_length(self, tendon: str) -> None:
-        """Keep a tendon at its initial length."""
         self.add_equality(mujoco.mjtEq.mjEQ_TENDON, tendon)
 
+    def hold_sum(self, name: str, factors: Mapping[int, float]) -> None:
+        """Keep a sum of tree coordinates at its initial value, unless all of its factors are zero."""
+        nonzero = {column: factor for column, factor in factors.items() if factor}
+        if nonzero:
+            self.add_fixed_tendon(name, nonzero)
+            self.hold_length(name)
+
     def add_user_rows(self, kind: RowKind, joint: Any, numbers: Sequence[float], rolled: Rolled | None = None) -> None:
-        """Enforce a joint by rows that our code writes."""
         self.user_rows.append(UserRowJoint(kind, joint.first, joint.second, tuple(numbers), rolled))
 
     def moving_columns(self, joint: UserRowJoint) -> list[int]:

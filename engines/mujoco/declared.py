@@ -99,8 +99,6 @@ def why_no_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> str:
 
 @dataclass(frozen=True, eq=False)
 class DeclaredState:
-    """A state of a model, and the rows of its declared law in this state."""
-
     mechanism: Mechanism
     model: MuJoCoModel
     data: Any
@@ -141,7 +139,6 @@ class DeclaredState:
         return constrained(rows, right + self.aimed, self.mechanism.inertias, self.free, self.compliance)
 
     def coordinates(self, velocity_term: bool = True) -> Array:
-        """The accelerations of the tree coordinates according to the law."""
         coasting = self.motion(np.zeros(self.model.compiled.nv))
         columns = _directions(self.model, self.data)[:, self.model.address]
         change = (self.law(velocity_term).motion - coasting).reshape(-1)
@@ -213,8 +210,6 @@ def _declared_rows(
 
 @dataclass(frozen=True, eq=False)
 class _JointRows:
-    """MuJoCo's rows of a joint."""
-
     model: MuJoCoModel
     data: Any
     joint: Joint

@@ -92,7 +92,6 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The order of the integrator, or the lower order of a constraint row."""
         tree = self._tree(mechanism)
         has_skates, has_rolls = _has(mechanism, Skate), _has(mechanism, Roll)
         is_driven = any(isinstance(joint, Drive) and not tree.holds(joint) for joint in mechanism.joints)
@@ -186,13 +185,11 @@ class MuJoCo(Engine, Valid):
         return declared.instants(self, mechanism, dt, steps, built or mechanism)
 
     def stricter(self, mechanism: Mechanism) -> MuJoCo | None:
-        """The engine with a tolerance at which the error of the solver is rounding; None if it has that tolerance."""
         tolerance = declared.ROUNDING_TOLERANCE
         return None if self.tolerance <= tolerance else replace(self, tolerance=tolerance)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> MuJoCoRun:
-        """Raises Unsupported, and ValueError for an invalid step."""
         model = self.model(mechanism, dt)
         data = model.start()
         _refuse_huge_rates(data)

@@ -24,16 +24,13 @@ TUNED = MuJoCo(
     skates="predicted tendon",
     rolls=CONTACT,
 )
-EXTENDED = MuJoCo(
-    "extended",
-    "RK4",
-    Hardened(eased=True),
+EXTENDED = replace(
+    TUNED,
+    variant="extended",
+    stiffness=Hardened(eased=True),
     armature=1e12,
     solvers=("Newton", "PGS", "CG"),
-    iterations=100,
     tolerance=1e-28,
-    jacobian="dense",
-    islands=False,
     slots="rows",
     skates="rows",
     rolls="rows",

@@ -49,8 +49,6 @@ MAX_MASS_RATIO = 1e13
 
 @dataclass(frozen=True)
 class MuJoCoModel:
-    """A compiled model, and the meaning of its coordinates, bodies and units."""
-
     mechanism: Mechanism
     tree: Tree
     compiled: Any  # mujoco.MjModel
@@ -159,7 +157,6 @@ def multiply_compliances(compiled: Any, factor: float) -> None:
 
 
 def _spec(tree: Tree, dt: float, islands: bool, options: Mapping[str, Any]) -> Any:
-    """A mujoco.MjSpec with the options and the bodies of the tree."""
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
     spec.option.timestep = dt

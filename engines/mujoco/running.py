@@ -42,7 +42,6 @@ RELEASED_MOTION = 1.5
 
 
 def residual_warning(residual: float) -> RunWarning:
-    """The warning for a residual of the solver, relative to the accelerations, above MAX_RESIDUAL."""
     text = f"ours: the solver missed the accelerations by {residual:.1g} of themselves"
     return RunWarning(text, "residual", "adapter")
 
@@ -77,8 +76,6 @@ def logged_warnings(data: Any = None) -> Iterator[WarningLog]:
 
 @dataclass(eq=False)
 class MuJoCoRun(OneShot):
-    """A run of a model from t = 0; see `engines.Run`."""
-
     model: MuJoCoModel
     data: Any  # mujoco.MjData, which the steps change
     size: Size
@@ -184,7 +181,6 @@ class MuJoCoRun(OneShot):
         return replace(run, stepping=stepping, warnings=tuple(warnings), estimate=error, unresolved_at=unresolved_at)
 
     def _reaction_warnings(self, run: Trajectory, *displacements: Array) -> list[RunWarning]:
-        """Warnings if displacements of the poses (times, bodies, 3) change the reactions too much."""
         mechanism = self.model.mechanism
         is_valid = np.isfinite(run.reaction).any(axis=1) & np.isfinite(displacements).all(axis=(0, 2, 3))
         matters = np.any(np.abs(displacements) > MIN_DISPLACEMENT * mechanism.pose_unit, axis=(0, 2, 3))

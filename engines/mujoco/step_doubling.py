@@ -47,7 +47,6 @@ class StepDoubling:
 
     @property
     def needs_half(self) -> bool:
-        """Whether the difference to steps 2h is too large to confirm the order."""
         return len(self.conclusive) < len(self.watched)
 
     def relative(self, difference: Array) -> Array:

@@ -230,7 +230,6 @@ def _write_row(plan: Any, moving: int, ends: tuple[int, int], row: Row, jacobian
 
 @compiled
 def _state(plan: Any, m: int) -> State:
-    """The state of the body whose motion begins at index `m`."""
     return plan[m + X], plan[m + Y], plan[m + ANGLE], plan[m + VX], plan[m + VY], plan[m + OMEGA]
 
 

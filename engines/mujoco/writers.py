@@ -166,7 +166,6 @@ def _text(root: xml.Element) -> str:
 
 
 def _option(option: Any) -> xml.Element:
-    """The options of the compiled model, including those with MuJoCo's default values."""
     attributes = {name: _row(getattr(option, name)) for name in ("timestep", "gravity", "tolerance")}
     for name in ("Integrator", "Solver", "Jacobian", "Cone"):
         attributes[name.lower()] = spelled(getattr(mujoco, f"mjt{name}")(getattr(option, name.lower())))

@@ -80,7 +80,6 @@ ORDERS: Mapping[Kind, tuple[ConvergenceOrder, ConvergenceOrder, ConvergenceOrder
 
 
 def order(engine: Pymunk, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-    """The orders of `ORDERS`; NotDeclared for constructions whose error does not vanish with the step size."""
     if engine.slot == "groove" and any(_is_link(joint, mechanism) for joint in mechanism.joints):
         return NotDeclared("a groove off the centre of mass of a body that turns has a wrong impulse at any step")
     if engine.skate in ("centre", "point") and any(_is_off_centre(joint) for joint in mechanism.joints):
@@ -178,7 +177,6 @@ def instants(
 
 
 def first_law(engine: Pymunk, mechanism: Mechanism, dt: float) -> Array:
-    """The velocities (bodies, 3) after the first step according to the law."""
     model = engine.model(mechanism, dt)
     return _law(model, mechanism, record(model, dt, 1, 1, raw=engine.leapfrog), 1, dt)[0]
 

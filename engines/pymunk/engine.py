@@ -107,12 +107,10 @@ class Pymunk(Engine, Valid):
         return declared.instants(self, mechanism, dt, steps, built or mechanism)
 
     def stricter(self, mechanism: Mechanism) -> Pymunk | None:
-        """The engine with ten times as many iterations; None if the convergence determines their number."""
         return replace(self, iterations=10 * self.iterations) if isinstance(self.iterations, int) else None
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> PymunkRun:
-        """Raises Unsupported for a mechanism that pymunk cannot represent, and ValueError for an invalid dt."""
         return PymunkRun(self, mechanism, dt)
 
     @validated
@@ -143,7 +141,6 @@ class Pymunk(Engine, Valid):
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, duration: NonNegative = 0.0) -> Model:
-        """The model at t = 0 for steps of dt [s], with the plan for a motion of `duration` [s]."""
         return self.model_with(mechanism, dt, self.plan(mechanism, duration))
 
     @validated
@@ -173,7 +170,6 @@ class Extended(EngineWrapper, Valid):
 
     @validated
     def chosen(self, mechanism: Mechanism) -> Extrapolated:
-        """The extrapolation that runs this mechanism."""
         if any(isinstance(joint, Skate) for joint in mechanism.joints) or mechanism.applied.dissipate:
             return self.skates
         return self.pins

@@ -36,13 +36,7 @@ SKATE_POINT = Pymunk("skate: point's velocity zeroed", skate="point")
 SKATE_PROJECTED = Pymunk("skate: impulse at the blade", skate="projection")
 SKATE_GROOVE = Pymunk("skate: groove, predicted heading", skate="groove")
 SKATE_GROOVE_EXTRAPOLATED = replace(EXTENDED.skates, variant="skate: groove, extrapolated")
-SKATE_METHODS: tuple[Engine, ...] = (
-    SKATE_CENTRE,
-    SKATE_POINT,
-    SKATE_PROJECTED,
-    SKATE_GROOVE,
-    SKATE_GROOVE_EXTRAPOLATED,
-)
+SKATE_METHODS = (SKATE_CENTRE, SKATE_POINT, SKATE_PROJECTED, SKATE_GROOVE, SKATE_GROOVE_EXTRAPOLATED)
 
 # For a round body these methods are the same, since its shape is a circle.
 POLYGON_CORNERS = (8, 32, 128, 512)

@@ -57,11 +57,9 @@ CONSTRAINT_ROWS: Mapping[type[constraints.Constraint], int] = {
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of a model. `unit` [s] is the model's unit of time, and `error_bias` is per unit."""
-
     iterations: int
-    error_bias: float
-    unit: float
+    error_bias: float  # per unit of time
+    unit: float  # s, the unit of time of the model
     skate: SkateConstruction
     roll: RollConstruction
     slot: SlotConstruction = "exact"
@@ -121,7 +119,6 @@ def _no_drift(body: pymunk.Body, dt: float) -> None:
 
 
 def build_model(mechanism: Mechanism, settings: Settings) -> Model:
-    """The model of a mechanism at t = 0; raises Unsupported."""
     PYMUNK_CAPABILITY.require(mechanism)
     return _Builder(mechanism, settings).model()
 
@@ -188,7 +185,6 @@ class _Builder:
         return (point[0] - x, point[1] - y)
 
     def anchors(self, element: Any) -> tuple[Vector, Vector]:
-        """The points of an element [m] relative to the origins of its pymunk bodies."""
         first, second = (element.first, element.first_point), (element.second, element.second_point)
         return self.from_origin(*first), self.from_origin(*second)
 

@@ -182,7 +182,6 @@ class PymunkRun(OneShot):
         self.size: Size = engine.model(mechanism, dt).size
 
     def _started(self, plan: IterationPlan) -> Model:
-        """The model, after a kick of half a step if the engine is a leapfrog."""
         model = self._engine.model_with(self._mechanism, self._dt, plan)
         if self._engine.leapfrog:
             if self._engine.startup_steps:
@@ -193,7 +192,6 @@ class PymunkRun(OneShot):
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
-        """Raises ValueError for counts below one or not whole, and RuntimeError at the second call."""
         return self.watched(samples, every, 1)
 
     @validated

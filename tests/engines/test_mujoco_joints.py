@@ -22,12 +22,7 @@ from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
 from reference.scenes.rolling.elliptic_gears import EllipticGears
-from reference.scenes.rolling.scenes import (
-    RollingDisc,
-    RollingDownhill,
-    RollingEllipse,
-    RollingOnCircle,
-)
+from reference.scenes.rolling.scenes import RollingDisc, RollingDownhill, RollingEllipse, RollingOnCircle
 from reference.scenes.skates import ChaplyginSleigh
 from reference.trajectory import Trajectory
 from reports.search.mechanisms import mechanism as drawn

@@ -42,9 +42,7 @@ def one_of_each(
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast", "discrete"])
-def test_upstream_the_smallest_time_constants_of_equalities_and_contacts(
-    integrator: str,
-) -> None:
+def test_upstream_the_smallest_time_constants_of_equalities_and_contacts(integrator: str) -> None:
     for refsafe in ("enable", "disable"):
         of_equality = of_contact = 2e-3
         if integrator == "discrete":

@@ -11,12 +11,7 @@ import pytest
 from engines import ConvergenceOrder
 from engines.lagrange import TRUTH
 from engines.pymunk import DEFAULT, LEAPFROG, TUNED, Pymunk
-from engines.pymunk.convergence import (
-    convergence_factor,
-    convergence_factor_at,
-    corrects_gap,
-    step_spectral_radius,
-)
+from engines.pymunk.convergence import convergence_factor, convergence_factor_at, corrects_gap, step_spectral_radius
 from engines.pymunk.iterations import iterations_in_step, stable_gain, worst_factor
 from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Body, Mechanism

@@ -67,8 +67,7 @@ CROSSED = f'{ALONG}<joint type="slide" axis="0 0 1"/>'
 # All connections of a body with its parent.
 CONNECTIONS = (SLIDE, SLIDE + TURNED, TURNED + SLIDE, CROSSED + TURNED, CROSSED, '<joint axis="0 -1 0"/>')
 TREES = TWO_LINKS.replace(
-    "<site",
-    f'<body pos=".4 0 .2"><geom fromto="0 0 0 .1 0 .2"/></body><body pos=".1 0 0">{ALONG}{BOX}</body><site',
+    "<site", f'<body pos=".4 0 .2"><geom fromto="0 0 0 .1 0 .2"/></body><body pos=".1 0 0">{ALONG}{BOX}</body><site'
 ) + "".join(f"<body>{joints}{BOX}</body>" for joints in CONNECTIONS)
 SPRUNG_BODIES = f"""<body name="upper" gravcomp=".7"><joint name="A" armature=".1"/><geom fromto="0 0 0 .3 0 .1"/>
 <body pos=".1 0 0"><joint type="slide" axis="1 0 0" stiffness="30" damping="1"/>{BOX}</body>
@@ -94,11 +93,7 @@ MJCF_MODELS = {"trees": (TREES, ""), "forces": (SPRUNG_BODIES, TENDONS_AND_ACTUA
         ("a connect of sites", SITES, '<connect site1="end" site2="mine"/>'),
         ("a weld", FOUR_BAR_MJCF, '<weld body1="coupler" body2="rocker"/>'),
         ("a weld that holds a point alone", FOUR_BAR_MJCF, '<weld body1="coupler" body2="rocker" torquescale="0"/>'),
-        (
-            "a coupling of two grounded hinges",
-            FOUR_BAR_MJCF,
-            '<joint joint1="A" joint2="D" polycoef="0 -1.5 0 0 0"/>',
-        ),
+        ("a coupling of two grounded hinges", FOUR_BAR_MJCF, '<joint joint1="A" joint2="D" polycoef="0 -1.5 0 0 0"/>'),
         ("a coupling along a chain", TWO_LINKS, '<joint joint1="B" joint2="A" polycoef="0 -.4 0 0 0"/>'),
         ("a locked hinge", FOUR_BAR_MJCF, '<joint joint1="D"/>'),
         ("a rod of a tendon", TWO_LINKS, '<tendon tendon1="t"/>'),

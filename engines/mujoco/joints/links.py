@@ -53,7 +53,7 @@ def add_pins(builder: ModelBuilder, pins: Sequence[Pin | Weld]) -> None:
 def add_welds(builder: ModelBuilder, welds: Sequence[Weld]) -> None:
     add_pins(builder, welds)
     for weld in welds:
-        _hold_angles(builder, f"weld {weld.name}", builder.tree.turning(weld.first, weld.second))
+        builder.hold_sum(f"weld {weld.name}", builder.tree.turning(weld.first, weld.second))
 
 
 def add_gears(builder: ModelBuilder, gears: Sequence[Gear]) -> None:
@@ -62,15 +62,7 @@ def add_gears(builder: ModelBuilder, gears: Sequence[Gear]) -> None:
         factors = dict(builder.tree.turning(None, gear.second))
         for column, sign in builder.tree.turning(None, gear.first).items():
             factors[column] = factors.get(column, 0.0) - gear.ratio * sign
-        _hold_angles(builder, f"gear {gear.name}", factors)
-
-
-def _hold_angles(builder: ModelBuilder, name: str, factors: Mapping[int, float]) -> None:
-    """Add an equality of a sum of coordinates, unless all factors are zero."""
-    changing = {column: factor for column, factor in factors.items() if factor}
-    if changing:
-        builder.add_fixed_tendon(name, changing)
-        builder.hold_length(name)
+        builder.hold_sum(f"gear {gear.name}", factors)
 
 
 def add_rods(builder: ModelBuilder, rods: Sequence[Rod]) -> None:
@@ -121,7 +113,6 @@ def _add_geared_drive(builder: ModelBuilder, drive: Drive, factors: Mapping[int,
 
 
 def _driving_inertia(builder: ModelBuilder) -> float:
-    """The armature of a driven coordinate [kg m^2]."""
     return builder.settings.armature * inertia_scale(builder.mechanism)
 
 

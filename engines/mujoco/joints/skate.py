@@ -109,7 +109,6 @@ def _add_predicted_tendons(builder: ModelBuilder, joints: Sequence[UserRowJoint]
 
 
 def _add_blades(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
-    """Add a tilted capsule for each skate. Raises Unsupported for a skate on a moving body."""
     mechanism, spec = builder.mechanism, builder.spec
     for skate in skates:
         if skate.first is not None:

@@ -113,11 +113,8 @@ def read_object(model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:
 def _refuse_not_finite(model: Any, data: Any) -> None:
     """Raise Unsupported for NaN or infinity in the initial state, which MuJoCo accepts."""
     joints_of_qpos = np.searchsorted(model.jnt_qposadr, np.arange(model.nq), side="right") - 1
-    for name, kind, owners in (
-        ("qpos", JOINT, joints_of_qpos),
-        ("qvel", JOINT, model.dof_jntid),
-        ("ctrl", ACTUATOR, None),
-    ):
+    owners_of = (("qpos", JOINT, joints_of_qpos), ("qvel", JOINT, model.dof_jntid), ("ctrl", ACTUATOR, None))
+    for name, kind, owners in owners_of:
         values = getattr(data, name)
         for index in np.flatnonzero(~np.isfinite(values)):
             element = name_of(model, kind, index if owners is None else owners[index])
@@ -143,10 +140,8 @@ def _note_limits_and_contacts(planar: PlanarModel) -> None:
         planar.note(element, f"its force is limited; {limit}")
     low, high = model.jnt_range.T
     for index in np.flatnonzero((low == high) & (low != 0) & (model.jnt_limited == 0)):
-        reason = (
-            f"MuJoCo does not limit it, since both ends of its range are {low[index]:g}; an equality holds it there"
-        )
-        planar.note(name_of(model, JOINT, index), reason)
+        reason = f"MuJoCo does not limit it, since both ends of its range are {low[index]:g}"
+        planar.note(name_of(model, JOINT, index), f"{reason}; an equality holds it there")
     if is_off(model, "CONSTRAINT"):
         return
     for kind, limited in ((JOINT, model.jnt_limited), (TENDON, model.tendon_limited)):
@@ -233,7 +228,6 @@ class MuJoCoReader:
 
 
 def _key(model: Any, key: str) -> int:
-    """The index of the keyframe with the name `key`, by default the first one."""
     if not key:
         return 0
     names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_KEY, index) or str(index) for index in range(model.nkey)]

@@ -10,17 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.consistent_start import PRINTED
-from engines.mujoco.reading.frame import (
-    BODY,
-    FREE,
-    HINGE,
-    JOINT,
-    PLANAR,
-    SLIDE,
-    PlanarModel,
-    name_of,
-    plain_name,
-)
+from engines.mujoco.reading.frame import BODY, FREE, HINGE, JOINT, PLANAR, SLIDE, PlanarModel, name_of, plain_name
 from engines.reading import refuse
 from reference.couplings import Coupling, Term
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Weld
@@ -36,7 +26,6 @@ TORQUE_SCALE = 10  # the index of a weld's torquescale in eq_data
 
 
 def tree_joints(planar: PlanarModel) -> list[Joint]:
-    """The joints of each body with its parent."""
     return [joint for group in range(len(planar.bodies)) for joint in _joints_with_parent(planar, group)]
 
 
@@ -119,7 +108,6 @@ def equalities(planar: PlanarModel) -> list[Joint]:
 
 
 def equality_rows(data: Any, index: int) -> NDArray[np.intp]:
-    """The indices of the rows of an equality among MuJoCo's rows."""
     return np.flatnonzero((data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)) & (data.efc_id == index))
 
 

@@ -39,7 +39,6 @@ def forces(planar: PlanarModel) -> list[ForceElement]:
 
 
 def is_off(model: Any, word: str) -> bool:
-    """Whether the model disables a flag, as CONTACT."""
     return bool(model.opt.disableflags & int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{word}")))
 
 
@@ -196,7 +195,6 @@ def _of_actuator(planar: PlanarModel, actuator: int) -> list[ForceElement]:
 
 
 def _control(planar: PlanarModel, actuator: int, element: str) -> float:
-    """The constant control of an actuator, clamped to its range."""
     model, control = planar.model, float(planar.data.ctrl[actuator])
     if not model.actuator_ctrllimited[actuator] or is_off(model, "CLAMPCTRL"):
         return control
@@ -207,7 +205,6 @@ def _control(planar: PlanarModel, actuator: int, element: str) -> float:
 
 
 def _at_site(planar: PlanarModel, element: str, name: str, actuator: int, push: float) -> list[ForceElement]:
-    """A constant force and torque at a site, in the directions of a reference site of the ground."""
     model, data = planar.model, planar.data
     site, base = (int(index) for index in model.actuator_trnid[actuator])
     if base < 0 or planar.group(model.site_bodyid[base]) >= 0:
@@ -231,7 +228,6 @@ def _on_body(
 
 
 def _applied(planar: PlanarModel) -> list[ForceElement]:
-    """The applied forces in the state, and the forces that compensate gravity."""
     model, data, out = planar.model, planar.data, list[ForceElement]()
     for dof in np.flatnonzero(data.qfrc_applied):
         joint = int(model.dof_jntid[dof])

@@ -33,8 +33,6 @@ FREE, BALL, SLIDE, HINGE = (
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """Unit vectors (3,) of the plane."""
-
     across: Array  # along x
     up: Array  # along y
     normal: Array  # angles are positive about it
@@ -224,8 +222,6 @@ def _half_angle(model: Any, frame: Frame, address: int, qpos: Array) -> tuple[Ar
 
 @dataclass(eq=False)
 class PlanarModel:
-    """A model in its initial state, the bodies of its mechanism, and the notes of the reading."""
-
     model: Any
     data: Any
     frame: Frame

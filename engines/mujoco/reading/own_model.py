@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -78,7 +78,6 @@ def positions(planar: PlanarModel, pose: Array) -> Array:
 
 
 def limited_forces(model: Any) -> list[str]:
-    """The elements whose force is limited."""
     tables = ((ACTUATOR, limited_servos(model)), (JOINT, model.jnt_actfrclimited), (TENDON, model.tendon_actfrclimited))
     return [name_of(model, kind, index) for kind, limited in tables for index in np.flatnonzero(limited)]
 
@@ -106,6 +105,7 @@ class OwnMuJoCo:
     users: Any  # the model that runs, with the joints of the user
     tilt: float = 0.0  # rad, the largest difference of the axes in these two models
     urdf: bool = False  # whether the file is URDF without an element for MuJoCo, which the lines to copy then contain
+    suspects: Mapping[str, str] = field(default_factory=dict)
     classes: bool = False  # whether the file may have classes of defaults, which a new default does not change
 
     engine = "MuJoCo"
@@ -130,10 +130,6 @@ class OwnMuJoCo:
         return np.array([body.twist for body in self.planar.bodies])
 
     @property
-    def suspects(self) -> Mapping[str, str]:
-        return {}
-
-    @property
     def settings(self) -> Mapping[str, str]:
         model, option = self.planar.model, self.planar.model.opt
         out = {
@@ -151,16 +147,13 @@ class OwnMuJoCo:
         return out
 
     def start(self) -> Array:
-        return self._start_accelerations(self.planar.model)
+        return self.without(None)
 
-    def without(self, element: str) -> Array:
+    def without(self, element: str | None) -> Array:
         model = copy.copy(self.planar.model)
-        switch_off(model, element)
-        return self._start_accelerations(model)
-
-    def _start_accelerations(self, model: Any) -> Array:
-        """The accelerations (bodies, 3) at t = 0. With tolerance zero the error of the solver is rounding."""
-        model = copy.copy(model)
+        if element is not None:
+            switch_off(model, element)
+        # With tolerance zero the error of the solver is rounding.
         model.opt.tolerance, model.opt.iterations = 0.0, max(100, model.opt.iterations)
         data = self._consistent_start(model)
         with logged_warnings(data):

@@ -23,7 +23,6 @@ class Crank:
 
     @property
     def own_point(self) -> Vector:
-        """The point [m] of the pin in the body frame."""
         return self.pin.first_point if self.pin.second is None else self.pin.second_point
 
     @property

@@ -50,10 +50,9 @@ class ContactSettings(Valid):
     whose surface is the flat ground, in multiples of `extent_of`. For polygons of some hundred corners on a segment of
     zero thickness, Chipmunk sometimes computes a wrong normal (`tests/engines/test_pymunk.py`).
 
-    With the default settings the motion of a contact depends on the unit of length, since collision_slop is 0.1 of the
-    unit of the positions (pymunk 7.3.1, `Space.collision_slop`; Chipmunk's cpSpace.c). The final angle of
-    `rolling_ellipse` changes by 4e-3 rad with millimetres, since overlaps exceed 0.1 mm. With `slop` 0 or `bias` 1 it
-    does not change.
+    With the default settings the motion of a contact depends on the unit of length, since collision_slop is 0.1 of this
+    unit (pymunk 7.3.1). The angle of `rolling_ellipse` changes by 4e-3 rad with millimetres. With `slop` 0 or `bias` 1
+    it does not change.
     """
 
     slop: NonNegative = SHIPPED_SLOP
@@ -98,12 +97,7 @@ def contact_shapes(
 
 
 def _shape(
-    joint: Roll,
-    curve: Curve,
-    body: pymunk.Body,
-    to_engine: ToEngine,
-    contact: ContactSettings,
-    extent: float,
+    joint: Roll, curve: Curve, body: pymunk.Body, to_engine: ToEngine, contact: ContactSettings, extent: float
 ) -> pymunk.Shape:
     inner, shift, turn = unplaced(curve)
     if isinstance(inner, Circle):

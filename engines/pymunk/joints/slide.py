@@ -2,13 +2,12 @@
 
 `SlotConstruction` is the construction of a slot:
 
-- "exact": a `GrooveJoint` or a `MovedPinJoint`. The groove joint is exact if the motion of the first body is prescribed
-  and the anchor is the centre of mass of the second body, or impulses cannot turn that body. Only then does an impulse
-  along the normal move the anchor along the normal.
-- "groove": always a `GrooveJoint`, as a user would build it. It solves for the impulse in both directions and keeps the
-  normal component (applyImpulse and grooveConstrain in Chipmunk's cpGrooveJoint.c). This impulse is correct only if the
-  normal is an eigenvector of the 2 by 2 inverse mass matrix of both bodies at the anchor. Otherwise motion across the
-  groove remains with any step size.
+- "groove": a `GrooveJoint`, as a user would build it. It solves for the impulse in both directions and keeps the normal
+  component (applyImpulse and grooveConstrain in Chipmunk's cpGrooveJoint.c). This impulse is correct only if the normal
+  is an eigenvector of the 2 by 2 inverse mass matrix of both bodies at the anchor. Otherwise motion across the groove
+  remains with any step size.
+- "exact": a `GrooveJoint` if its impulse is always correct, else a `MovedPinJoint`. It is always correct if the motion
+  of the first body is prescribed, and the anchor is the centre of mass of the second body or impulses cannot turn it.
 
 `SkateConstruction` is the construction of a skate. A blade constrains the same motion at every point of its axle. All
 constructions place it at the foot of the perpendicular from the centre of mass, where the impulse of a groove is
@@ -20,8 +19,7 @@ correct.
   The slip is zero except for rounding. The motion is wrong for the same reason.
 - "projection": after each step, an impulse at the blade removes the slip. It is of first order.
 - "groove": a `GrooveJoint` in the ground, placed before each step at the pose after the drift. This pose is exact. The
-  motion is of first order, and the slip is rounding. Between two moving bodies it is a `MovedPinJoint`. Contact with
-  friction is no alternative, since no force in the plane presses a blade on the ice.
+  motion is of first order, and the slip is rounding. Between two moving bodies it is a `MovedPinJoint`.
 
 A `MovedPinJoint` is a `PinJoint` that is placed before every step. Its row is the relative velocity of its two anchors
 along the line between them. One anchor is the point of the joint, and the other one is a point of the first body

@@ -21,11 +21,7 @@ ASSUMED_STEP = 1 / 60  # s, the step of pymunk's examples
 
 
 def read(
-    space: pymunk.Space,
-    step: float | None = None,
-    without: Sequence[str] = (),
-    parts: int = 1,
-    ahead: bool = False,
+    space: pymunk.Space, step: float | None = None, without: Sequence[str] = (), parts: int = 1, ahead: bool = False
 ) -> Reading:
     """The mechanism of a space in its present state. Raises Unsupported for an element without an ideal counterpart.
 

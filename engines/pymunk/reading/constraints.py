@@ -59,7 +59,6 @@ class ImportedSpace:
         return (float(world.x), float(world.y))
 
     def ends(self, constraint: Any) -> tuple[str | None, str | None, Vector, Vector]:
-        """The names of both bodies of a constraint, and its anchors."""
         a, b = constraint.a, constraint.b
         anchors = self.local(a, constraint.anchor_a), self.local(b, constraint.anchor_b)
         return self.name_of(a), self.name_of(b), *anchors
@@ -73,7 +72,6 @@ class ImportedSpace:
 
 
 def import_space(space: pymunk.Space) -> ImportedSpace:
-    """The elements of a space. Raises Unsupported for an element without an ideal counterpart."""
     out = ImportedSpace(space)
     if space.damping != 1:
         raise refuse("space.damping", f"it is {space.damping:g}: a drag against nothing has no ideal counterpart here")
@@ -136,7 +134,6 @@ def _add_body(out: ImportedSpace, body: pymunk.Body) -> None:
 
 
 def _add_push(out: ImportedSpace, body: pymunk.Body) -> None:
-    """Add the force and the torque that are set on a body, as constant ones."""
     name, (x, y), torque = out.body_names[body], body.force, float(body.torque)
     if x or y:
         out.forces.append(Force(out.names.new(f"force on {name}"), name, (0.0, 0.0), (float(x), float(y))))
@@ -306,7 +303,6 @@ def copy_space(imported: ImportedSpace) -> tuple[pymunk.Space, list[pymunk.Body]
 
 
 def set_poses(bodies: Sequence[pymunk.Body], pose: Array) -> None:
-    """Move the centres of mass and the angles of bodies to a pose (bodies, 3)."""
     for body, (x, y, angle) in zip(bodies, pose.tolist(), strict=True):
         body.angle = angle
         body.position = pymunk.Vec2d(x, y) - body.center_of_gravity.rotated(angle)

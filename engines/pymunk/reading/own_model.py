@@ -91,12 +91,11 @@ class OwnPymunk:
     @property
     def settings(self) -> Mapping[str, str]:
         space = self.imported.space
-        biases = sorted({constraint.error_bias for constraint in space.constraints})
         return {
             "step": f"{self.dt:.6g} s{', assumed' if self.assumed else ''}",
             "iterations": f"{space.iterations}",
             "gravity": f"{space.gravity.x:g}, {space.gravity.y:g}",
-            "error_bias": ", ".join(f"{bias:.4g}" for bias in biases),
+            "error_bias": ", ".join(f"{bias:.4g}" for bias in sorted({each.error_bias for each in space.constraints})),
         }
 
     def start(self) -> Array:
@@ -328,7 +327,6 @@ def _may_touch(one: pymunk.Shape, other: pymunk.Shape, in_space: set[constraints
 
 
 def _reached(limit: Any) -> bool:
-    """Whether the bodies of a limit are now at one of its ends or beyond it."""
     a, b = limit.a, limit.b
     if isinstance(limit, constraints.SlideJoint):
         distance = a.local_to_world(limit.anchor_a).get_distance(b.local_to_world(limit.anchor_b))

@@ -168,10 +168,8 @@ def _as_main_script(path: Path, module: types.ModuleType) -> Iterator[None]:
     the script imports that file.
     """
     folder, arguments, paths = os.getcwd(), sys.argv, list(sys.path)
-    beside = {file.stem for file in path.parent.glob("*.py")} | {
-        file.parent.name for file in path.parent.glob("*/__init__.py")
-    }
-    own_modules = beside - SHARED_MODULES
+    files, packages = path.parent.glob("*.py"), path.parent.glob("*/__init__.py")
+    own_modules = {*(file.stem for file in files), *(file.parent.name for file in packages)} - SHARED_MODULES
     hidden = {name: value for name, value in sys.modules.items() if name.partition(".")[0] in own_modules}
     for name in hidden:
         del sys.modules[name]
@@ -204,7 +202,6 @@ class _FirstStep:
         self.by_lines = without_drift or {"position", "angle", "velocity", "angular_velocity"} <= {*names}
 
     def undo(self) -> None:
-        """Restore the velocities. The positions need no change."""
         for body, (velocity, rate) in zip(self.space.bodies, self.velocities, strict=True):
             body.velocity, body.angular_velocity = velocity, rate
 
@@ -285,16 +282,12 @@ def _function_body(tree: ast.Module, function: str, line: int) -> list[ast.stmt]
 
 
 def _statement_line(body: list[ast.stmt], line: int) -> int | None:
-    """The first line of the statement that contains a line."""
     return next((node.lineno for node in body if node.lineno <= line <= (node.end_lineno or line)), None)
 
 
 def _main_guard(path: Path) -> int | None:
-    """The line of `if __name__ == ...` in a script."""
-    for statement in ast.parse(path.read_bytes()).body:
-        if isinstance(statement, ast.If) and "__name__" in ast.unparse(statement.test):
-            return statement.lineno
-    return None
+    ifs = (statement for statement in ast.parse(path.read_bytes()).body if isinstance(statement, ast.If))
+    return next((statement.lineno for statement in ifs if "__name__" in ast.unparse(statement.test)), None)
 
 
 def rewritten(path: Path, script: ScriptSpace, step: float, change: Change) -> bytes:
@@ -319,9 +312,8 @@ def rewritten(path: Path, script: ScriptSpace, step: float, change: Change) -> b
         )
     settings = _setting_lines(script, step, change, has_earlier)
     insert_at = len(lines) if insert_at is None else insert_at
-    indent = (
-        "" if insert_at == len(lines) else lines[insert_at][: len(lines[insert_at]) - len(lines[insert_at].lstrip())]
-    )
+    following = "" if insert_at == len(lines) else lines[insert_at]
+    indent = following[: len(following) - len(following.lstrip())]
     block = [f"{indent}{line}".rstrip() for line in (BEGIN, *settings, END)]
     return "\n".join([*lines[:insert_at], *block, *lines[insert_at:], ""]).encode()
 
