@@ -244,7 +244,7 @@ def test_an_engine_lacks_an_element_only_if_its_documentation_is_named():
             assert (word == HAS_NONE) == ("https://" in reason)
             assert (word in (HAS_NONE, NOT_BUILT)) == bool(reason)
     lines = ("loop", "disc rolls on a line", "skate")
-    assert [built["pymunk"][line] for line in lines] == ["yes", "by contact", "with code of ours"]
+    assert [built["pymunk"][line] for line in lines] == ["yes", "by contact", "with our code"]
 
 
 def test_a_release_that_lacks_a_function_of_the_adapter_is_too_old(monkeypatch):

@@ -81,7 +81,7 @@ ELEMENT_EXAMPLES = {
 
 # Engines that build blades and rims without contact, by a velocity constraint.
 ROLLING_JOINTS = {"lagrange", "exudyn"}
-YES, CONTACT, CODE = "yes", "by contact", "with code of ours"
+YES, CONTACT, CODE = "yes", "by contact", "with our code"
 HAS_NONE, NOT_BUILT, TOO_OLD = "**has none**", "not built", "too old"
 
 
