@@ -12,8 +12,8 @@
    `engines.capability.Capability`, and `refuse_forces` for an engine that has only gravity.
 5. `run(samples, every)` takes `samples * every` steps and returns a `Trajectory` of samples + 1 states; state 0 is the
    start, and state k is that after `k * every` steps. Pose, twist and reaction of a state belong to the same instant.
-   Reactions that the engine does not provide are NaN, in all samples of a row or in the first one alone. A run is
-   called once.
+   Reactions that the engine does not provide are NaN, at all samples of a row or only at the first. A run is called
+   once.
 6. `Trajectory.stepping` is the CPU time [s] of the stepping loop with the recording of states. It includes pilot runs
    that choose steps or iterations. It excludes building, and computing results from the recorded states.
 7. `Trajectory.warnings` are `RunWarning`s or plain strings. `reset_at` [s] is the time at which the engine reset
@@ -21,16 +21,16 @@
    estimate exceeds its claim. None of these ends the run. A method without an estimate claims an order, and no
    accuracy at a step.
 8. `order(mechanism)` returns the expected convergence order of the errors as a `ConvergenceOrder`, which the gate
-   checks, or `NotDeclared` with the reason. It depends on the settings and the mechanism alone.
+   checks, or `NotDeclared` with the reason. It depends only on the settings and the mechanism.
 9. `step_cost(mechanism)` returns the approximate CPU time of a step [s]. It decides which small steps are run. It is a
-   formula and not a measurement, so that it is the same on every machine.
+   formula and not a measurement, so that the same steps are run on every machine.
 10. `enforcement(joint, mechanism)` returns who enforces the joint: "engine" (a joint, contact or coordinate of the
    engine), "engine, our rows" (the engine's solver with rows that our code writes while it steps) or "ours" (our code
    alone, between steps of free bodies).
 11. `regularisation(mechanism, dt)` returns the regularisation of the joints by the engine's settings, or None.
 12. `instants`, `stricter`, `precision` and `angle_error` declare the law at one instant, the tolerance of the solver
-   and the rounding. `crosscheck search` compares the engine with them. Without them it assumes no law, no tolerance
-   and double precision.
+   and the rounding. `crosscheck search` compares the engine with these declarations. By default an engine declares no
+   law and no tolerance, and double precision.
 
 The entry point of the group `crosscheck.bare_loops` with the engine's name is a function of (engine, mechanism, dt,
 steps). It returns the CPU time [s] of that many steps without any recording, for `crosscheck bench`, and may raise
@@ -51,7 +51,7 @@ from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import RunWarning, Trajectory
 
-# The order of a quantity without discretisation error, such as the gap of a joint between coordinates of a tree.
+# The order of a quantity without discretisation error, such as the gap of a joint in reduced coordinates.
 EXACT = math.inf
 # The claim of every method with an error estimate: errors of poses in rad, or relative to the mechanism's length.
 CLAIM = 1e-7
@@ -175,19 +175,19 @@ class Run(Protocol):
 
 
 class OneShot:
-    """The base of a run: it refuses a second call."""
+    """The base class of a run, which refuses a second call."""
 
     _has_begun = False
 
     def begin(self) -> None:
-        """Raises RuntimeError at the second call."""
+        """Mark the run as called. Raises RuntimeError if it was called before."""
         if self._has_begun:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         self._has_begun = True
 
 
 class Engine(ABC):
-    """The base of every engine: the members of the contract, with defaults for those that few engines need.
+    """The base class of every engine, with the members of the contract and defaults for most of them.
 
     name, variant, packages: see sentences 2 and 3 of the contract
     modules: modules that are imported when the first mechanism is built, since the import takes seconds
@@ -220,7 +220,7 @@ class Engine(ABC):
 
     @property
     def uses_contacts(self) -> bool:
-        """Whether rolls are contacts of shapes: rounding then decides whether two shapes that just touch collide."""
+        """Whether rolls are contacts of shapes. Rounding then decides whether two shapes in touch have a contact."""
         return False
 
     def prepare(self) -> None:  # noqa: B027  (most engines have nothing to prepare)
@@ -245,9 +245,9 @@ class Engine(ABC):
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
     ) -> tuple[Instant, ...] | NotDeclared:
-        """Results at the start and in the first `steps` steps of dt [s], each with the value by the declared law.
+        """Results at the start and in the first `steps` steps of dt [s], with the values by the declared law.
 
-        `built`: the mechanism of the model, if it differs from `mechanism`: tests plant a mistake there.
+        `built`: the mechanism of the model, if it differs from `mechanism` (in tests, by a deliberate mistake)
         """
         return NotDeclared("it declares no law of an instant")
 
@@ -256,7 +256,7 @@ class Engine(ABC):
         return None
 
     def iterations_of(self, mechanism: Mechanism) -> int | None:
-        """Gauss-Seidel iterations over the joints in a step at the start; None for another solver."""
+        """The number of Gauss-Seidel iterations over the joints in the first step; None for another solver."""
         return None
 
     def stepped(self, mechanism: Mechanism) -> Engine:
@@ -264,7 +264,7 @@ class Engine(ABC):
         return self
 
     def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
-        """Steps of the inner runs as fractions of dt; (1.0,) for one run."""
+        """The step of each inner run as a fraction of dt; (1.0,) for an engine without inner runs."""
         return (1.0,)
 
 

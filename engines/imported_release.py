@@ -23,9 +23,9 @@ RELEASE = re.compile(r"v?(\d+(?:\.\d+)*)")
 
 
 def other_release(engines: Iterable[Engine], elsewhere: bool = True) -> str:
-    """The first distribution whose version differs from that of its imported module, and a remedy, in one line.
+    """One line about the first distribution whose version differs from that of its imported module; empty if none.
 
-    Empty if there is none. A module with unchanged files may have any version: pymunk 7.0.0 contains 2.0.0.
+    A module with unchanged files may have any version: pymunk 7.0.0 contains 2.0.0.
     `elsewhere`: include modules outside the distribution's folder, in an editable installation or on the path.
     """
     packages = {package: engine.modules for engine in engines for package in engine.packages}
@@ -81,7 +81,7 @@ def _release(version: object) -> tuple[int, ...]:
 
 
 def _is_changed(file: metadata.PackagePath) -> bool:
-    """Whether a file is not the one that was installed; False where the installation has recorded no digest."""
+    """Whether a file was changed since its installation; False if the installation has no digest of it."""
     if file.hash is None or file.hash.mode != "sha256":
         return False
     try:

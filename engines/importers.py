@@ -1,4 +1,4 @@
-"""Models of one's own as mechanisms: `from engines.importers import mujoco; mechanism = mujoco.read("model.xml")`."""
+"""The user's models as mechanisms: `from engines.importers import mujoco; mechanism = mujoco.read("model.xml")`."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class Importer:
     def reading(self, model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:
         """The reading of a file, or of an object of the engine.
 
-        Raises ValueError where a file is no model, and Unsupported, in a sentence that names the element, for an
-        element without an ideal counterpart.
+        Raises ValueError if a file is no model, and Unsupported, with the name of the element, for an element without
+        an ideal counterpart.
         """
         reader = import_module(f"{self.package}.reading")
         if isinstance(model, str | Path):

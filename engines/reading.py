@@ -20,7 +20,7 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-# The judge solves dense rows at every step: more bodies than this take minutes.
+# A check of more bodies takes minutes.
 MOST_BODIES = 200
 
 
@@ -36,7 +36,7 @@ class Note:
 class Obstacle:
     """An event of the user's model at `t` [s] of a motion that the mechanism lacks, such as a contact.
 
-    `words`: the event; `remedy`: an alternative to a shorter motion.
+    `words`: the event, for a message; `remedy`: an alternative to a shorter motion
     """
 
     t: float
@@ -48,7 +48,7 @@ class Obstacle:
 class Change:
     """Documented settings of an engine: a description (`words`), the `lines` to copy, and the step `dt` [s].
 
-    `options`: the settings by name, for the model's own use.
+    `options`: the settings by name, for the model.
     """
 
     words: str
@@ -84,7 +84,7 @@ class OwnModel(Protocol):
 
     @property
     def assumed(self) -> str:
-        """The values that the reader assumed since the model does not state them, in words; empty if none."""
+        """The values that the reader assumed because the model does not state them, in words; empty if none."""
         ...
 
     @property
@@ -99,7 +99,7 @@ class OwnModel(Protocol):
 
     @property
     def has_soft_joints(self) -> bool:
-        """Whether that law has joints with a regularisation."""
+        """Whether the declared law regularises joints."""
         ...
 
     @property
@@ -116,7 +116,7 @@ class OwnModel(Protocol):
         ...
 
     def without(self, element: str) -> Array:
-        """The accelerations of `start` with one of `elements` switched off."""
+        """The accelerations at t = 0 (bodies, 3) with one of `elements` switched off."""
         ...
 
     @property
@@ -127,24 +127,24 @@ class OwnModel(Protocol):
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
         """The first event of each kind in a motion of poses and twists (times, bodies, 3), in the order of time.
 
-        These are all that the reading excludes: contacts, limits of motions and of forces, sleep.
+        Events are all effects that the mechanism lacks: contacts, limits of motions and of forces, and sleep.
         """
         ...
 
     @property
     def suspects(self) -> Mapping[str, str]:
-        """Elements whose law in the engine is not that of an ideal joint at any step, with the reason."""
+        """Elements whose law in the engine differs from the ideal law at all steps, with the reason."""
         ...
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
-        """Settings that the engine documents, with steps down to `smallest` [s]; the first is the user's own.
+        """Documented settings with steps down to `smallest` [s]; the first are the user's settings.
 
-        `further`: also settings that may help where the usual ones do not.
+        `further`: include settings for models that the common settings do not improve.
         """
         ...
 
     def remarks(self, run: Trajectory) -> Sequence[Note]:
-        """The approximations of the reading, with their effect on a run with the user's own settings."""
+        """The approximations of the reading, with their effect on a run with the user's settings."""
         ...
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
@@ -156,7 +156,7 @@ class OwnModel(Protocol):
 class Source:
     """The file of a user's model.
 
-    `changed`: the bytes of the file with other settings; `read`: reads such a file on the same terms. Both raise
+    `changed` returns the bytes of the file with other settings. `read` reads such a file on the same terms. Both raise
     Unsupported.
     """
 
@@ -169,7 +169,7 @@ class Source:
 class Reading:
     """The mechanism that a user's model describes, notes on elements that were left out, and the model itself.
 
-    `source`: the file of the model; None where it has no text.
+    `source`: the file of the model, or None if the model was built in Python
     """
 
     mechanism: Mechanism
@@ -180,7 +180,7 @@ class Reading:
 
     @property
     def jumps(self) -> bool:
-        """Whether the model's own velocities violate its joints, so that the ideal motion begins after an impulse."""
+        """Whether the model's velocities violate its joints, so that the ideal motion begins with an impulse."""
         return bool(np.any(self.model.start_twist != self.mechanism.twist))
 
 
@@ -188,8 +188,9 @@ class Reading:
 class ReadingTerms:
     """The terms on which a user's model is read.
 
-    `without`: kinds of elements to switch off, in the user's model too; `key`: the name or number of a stored state;
-    `step` [s]: the user's, instead of the model's own.
+    without: kinds of elements to switch off in the mechanism and in the user's model
+    key: the name or number of a stored state
+    step: a step that replaces the model's [s]
     """
 
     without: tuple[str, ...] = ()
@@ -205,12 +206,12 @@ class Reader(Protocol):
 
     @property
     def words(self) -> str:
-        """The kind of model that it reads, for a message."""
+        """The kind of model that this reader reads, for a message."""
         ...
 
     @property
     def elements(self) -> Mapping[str, str]:
-        """The ideal counterpart of each element that it reads, by the engine's own name; for messages and the page."""
+        """The ideal counterpart of each element of the engine, by the engine's name, for messages and the page."""
         ...
 
     def reads(self, word: str) -> bool:
@@ -218,7 +219,7 @@ class Reader(Protocol):
         ...
 
     def read(self, word: str, folder: Path, terms: ReadingTerms) -> Reading:
-        """The model. Raises Unsupported, or ValueError where the file is no model."""
+        """The reading of a model. Raises Unsupported, or ValueError if the file is no model."""
         ...
 
 
@@ -228,7 +229,7 @@ def refuse(element: str, reason: str) -> Unsupported:
 
 
 def left_out(element: str) -> str:
-    """The consequence of leaving out an element that acts in the motion, for a message."""
+    """The consequence of `--without` for an element that acts in the motion, for a message."""
     return f"--without {element} judges your model without it, which moves otherwise"
 
 
@@ -240,13 +241,13 @@ def refuse_at_start(model: OwnModel, mechanism: Mechanism) -> None:
 
 
 class Names:
-    """Unique names: elements of a model may share a name, or have none."""
+    """A source of unique names for elements of a model, which may have the same name or none."""
 
     def __init__(self) -> None:
         self._taken: set[str] = set()
 
     def new(self, wanted: str) -> str:
-        """The wanted name, with a number if it is taken."""
+        """The wanted name, with a number if it is already used."""
         name, number = wanted, 2
         while name in self._taken:
             name, number = f"{wanted} ({number})", number + 1

@@ -1,4 +1,4 @@
-"""A cache of the last results for a mechanism or a rolling pair: reports ask for the same one many times in a row."""
+"""A cache of the last results for a mechanism or a rolling pair."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ Cached = TypeVar("Cached", bound=Callable[..., Any])
 def by_identity(size: int = 8) -> Callable[[Cached], Cached]:
     """Cache the last `size` results of a function; the first argument is compared by identity.
 
-    Comparing all numbers of two mechanisms, or of two rolling pairs, would take as long as many a result. Calls with
-    keyword arguments are not cached.
+    A comparison of all numbers of two mechanisms would take as long as many results. Calls with keyword arguments are
+    not cached.
     """
 
     def with_cache(function: Cached) -> Cached:

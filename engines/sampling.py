@@ -1,4 +1,4 @@
-"""The sampling loop that all engines share, and accelerations, angles and reactions of the sampled states."""
+"""The sampling loop of the adapters, and accelerations, angles and reactions of the sampled states."""
 
 from __future__ import annotations
 
@@ -22,9 +22,11 @@ def sampled(
 ) -> float:
     """Step a model and record its states; returns the CPU time of stepping and recording [s].
 
-    `steps`: the number of steps before each sample after the first; `advance(count)` takes that many; `record(sample)`
-    stores the state of sample 0, 1, ...; `record_before(sample)` stores what is needed one step before a sample. The
-    loop ends early where `advance` or `record` returns True. The first sample is not timed.
+    steps: the number of steps before each sample but the first
+    advance(count): takes this number of steps
+    record(sample): stores the state of a sample
+    record_before(sample): stores values one step before a sample
+    The loop ends early if `advance` or `record` returns True. The CPU time excludes the recording of the start.
     """
     counts = list(steps)
     record(0)
@@ -47,10 +49,11 @@ def sampled_with_differences(
     state: Callable[[], tuple[Any, Any]],
     velocity: Callable[[], Any],
 ) -> tuple[Array, Array, Array, float]:
-    """Positions, velocities and accelerations (samples + 1, ...) of `counts` = (samples, steps between), and CPU time.
+    """Positions, velocities and accelerations (samples + 1, ...), and the CPU time [s].
 
-    `state()` gives positions and velocities now. Accelerations are changes of `velocity()` over the last step of dt
-    [s], NaN at t = 0.
+    counts: the number of samples, and of steps between them
+    state(): the current positions and velocities
+    Accelerations are changes of `velocity()` over the last step of dt [s]; NaN at t = 0.
     """
     states: list[tuple[Any, Any]] = []
     before: list[Any] = []
@@ -74,20 +77,24 @@ def reactions(
     inertias: Array,
     gravity: Array | tuple[float, float],
 ) -> Array:
-    """Reactions from accelerations at samples, with the engine's own masses and gravity; NaN where these are none."""
+    """Reactions (samples, rows) from accelerations and the engine's inertias and gravity.
+
+    They are NaN at samples without finite accelerations.
+    """
     out = np.full((len(pose), mechanism.row_count), np.nan)
-    # Squares of the numbers must be finite as well, or the factorisation raises instead of giving NaN.
-    sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
-    if mechanism.row_count and np.any(sane):
+    # The factorisation raises an exception for numbers whose squares are infinite.
+    valid = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
+    if mechanism.row_count and np.any(valid):
         with np.errstate(all="ignore"):
-            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity), twist[sane])
+            out[valid] = mechanism.reaction(pose[valid], acceleration[valid], inertias, np.array(gravity), twist[valid])
     return out
 
 
 def unwrapped(angle: Array, rate: Array, start: Array, spacing: float) -> Array:
-    """Angles (times, bodies) that an engine wraps into one turn, each whole turn restored from predicted rates.
+    """Unwrapped angles (times, bodies) from angles that an engine wraps into one turn.
 
-    The prediction is the trapezoidal rule between samples, so it is right while alpha spacing^2 / 12 is below pi.
+    Whole turns follow from a prediction by the trapezoidal rule between samples, which is valid if the derivative of
+    the angular acceleration times spacing^3 / 12 is below pi.
     """
     out = angle.copy()
     out[0] = start

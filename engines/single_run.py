@@ -1,4 +1,4 @@
-"""The base of the engines that are extras: whether the package is installed, and a run that is called once."""
+"""Base classes of engines whose packages are extras, and of their runs."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _is_loaded(library: str) -> bool:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Discard what native code prints to file descriptors 1 and 2, which Python's streams do not see."""
+    """Discard the output of native code to file descriptors 1 and 2."""
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     with tempfile.TemporaryFile() as nowhere:
@@ -61,14 +61,14 @@ def quiet() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Recorded:
-    """The engine's states at the samples, in the mechanism's order and frame; NaN where it could not go on.
+    """The engine's states at the samples, in the mechanism's order and frame; NaN after a failure of the engine.
 
-    `inertias` (bodies, 3) [kg, kg, kg m^2] and `gravity` (2,) [m/s^2] are those of the engine's own objects.
+    `inertias` (bodies, 3) [kg, kg, kg m^2] and `gravity` (2,) [m/s^2] are read from the engine's objects.
     """
 
     pose: Array  # (samples + 1, bodies, 3)
     twist: Array
-    acceleration: Array  # NaN where it is unknown
+    acceleration: Array  # NaN for unknown values
     stepping: float  # s
     inertias: Array
     gravity: Array
@@ -76,7 +76,7 @@ class Recorded:
 
 
 class SingleRun(OneShot):
-    """A model, ready to be stepped once; see `engines.Run`."""
+    """A run of an extra engine; see `engines.Run`."""
 
     def __init__(self, mechanism: Mechanism, dt: float, size: Size, record: Callable[[int, int], Recorded]) -> None:
         """`record(samples, every)` steps the model, with steps of dt [s]."""
@@ -90,10 +90,10 @@ class SingleRun(OneShot):
         self.begin()
         recorded = self._record(samples, every)
         pose, twist, acceleration = recorded.pose.copy(), recorded.twist.copy(), recorded.acceleration.copy()
-        # Single precision rounds the start, which is the mechanism's and not the engine's.
+        # An engine in single precision rounds the start.
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
-        sound = np.isfinite([pose, twist]).all(axis=(0, 2, 3))
-        lost = int(np.argmin(sound)) if not sound.all() else samples + 1
+        valid = np.isfinite([pose, twist]).all(axis=(0, 2, 3))
+        lost = int(np.argmin(valid)) if not valid.all() else samples + 1
         pose[lost:], twist[lost:], acceleration[lost:] = np.nan, np.nan, np.nan
         reaction = reactions(self._mechanism, pose, twist, acceleration, recorded.inertias, recorded.gravity)
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
@@ -113,11 +113,12 @@ class EngineModel(Protocol):
 
 
 class ExtraEngine(Engine, Valid):
-    """The base of an engine whose package is an extra of this project: a value even where the package is missing.
+    """The base of an engine whose package is an extra of this project. It can be created without the package.
 
-    The extra has the engine's name. `library`: a shared library of Linux that the wheel of `modules` needs and lacks,
-    with the package of Debian that has it; `apart`: what has to be installed besides, since pip can't in one go;
-    `capability`: the elements that the adapter builds.
+    The extra has the engine's name.
+    library: a shared library of Linux that the wheel needs but does not contain, and its package in Debian
+    apart: packages that need a second pip command
+    capability: the elements that the adapter builds
     """
 
     library: ClassVar[tuple[str, str] | None] = None
@@ -126,7 +127,7 @@ class ExtraEngine(Engine, Valid):
 
     @property
     def missing(self) -> str:
-        """One sentence that says how to install it; empty where it is installed."""
+        """One sentence that says how to install the package; empty if it is installed."""
         absent = [module for module in self.modules if not _is_found(module)]
         if absent:
             then = f", then {self.apart}" if self.apart else ""
@@ -137,21 +138,19 @@ class ExtraEngine(Engine, Valid):
         return f"{self.name} needs the shared library {name}, which is not on this system: apt-get install {package}"
 
     def require(self) -> None:
-        """Raises Unsupported with the sentence where the package is missing."""
+        """Raises Unsupported if the package is missing."""
         if self.missing:
             raise Unsupported(self.missing)
 
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
-        """Every joint is the engine's own."""
         return "engine"
 
     @abstractmethod
     def model(self, mechanism: Mechanism, dt: float) -> EngineModel:
-        """The engine's objects for steps of dt [s]; raises Unsupported for what `capability` does not cover."""
+        """The engine's objects for steps of dt [s]. Raises Unsupported for settings that the adapter cannot build."""
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
-        """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
         self.capability.require(mechanism)
         self.require()
         model = self.model(mechanism, dt)

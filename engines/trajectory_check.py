@@ -1,4 +1,4 @@
-"""Whether a run's answer is a Trajectory as the contract of engines describes it."""
+"""A check of whether the result of a run is a Trajectory as in the contract of engines."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Flaw = tuple[str, str]  # the finding; the expectation
 
 
 def flaw_of_shapes(run: Any, mechanism: Mechanism, samples: int) -> Flaw | None:
-    """The first field that is not that of a Trajectory of samples + 1 states; None if there is none."""
+    """The first field whose shape or type is not that of a Trajectory of samples + 1 states, or None."""
     if not isinstance(run, Trajectory):
         return f"a {type(run).__name__}", "a Trajectory"
     count, motion = samples + 1, (samples + 1, len(mechanism.bodies), 3)
@@ -33,7 +33,7 @@ def flaw_of_shapes(run: Any, mechanism: Mechanism, samples: int) -> Flaw | None:
 
 
 def flaw_of_times(run: Trajectory, dt: float, samples: int, every: int) -> Flaw | None:
-    """The largest distance of the sample times from multiples of `every` * dt [s]; None if it is rounding."""
+    """The largest difference of the sample times from multiples of every * dt [s], or None if it is rounding."""
     error = float(np.max(np.abs(run.t - np.arange(samples + 1) * (every * dt))))
     rounding_of_sum = (samples * every) ** 2 * np.finfo(float).eps  # relative to dt, if times are summed step by step
     if error <= max(TIME_TOLERANCE, rounding_of_sum) * dt:
@@ -42,9 +42,9 @@ def flaw_of_times(run: Trajectory, dt: float, samples: int, every: int) -> Flaw 
 
 
 def flaw_of_reactions(run: Trajectory) -> Flaw | None:
-    """The first row whose reactions are known at some samples after the first and not at others; None if none is."""
+    """The first row whose reactions are known at some of the samples after the first and not at all, or None."""
     if not (np.isfinite(run.pose).all() and np.isfinite(run.twist).all()):
-        return None  # it diverges, and its last states may be too large for a force
+        return None  # a diverged run may have infinite forces
     known = np.isfinite(run.reaction[1:])
     rows = np.flatnonzero(known.any(axis=0) & ~known.all(axis=0))
     if not rows.size:
@@ -54,7 +54,7 @@ def flaw_of_reactions(run: Trajectory) -> Flaw | None:
 
 
 def flaw(run: Any, mechanism: Mechanism, dt: float, samples: int, every: int) -> str:
-    """How a run's answer differs from sentences 4 and 5 of the contract, one sentence; empty if it does not."""
+    """The difference of a result from items 5 and 6 of the contract in one sentence; empty if there is none."""
     difference = flaw_of_shapes(run, mechanism, samples) or flaw_of_times(run, dt, samples, every)
     if difference is None and not (math.isfinite(run.stepping) and run.stepping >= 0):
         difference = f"stepping = {run.stepping!r} s", "CPU seconds from 0 on"

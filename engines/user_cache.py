@@ -1,4 +1,4 @@
-"""The user's cache folder: what can be had anew, and takes long enough to be kept."""
+"""The user's cache folder, for files that take long to compute."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ CACHE = "PLANAR_CROSSCHECK_CACHE"
 
 
 def cache_folder() -> Path:
-    """What the environment variable CACHE says, or the system's folder for what can be had anew; it may not exist."""
+    """The folder in the environment variable CACHE, or in the system's cache folder; it may not exist."""
     if os.environ.get(CACHE):
         return Path(os.environ[CACHE]).absolute()
     if sys.platform == "win32":

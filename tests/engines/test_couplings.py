@@ -1,4 +1,4 @@
-"""Sums of relative coordinates, held or pulled at: in numpy, in machine code, and as MuJoCo's models have them."""
+"""Couplings and coupled forces in numpy, in compiled code, and in models of MuJoCo."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -66,7 +66,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_rows_are_the_gaps_derivative_and_machine_code_moves_as_numpy(name):
+def test_rows_of_couplings_are_derivatives_of_gaps_and_compiled_code_equals_numpy(name):
     mechanism, step = CASES[name], 1e-30
     if mechanism.joints:
         rows = mechanism.rows(mechanism.pose)
@@ -85,8 +85,8 @@ def test_rows_are_the_gaps_derivative_and_machine_code_moves_as_numpy(name):
         assert np.ptp(total) < 1e-10 * np.abs(total).max()
 
 
-def test_reactions_in_the_band_are_those_of_the_dense_rows():
-    """Two terms on one body are the square of a sum, in the band too."""
+def test_reactions_from_the_envelope_equal_those_of_dense_rows():
+    # Two terms of one row on the same body add up before they are squared.
     resting = tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in BODIES)
     pins = [Pin(body.name, None, body.name, body.pose[:2], (0.0, 0.0)) for body in BODIES]
     sums = (Coupling("sum", TERMS, value(TERMS)), Coupling("part", TERMS[1:3], value(TERMS[1:3])))
@@ -98,7 +98,7 @@ def test_reactions_in_the_band_are_those_of_the_dense_rows():
     assert ours == pytest.approx(np.array(wanted), rel=1e-9, abs=1e-9)
 
 
-def test_no_other_engine_leaves_a_coupling_out():
+def test_all_other_engines_refuse_a_coupling():
     for engine in (MUJOCO, PYMUNK):
         with pytest.raises(Unsupported, match="joint 'sum'"):
             engine.build(CASES["four bodies"], 1e-3)
@@ -108,7 +108,7 @@ def test_no_other_engine_leaves_a_coupling_out():
         Mechanism(BODIES, (Coupling("sum", (Term("a", "e", 1.0),)),))
 
 
-def test_a_pinion_has_the_length_of_its_radius_where_nothing_else_has_one():
+def test_the_length_scale_of_a_single_pinion_is_its_radius():
     addends = Term(None, "b", -2.0, True), Term(None, "a", 0.1)
     free = tuple(Body(name, 1.0, 1.0, (0.0, 0.0, 0.0)) for name in "ab")
     assert Mechanism(free, (Coupling("teeth", addends),)).length_scale == pytest.approx(0.05)
@@ -163,7 +163,7 @@ MODELS = {  # worldbody, equalities and the rest, the factors of each sum in MuJ
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_a_coupling_in_mujoco_moves_as_its_tree_with_multipliers(name):
+def test_a_coupling_in_mujoco_has_the_motion_of_the_mechanism(name):
     bodies, rest, sums, start = MODELS[name]
     model = mujoco.MjModel.from_xml_string(f"<mujoco>{OPTION}<worldbody>{bodies}</worldbody>{rest}</mujoco>")
     data = mujoco.MjData(model)
@@ -184,7 +184,7 @@ def test_a_coupling_in_mujoco_moves_as_its_tree_with_multipliers(name):
     names = [name for joint in reading.mechanism.joints for name in [type(joint).__name__] * joint.size]
     coupled = [index for index, kind in enumerate(names) if kind == "Coupling"]
     assert len(coupled) == len(sums)
-    # Ours is counted along the same sum, so the force is MuJoCo's own.
+    # The reaction has the direction of the same sum, so it equals MuJoCo's force.
     assert ours.reaction[:, coupled] == pytest.approx(
         forces, rel=1e-6, abs=1e-7 * max(1.0, np.abs(forces).max(initial=0))
     )

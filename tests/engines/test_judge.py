@@ -1,4 +1,4 @@
-"""The gate's judge: the orders of its methods, the sag of a spring under a weight, and soft motions."""
+"""The gate's judge: the orders of its methods, the displacement of regularised joints, and motions with them."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ SWINGING = LinkPendulum(duration=0.3, horizon=0.3)
 
 
 @pytest.mark.parametrize("order", [2, 4])
-def test_every_error_of_the_judge_falls_with_the_order_of_its_method(order):
+def test_all_errors_have_the_order_of_the_method(order):
     coarse, fine = errors(SWINGING, order, 1), errors(SWINGING, order, 2)
     observed = {name: np.log2(coarse[name] / fine[name]) for name in QUANTITY_NAMES}
-    # At a hundredth of a second the next power of the step is a thirtieth of the leading one.
+    # At a step of 0.01 s the next power of the step contributes a thirtieth.
     assert observed == pytest.approx(dict.fromkeys(QUANTITY_NAMES, order), abs=0.1)
 
 
-def test_a_projection_leaves_the_joints_closed_and_the_motion_as_exact_as_before():
+def test_a_projection_closes_the_joints_without_loss_of_accuracy():
     alone, projected = errors(SWINGING, 4, 1), errors(SWINGING, 4, 1, project=True)
     # One Newton step squares a gap of 1e-8 m; the twist is projected with the rows of the pose after it.
     assert max(projected["gap"], projected["slip"]) < 1e-12
     assert projected["angle"] < 3 * alone["angle"]
 
 
-def test_a_motion_that_is_lost_has_no_finite_error_and_is_not_stepped_to_its_end():
-    # A step of half a second is a quarter of a period: the motion diverges.
+def test_a_diverged_motion_has_no_finite_error_and_ends_early():
+    # The motion diverges at a step of 0.5 s, which is a quarter of a period.
     scene = PointPendulum()
     assert errors(scene, 2, 1, project=True) == dict.fromkeys(QUANTITY_NAMES, np.inf)
     with np.errstate(all="ignore"):
@@ -51,7 +51,7 @@ def test_a_motion_that_is_lost_has_no_finite_error_and_is_not_stepped_to_its_end
 
 @dataclass(frozen=True)
 class HeavyDisc(Disc):
-    """Four kilograms at rest on a pin through the centre: the inverse inertia of its rows is 1/4 kg."""
+    """A disc of 4 kg at rest on a pin through its centre. The inverse inertia of the rows is 1/(4 kg)."""
 
     rate: float = 0.0
     duration: float = 0.4
@@ -62,21 +62,21 @@ class HeavyDisc(Disc):
         return Mechanism((Body("disc", 4.0, 0.5, (0.0, 0.0, 0.0)),), (pin,), (0.0, -10.0))
 
 
-def test_a_soft_joint_sags_by_its_compliance_and_carries_the_weight():
+def test_the_gap_of_a_regularised_joint_follows_from_compliance_and_weight():
     # At rest 0 = -stiffness gap - compliance A reaction: 0.01 * 40 N / 4 kg / 2500 s^-2, after 20 time constants.
     run = integrate(HeavyDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.01, (True, True)))
     assert run.pose[-1, 0] == pytest.approx([0.0, -4e-5, 0.0], rel=1e-6)
     assert run.reaction[-1] == pytest.approx([0.0, 40.0], rel=1e-6)
 
 
-def test_rigid_rows_stay_closed_while_soft_ones_sag():
+def test_rigid_rows_have_no_gap_beside_regularised_rows():
     run = integrate(HeavyDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.01, (True, False)))
     assert run.pose[-1, 0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-15)
 
 
 @dataclass(frozen=True)
 class TurningDisc(HeavyDisc):
-    """It turns at 2 rad/s on a pin 0.1 m beside its centre."""
+    """A disc that turns at 2 rad/s on a pin 0.1 m beside its centre."""
 
     def mechanism(self) -> Mechanism:
         pin = Pin("axle", None, "disc", (0.0, 0.0), (-0.1, 0.0))
@@ -84,12 +84,12 @@ class TurningDisc(HeavyDisc):
 
 
 @pytest.mark.parametrize("complete", [True, False])
-def test_a_soft_joint_opens_by_the_centripetal_acceleration_if_the_bias_is_left_out(complete):
+def test_without_bias_a_regularised_joint_has_the_gap_of_the_centripetal_acceleration(complete):
     mechanism = TurningDisc().mechanism()
     run = integrate(TurningDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.0, (True, True), complete))
     opened = np.hypot(*mechanism.gap(run.pose[-1], run.t[-1]))
-    # The bias is the centripetal acceleration, 0.1 m * 4 rad^2/s^2. Without it the spring of 2500 s^-2 must provide it,
-    # and the damper acts at right angles, as the gap turns with the disc: 2 rad/s * 100 s^-1, 8 % of the stiffness.
+    # The bias is the centripetal acceleration, 0.1 m * 4 rad^2/s^2. Without it the spring of 2500 s^-2 provides it.
+    # The gap turns with the disc, so the damper acts perpendicular to it: 2 rad/s * 100 s^-1, 8 % of the stiffness.
     assert opened == pytest.approx(0.0 if complete else 0.4 / np.hypot(2500, 200), rel=1e-2, abs=1e-7)
 
 
@@ -97,27 +97,27 @@ compiled = pytest.mark.skipif(not installed(), reason="numba, the extra 'fast', 
 
 
 @compiled
-def test_refined_steps_agree_with_short_fixed_steps():
+def test_refined_steps_agree_with_shorter_fixed_steps():
     soft = Regularisation(2500.0, 100.0, 0.01, (True,) * 4)
     run = refined(SWINGING.mechanism(), SWINGING.samples, SWINGING.spacing, soft)
     assert run is not None
     short_steps = integrate(SWINGING, 4, 60, soft)
-    # A third of the step changes a tenth of a sample by less than 1e-6, so the error is an eightieth of that.
+    # A third of the step changes the state by less than 1e-6, so the error at order 4 is below 1/80 of that.
     assert np.abs(run.pose - short_steps.pose).max() < 1e-6
     assert np.abs(run.reaction - short_steps.reaction).max() < 1e-4 * np.abs(short_steps.reaction).max()
 
 
-THROUGH = NFourBar(duration=1.0, horizon=1.0)  # the cranks lie along the couplers once, after 0.714 s
+THROUGH = NFourBar(duration=1.0, horizon=1.0)  # it passes a singular position after 0.714 s
 
 
 def spring(mechanism: Mechanism) -> Regularisation:
-    """Soft rows of the joints called left, as of an engine that closes loops there; the others are rigid."""
+    """A regularisation of the rows of the joints named left. All other rows are rigid."""
     rows = tuple(name.split()[-2] == "left" for name in mechanism.row_names)
     return Regularisation(4e4, 400.0, 1e-4, rows)
 
 
 @compiled
-def test_a_soft_motion_passes_a_singular_position_and_shorter_steps_change_it_little(monkeypatch):
+def test_a_regularised_motion_through_a_singular_position_converges(monkeypatch):
     soft = spring(THROUGH.mechanism())
     assert 0 < sum(soft.rows) < len(soft.rows)
     coarse = errors_as_soft(THROUGH, soft)
@@ -126,17 +126,17 @@ def test_a_soft_motion_passes_a_singular_position_and_shorter_steps_change_it_li
     monkeypatch.setattr(judge, "PARTS", 1)  # pieces of 0.01 s
     finer = errors_as_soft(THROUGH, soft)
     assert dict(finer) == pytest.approx(dict(coarse), rel=0.1)
-    # Fixed steps, which are short enough for the springs, diverge there.
+    # Fixed steps that are short enough for the springs diverge there.
     assert errors(THROUGH, 4, 2, soft)["reaction"] > 100 * finer["reaction"]
 
 
 @compiled
-def test_a_soft_motion_that_takes_too_many_steps_is_lost(monkeypatch):
+def test_a_regularised_motion_with_too_many_steps_has_infinite_errors(monkeypatch):
     monkeypatch.setattr(judge, "MOST_TRIED", 100)
     assert errors_as_soft(THROUGH, spring(THROUGH.mechanism())) == dict.fromkeys(QUANTITY_NAMES, np.inf)
 
 
-def test_declared_rows_give_way_and_a_drive_by_a_compliance_alone():
+def test_only_a_compliance_regularises_the_row_of_a_drive():
     mechanism = DrivenFourBar().mechanism()
     driven = mechanism.rate != 0
     declared = np.arange(mechanism.row_count) % 2 == 0

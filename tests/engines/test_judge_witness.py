@@ -1,8 +1,8 @@
-"""The judge and an independent witness in random mechanisms: Newton's law with multipliers, integrated by scipy.
+"""Comparison of the judge with an independent solution, the witness, in random mechanisms.
 
-The witness shares no code with `engines.lagrange`, nor with `Mechanism.rows`: from a mechanism it reads names and
-numbers only. Rows are relative velocities of points of rigid bodies, as in chapter 18, for a unit of each coordinate's
-rate; their derivatives are complex steps. Rolling contacts are left out: the scenes' closed forms check those.
+The witness shares no code with `engines.lagrange` or `Mechanism.rows`. It integrates Newton's law with multipliers by
+scipy. A row is the relative velocity of two points of rigid bodies, as in chapter 18, for a unit rate of each
+coordinate. Its derivative is computed by a complex step. Rolling contacts are checked by closed forms of scenes.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from reports.gate.judge import in_numpy, stepped
 from reports.search.mechanisms import mechanism as random_mechanism
 from reports.search.parts import ALL_KINDS
 
-H = 1e-30  # of a complex step
+H = 1e-30  # size of a complex step
 MOST_EVALUATIONS = {"DOP853": 3_000, "Radau": 60_000}  # of accelerations; resolved motions take 500 and 30,000
 WITNESSED_KINDS = tuple(kind for kind in ALL_KINDS if kind != "roll")
 
 
 class BodyState(NamedTuple):
-    """A body's place and angle, and its velocities, each a number or an array."""
+    """Position, angle and velocities of a body, as numbers or arrays."""
 
     x: Any
     y: Any
@@ -42,18 +42,18 @@ GROUND = BodyState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def at(body: BodyState, point: Any) -> tuple[Any, Any]:
-    """A point of a body's frame in the world [m]."""
+    """The position [m] of a body's point in the world's frame."""
     c, s = np.cos(body.angle), np.sin(body.angle)
     return body.x + c * point[0] - s * point[1], body.y + s * point[0] + c * point[1]
 
 
 def moving(body: BodyState, place: tuple[Any, Any]) -> tuple[Any, Any]:
-    """The velocity [m/s] of a body's material at a place of the world."""
+    """The velocity [m/s] of a body's material point at a position in the world's frame."""
     return body.vx - body.omega * (place[1] - body.y), body.vy + body.omega * (place[0] - body.x)
 
 
 def slip(part: Any, first: BodyState, second: BodyState) -> list[Any]:
-    """The relative velocity of each row of a joint, or of the ends of a force element."""
+    """The relative velocity in each row of a joint, or between the ends of a force element."""
     turning = second.omega - first.omega
     match part:
         case Drive() | Torque() | TorsionSpring() | TorsionDamper():
@@ -85,7 +85,7 @@ def slip(part: Any, first: BodyState, second: BodyState) -> list[Any]:
 
 
 def pull(force: Any, first: BodyState, second: BodyState) -> Any:
-    """The strength of a force element along its `slip`."""
+    """The force or torque of a force element in the direction of its `slip`."""
     match force:
         case Spring():
             (ax, ay), (bx, by) = at(first, force.first_point), at(second, force.second_point)
@@ -108,18 +108,21 @@ class Witness:
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism = mechanism
         index = {body.name: number for number, body in enumerate(mechanism.bodies)} | {None: -1}
-        parts = (*mechanism.joints, *mechanism.forces)
-        self.ends = {part.name: (index[part.first], index[part.second]) for part in parts}
+        elements = (*mechanism.joints, *mechanism.forces)
+        self.ends = {element.name: (index[element.first], index[element.second]) for element in elements}
         self.mass = np.array([[body.mass, body.mass, body.inertia] for body in mechanism.bodies]).reshape(-1)
         self.units = np.eye(len(self.mass)).reshape(-1, 3, len(self.mass))
 
-    def between(self, pose: Any, twist: Any, part: Any) -> tuple[BodyState, BodyState]:
-        """The two bodies of a part at poses and twists (bodies, 3), or twists (bodies, 3, n) of n motions."""
-        first, second = (GROUND if i < 0 else BodyState(*pose[i], *twist[i]) for i in self.ends[part.name])
+    def between(self, pose: Any, twist: Any, element: Any) -> tuple[BodyState, BodyState]:
+        """The states of the two bodies of a joint or force element.
+
+        pose (bodies, 3); twist (bodies, 3), or (bodies, 3, n) for n motions at the same pose
+        """
+        first, second = (GROUND if i < 0 else BodyState(*pose[i], *twist[i]) for i in self.ends[element.name])
         return first, second
 
     def rows(self, pose: Any) -> Any:
-        """J (rows, coordinates): the slips of all joints for a unit of each velocity."""
+        """The Jacobian J (rows, coordinates): the slips of all joints for a unit of each velocity."""
         slips = [s for joint in self.mechanism.joints for s in slip(joint, *self.between(pose, self.units, joint))]
         return np.array([np.broadcast_to(s, len(self.mass)) for s in slips]).reshape(-1, len(self.mass))
 
@@ -137,9 +140,9 @@ class Witness:
         return solution[:n].reshape(-1, 3), solution[n:]
 
     def motion(self, t: Any, method: str = "DOP853", tolerance: float = 1e-13) -> tuple[Any, Any]:
-        """Poses and twists (times, bodies, 3); fewer times where the method gives up.
+        """Poses and twists (times, bodies, 3), with fewer times if the integrator fails.
 
-        Raises ArithmeticError after MOST_EVALUATIONS accelerations: then rounding is above its tolerance.
+        Raises ArithmeticError after MOST_EVALUATIONS accelerations, since rounding then exceeds the tolerance.
         """
         evaluations = 0
 
@@ -147,7 +150,7 @@ class Witness:
             nonlocal evaluations
             evaluations += 1
             if evaluations > MOST_EVALUATIONS[method]:
-                raise ArithmeticError("the witness does not come to its end")
+                raise ArithmeticError("the witness needs too many evaluations")
             pose, twist = state.reshape(2, -1, 3)
             return np.concatenate([state[state.size // 2 :], self.solved(pose, twist)[0].reshape(-1)])
 
@@ -158,12 +161,12 @@ class Witness:
 
 
 WITNESS_SAMPLES, JUDGE_STEPS = 2, 40
-WITNESS_SPAN = 0.4  # of a motion, in units of the mechanism's time scale
-WITNESSED_NUMBERS = (0, 2, 4, 5, 6, 7, 8, 9, 10, 13)  # every kind of joint and force
+WITNESS_SPAN = 0.4  # duration of a motion in units of the mechanism's time scale
+WITNESSED_NUMBERS = (0, 2, 4, 5, 6, 7, 8, 9, 10, 13)  # these mechanisms have every kind of joint and force element
 
 
 @pytest.mark.parametrize("number", WITNESSED_NUMBERS)
-def test_the_judge_moves_random_mechanisms_as_newtons_law_does(number: int) -> None:
+def test_the_judge_agrees_with_newtons_law_in_random_mechanisms(number: int) -> None:
     mechanism = random_mechanism(31, number, WITNESSED_KINDS)
     witness, spacing = Witness(mechanism), WITNESS_SPAN * mechanism.time_scale / WITNESS_SAMPLES
     pose, twist = witness.motion(np.arange(WITNESS_SAMPLES + 1) * spacing)
@@ -172,7 +175,7 @@ def test_the_judge_moves_random_mechanisms_as_newtons_law_does(number: int) -> N
     unit = np.abs(pose - mechanism.pose).max() + mechanism.length_scale
     for judge in (stepped, in_numpy):
         fine = judge(mechanism, WITNESS_SAMPLES, spacing, 4, 2 * JUDGE_STEPS)
-        # At fourth order the error of half the step is a fifteenth of the change; a third allows for the next power.
+        # At order 4 the error with half the step is 1/15 of the change. The factor 1/3 allows for the next power.
         for name, expected, scale in (("pose", pose, 1.0), ("twist", twist, mechanism.time_scale)):
             allowed = np.abs((getattr(fine, name) - getattr(coarse, name)) * size).max() / 3
             error = np.abs((getattr(fine, name) - expected) * size).max()
@@ -187,10 +190,11 @@ def test_the_judge_moves_random_mechanisms_as_newtons_law_does(number: int) -> N
 
 
 class WitnessedCase(NamedTuple):
-    """A comparison, in radians and in units of the mechanism's length and time; NaN if a motion ends early.
+    """The comparison of a motion, in rad and in units of the mechanism's length and time; NaN if it ends early.
 
-    resolved: whether the judge claims JUDGE_CLAIM; difference: between judge and witness; doubt: between the witness
-    and itself at another tolerance.
+    resolved: whether the judge claims JUDGE_CLAIM
+    difference: largest difference between judge and witness
+    doubt: largest difference between witnesses at two tolerances
     """
 
     number: int
@@ -200,7 +204,7 @@ class WitnessedCase(NamedTuple):
 
 
 def witnessed(mechanism: Mechanism, t: Any, method: str, tolerance: float) -> tuple[Any, Any]:
-    """Poses and twists of the witness; empty arrays if it gives up."""
+    """Poses and twists of the witness; empty arrays if it fails."""
     try:
         return Witness(mechanism).motion(t, method, tolerance)
     except ArithmeticError:
@@ -210,7 +214,7 @@ def witnessed(mechanism: Mechanism, t: Any, method: str, tolerance: float) -> tu
 def compared(
     number: int, mechanism: Mechanism, span: float, method: str, tolerances: tuple[float, float]
 ) -> WitnessedCase:
-    """Judge and witness over a `span` [s]; the witness at two tolerances, the tighter one last."""
+    """The comparison of judge and witness over a `span` [s]; the last tolerance of the witness is the smallest."""
     t = np.linspace(0.0, span, WITNESS_SAMPLES + 1)
     with np.errstate(all="ignore"):
         judge = TRUTH.build(mechanism, t[1])(WITNESS_SAMPLES, 1)
@@ -227,27 +231,27 @@ def compared(
     return WitnessedCase(number, is_resolved, difference((judge.pose, judge.twist), tight), difference(loose, tight))
 
 
-WITNESS_SEED = 291528136  # the first eight digits of a commit's hash: not chosen
-STIFF_NUMBERS = (59, 114, 237, 411)  # 10 to 3,204 times faster than without springs, and cheap
+WITNESS_SEED = 291528136  # from a commit's hash, so that it is not selected
+STIFF_NUMBERS = (59, 114, 237, 411)  # springs make these mechanisms 10 to 3204 times faster
 
 
 def confirmed(cases: list[WitnessedCase]) -> list[WitnessedCase]:
-    """The cases that the judge claims and that the witness knows better than the claim; fails if one is wrong."""
+    """The cases that the judge resolves and whose witness is more accurate than the claim; fails if one is wrong."""
     comparable = [case for case in cases if case.resolved and case.doubt < JUDGE_CLAIM]
     wrong = [case for case in comparable if not case.difference < JUDGE_CLAIM + case.doubt]
     assert wrong == [], f"{len(wrong)} of {len(cases)}"
     return comparable
 
 
-def test_the_judge_holds_what_it_claims_in_random_mechanisms() -> None:
+def test_the_judges_error_is_within_its_claim_in_random_mechanisms() -> None:
     mechanisms = [random_mechanism(WITNESS_SEED, number, WITNESSED_KINDS) for number in range(24)]
     spans = [WITNESS_SPAN * mechanism.time_scale for mechanism in mechanisms]
     cases = [compared(i, mechanisms[i], spans[i], "DOP853", (1e-12, 1e-13)) for i in range(24)]
     assert len(confirmed(cases)) >= 23
 
 
-def test_the_judge_holds_what_it_claims_of_a_stiff_mechanism_far_beyond_its_own_time() -> None:
-    """Over WITNESS_SPAN of the time scale that it would have without springs and dampers."""
+def test_the_judges_error_is_within_its_claim_in_stiff_mechanisms() -> None:
+    # The duration is WITNESS_SPAN of the time scale without springs and dampers.
     cases = []
     for number in STIFF_NUMBERS:
         mechanism = random_mechanism(WITNESS_SEED, number, WITNESSED_KINDS)
@@ -257,7 +261,7 @@ def test_the_judge_holds_what_it_claims_of_a_stiff_mechanism_far_beyond_its_own_
     assert len(confirmed(cases)) == len(STIFF_NUMBERS)
 
 
-def test_the_mechanisms_have_every_kind() -> None:
+def test_the_witnessed_mechanisms_have_all_kinds_of_joints_and_forces() -> None:
     mechanisms = [random_mechanism(31, number, WITNESSED_KINDS) for number in WITNESSED_NUMBERS]
     parts = {type(part) for mechanism in mechanisms for part in (*mechanism.joints, *mechanism.forces)}
     forces = {Spring, Damper, TorsionSpring, TorsionDamper, Torque, Force}

@@ -23,7 +23,7 @@ from tests.present import present
 
 @pytest.fixture(params=["compiled", "numpy"])
 def code(request, monkeypatch):
-    """Compiled code, then numpy; without numba both are numpy."""
+    """Results of compiled code (if numba is installed) and of numpy."""
     if request.param == "numpy":
         monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
 
@@ -32,7 +32,7 @@ in_both_codes = pytest.mark.usefixtures("code")
 
 
 def swinging_angle(t, amplitude):
-    """A uniform bar of 1 m released from rest at `amplitude` [rad] from the vertical: Jacobi's elliptic functions."""
+    """The exact motion of a uniform bar of 1 m that starts at rest at `amplitude` [rad] from the vertical."""
     frequency, modulus = np.sqrt(1.5 * 9.81), np.sin(amplitude / 2) ** 2
     return 2 * np.arcsin(np.sin(amplitude / 2) * ellipj(ellipk(modulus) - frequency * t, modulus)[0])
 
@@ -40,7 +40,7 @@ def swinging_angle(t, amplitude):
 @in_both_codes
 def test_a_swinging_bar_agrees_with_elliptic_functions():
     run = TRUTH.build(pendulum(angle=-np.pi / 2 + 1.0), 0.1)(30, 1)
-    # 3 s at a tolerance of 1e-13 a step: a few 1e-13.
+    # The error after 3 s at a tolerance of 1e-13 is a few 1e-13.
     np.testing.assert_allclose(run.pose[:, 0, 2] + np.pi / 2, swinging_angle(run.t, 1.0), rtol=0, atol=2e-12)
     angle, rate = run.pose[:, 0, 2], run.twist[:, 0, 2]
     arm = 0.5 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -48,9 +48,9 @@ def test_a_swinging_bar_agrees_with_elliptic_functions():
     np.testing.assert_allclose(run.reaction, pendulum().bodies[0].mass * pull, rtol=0, atol=1e-10)
 
 
-def test_samples_within_a_step_are_as_exact_as_those_at_its_ends():
+def test_dense_output_is_as_accurate_as_the_ends_of_steps():
     run = Lagrange(tolerance=1e-13).build(pendulum(angle=-np.pi / 2 + 1.0), 1e-3)(300, 1)
-    # Steps of this tolerance are some hundredths of a second: most samples come from dense output.
+    # The steps at this tolerance are longer than the spacing, so most samples come from dense output.
     np.testing.assert_allclose(run.pose[:, 0, 2] + np.pi / 2, swinging_angle(run.t, 1.0), rtol=0, atol=2e-12)
 
 
@@ -60,7 +60,7 @@ def test_a_judge_estimates_its_error_and_reports_when_it_exceeds_its_claim(toler
     run = Judge(tolerance=tolerance).build(pendulum(angle=-np.pi / 2 + 1.0), 0.5)(6, 1)
     error = np.abs(run.pose[:, 0, 2] + np.pi / 2 - swinging_angle(run.t, 1.0))
     estimate = present(run.estimate)[:, 0, 2]
-    # In numpy all steps end at samples, so that the error of the second run is hardly larger. 1e-12: rounding.
+    # In numpy all steps end at samples, so that the error of the second run is hardly larger.
     assert error.max() < 2 * estimate.max() + 1e-12
     assert (run.unresolved_at is None) is resolved
     assert any("unresolved" in warning for warning in run.warnings) is not resolved
@@ -70,7 +70,7 @@ def test_a_judge_estimates_its_error_and_reports_when_it_exceeds_its_claim(toler
 
 @in_both_codes
 @pytest.mark.parametrize("method", ["euler", "rk4", "dop853"])
-def test_a_run_of_fixed_steps_reports_a_singular_position_or_a_diverged_motion(method):
+def test_fixed_steps_report_a_singular_position_or_a_diverged_motion(method):
     run = Lagrange(method).build(OverdrivenFourBar().mechanism(), 1e-2)(40, 5)
     assert any("does not converge" in warning or "is lost" in warning for warning in run.warnings)
     assert Lagrange(method).build(pendulum(), 1e-2)(40, 5).warnings == ()
@@ -79,8 +79,8 @@ def test_a_run_of_fixed_steps_reports_a_singular_position_or_a_diverged_motion(m
 @in_both_codes
 @pytest.mark.parametrize(("gyration", "is_closed"), [(1.0, True), (1e-6, False)])
 @pytest.mark.parametrize("method", ["euler none", "rk4 baumgarte", "dop853 projection"])
-def test_a_joint_whose_row_is_lost_beside_others_is_reported(method, gyration, is_closed):
-    """A body 2.5 km from its pin, on a slope: the force along its arm is m (gyration / arm)^2 of that across."""
+def test_a_row_that_is_lost_by_rounding_is_reported(method, gyration, is_closed):
+    # The body is 2.5 km from its pin. The ratio of its row's eigenvalues is (gyration / arm)^2.
     c, s = np.cos(0.7), np.sin(0.7)
     light = Body("light", 1.0, gyration**2, (0.0, 0.0, 0.7), (82 * c, 82 * s, 0.03))
     rate = (82 * 2 + 2500 * 0.03) / -500
@@ -103,28 +103,28 @@ def test_the_error_falls_with_the_integrators_order(integrator, order, stabilisa
         run = Lagrange(integrator, stabilisation).build(mechanism, 0.02 / every)(6, every)
         errors.append(np.max(np.abs(run.pose - truth.pose)))
     observed = np.log2(np.array(errors[:-1]) / errors[1:])
-    # Within half an order: the next power of the step still contributes at these steps.
+    # The tolerance is half an order, since the next power of the step contributes at these steps.
     np.testing.assert_allclose(observed, order, atol=0.5)
 
 
-def test_projection_closes_wide_gaps_and_takes_from_a_velocity_only_what_does_work_against_the_joints():
+def test_projection_closes_large_gaps_and_changes_velocities_least():
     mechanism, random = four_bar(), np.random.default_rng(3)
     open_pose = mechanism.pose + 0.05 * random.normal(size=mechanism.pose.shape)
     wild = random.normal(size=mechanism.twist.shape)
     pose, twist = Dynamics(mechanism).project(open_pose, wild, 0.0)
     assert np.max(np.abs(mechanism.gap(pose, 0.0))) < 1e-14
     assert np.max(np.abs(mechanism.slip(pose, twist))) < 1e-13
-    # The nearest twist in the metric of the masses: the removed part is orthogonal to the rest.
+    # The removed velocity is orthogonal to the remaining velocity in the norm of the masses.
     assert np.sum(mechanism.inertias * (wild - twist) * twist) == pytest.approx(0, abs=1e-13)
 
 
-def test_constrained_acceleration_solves_newtons_law_with_the_rows_ideal_or_soft():
+def test_constrained_acceleration_satisfies_newtons_law_and_the_rows():
     mechanism, random = four_bar(), np.random.default_rng(4)
     pose = mechanism.pose + 0.02 * random.normal(size=mechanism.pose.shape)
     twist, rows = random.normal(size=mechanism.twist.shape), mechanism.rows(pose)
     soft = np.arange(mechanism.row_count) % 3 == 0
     inertia = inverse_inertia((rows / mechanism.inertias.reshape(-1)) @ rows.T, soft)
-    # A unit force in the soft row 0 gives this acceleration along that row while the rigid rows hold.
+    # The acceleration along the soft row 0 due to a unit force in it, under the constraints of the rigid rows.
     rigid = np.delete(rows, np.flatnonzero(soft), axis=0) / np.sqrt(mechanism.inertias.reshape(-1))
     push = rows[0] / np.sqrt(mechanism.inertias.reshape(-1))
     push = push - rigid.T @ np.linalg.lstsq(rigid.T, push, rcond=None)[0]
@@ -141,7 +141,7 @@ def test_constrained_acceleration_solves_newtons_law_with_the_rows_ideal_or_soft
 
 
 def test_baumgarte_closes_an_open_joint_critically_damped():
-    # A bar pulled off its pin along its own axis, without any torque: one coordinate, gap'' = -2 gap'/T - gap/T^2.
+    # The bar is displaced from its pin along its axis, so that the gap satisfies gap'' = -2 gap'/T - gap/T^2.
     mechanism, constant = replace(pendulum(angle=0.0), gravity=(0.0, 0.0)), 0.1
     regularisation = Lagrange("rk4", "baumgarte").regularisation(
         mechanism, constant / 5
@@ -151,15 +151,15 @@ def test_baumgarte_closes_an_open_joint_critically_damped():
     for i in range(150):
         pose, twist = step(pose, twist, i * dt, dt)
     times = 150 * dt / constant
-    # RK4 over 150 steps of a fiftieth of the time constant: 1e-7 of the start's gap.
+    # The relative error of RK4 after 150 steps of a fiftieth of the time constant is 1e-7.
     assert mechanism.gap(pose, 0.0)[0] == pytest.approx(0.02 * (1 + times) * np.exp(-times), rel=1e-5)
 
 
 @in_both_codes
-def test_baumgartes_spring_knows_the_drives_angle_at_every_stage():
+def test_baumgartes_spring_uses_the_drives_angle_at_each_stage():
     mechanism = four_bar(crank_rate=10.0, drive=10.0)
     run = Lagrange("rk4", "baumgarte").build(mechanism, 1e-3)(20, 5)
-    # A drive turns at a constant rate: if each stage uses its own time, the gap is rounding.
+    # The drive has a constant rate. The gap is rounding if each stage uses the angle at its time.
     assert np.max(np.abs(joint_gap(mechanism, run)[:, -1])) < 1e-13
 
 
@@ -167,18 +167,18 @@ def test_baumgartes_spring_knows_the_drives_angle_at_every_stage():
 def test_the_semi_implicit_euler_method_moves_a_pose_with_the_new_velocity():
     mechanism = Mechanism((Body("stone", 2.0, 1.0, (0, 0, 0), (1.0, 0.0, 3.0)),), (), (0.0, -9.81))
     run = Lagrange("euler", "none").build(mechanism, 0.1)(10, 1)
-    # Each step moves the pose by the velocity after its change of g dt: g dt^2 (1 + ... + 10), not (0 + ... + 9).
+    # The pose moves by the new velocities, so the displacement is g dt^2 (1 + ... + 10) and not g dt^2 (0 + ... + 9).
     np.testing.assert_allclose(run.pose[-1, 0], [1.0, -9.81 * 0.01 * 55, 3.0], rtol=1e-14)
 
 
 @pytest.mark.parametrize("settings", [("rk4", "glue"), ("rk4", "none", 1e-6), ("dop853", "baumgarte", 1e-9)])
-def test_settings_that_do_not_exist_are_refused(settings):
+def test_invalid_settings_are_refused(settings):
     with pytest.raises(ValueError, match=r"must|tolerance"):
         Lagrange(*settings)
 
 
 @pytest.mark.parametrize("give", [None, 0.3])
-def test_a_constrained_motion_obeys_its_rows_and_newtons_law(give):
+def test_a_constrained_motion_satisfies_its_rows_and_newtons_law(give):
     mechanism = FreeFourBar().mechanism()
     state = mechanism.pose, mechanism.twist
     rows, right, free = mechanism.rows(mechanism.pose), mechanism.bias(*state), mechanism.unconstrained(*state)

@@ -1,4 +1,4 @@
-"""The compiled judge against numpy: random mechanisms, all methods, regularisations; tables, windows, warnings."""
+"""Comparison of compiled code with numpy, and tests of its tables, windows and warnings."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ pytestmark = pytest.mark.skipif(not loading.installed(), reason="numba, the extr
 
 
 def differences(mechanism: Mechanism, method: Lagrange, dt: float, every: int = 2) -> tuple[float, float]:
-    """Differences of compiled poses and twists from those of numpy, in units of the mechanism's length and speed."""
+    """The largest difference of compiled states from those of numpy, in units of the mechanism's length and speed."""
     unit = mechanism.pose_unit
     runs = [replace(method, compiled=compiled).build(mechanism, dt)(2, every) for compiled in (True, False)]
     pose, twist = (np.abs((getattr(runs[0], name) - getattr(runs[1], name)) / unit).max() for name in ("pose", "twist"))
@@ -39,22 +39,22 @@ def differences(mechanism: Mechanism, method: Lagrange, dt: float, every: int = 
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
-def test_every_method_gives_the_numbers_of_numpy(method):
+def test_compiled_methods_equal_numpy_to_rounding(method):
     # Baumgarte's spring divides rounding errors by the square of 5e-3 s, and a step multiplies them by 1e-3 s.
     allowed = 1e-11 if method.stabilisation == "baumgarte" else 1e-13
     assert max(differences(four_bar(crank_rate=3.0), method, 1e-3, 5)) < allowed
 
 
 @pytest.mark.parametrize("number", range(12))
-def test_random_mechanisms_of_all_joints_links_and_forces_move_as_in_numpy(number):
+def test_compiled_motions_of_random_mechanisms_equal_numpy(number):
     mechanism = random_mechanism(21, number, ALL_KINDS)
     # The largest difference of the first 150 is 1.2e-14.
     assert max(differences(mechanism, Lagrange("rk4"), 1e-3 * mechanism.time_scale)) < 1e-12
 
 
 @pytest.mark.parametrize("number", range(12))
-def test_accelerations_in_states_that_violate_the_joints_are_those_of_numpy(number):
-    """Terms of the bias that vanish with the slip matter here only."""
+def test_compiled_accelerations_equal_numpy_in_states_that_violate_joints(number):
+    # Some terms of the bias vanish if joints do not slip.
     mechanism, random = random_mechanism(21, number, ALL_KINDS), np.random.default_rng(number)
     pose = mechanism.pose + 1e-2 * mechanism.pose_unit * random.normal(size=mechanism.pose.shape)
     twist = mechanism.twist + mechanism.pose_unit / mechanism.time_scale * random.normal(size=pose.shape)
@@ -64,42 +64,42 @@ def test_accelerations_in_states_that_violate_the_joints_are_those_of_numpy(numb
     assert np.abs((acceleration[0] - expected) / mechanism.pose_unit).max() < 1e-10 * size
 
 
-def test_the_random_mechanisms_have_every_joint_link_and_force_of_the_compiled_code():
+def test_the_random_mechanisms_have_all_compiled_joints_and_forces():
     mechanisms = [random_mechanism(21, number, ALL_KINDS) for number in range(12)]
     kinds = {type(part) for mechanism in mechanisms for part in (*mechanism.joints, *mechanism.forces)}
     assert kinds == {*JOINT_FIELDS, *FORCE_FIELDS} - {Coupling, CoupledForce}  # see tests/engines/test_couplings.py
 
 
-def test_rows_that_follow_from_others_change_no_motion_and_share_the_reaction():
+def test_redundant_rows_do_not_change_the_motion_and_share_the_reaction():
     mechanism = four_bar(crank_rate=3.0)
     twice = replace(mechanism, joints=(*mechanism.joints, replace(mechanism.joints[2], name="C again")))
     once, again = (Lagrange("rk4").build(m, 1e-3)(10, 2) for m in (mechanism, twice))
     np.testing.assert_allclose(again.pose, once.pose, rtol=0, atol=1e-13)
-    # The minimum-norm solution: each of the two pins carries half.
+    # In the minimum-norm solution each of the two pins carries half of the load.
     np.testing.assert_allclose(again.reaction[:, 4:6], once.reaction[:, 4:6] / 2, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(again.reaction[:, 8:], once.reaction[:, 4:6] / 2, rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("links", [100, 1000])
-def test_a_long_chain_is_factorised_in_a_narrow_band(links):
+def test_the_matrix_of_a_long_chain_has_a_narrow_envelope(links):
     scene = LongPendulum(links=links)
     system, _ = system_of(scene.mechanism())
     assert len(system.matrix) < 4 * len(system.rows)  # a pin's two rows are coupled with those of its neighbours
     run = Lagrange("rk4").build(scene.mechanism(), 1e-4)(2, 2)
     truth = scene.motion(run.t)
-    # 2e-4 s after its release the chain has hardly turned: the differences of the links' rates are compared.
+    # The chain has hardly moved after 2e-4 s, so the rates of the links are compared.
     assert np.max(np.abs(run.twist - truth.twist)) < 1e-9 * links
 
 
-def test_a_projection_with_the_factor_of_the_rows_before_it_leaves_no_slip():
+def test_a_projection_with_an_older_factor_removes_the_slip():
     mechanism = HundredLinks().mechanism()
     run = Lagrange("euler").build(mechanism, 1e-3)(4, 25)
-    # Without the correction for the older factor it is 3e-12 m/s.
+    # Without the correction for the older factor the slip is 3e-12 m/s.
     assert np.abs(slip(mechanism, run)).max() < 1e-13
     assert np.abs(joint_gap(mechanism, run)).max() < 1e-13
 
 
-def test_a_body_that_rolls_beyond_its_table_gets_another_window_and_moves_as_before():
+def test_the_window_of_a_table_moves_with_the_rotation():
     mechanism = RollingEllipse().mechanism()
     model = present(CompiledModel.of(mechanism))
     steps = model.empty_samples(10), model.empty_samples(10)
@@ -110,7 +110,7 @@ def test_a_body_that_rolls_beyond_its_table_gets_another_window_and_moves_as_bef
     np.testing.assert_array_equal(steps[0], steps[1])
 
 
-def test_if_a_table_has_no_cell_numpy_completes_the_run(monkeypatch):
+def test_numpy_completes_a_run_if_a_table_has_no_cell(monkeypatch):
     mechanism = RollingEllipse().mechanism()
     expected = Lagrange("rk4", compiled=False).build(mechanism, 1e-3)(4, 2)
     monkeypatch.setattr("engines.lagrange.compiled_model.CellWindows.move", lambda self, which, theta: False)
@@ -122,7 +122,7 @@ def test_if_a_table_has_no_cell_numpy_completes_the_run(monkeypatch):
 @pytest.mark.parametrize("compiled", [True, False])
 def test_a_run_ends_with_a_warning_if_the_tolerance_needs_too_many_steps(compiled, monkeypatch):
     monkeypatch.setattr("engines.lagrange.dynamics.MOST_NUMPY_STEPS", 200)  # numpy then ends sooner
-    # A bar of a micrometre on a bar of a metre: its period is a thousandth, and the tolerance needs steps for each.
+    # A bar of a micrometre hangs on a bar of a metre. Its period is a thousandth, so that many steps are needed.
     fast = replace(pendulum(length=1e-12), gravity=(0.0, -1e6))
     hopeless = Lagrange(tolerance=1e-14, compiled=compiled).build(fast, 1.0)(2, 1)
     assert np.isnan(hopeless.pose[-1]).all()
@@ -138,7 +138,7 @@ REGULARISATIONS = (
 
 @pytest.mark.parametrize("soft", [None, *REGULARISATIONS])
 @pytest.mark.parametrize("project", [False, True])
-def test_the_gates_judge_is_the_same_compiled_and_in_numpy(soft, project):
+def test_the_gates_judge_in_compiled_code_equals_numpy(soft, project):
     scene = FreeFourBar(duration=0.05)
     run = integrate(scene, 4, 4, soft, project)
     expected = in_numpy(scene.mechanism(), len(run.t) - 1, scene.spacing, 4, 4, soft, project)
@@ -146,14 +146,14 @@ def test_the_gates_judge_is_the_same_compiled_and_in_numpy(soft, project):
     np.testing.assert_allclose(run.reaction, expected.reaction, rtol=0, atol=1e-10 * np.abs(expected.reaction).max())
 
 
-def test_a_command_that_steps_nothing_imports_no_numba():
+def test_a_command_without_steps_does_not_import_numba():
     program = "import sys, reports.cli.commands, engines.registry as r; r.ENGINES; print('numba' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["False"]
 
 
-def test_steps_that_are_limited_by_stability_and_not_by_accuracy_are_reported():
-    # A damper that stops a body in a millionth of the time in which gravity moves it: explicit steps are short.
+def test_a_stiff_motion_is_reported():
+    # The time constant of the damper is a millionth of that of gravity, so stability limits explicit steps.
     scene = FreeFourBar()
     damped = replace(
         scene.mechanism(),
