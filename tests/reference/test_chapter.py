@@ -49,7 +49,7 @@ def cardan(count=200, length=1.0):
     return t, np.column_stack([length / 2 * np.cos(t), length / 2 * np.sin(t), -t])
 
 
-def test_the_instant_centre_has_no_velocity():
+def test_the_velocity_at_the_instant_centre_is_zero():
     rng = np.random.default_rng(0)
     pose, twist = rng.normal(size=(2, 30, 3))
     space, body = instant_centre(pose, twist)
@@ -65,7 +65,7 @@ def test_the_instant_centre_has_no_velocity():
     np.testing.assert_allclose(back, arm, atol=1e-14 * np.abs(arm).max())
 
 
-def test_a_ladders_centrodes_are_cardans_circles():
+def test_the_centrodes_of_a_sliding_ladder_are_cardans_circles():
     motion = from_poses(*cardan())
     np.testing.assert_allclose(np.linalg.norm(motion.space, axis=-1), 1.0, atol=1e-11)
     np.testing.assert_allclose(np.linalg.norm(motion.body, axis=-1), 0.5, atol=1e-11)
@@ -76,7 +76,7 @@ def test_a_ladders_centrodes_are_cardans_circles():
 
 
 @pytest.mark.parametrize("arc", ARCS)
-def test_rolling_the_couplers_curves_gives_its_motion_back(arc):
+def test_rolling_the_centrodes_of_a_coupler_reproduces_its_motion(arc):
     t, pose, twist = coupler(*ARCS[arc], 401)
     between = coupler(ARCS[arc][0] + 1e-3, ARCS[arc][1] - 1e-3, 777)[1]
     for motion in (centrodes(t, pose, twist), from_poses(t, pose)):
@@ -87,7 +87,7 @@ def test_rolling_the_couplers_curves_gives_its_motion_back(arc):
         assert 0 < motion.error < 1e-8
 
 
-def test_an_engines_centrodes_are_wrong_by_its_velocity_error_over_its_rate():
+def test_the_centrode_error_is_the_velocity_error_over_the_rotation_rate():
     scene = RollingDisc()
     errors = []
     for every in (1, 2, 4):
@@ -102,7 +102,7 @@ def test_an_engines_centrodes_are_wrong_by_its_velocity_error_over_its_rate():
         centrode_error(truth, scene.motion([0.0, 0.2]))
 
 
-def test_shapes_are_equally_long_and_touch_where_they_say():
+def test_shapes_have_equal_arc_lengths_and_touch_at_equal_indices():
     shapes = shapes_of(from_poses(*coupler(*ARCS["coupler forward"], 401)[:2]), points=300)
     lengths = [np.linalg.norm(np.diff(points, axis=0), axis=-1) for points in (shapes.space, shapes.body)]
     # Chords of 3 mm are shorter than their arcs by the cube of that over the radius squared.
@@ -134,13 +134,13 @@ def test_shapes_can_be_read_back_from_csv_svg_and_dxf():
     np.testing.assert_allclose(lines["BODY"], shapes.body, atol=1e-12)
 
 
-def test_a_table_of_poses_is_read_in_any_order_of_columns():
+def test_a_table_of_poses_may_have_its_columns_in_any_order():
     t, pose = poses_from_csv("angle, x, t, y\n0.5,1,0,2\n0.6,1.5,0.1,2.5\n")
     np.testing.assert_array_equal(t, [0, 0.1])
     np.testing.assert_array_equal(pose, [[1, 2, 0.5], [1.5, 2.5, 0.6]])
 
 
-def test_the_stated_error_of_a_table_of_poses_is_above_that_of_its_differentiation():
+def test_the_error_bound_of_centrodes_from_poses_is_above_their_true_error():
     t = np.linspace(0, 1.2, 60)
     run, pace = t + 0.05 * np.sin(12 * t), 1 + 0.6 * np.cos(12 * t)  # the same curves, run through unsteadily
     pose = np.column_stack([0.3 * np.cos(2 * run), 0.1 * np.sin(3 * run), 3 * run + 0.02 * np.sin(5 * run)])

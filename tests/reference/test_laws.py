@@ -19,7 +19,7 @@ ROUNDINGS = 20
 
 @pytest.mark.parametrize("cases", [12, pytest.param(600, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
-def test_a_formula_keeps_every_digit_that_its_arguments_have(law: Law, cases: int) -> None:
+def test_formulas_have_errors_of_a_few_roundings_of_their_arguments(law: Law, cases: int) -> None:
     miss = max(searched(law, cases, 1 if cases == 12 else 2), key=lambda one: one.ratio)
     assert miss.ratio < ROUNDINGS, str(miss)
 
@@ -47,13 +47,13 @@ FOUND = {
 
 
 @pytest.mark.parametrize("law", FOUND)
-def test_what_was_found_once_keeps_its_digits(law: str) -> None:
+def test_arguments_that_once_lost_digits_have_errors_of_a_few_roundings(law: str) -> None:
     found = misses(NAMED[law.removesuffix(", going round")], FOUND[law])
     assert found is not None
     assert max(miss.ratio for miss in found) < ROUNDINGS
 
 
-def test_the_search_finds_a_part_in_ten_to_the_thirteen() -> None:
+def test_the_search_notices_a_relative_error_of_1e_minus_13() -> None:
     for law in LAWS:
         if "limit" in law.name:  # always next to a dead centre, where a rounding of its arguments moves it by more
             continue

@@ -50,7 +50,7 @@ def random_linkages(count):
         yield linkage
 
 
-def test_angles_are_continuous_at_every_crank_angle_for_random_linkages():
+def test_angles_of_random_linkages_are_continuous_at_every_crank_angle():
     for linkage in random_linkages(15):
         for low, high in linkage.crank_limits() or ((-15.0, 15.0),):
             # Spaced so that the square-root ends are resolved; the largest jump must then be what the rates say.
@@ -64,7 +64,7 @@ def test_angles_are_continuous_at_every_crank_angle_for_random_linkages():
 
 @pytest.mark.parametrize("branch", [1, -1])
 @pytest.mark.parametrize("linkage", [WINDING, WINDING_BACKWARD_GROUND])
-def test_a_double_crank_winds_with_its_crank(linkage, branch):
+def test_the_bars_of_a_double_crank_turn_fully_with_the_crank(linkage, branch):
     assert linkage.grashof() == "double-crank"
     theta = np.linspace(-10, 10, 41)
     turned = np.array(linkage.angles(theta + 6 * np.pi, branch)) - linkage.angles(theta, branch)
@@ -75,7 +75,7 @@ def test_a_double_crank_winds_with_its_crank(linkage, branch):
     assert np.max(np.abs(rocking)) < 1e-13  # a crank-rocker does not wind
 
 
-def test_huge_crank_angles_and_odd_multiples_of_pi_are_exact_to_the_angle_given():
+def test_huge_crank_angles_and_multiples_of_pi_are_accurate_to_rounding():
     theta = np.array([np.pi, -np.pi, 3 * np.pi, 1e6 * np.pi, 12345678.9, 1e15])
     beta, phi = CHAPTER.angles(theta)
     with mpmath.workdps(50):
@@ -90,7 +90,7 @@ def test_huge_crank_angles_and_odd_multiples_of_pi_are_exact_to_the_angle_given(
 @pytest.mark.parametrize(
     ("method", "steps", "order"), [("euler", (200, 400), 1), ("rk4", (8, 16), 4), ("RK45", (1e-3,), 2.4e-2)]
 )
-def test_integrated_rates_have_the_error_of_their_method(method, steps, order):
+def test_integrated_rates_have_the_convergence_order_of_their_method(method, steps, order):
     times = np.linspace(0, np.pi / 5, 21)
     beta, _ = CHAPTER.angles(math.pi / 2 + 10 * times)
     if method == "RK45":  # at the common tolerance two hundredths of a radian in one revolution
@@ -108,7 +108,7 @@ def test_integrated_rates_have_the_error_of_their_method(method, steps, order):
     assert np.isnan(short.beta[-1])
 
 
-def test_crank_limits_are_where_the_triangle_flattens_and_the_crank_is_refused_beyond():
+def test_coupler_and_rocker_are_in_line_at_crank_limits_and_angles_beyond_are_refused():
     for linkage in random_linkages(60):
         limits = linkage.crank_limits()
         turns = linkage.grashof() == "double-crank" or (
@@ -145,7 +145,7 @@ def test_grashof_classes_by_name(lengths, ground, name):
     assert FourBar(crank, coupler, rocker, ground).grashof() == name
 
 
-def test_a_parallelogram_keeps_its_digits_beside_its_change_point():
+def test_a_parallelogram_is_accurate_next_to_its_change_point():
     parallelogram = FourBar(0.1, 0.3, 0.1, (0.3, 0.0))
     assert parallelogram.crank_limits() is None
     for theta in (1e-3, -1e-3, 1e-6, -1e-6, 1e-9, -1e-9, 1e-100, -1e-100):
@@ -160,7 +160,7 @@ def test_a_parallelogram_keeps_its_digits_beside_its_change_point():
 # Scenes
 
 
-def test_a_triple_rocker_passes_its_crank_limits_and_changes_its_branch():
+def test_a_free_triple_rocker_changes_its_branch_at_crank_limits_without_a_jolt():
     each = TRIPLE_ROCKER
     accelerations = lambda times: each._bodies(each._angles(times))[2]  # noqa: E731
     assert each.four_bar.grashof() == "triple-rocker"
@@ -186,7 +186,7 @@ def test_a_triple_rocker_passes_its_crank_limits_and_changes_its_branch():
     assert np.max(np.abs(np.remainder(turns + 0.5, 2 * np.pi) - 0.5)) < 1e-6  # square root of rounding at a limit
 
 
-def test_a_freedom_appears_where_the_bars_are_in_line():
+def test_a_parallelogram_has_one_more_freedom_with_its_bars_in_line():
     scene = Parallelogram()
     mechanism = scene.mechanism()
     assert mechanism.degrees_of_freedom() == (0, 0)
@@ -197,7 +197,7 @@ def test_a_freedom_appears_where_the_bars_are_in_line():
 
 
 @pytest.mark.parametrize("rate", [4.0, -4.0])
-def test_the_way_to_the_limit_depends_on_the_sense_of_rotation(rate):
+def test_the_stopping_time_depends_on_the_sense_of_rotation(rate):
     scene = OverdrivenFourBar(start=0.3, rate=rate)
     (low, high), *_ = present(scene.four_bar.crank_limits())
     assert scene.stopping_time == pytest.approx((high - 0.3 if rate > 0 else 0.3 - low) / 4, rel=1e-14)
@@ -214,7 +214,7 @@ SHAPES = [SliderCrank(0.3, 1.0), SliderCrank(0.3, 1.0, 0.2), SliderCrank(0.5, 0.
 
 
 @pytest.mark.parametrize("shape", [*SHAPES, SliderCrank(0.3, 1.0, 0.2, -1)])
-def test_the_slider_stands_still_at_the_dead_centres_and_the_stroke_lies_between(shape: SliderCrank) -> None:
+def test_the_slider_has_no_speed_at_dead_centres_and_the_stroke_is_their_distance(shape: SliderCrank) -> None:
     stretched, folded = (shape.position(np.array(angle)) for angle in shape.dead_centres())
     assert np.abs(shape.rates(np.array(shape.dead_centres()))[1]).max() < 1e-13
     assert abs(abs(stretched - folded) - shape.stroke()) < 1e-14
@@ -238,7 +238,7 @@ def of_the_test_set(angles: np.ndarray) -> np.ndarray:
     return np.stack([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7], axis=-1)
 
 
-def test_it_ends_as_the_test_set_does():
+def test_the_final_angles_of_andrews_mechanism_agree_with_the_test_set():
     # Their digits are good to about 1.4e-9: by two formulations of ours, which agree to 1e-12, the same difference.
     ends = SCENE.motion(0.03).pose[0, :, 2]
     by_multipliers = TRUTH.build(SCENE.mechanism(), 0.03)(1, 1).pose[1, :, 2]
@@ -247,7 +247,7 @@ def test_it_ends_as_the_test_set_does():
     np.testing.assert_allclose(ends, by_multipliers, atol=1e-12)
 
 
-def test_its_first_accelerations_are_those_of_the_test_set():
+def test_the_initial_accelerations_of_andrews_mechanism_agree_with_the_test_set():
     _, _, acceleration = SCENE.placement(np.zeros(1))
     np.testing.assert_allclose(of_the_test_set(acceleration[0, :, 2]), ACCELERATIONS, rtol=1e-14, atol=1e-11)
     mechanism = SCENE.mechanism()
@@ -258,7 +258,7 @@ def test_its_first_accelerations_are_those_of_the_test_set():
 
 
 @pytest.mark.parametrize("told", ["truth", "lagrange"])
-def test_its_first_multipliers_are_those_of_the_test_set(told):
+def test_the_initial_multipliers_of_andrews_mechanism_agree_with_the_test_set(told):
     # Its rows are the rod's end less that of body 3, 4 and 6, and M q'' = f - G^T lambda. Ours are the second point
     # less the first, M a = f + J^T reaction, and the rod, K2, is the second: a multiplier is minus the reaction.
     mechanism = SCENE.mechanism()
@@ -268,7 +268,7 @@ def test_its_first_multipliers_are_those_of_the_test_set(told):
     np.testing.assert_allclose(found, MULTIPLIERS, rtol=1e-11, atol=1e-9)
 
 
-def test_a_folded_pair_is_another_branch():
+def test_a_folded_pair_of_bars_has_the_branch_minus_one():
     pose = SCENE.mechanism().pose.copy()
     pose[4, 2], pose[3, 2] = pose[3, 2] - np.pi / 2, pose[4, 2] + np.pi / 2
     assert SCENE.branch_of(pose) == -1

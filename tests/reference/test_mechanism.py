@@ -42,7 +42,7 @@ JOINTED = {
 
 
 @pytest.mark.parametrize("name", JOINTED)
-def test_rows_are_the_derivative_of_the_gap_and_the_bias_is_that_of_the_rows(name):
+def test_rows_are_derivatives_of_the_gap_and_the_bias_is_minus_the_rate_of_the_rows(name):
     mechanism, h = JOINTED[name], 1e-5
     poses, twists = RANDOM.normal(size=(2, 20, len(mechanism.bodies), 3))  # at random, so the joints are open
     rows, step = mechanism.rows(poses), 1e-30  # a complex step has no subtraction: the comparison is at rounding level
@@ -58,7 +58,7 @@ def test_rows_are_the_derivative_of_the_gap_and_the_bias_is_that_of_the_rows(nam
     np.testing.assert_allclose(bias, -(ahead - behind) / (2 * h), rtol=0, atol=1e-6 * np.abs(bias).max())
 
 
-def test_velocity_and_acceleration_are_derivatives_of_a_rotated_vector():
+def test_rotation_velocity_and_acceleration_are_derivatives_of_a_rotated_vector():
     angle, rate, alpha, vector = 0.7, -1.3, 0.4, np.array([1.1, -0.6])
 
     def place(t):
@@ -73,7 +73,7 @@ def test_velocity_and_acceleration_are_derivatives_of_a_rotated_vector():
     np.testing.assert_allclose(rotation_acceleration(rate, alpha, arm), derivative(place, 0.0, order=2), atol=1e-11)
 
 
-def test_reactions_read_from_accelerations_obey_newtons_law():
+def test_reactions_computed_from_accelerations_satisfy_newtons_law():
     driven = four_bar(crank_rate=10.0, drive=10.0)
     rows = driven.rows(driven.pose)
     reaction = RANDOM.normal(size=driven.row_count)
@@ -83,7 +83,7 @@ def test_reactions_read_from_accelerations_obey_newtons_law():
     np.testing.assert_allclose(driven.reaction(driven.pose, acceleration), reaction, atol=1e-12)
 
 
-def test_an_engine_with_other_masses_and_gravity_has_applied_other_reactions():
+def test_reactions_are_computed_with_the_masses_and_gravity_of_the_engines_model():
     mechanism = pendulum()
     resting = np.zeros((1, 3))
     held = np.array([[3.0, 3.0, np.nan]])  # it has no number for the inertia: the mechanism's counts
@@ -94,7 +94,7 @@ def test_an_engine_with_other_masses_and_gravity_has_applied_other_reactions():
     assert np.abs(found - own).max() > 0.1
 
 
-def test_energy_gap_and_slip_need_no_reference():
+def test_energy_gap_and_slip_are_computed_without_a_reference_motion():
     mechanism = pendulum(angle=0.0, rate=2.0)
     start = Trajectory(np.zeros(1), mechanism.pose[None], mechanism.twist[None], np.zeros((1, 2)))
     # A bar of 1 kg and 1 m turning about its end at 2 rad/s: (1/3) 2^2 / 2.
@@ -105,7 +105,7 @@ def test_energy_gap_and_slip_need_no_reference():
     np.testing.assert_allclose(energy(mechanism, lifted), [2 / 3 + 9.81 * 2], rtol=1e-15)
 
 
-def test_scales_come_from_the_description():
+def test_length_and_time_scales_follow_from_lengths_gravity_and_drives():
     assert four_bar().length_scale == pytest.approx(0.8 * np.sqrt(2))
     assert four_bar(10.0, drive=10.0).time_scale == pytest.approx(0.1)
     assert Mechanism((Body("still", 1, 1, (0, 0, 0)),), ()).time_scale == 1.0
@@ -113,7 +113,7 @@ def test_scales_come_from_the_description():
 
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
 @pytest.mark.parametrize(("miss", "words"), [(1e-11, ""), (1e-8, "'pin x' is"), (1e-6, "'pin x' is")])
-def test_a_start_off_a_joint_is_judged_by_the_mechanisms_own_size_and_speed(unit, miss, words):
+def test_the_tolerance_of_an_open_joint_is_relative_to_the_mechanisms_length_and_speed(unit, miss, words):
     def hung(open_by, slip):
         body = Body("bar", 1.0, unit**2, (unit, 0.0, 0.0), (slip * unit, unit, 1.0))
         return Mechanism((body,), (Pin("pin", None, "bar", (open_by * unit, 0.0), (-unit, 0.0)),))
@@ -123,7 +123,7 @@ def test_a_start_off_a_joint_is_judged_by_the_mechanisms_own_size_and_speed(unit
             hung(*wrong)
 
 
-def test_no_array_that_a_mechanism_keeps_can_be_written():
+def test_cached_arrays_of_a_mechanism_are_read_only():
     values = [
         getattr(SCENES[0].mechanism(), name)
         for name, member in vars(Mechanism).items()
@@ -146,7 +146,7 @@ def slopes(function: Any, at: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("force", [*SPRINGS, *PUSHES, *DAMPERS], ids=lambda force: force.name)
-def test_a_force_is_minus_the_derivative_of_its_potential_and_a_damper_half_that_of_its_power(force):
+def test_forces_are_minus_the_gradient_of_the_potential_and_damper_forces_half_the_gradient_of_the_power(force):
     alone = replace(ALL, forces=(force,)).applied
 
     def power(twist):
@@ -158,7 +158,7 @@ def test_a_force_is_minus_the_derivative_of_its_potential_and_a_damper_half_that
 
 
 @pytest.mark.parametrize("force", [SPRINGS[1], SPRINGS[2], SPRINGS[3], PUSHES[1], *DAMPERS[1:]], ids=lambda f: f.name)
-def test_what_acts_between_two_bodies_neither_pushes_nor_turns_both_together(force):
+def test_internal_forces_have_no_resultant_force_and_no_resultant_moment(force):
     forces = replace(ALL, forces=(force,)).applied.on(POSES, TWISTS)
     x, y, turning = np.moveaxis(forces, -1, 0)
     moment = turning + POSES[..., 0] * y - POSES[..., 1] * x
@@ -166,7 +166,7 @@ def test_what_acts_between_two_bodies_neither_pushes_nor_turns_both_together(for
         np.testing.assert_allclose(total.sum(axis=-1), 0, atol=1e-12)
 
 
-def test_reactions_are_told_with_the_forces_that_act_beside_them():
+def test_reactions_are_computed_with_springs_and_dampers_subtracted():
     motion = TRUTH.build(DAMPED, 0.05)(4, 1)
     forces = DAMPED.applied.on(motion.pose, motion.twist)
     rows = DAMPED.rows(motion.pose)
@@ -183,7 +183,7 @@ def test_reactions_are_told_with_the_forces_that_act_beside_them():
     ("name", "freedoms"),
     [("rod to the ground", 2), ("rod", 3), ("gear", 4), ("weld", 2), ("weld to the ground", 1), ("weld in a loop", 1)],
 )
-def test_freedoms_are_counted_by_rank(name, freedoms):
+def test_degrees_of_freedom_are_counted_by_the_rank_of_the_rows(name, freedoms):
     assert ALONE[name].degrees_of_freedom() == (freedoms, freedoms)
 
 
@@ -202,7 +202,7 @@ def in_fifty_digits(rows, inertias, excess):
 
 
 @pytest.mark.parametrize("ratio", [1.0, 1e-9, 1e9])
-def test_forces_are_those_of_fifty_digits_however_different_the_masses_are(ratio):
+def test_reactions_agree_with_fifty_digits_for_large_mass_ratios(ratio):
     rows = RNG.normal(size=(8, 9))
     inertias = np.array([1.0] * 3 + [ratio] * 3 + [1.0] * 3)
     forces = RNG.normal(size=8)
@@ -213,7 +213,7 @@ def test_forces_are_those_of_fifty_digits_however_different_the_masses_are(ratio
     assert np.abs(found - exact).max() < 1e-13 * max(ratio, 1 / ratio) ** 0.5 * np.abs(exact).max()
 
 
-def test_what_is_not_finite_gives_forces_that_are_no_numbers_and_harms_no_other_time():
+def test_a_nan_at_one_time_gives_nan_reactions_at_that_time_only():
     excess = np.array([[1.0] * 3, [np.nan, 1.0, 1.0], [1.0] * 3])
     found = reactions(np.stack([RNG.normal(size=(2, 3))] * 3), np.ones(3), excess, np.ones(2), 1.0)
     assert np.isnan(found[1]).all()
@@ -221,7 +221,7 @@ def test_what_is_not_finite_gives_forces_that_are_no_numbers_and_harms_no_other_
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1e9])
-def test_freedoms_do_not_depend_on_the_unit_of_length(scale):
+def test_degrees_of_freedom_do_not_depend_on_the_unit_of_length(scale):
     body = Body("slider", 1.0, scale**2, (scale, 0.0, 0.0))
     arm = Body("arm", 1.0, scale**2, (0.0, 0.0, 0.0))
     joints = (
@@ -234,7 +234,7 @@ def test_freedoms_do_not_depend_on_the_unit_of_length(scale):
     assert freedoms == [(2, 2), (1, 1), (1, 1)]  # the arm stands along x: a slot at 0.3 rad holds it, as the motor does
 
 
-def test_rows_that_follow_from_others_are_undetermined_even_by_a_thousandth_part_of_one():
+def test_dependent_rows_are_undetermined_also_with_a_coefficient_of_a_thousandth():
     rows = np.zeros((4, 6))
     rows[0, 0] = rows[2, 1] = rows[3, 4] = 1.0  # the last stands alone
     rows[1, :2] = 1.0, 1e-3  # the first and a thousandth of the third
@@ -245,7 +245,7 @@ def test_rows_that_follow_from_others_are_undetermined_even_by_a_thousandth_part
     assert rank(np.zeros((2, 3)), 1.0) == 0
 
 
-def test_a_symmetric_system_is_solved_in_any_unit_and_shared_equally_where_it_is_singular():
+def test_a_symmetric_system_is_solved_in_any_unit_and_a_singular_one_by_minimum_norm():
     matrix = np.array([[2e-12, 1e-12], [1e-12, 2e-12]])
     assert solve_symmetric(matrix, np.array([3e-12, 3e-12])) == pytest.approx([1.0, 1.0])
     assert solve_symmetric(np.ones((2, 2)), np.array([1.0, 1.0])) == pytest.approx([0.5, 0.5])
@@ -260,7 +260,7 @@ def pushed(mechanism: Mechanism) -> tuple[Any, Any, Any]:
 
 
 @pytest.mark.parametrize("scene", [HundredLinks(), TenFourBars()], ids=["open chain", "closed chain"])
-def test_the_band_gives_the_forces_that_make_the_accelerations(scene: Any) -> None:
+def test_the_band_solver_recovers_the_reactions_from_the_accelerations(scene: Any) -> None:
     mechanism = scene.mechanism()
     pose, forces, excess = pushed(mechanism)
     found = banded_reaction(mechanism.joint_rows, pose, excess, mechanism.inertias)
@@ -280,7 +280,7 @@ def with_a_pin_beside_the_last(distance: float) -> Mechanism:
     return replace(mechanism, joints=(*mechanism.joints, beside))
 
 
-def test_two_pins_close_to_each_other_fall_back_to_the_dense_system_and_share_the_force() -> None:
+def test_nearly_coincident_pins_are_solved_by_the_dense_system_and_share_the_force() -> None:
     for distance in (1e-6, 1e-11):
         twice = with_a_pin_beside_the_last(distance)
         pose, forces, excess = pushed(twice)
@@ -300,7 +300,7 @@ LINKS = 2_000
 BYTES_A_LINK = 4_000
 
 
-def test_a_long_chain_is_built_and_its_start_checked_in_memory_in_proportion_to_its_links():
+def test_the_memory_for_building_and_checking_a_long_chain_is_proportional_to_its_links():
     tracemalloc.start()
     try:
         mechanism = NFourBar(LINKS // 2).mechanism()
@@ -311,7 +311,7 @@ def test_a_long_chain_is_built_and_its_start_checked_in_memory_in_proportion_to_
         tracemalloc.stop()
 
 
-def test_what_can_not_fit_is_refused_with_the_bytes_it_would_take():
+def test_arrays_above_the_memory_limit_are_refused_with_their_size():
     chain = LongPendulum(8_000).mechanism()
     with pytest.raises(InvalidMechanism, match=r"dense rows .* would take 3\.07e\+09 bytes; more than 2\.15e\+09"):
         chain.rows(chain.pose)
@@ -326,7 +326,7 @@ def test_what_can_not_fit_is_refused_with_the_bytes_it_would_take():
 
 
 @pytest.mark.parametrize("engine", ENGINES, ids=method_name)
-def test_no_engine_begins_a_run_whose_trajectory_can_not_fit(engine):
+def test_every_engine_refuses_a_trajectory_above_the_memory_limit(engine):
     run = engine.build(LinkPendulum(links=2).mechanism(), 1e-3)
     with pytest.raises(ValueError, match=r"a trajectory of the shape \(100000001, 2, 3\) would take 4\.8e\+09 bytes"):
         run(100_000_000, 1)
@@ -349,18 +349,18 @@ AT = (0.3, 0.4)  # half a metre from the centre: a force there feels 1/2 + 0.25/
     ],
     ids=lambda each: type(each).__name__ if not isinstance(each, float) else "",
 )
-def test_a_force_alone_sets_the_time_by_what_it_does_to_its_body(force, rate):
+def test_the_time_scale_of_one_force_is_the_inverse_of_its_fastest_rate(force, rate):
     assert time_scale(0.75, (0.0, 0.0), [BODY], [], [force]) == pytest.approx(1 / rate, rel=1e-14)
 
 
 @pytest.mark.parametrize(("twist", "rate"), [((0.0, 0.0, 0.0), 4.0), ((0.0, 0.0, -5.0), 5.0), ((-4.5, 6.0, 0.0), 10.0)])
-def test_two_bodies_of_a_spring_count_together_and_a_faster_start_more(twist, rate):
+def test_the_time_scale_uses_both_bodies_of_a_spring_or_a_faster_start_velocity(twist, rate):
     spring = Spring("f", "c", "b", (0.0, 0.0), AT, 8.0, 1.0)  # 1 + 1 per kilogram
     pair = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0), twist)]
     assert time_scale(0.75, (0.0, 0.0), pair, [], [spring]) == pytest.approx(1 / rate, rel=1e-14)
 
 
-def test_a_rod_is_as_long_as_the_mechanism_even_between_centres_of_mass():
+def test_the_length_scale_counts_rods_and_springs_between_centres_of_mass():
     pair = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0))]
     rod = Rod("r", "b", "c", (0.0, 0.0), (0.0, 0.0), 3.0)
     assert length_scale(pair, [rod]) == 3.0

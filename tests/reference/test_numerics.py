@@ -26,7 +26,7 @@ def pull(angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.skipif(not EXTENDED, reason="numpy.longdouble is the ordinary double here: windows are short then")
-def test_a_fast_oscillation_beside_a_slow_one_is_exact_at_all_times():
+def test_collocation_of_a_fast_and_a_slow_oscillation_is_accurate_at_all_times():
     t = np.sort(np.random.default_rng(1).uniform(0, 2, 300))
     found = gauss.integrate(pull, [1.0, 1.0], [0.0, 1.0], 2.0, 1.0)
     # A rounding of a time of 2 s moves the fast oscillation by 2e-16 s times 1 rad/s.
@@ -41,7 +41,7 @@ def circle(state: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("few", [gauss.FEW_WINDOWS, 2], ids=["windows", "steps"])
-def test_a_motion_whose_rates_are_doubles_is_exact_by_windows_and_by_steps(monkeypatch, few):
+def test_motions_with_rates_in_doubles_are_accurate_by_collocation_and_by_the_explicit_method(monkeypatch, few):
     monkeypatch.setattr(gauss, "FEW_WINDOWS", few)
     t = np.linspace(0, 30, 50)
     found = gauss.motion(circle, [0.0, 1.0], 30.0, np.ones(2))(t)
@@ -51,7 +51,7 @@ def test_a_motion_whose_rates_are_doubles_is_exact_by_windows_and_by_steps(monke
     assert np.abs(found - np.stack([np.sin(t), np.cos(t)], axis=-1)).max() < allowed
 
 
-def test_the_error_stated_of_a_motion_by_few_windows_is_above_its_true_one():
+def test_the_error_bound_of_a_motion_with_few_windows_is_above_its_true_error():
     t = np.linspace(1, 30, 30)
     rates = lambda state: np.stack([state[..., 1], -np.sin(state[..., 0])], axis=-1)  # noqa: E731
     found = gauss.motion(rates, [3.0, 0.5], 30.0, np.ones(2))(t)
@@ -66,7 +66,7 @@ def test_the_error_stated_of_a_motion_by_few_windows_is_above_its_true_one():
     assert stated.max() < 1e-10
 
 
-def test_a_motion_that_does_not_last_is_refused():
+def test_integration_through_a_singularity_raises_integration_failed():
     with pytest.raises(IntegrationFailed, match="the motion stops at t = 1 s"), np.errstate(all="ignore"):
         gauss.integrate(lambda angle, rate: rate**2, [0.0], [1.0], 2.0, 1.0)  # 1 / (1 - t)
     with pytest.raises(ValueError, match="times must lie in"):

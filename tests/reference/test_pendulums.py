@@ -25,7 +25,7 @@ from reference.scenes.person import (
 
 
 @pytest.mark.parametrize("complement", [1.0, 0.1, 1e-8, 1e-30])
-def test_jacobi_functions_keep_their_digits_down_to_the_separatrix(complement: float) -> None:
+def test_jacobi_functions_are_accurate_up_to_the_separatrix(complement: float) -> None:
     with mpmath.workdps(60):
         parameter = 1 - mpmath.mpf(complement)
         quarter = quarter_period(complement)
@@ -43,7 +43,7 @@ def test_jacobi_functions_keep_their_digits_down_to_the_separatrix(complement: f
             assert abs(math.sin(amplitude) - exact_sn) < tolerance
 
 
-def test_the_incomplete_integral_keeps_its_digits_beside_the_quarter_period() -> None:
+def test_the_incomplete_integral_is_accurate_next_to_the_quarter_period() -> None:
     for complement in (0.5, 1e-8, 1e-30):
         for sine, cosine in ((0.3, 0.7), (1.0, 1e-9), (1.0, -1e-9), (-1.0, -0.2), (1.0, 0.0)):
             with mpmath.workdps(60):
@@ -51,7 +51,7 @@ def test_the_incomplete_integral_keeps_its_digits_beside_the_quarter_period() ->
                 assert abs(float(incomplete(sine, cosine, complement)) - exact) < 1e-15 * (1 + abs(exact))
 
 
-def test_small_swings_have_the_small_period_and_the_kinds_are_named() -> None:
+def test_the_period_of_small_swings_and_the_kinds_of_pendulum_motion() -> None:
     # K(k) = pi/2 (1 + k^2/4 + ...), k = 5e-4.
     assert Pendulum(2.0, 1e-3).period == pytest.approx(math.pi * (1 + 1e-6 / 16), rel=1e-12)
     assert Pendulum(2.0, 1.0).kind == "swinging"
@@ -60,7 +60,7 @@ def test_small_swings_have_the_small_period_and_the_kinds_are_named() -> None:
     assert math.isinf(Pendulum(2.0, 0.0, 4.0).period)
 
 
-def test_the_benchmark_pendulum_keeps_its_phase_for_845_periods() -> None:
+def test_the_phase_of_the_benchmark_pendulum_is_accurate_after_845_periods() -> None:
     scene = PointPendulum()
     (x, y), t = scene.bob(scene.motion(scene.duration).pose)[0], scene.duration
     with mpmath.workdps(40):
@@ -71,7 +71,7 @@ def test_the_benchmark_pendulum_keeps_its_phase_for_845_periods() -> None:
 
 
 @pytest.mark.parametrize("pendulum", [Pendulum(3.0, 1.0, 0.2), Pendulum(3.0, -2.5, -1.0), Pendulum(2.0, 3.0, 5.0)])
-def test_passages_are_all_those_that_looking_finds_up_to_the_last(pendulum):
+def test_passages_agree_with_sign_changes_of_the_sampled_motion(pendulum):
     t = np.linspace(0, 12 * pendulum.period, 12_001)
     motion = pendulum.motion(t)[0]
     for angle in (0.5, -0.9, 0.0):
@@ -92,7 +92,7 @@ def random_chain(links: int) -> tuple[Chain, np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("links", [1, 5, 40])
-def test_joint_forces_and_lagrange_give_the_same_accelerations(links: int) -> None:
+def test_accelerations_from_joint_forces_agree_with_lagranges_equations(links: int) -> None:
     chain, angle, rate = random_chain(links)
     found = chain.accelerations(angle, rate)
     expected = np.array([lagrangian_accelerations(chain, a, r) for a, r in zip(angle, rate, strict=True)])
@@ -109,7 +109,7 @@ def lagrangian_accelerations(chain: Chain, angle, rate):
     return np.linalg.solve(chain.inertia_matrix * np.cos(difference), right)
 
 
-def test_the_stated_error_is_above_the_true_one_of_a_motion_known_in_closed_form() -> None:
+def test_the_error_bound_of_a_chain_of_one_link_is_above_the_error_against_the_closed_form() -> None:
     chain, exact = LinkPendulum(links=1, angle=2.0, duration=3.0), BarPendulum()
     t = np.linspace(0, 3, 26)
     true = np.abs(chain.motion(t).pose - exact.motion(t).pose)[..., 0, 2].max()
@@ -122,14 +122,14 @@ def test_the_stated_error_is_above_the_true_one_of_a_motion_known_in_closed_form
 
 
 @pytest.mark.parametrize("scene", [LinkPendulum(), TenLinks(), pytest.param(HundredLinks(), marks=pytest.mark.slow)])
-def test_the_stated_horizon_is_within_the_measured_one(scene: LinkPendulum) -> None:
+def test_the_declared_horizon_is_not_above_the_measured_horizon(scene: LinkPendulum) -> None:
     measured, _ = scene.chain.horizon(
         np.full(scene.links, scene.angle), np.full(scene.links, scene.rate), scene.duration
     )
     assert scene.horizon <= measured
 
 
-def test_modes_of_one_two_and_many_links_are_the_known_ones() -> None:
+def test_modes_of_one_two_and_many_links_agree_with_closed_forms() -> None:
     gravity, length = 9.81, 0.7
     one, _ = Chain((length,), (3.0,), gravity).modes()
     assert one[0] == pytest.approx(math.sqrt(1.5 * gravity / length), rel=1e-14)
@@ -147,7 +147,7 @@ SCENES = [NFourBar(loops=1), NFourBar(), NFourBar(loops=3, length=0.7, mass=2.0,
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_at_the_singular_instants_n_more_freedoms_open(scene: NFourBar) -> None:
+def test_n_four_bars_have_n_more_freedoms_at_singular_times(scene: NFourBar) -> None:
     mechanism = scene.mechanism()
     times = scene.singular_times(3 * scene.period)
     assert len(times) == 6  # twice a turn
@@ -160,7 +160,7 @@ def test_at_the_singular_instants_n_more_freedoms_open(scene: NFourBar) -> None:
         assert mechanism.degrees_of_freedom(pose) == (1, 1)
 
 
-def test_forces_have_no_limit_at_a_singular_position_unless_there_is_one_loop() -> None:
+def test_forces_grow_without_limit_near_a_singular_position_of_several_loops() -> None:
     before = np.array([1e-2, 1e-3, 1e-4])
     for loops, grows in ((1, False), (2, True), (10, True)):
         scene = NFourBar(loops=loops)
@@ -170,7 +170,7 @@ def test_forces_have_no_limit_at_a_singular_position_unless_there_is_one_loop() 
         assert (7 < ratio < 11) if grows else (0.9 < ratio < 1.1)
 
 
-def test_the_branch_tells_parallelograms_from_folded_loops() -> None:
+def test_the_branch_distinguishes_parallelograms_from_folded_loops() -> None:
     scene, mechanism = NFourBar(), NFourBar().mechanism()
     assert np.all(scene.branch_of(scene.motion(np.linspace(0, 10, 501)).pose) == 1)
     assert np.all(scene.branch_of(scene.motion(scene.singular_times(10.0)).pose) == 1)
@@ -187,7 +187,7 @@ def test_the_branch_tells_parallelograms_from_folded_loops() -> None:
         assert t == 0.3 or math.cos(angle) < -1 / 2
 
 
-def test_cranks_that_start_upright_at_rest_stay_there_for_ever():
+def test_cranks_that_start_upright_at_rest_do_not_move():
     scene = NFourBar(speed=0.0, duration=1000.0)
     assert scene.period == math.inf
     assert scene.singular_times(1e6).size == 0
@@ -196,7 +196,7 @@ def test_cranks_that_start_upright_at_rest_stay_there_for_ever():
     assert np.abs(motion.twist).max() == 0
 
 
-def test_the_table_of_segments_agrees_with_its_other_columns() -> None:
+def test_segment_masses_sum_to_one_and_radii_of_gyration_agree_with_winters_table() -> None:
     """Winter: trunk and two legs are the whole mass, and his third column has the radius of gyration about an end."""
     assert HEAD_ARMS_TRUNK.mass + 2 * THIGH.mass + 2 * SHANK_AND_FOOT.mass == pytest.approx(1.0, abs=1e-12)
     for segment, about_the_end in ((HEAD_ARMS_TRUNK, 0.798), (THIGH, 0.540), (SHANK, 0.528), (SHANK_AND_FOOT, 0.735)):
@@ -204,7 +204,7 @@ def test_the_table_of_segments_agrees_with_its_other_columns() -> None:
         assert math.hypot(segment.centre, segment.gyration) == pytest.approx(about_the_end, abs=1e-3)
 
 
-def test_the_sway_starts_on_a_swinging_mode() -> None:
+def test_the_swaying_person_starts_on_an_oscillating_mode() -> None:
     scene = SwayingOnOneFoot()
     squares, shapes = modes_upright(scene)
     assert np.sum(squares < 0) == 2

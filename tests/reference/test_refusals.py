@@ -176,7 +176,7 @@ REFUSED: dict[str, tuple[Any, str]] = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_what_cannot_be_is_refused_in_a_sentence(case: str) -> None:
+def test_invalid_arguments_are_refused_with_a_reason(case: str) -> None:
     make, words = REFUSED[case]
     with pytest.raises(ValueError, match=words):
         make()

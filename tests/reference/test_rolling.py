@@ -40,7 +40,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_a_curve_goes_along_its_direction_at_unit_speed_and_turns_by_its_curvature(case):
+def test_tangent_and_curvature_are_derivatives_of_point_and_angle_by_arc_length(case):
     curve, step = CASES[case], 1e-3
     arc = np.linspace(0.1, 0.9, 9)
     weights, shifts = np.array([1, -8, 8, -1]) / 12 / step, np.array([-2, -1, 1, 2]) * step
@@ -55,7 +55,7 @@ def test_a_curve_goes_along_its_direction_at_unit_speed_and_turns_by_its_curvatu
 
 
 @pytest.mark.parametrize("case", ["circle", "ring", "ellipse", "upright ellipse", "cam"])
-def test_nothing_jumps_over_many_turns(case):
+def test_points_and_angles_of_closed_curves_are_continuous_over_many_turns(case):
     curve = CASES[case]
     arc = np.linspace(-7 * curve.length, 7 * curve.length, 5001)
     step = arc[1] - arc[0]
@@ -67,14 +67,14 @@ def test_nothing_jumps_over_many_turns(case):
     np.testing.assert_allclose(turned, math.copysign(2 * np.pi, steepest * curve.curvature_range[0]), atol=1e-13)
 
 
-def test_a_placed_curve_is_moved_as_a_rigid_body():
+def test_a_placed_curve_is_rotated_and_shifted_rigidly():
     placed, arc = CASES["placed"], np.linspace(-5, 5, 50)
     moved = np.array([1.0, 2.0]) + rotated(0.7, Ellipse(0.5, 0.3).point(arc))
     np.testing.assert_allclose(placed.point(arc), moved, atol=1e-15)
     np.testing.assert_allclose(placed.arc(placed.angle(arc)), arc, atol=1e-14)
 
 
-def test_a_traced_ellipse_is_the_ellipse_in_pieces():
+def test_a_curve_traced_through_points_of_an_ellipse_agrees_with_the_ellipse():
     u = np.linspace(0, 2, 200)
     traced, exact = Traced(u, np.stack([0.5 * np.cos(u), 0.3 * np.sin(u)], axis=-1)), Ellipse(0.5, 0.3)
     arc = np.linspace(0.01, traced.limits[1] - 0.01, 37)
@@ -85,7 +85,7 @@ def test_a_traced_ellipse_is_the_ellipse_in_pieces():
     np.testing.assert_allclose(traced.arc(traced.angle(arc)), arc, atol=1e-12)
 
 
-def test_a_root_out_of_reach_is_an_error_and_not_a_number():
+def test_a_target_without_a_root_raises_arithmetic_error():
     with pytest.raises(ArithmeticError, match="no root"):
         solve_increasing(lambda x: (np.tanh(x), 1 / np.cosh(np.clip(x, -300, 300)) ** 2), [2.0], [0.0], 1.0)
     with pytest.raises(ArithmeticError, match="finite"):
@@ -96,19 +96,19 @@ def test_a_root_out_of_reach_is_an_error_and_not_a_number():
 ROUNDING = 1e-13
 
 
-def test_the_chapters_rate_for_a_hypocycloid():
+def test_the_contact_rate_of_a_hypocycloid_is_three_sevenths():
     # Erratum 4: 3/7 with a ring's negative curvature, 0.2308 with a positive one.
     assert float(Rolling.at_arcs(Circle(0.3), Ring(1.0)).contact(1.0).rate) == pytest.approx(3 / 7, abs=1e-15)
 
 
-def test_a_disc_in_a_hole_of_nearly_its_size_keeps_its_digits():
+def test_the_contact_of_a_disc_in_a_hole_of_nearly_its_size_is_accurate():
     rolling, clearance = Rolling.at_arcs(Circle(1.0), Ring(1.0 + 2.0**-20)), 2.0**-20
     # The contact goes round the hole 1 / clearance times as fast as the disc turns; rounded once, in the angle.
     arc = float(rolling.contact(rolling.theta + 2.0**-10).ground_arc)
     assert arc == pytest.approx(2.0**-10 * (1 + clearance) / clearance, rel=1e-12)
 
 
-def test_a_square_rolls_level_on_catenaries_and_stops_at_its_corners():
+def test_the_centre_of_a_square_on_a_catenary_moves_level_and_the_limits_are_its_corners():
     rolling = Rolling.at_arcs(Side(1.0), Placed(Catenary(0.5), turn=math.pi))
     quarter = math.pi / 4
     np.testing.assert_allclose(rolling.limits, [-quarter, quarter], rtol=1e-14)
@@ -120,7 +120,7 @@ def test_a_square_rolls_level_on_catenaries_and_stops_at_its_corners():
 SPIRAL = LogSpiral(0.5, 0.3)
 
 
-def test_an_ellipse_in_a_tight_ring_rolls_until_its_flat_side_fits_both_ways():
+def test_an_ellipse_in_a_tight_ring_rolls_until_the_curvatures_are_equal():
     shape, ring = Ellipse(0.5, 0.3), Ring(0.7)
     for start in (0.0, 0.1, -0.1):
         rolling = Rolling.at_arcs(shape, Placed(ring), 0.0, start)
@@ -146,7 +146,7 @@ PAIRS = {
 
 
 @pytest.mark.parametrize("pair", PAIRS)
-def test_contact_is_common_tangent_and_equally_long_on_both(pair):
+def test_rolling_contacts_have_a_common_tangent_and_equal_arcs(pair):
     body, ground = PAIRS[pair]
     rolling = Rolling.at_arcs(body, ground, 0.2, 0.3)
     theta = rolling.theta + np.random.default_rng(3).uniform(*((-0.5, 6) if "spiral" in pair else (-20, 20)), 100)
@@ -176,7 +176,7 @@ def test_contact_is_common_tangent_and_equally_long_on_both(pair):
 
 
 @pytest.mark.parametrize("pair", list(PAIRS)[::3])
-def test_the_rows_of_a_roll_are_the_derivative_of_its_gap_between_moving_bodies(pair):
+def test_rows_of_a_roll_between_moving_bodies_are_derivatives_of_its_gap(pair):
     body, ground = PAIRS[pair]
     rolling = Rolling.at_arcs(body, ground, 0.2, 0.3)
     roll = Roll("roll", "first", "second", rolling)
@@ -192,7 +192,7 @@ def test_the_rows_of_a_roll_are_the_derivative_of_its_gap_between_moving_bodies(
         np.testing.assert_allclose(roll.rows(first, second), np.transpose(derivative), atol=1e-11)
 
 
-def test_the_incline_falls_to_minus_x_so_that_the_ellipse_goes_faster():
+def test_an_ellipse_on_the_incline_rolls_to_minus_x_and_gets_faster():
     scene = RollingDownhill()
     truth = scene.motion(np.array([0.0, scene.duration]))
     along, up = truth.pose[1, 0, :2] - truth.pose[0, 0, :2]
@@ -207,7 +207,7 @@ def disc(radius, ground, rate, theta=0.0, **more):
     return RollingBody(rolling, 1.0, radius**2 / 2, rate)
 
 
-def test_a_scene_that_slips_and_hops_ends_its_horizon_there():
+def test_the_horizon_of_a_rolling_scene_ends_at_the_first_slip_or_hop():
     scene = RollingOnCircle()
     assert scene.horizon == scene.comparable_until < present(scene.hop) < scene.duration
     assert scene.motion_law.required_friction(scene.horizon)[0] == pytest.approx(scene.friction, rel=1e-9)
@@ -219,7 +219,7 @@ def test_a_scene_that_slips_and_hops_ends_its_horizon_there():
     assert RollingEllipse(friction=0.25).horizon < 1.0
 
 
-def test_small_oscillations_have_the_closed_frequencies():
+def test_frequencies_of_small_oscillations_agree_with_closed_forms():
     a, b = 0.5, 0.3
     flat = RollingEllipse().motion_law
     # Radius of curvature at the flat side less the height of the centre, over the inertia about the contact.
@@ -252,7 +252,7 @@ SLIPPING = (
 
 
 @pytest.mark.parametrize("scene", SLIPPING)
-def test_hops_and_slips_are_the_first_that_looking_finds(scene):
+def test_hop_and_slip_times_agree_with_sampled_forces(scene):
     slips = scene.motion_law.slip(scene.friction, scene.duration)
     for time, seen in zip((scene.hop, slips), watched(scene), strict=True):
         if seen is None:
@@ -262,5 +262,5 @@ def test_hops_and_slips_are_the_first_that_looking_finds(scene):
 
 
 @pytest.mark.parametrize("scene", [RollingEllipse(), RollingDisc(eccentricity=0.1), RollingInRing()])
-def test_a_body_that_has_shown_all_its_forces_is_not_followed_for_ever(scene):
+def test_the_search_for_a_hop_ends_after_one_period_of_the_forces(scene):
     assert scene.motion_law.hop(1e9) is None

@@ -134,7 +134,7 @@ def off_newton(mechanism: Mechanism, motion: Trajectory, change: np.ndarray) -> 
 
 
 @each_scene
-def test_the_motion_starts_as_the_mechanism_and_keeps_every_joint_and_the_freedoms(each: Scene) -> None:
+def test_a_scenes_motion_starts_at_the_mechanisms_state_and_satisfies_its_joints(each: Scene) -> None:
     mechanism, motion, rate, _ = known(each)
     start = each.motion([0.0])
     # Rounding of places and of turns; the truth may begin with one that it makes of its own coordinates.
@@ -149,7 +149,7 @@ def test_the_motion_starts_as_the_mechanism_and_keeps_every_joint_and_the_freedo
 
 
 @each_scene
-def test_the_reactions_are_what_newtons_law_needs(each: Scene) -> None:
+def test_a_scenes_reactions_satisfy_newtons_law(each: Scene) -> None:
     mechanism, motion, _, change = known(each)
     assert off_newton(mechanism, motion, change) < NEWTON
 
@@ -162,14 +162,14 @@ def told(each: Scene, t: np.ndarray) -> np.ndarray | None:
 
 
 @pytest.mark.parametrize("each", [each for each in ALL if isinstance(each, FourBarScene | PlacedScene)], ids=name_of)
-def test_the_accelerations_of_a_scene_are_those_of_its_motion(each: Scene) -> None:
+def test_a_scenes_accelerations_are_derivatives_of_its_twists(each: Scene) -> None:
     mechanism, motion, _, change = known(each)
     off = np.abs((present(told(each, motion.t)) - change) / mechanism.pose_unit).max()
     assert off < 1e-9 * max(np.abs(change / mechanism.pose_unit).max(), fastest(mechanism, motion) ** 2)
 
 
 @each_scene
-def test_the_energy_of_what_nothing_drives_stays(each: Scene) -> None:
+def test_the_energy_of_scenes_without_a_drive_is_constant(each: Scene) -> None:
     mechanism, motion, *_ = known(each)
     if any(isinstance(joint, Drive) and joint.turning_rate for joint in mechanism.joints):
         pytest.skip("a drive does work")
@@ -179,7 +179,7 @@ def test_the_energy_of_what_nothing_drives_stays(each: Scene) -> None:
 
 
 @pytest.mark.parametrize("each", [each for each in ALL if each.name != "n_four_bar_40"], ids=name_of)
-def test_exact_multipliers_on_the_rows_alone_give_the_same_motion(each: Scene) -> None:
+def test_lagrange_multipliers_give_the_same_motion_as_the_scene(each: Scene) -> None:
     mechanism = each.mechanism()
     run = Lagrange(tolerance=1e-13).build(mechanism, until(each) / 8)(4, 1)
     exact = each.motion(run.t)
@@ -193,7 +193,7 @@ def test_exact_multipliers_on_the_rows_alone_give_the_same_motion(each: Scene) -
 
 # One scene of each name: an integration states its error by the same rule for all numbers.
 @pytest.mark.parametrize("each", {each.name: each for each in ALL[::-1] if truth_error(each)}.values(), ids=name_of)
-def test_the_truths_own_error_is_told_and_small(each: Scene) -> None:
+def test_the_error_bound_of_an_integrated_reference_motion_is_small(each: Scene) -> None:
     # Tolerances of 1e-13 a step, over some hundreds; a standing knee makes a deviation e-fold in 0.03 s.
     last = min(each.horizon, each.duration, 0.9 * getattr(each, "corner", math.inf))
     stated = present(truth_error(each))(np.linspace(0.0, last, 9))
@@ -201,7 +201,7 @@ def test_the_truths_own_error_is_told_and_small(each: Scene) -> None:
 
 
 @each_scene
-def test_a_motion_does_not_depend_on_the_other_instants_asked_for(each: Scene) -> None:
+def test_a_motion_does_not_depend_on_the_other_times_in_the_request(each: Scene) -> None:
     t = until(each) * np.array([0.0, 0.31, 0.62, 0.9])
     whole, mixed = each.motion(t), each.motion([*t[[2, 0, 3]], 0.5 * until(each)])
     for name, size in (("pose", 1e-13), ("twist", 1e-12)):

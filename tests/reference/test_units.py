@@ -113,7 +113,7 @@ COSTLY = (
     [pytest.param(each, marks=pytest.mark.slow if each.name in COSTLY else ()) for each in ALL],
     ids=lambda scene: scene.name,
 )
-def test_a_scene_in_other_units_is_the_same_scene(scene: Scene, scale: str) -> None:
+def test_the_motion_of_a_scene_does_not_depend_on_units(scene: Scene, scale: str) -> None:
     # In closed form, or integrated in nearly the same steps, or solved for iteratively: what is left is rounding, which
     # of costly ones grows tenfold and more up to the horizon.
     allowed = 1e-11 if scene.name == "pendulum_100" else 1e-12  # joint forces of a hundred links sum more roundings

@@ -38,7 +38,7 @@ from tests.mechanisms import four_bar
 from tests.present import present
 
 
-def test_any_pose_is_reached_from_any_other_by_turn_slide_turn():
+def test_a_skate_reaches_any_pose_by_turn_slide_and_turn():
     rng = np.random.default_rng(7)
     for start, goal in rng.uniform(-9, 9, (12, 2, 3)):
         for backwards in (True, False):
@@ -48,13 +48,13 @@ def test_any_pose_is_reached_from_any_other_by_turn_slide_turn():
     assert park((1.0, 2.0, 0.0), (1.0, 2.0, 3.0)) == (Move(), Move(turn=3.0))
 
 
-def test_no_part_of_a_manoeuvre_skids():
+def test_a_skate_never_moves_sideways_in_a_manoeuvre():
     path = trace((0.0, 0.0, 0.3), (*park((0.0, 0.0, 0.3), (1.0, 2.0, -1.0)), *sidestep(1.0, 0.7, 0.5)))
     moved, middle = np.diff(path, axis=0), 0.5 * (path[1:, 2] + path[:-1, 2])
     assert np.abs(-np.sin(middle) * moved[:, 0] + np.cos(middle) * moved[:, 1]).max() < 1e-14
 
 
-def test_the_commutator_moves_sideways_by_the_product_of_its_moves_as_they_shrink():
+def test_the_commutator_displacement_tends_to_the_product_of_turn_and_slide_sideways():
     assert (
         np.abs(stops((0.0, 0.0, 0.0), commutator(0.6, 0.5))[-1] - [*commutator_displacement(0.6, 0.5), 0.0]).max()
         < 1e-15
@@ -65,7 +65,7 @@ def test_the_commutator_moves_sideways_by_the_product_of_its_moves_as_they_shrin
     assert np.abs(rest[:, 1] / turn**2 + 1 / 6).max() < 1e-4  # -turn^2/6 + turn^4/120
 
 
-def test_a_sidestep_is_exactly_sideways_within_its_room():
+def test_a_sidestep_moves_exactly_sideways_within_its_limits():
     for distance in (2.3, -0.01, 1e-6):
         moves = sidestep(distance, 0.5, 0.4)
         assert np.abs(stops((0.0, 0.0, 0.0), moves)[-1] - [0.0, distance, 0.0]).max() < 1e-14
@@ -75,7 +75,7 @@ def test_a_sidestep_is_exactly_sideways_within_its_room():
         sidestep(1.0, 0.0, 1.0)
 
 
-def test_a_stiff_sleigh_settles_and_is_then_followed_for_ever():
+def test_a_fast_sleigh_moves_straight_after_its_settling_time():
     for sleigh in (ChaplyginSleigh(speed=1e5, duration=1e3), ChaplyginSleigh(offset=-1e-3, inertia=1e-9, duration=1e3)):
         long = sleigh.skate_pose([1e-2 + sleigh._settled, 1000.0])
         gone, settled = long[1] - long[0], long[1, 2]
@@ -87,7 +87,7 @@ def test_a_stiff_sleigh_settles_and_is_then_followed_for_ever():
     assert abs(sleigh._moved(later) - sleigh.skate_pose(later)[0] @ [1, 1j, 0]) < 1e-13
 
 
-def test_backwards_a_small_turning_grows_at_the_linear_rate_and_the_sleigh_turns_round():
+def test_a_small_turning_rate_of_a_backward_sleigh_grows_exponentially_until_it_has_reversed():
     sleigh = SleighBackwards(turning_rate=1e-9)
     turning = sleigh.rates([1.0, 2.0])[1]
     assert math.log(turning[1] / turning[0]) == pytest.approx(sleigh.growth_rate(), rel=1e-14)
@@ -99,7 +99,7 @@ def test_backwards_a_small_turning_grows_at_the_linear_rate_and_the_sleigh_turns
     assert SleighBackwards().heading(200.0) == pytest.approx(math.pi * math.sqrt(0.4) / 0.5, rel=1e-3)
 
 
-def test_a_tow_started_straight_behind_or_folded_over_stays_so():
+def test_a_tow_at_an_equilibrium_angle_does_not_rotate():
     assert np.abs(Tow(1.0, 0.0).relative_angle([1.0, -1.0, 1e3, -1e3])).max() == 0
     assert np.all(Tow(1.0, math.pi).relative_angle([1.0, 1e3]) == math.pi)
     assert Tow(1.0, 1e-9).relative_angle(-1e3) == pytest.approx(math.pi, abs=1e-15)  # pushed, it folds over
@@ -119,7 +119,7 @@ def test_a_trailer_behind_a_circling_car_is_a_tow(hitch, speed):
         assert car.drive(speed, 0.3, (0, 0, 0), (0.4,), [300.0]).bends[0, 0] == pytest.approx(settled, abs=1e-11)
 
 
-def test_no_axle_of_a_train_skids_whatever_is_steered():
+def test_axles_of_a_car_with_trailers_have_no_lateral_velocity():
     car = CarWithTrailers(1.0, (0.9, 1.1, 0.7), (0.2, 0.0, -0.1))
     t, step = np.linspace(0.1, 2, 4), 1e-3
     weights = np.array([-1, 9, -45, 45, -9, 1]) / 60 / step
@@ -138,7 +138,7 @@ def test_no_axle_of_a_train_skids_whatever_is_steered():
     assert np.abs(along - middle.speed).max() < 1e-8
 
 
-def test_a_reversing_trailer_jackknifes_when_its_exact_angle_says():
+def test_the_jackknife_time_of_a_reversing_trailer_agrees_with_the_closed_form():
     car = CarWithTrailers(2.0, (1.5,), (0.0,))
     driven = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.01,), [10.0, 20.0])
     # tan(psi/2) grows as exp(s/L); it is 1 at a right angle.
@@ -162,7 +162,7 @@ def test_a_caster_on_a_circling_cart_is_a_tow(turning_rate):
         assert np.abs(tow.relative_angle(speed * t) + angle - tow.angle - swung[:, index]).max() < 1e-11
 
 
-def test_casters_swing_round_when_the_cart_is_reversed():
+def test_casters_turn_by_pi_when_the_cart_reverses():
     casters = Casters(((1.0, 0.3), (1.0, -0.3)), 0.1)
     # Halfway when tan(beta/2) = 1: s = c log(1/tan(0.0005)).
     way = -0.1 * math.log(math.tan(0.0005))
@@ -171,7 +171,7 @@ def test_casters_swing_round_when_the_cart_is_reversed():
     assert np.abs(casters.swing((0.0, 0.0), -0.5, 0.0, [20.0])[0]).max() == 0
 
 
-def test_a_cart_stands_on_its_wheels_where_its_drawing_says():
+def test_the_wheels_and_kingpins_of_a_cart_are_at_hand_computed_points():
     """Written down by hand, in metres from each body's centre of mass: the truth takes its places from `Casters`."""
     cart = Cart(centre=0.3, front=0.8, width=0.5, trail=0.12, caster_centre=0.04, redundant=True).mechanism()
     points = {joint.name: joint.second_point for joint in cart.joints if isinstance(joint, Skate)}
@@ -187,13 +187,13 @@ def test_a_cart_stands_on_its_wheels_where_its_drawing_says():
 
 
 @pytest.mark.parametrize(("bends", "which"), [((0.1, -2.0), 2), ((2.0, 0.1), 1), ((0.1, 0.2), None)])
-def test_a_trailer_that_is_folded_at_the_start_is_named_by_its_number(bends, which):
+def test_a_trailer_jackknifed_at_the_start_is_reported_by_number(bends, which):
     for times in ([0.0], [0.0, 1e-3]):
         found = CarWithTrailers(1.0, (0.9, 1.1), (0.2, 0.0)).drive(1.0, 0.0, (0.0, 0.0, 0.0), bends, times)
         assert (found.jackknifed_at, found.jackknifed) == (None if which is None else 0.0, which)
 
 
-def test_a_joint_that_passes_the_limit_for_a_moment_is_dated():
+def test_a_brief_jackknife_between_samples_is_reported():
     car, start = CarWithTrailers(1.0, (1.0,), (0.0,)), (0.0, 0.0, 0.0)
 
     def drive(t, limit=math.pi):
@@ -209,7 +209,7 @@ ROWS = [*map(tuple, RANDOM.normal(size=(3, 3)).tolist()), (1e-9, 2e-9, 3e-9), (1
 
 
 @pytest.mark.parametrize("row", ROWS)
-def test_a_row_with_a_part_along_the_plane_is_a_skate_and_never_integrable(row):
+def test_rows_with_a_velocity_component_are_skates_and_not_integrable(row):
     skate, size = skate_of(row), np.hypot(*row[:2])
     assert skate is not None
     place = np.zeros(3)
@@ -227,7 +227,7 @@ def test_a_row_with_a_part_along_the_plane_is_a_skate_and_never_integrable(row):
 @pytest.mark.parametrize(
     ("speed", "rate", "alpha"), [(1.3, 1.7, -0.6), (-2.0, 0.4, 5.0), (1e-6, -1e6, 0.0), (3, 1e-6, 0)]
 )
-def test_the_skates_coriolis_like_term_stands_once_and_a_sliders_twice(speed, rate, alpha):
+def test_the_coriolis_like_term_has_factor_one_for_a_skate_and_two_for_a_slider(speed, rate, alpha):
     assert coriolis_factors(speed, rate, alpha) == pytest.approx((1.0, 2.0), rel=1e-12)
 
 
@@ -245,7 +245,7 @@ def test_a_row_that_is_not_exact_may_be_integrable():
     assert growth(scaled_position, place) == (2,)
 
 
-def test_a_row_that_passes_at_one_place_only_is_refused():
+def test_a_row_with_zero_obstruction_at_one_place_only_is_not_integrable():
     """w = dy + x^2 dtheta has w . curl w = 2 x: zero at x = 0, where a test at one place would be deceived."""
 
     def deceiving(place):
@@ -271,7 +271,7 @@ def test_a_row_that_passes_at_one_place_only_is_refused():
     ],
     ids=["pinned", "sleigh", "four-bar", "driven four-bar", "cart", "cart, redundant", "car", "car, redundant"],
 )
-def test_freedoms_by_rank_and_by_brackets(mechanism, counted, bracketed):
+def test_freedoms_by_rank_agree_with_freedoms_by_brackets(mechanism, counted, bracketed):
     assert mechanism.degrees_of_freedom() == counted
     assert freedoms_by_brackets(mechanism) == bracketed
     assert bracketed[0] == counted[1]
