@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Rapier 0.21.0 and Box2D 3.1.1 (pyb2d3 0.11.1): a free wheel at 40 rad/s turns by 39.64 rad in a second, while its angular
-# velocity stays 40. Both add a multiple of the rotation's normal to it and normalise, which turns it by atan(w h) and not w h.
-# One would guess that the angle of a free body is the integral of a constant angular velocity, as in planck 1.5.0 and p2 0.7.1.
+# velocity remains 40 rad/s. Both engines add a multiple of the normal to the rotation (c, s) and normalise the sum. This turns the
+# wheel by atan(w h) in each step instead of w h. One would expect 40 rad, as in planck 1.5.0 and p2 0.7.1.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

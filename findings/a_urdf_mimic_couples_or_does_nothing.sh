@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# One URDF file, two wheels, the second with <mimic joint="first" multiplier="2"/>. MuJoCo 4.0.1 makes an equality of it and
-# Drake 1.51.1 a constraint. Pinocchio 4.1.0 leaves both wheels free unless `mimic=True` is given, and PyBullet 3.2.7 leaves
-# them free always; neither prints a warning. One would guess that a reader of URDF couples the joints or refuses the tag.
+# A URDF file has two wheels, the second with <mimic joint="first" multiplier="2"/>. MuJoCo 4.0.1 reads it as an equality, and
+# Drake 1.51.1 as a constraint. Pinocchio 4.1.0 couples the wheels only with `mimic=True`. PyBullet 3.2.7 never couples them.
+# Neither prints a warning. One would expect that a reader of URDF couples the joints or refuses the tag.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Drake 1.51.1 (and 1.58.0): under CenicIntegrator an actuator with PdControllerGains turns its joint with the desired rate of
-# the opposite sign. A plant in discrete time takes the sign as it is, and so does CENIC with a desired angle. One would guess
-# that both follow the same desired state.
+# Drake 1.51.1 (and 1.58.0): an actuator with PdControllerGains turns its joint against the desired rate if CenicIntegrator
+# integrates the plant. A discrete plant turns it with the desired rate, and CENIC itself follows a desired angle. One would
+# expect the same sign in both.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# A free wheel at 100 rad/s after one step of 1/60 s: Rapier 0.21.0 and Jolt (jolt-physics 1.1.0) have reduced it to 47.12,
-# planck 1.5.0 to 94.25; p2 0.7.1 and pymunk 7.3.1 leave it. No warning is printed. Rapier's limit is an eighth of a turn and
-# planck's a quarter of a turn in a step; Jolt's is a number of the body, so that a shorter step doesn't help.
-# One would guess that a free wheel keeps its angular velocity, or that limits of games are above those of a motor at 1000 rpm.
+# A free wheel at 100 rad/s after one step of 1/60 s: Rapier 0.21.0 and Jolt (jolt-physics 1.1.0) have reduced the rate to 47.12
+# rad/s, and planck 1.5.0 to 94.25 rad/s. The rate in p2 0.7.1 and pymunk 7.3.1 is unchanged. No engine prints a warning. Rapier
+# limits a step to an eighth of a turn, and planck to a quarter. Jolt's limit is a property of the body and does not depend on the
+# step. One would expect a constant rate, or limits above 1000 rpm.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

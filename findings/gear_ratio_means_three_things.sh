@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# pymunk 7.3.1, planck 1.5.0, p2 0.7.1: wheel a turns, a gear joint with ratio 2 drives wheel b. Wheel b turns at +1/2 of a's rate
-# in pymunk, at -1/2 in planck, at +2 in p2. A motor between ground and wheel a with speed 1 turns it by +1 rad/s in planck,
-# by -1 rad/s in p2 and pymunk. One would guess one meaning of a gear's ratio, up to its sign.
+# pymunk 7.3.1, planck 1.5.0, p2 0.7.1: a gear joint with ratio 2 connects wheel a, which is driven, to wheel b. The rate of wheel
+# b is +1/2 of the rate of wheel a in pymunk, -1/2 in planck, and +2 in p2. A motor with speed 1 between the ground and wheel a
+# turns the wheel by +1 rad/s in planck, and by -1 rad/s in p2 and pymunk. One would expect the same meaning of a gear ratio, at
+# least up to its sign.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

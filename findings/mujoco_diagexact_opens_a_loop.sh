@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# MuJoCo 4.0.1: `diagexact` makes a stiff closed loop less exact: the gap of its `connect` grows.
-# One would guess from the name, the exact diagonal of the constraint-space inertia instead of an approximate one, that the
-# error falls. The compliance of a row is a part of that diagonal, and the exact one is larger in this loop.
+# MuJoCo 4.0.1: the flag `diagexact` increases the gap of the `connect` in a stiff closed loop. The flag replaces an approximate
+# diagonal of the constraint-space inertia by the exact one, so one would expect a smaller error. The compliance of a row is
+# proportional to this diagonal, and the exact diagonal is larger in this loop.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# MuJoCo 4.0.1: a joint with range="10 10" and no `limited` has no limit, and no warning is printed.
-# One would guess a locked joint, or the error that limited="true" gives.
+# MuJoCo 4.0.1: a joint with range="10 10" and no `limited` has no limit, and MuJoCo prints no warning. One would expect a locked
+# joint, or the error that limited="true" gives.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

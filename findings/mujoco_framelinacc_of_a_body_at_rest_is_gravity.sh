@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # MuJoCo 4.0.1: the sensor `framelinacc` of a site at rest returns +9.81 m/s2 upwards, as an accelerometer does. Its documentation
-# calls it the 3D linear acceleration of the frame in global coordinates; one would guess the derivative of `framelinvel`, which
+# calls it the 3D linear acceleration of the frame in global coordinates. One would expect the derivative of `framelinvel`, which
 # is zero here.
 set -euo pipefail
 folder=$(mktemp -d)

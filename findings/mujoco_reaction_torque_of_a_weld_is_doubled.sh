@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# MuJoCo 4.0.1: the rotational rows of an equality `weld` measure half the angle (the vector part of a quaternion), so that
-# `efc_force` there is twice the torque, and `efc_pos` half the angle, also with torquescale 1. One would guess the torque, since
-# the translational rows of the same weld return the force itself. `qfrc_constraint` has the torque.
+# MuJoCo 4.0.1: the rotational rows of an equality `weld` measure half of the angle, since they use the vector part of a
+# quaternion. So `efc_force` is twice the torque and `efc_pos` is half of the angle, also with torquescale 1. One would expect the
+# torque, since the translational rows return the force. `qfrc_constraint` contains the torque.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# MuJoCo 4.0.1: after mj_step with Euler, implicitfast or discrete, derived data (site_xpos, efc_force, qacc, sensordata) belong to
-# the start of the step. With RK4 only sensordata do: site_xpos and efc_force belong to the last stage, that is to the end of the
-# step, and qacc to neither. One would guess the start for all, or the end for all.
+# MuJoCo 4.0.1: after mj_step with Euler, implicitfast or discrete, the derived data (site_xpos, efc_force, qacc, sensordata)
+# belong to the start of the step. With RK4, only sensordata belongs to the start. site_xpos and efc_force belong to the last
+# stage, which is at the end of the step. qacc belongs to neither. One would expect one instant for all data.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# MuJoCo 4.0.1: the flag `sleep` stops a pendulum at its turning point, away from equilibrium, for good.
-# One would guess that a body sleeps where it is at rest with balanced forces. The rule looks at velocities alone.
+# MuJoCo 4.0.1: the flag `sleep` stops a pendulum permanently at its turning point, away from equilibrium. One would expect that a
+# body sleeps only if its velocity is zero and its forces are balanced. MuJoCo's rule uses velocities alone.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

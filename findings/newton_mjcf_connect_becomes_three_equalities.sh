@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Newton 1.8.0 (mujoco 3.17.0, mujoco-warp 3.17.0): add_mjcf reads the one `connect` of a four-bar and SolverMuJoCo builds a
-# model with three equalities, of which two are welds that are not active; the gravity and the time step of <option> are not read.
-# SolverFeatherstone steps the same model with the loop open, without an error or a warning: 0.99 m after a second.
-# One would guess one equality, the file's gravity, and a solver that refuses a joint which it can't enforce.
+# Newton 1.8.0 (mujoco 3.17.0, mujoco-warp 3.17.0): add_mjcf reads a four-bar with one `connect`, and SolverMuJoCo builds a model
+# with three equalities. Two of them are inactive welds. The gravity and the time step of <option> are ignored.
+# SolverFeatherstone steps the same model with an open loop, without an error or a warning; the gap is 0.99 m after a second.
+# One would expect one equality, the file's gravity, and an error by a solver that can't enforce the joint.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Pinocchio 4.1.0: buildModelFromMJCF ignores the gravity of <option> (the model keeps 0 0 -9.81), and stores a joint's damping and
-# friction loss in model.damping and model.friction, which aba does not use; armature is stored and used. One would guess that
-# what the model stores acts, and that gravity is read beside it.
+# Pinocchio 4.1.0: buildModelFromMJCF ignores the gravity of <option>; the model has 0 0 -9.81. It stores the damping and the
+# friction loss of a joint in model.damping and model.friction, but aba does not use them. It stores the armature, and aba uses
+# it. One would expect that aba uses all stored values, and that the reader reads gravity.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Pinocchio 4.1.0: buildModelFromMJCF reads the first body of <worldbody> with its children and leaves the other bodies of the world
-# out, without an error or a warning. A four-bar linkage of two trees becomes a double pendulum. One would guess a model with all
-# joints, since the universe joint may have several children.
+# Pinocchio 4.1.0: buildModelFromMJCF reads the first body of <worldbody> with its children and ignores all other bodies of the
+# world, without an error or a warning. A four-bar linkage of two trees becomes a double pendulum. One would expect a model with
+# all joints, since the universe joint may have several children.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# planck 1.5.0: a WheelJoint with frequencyHz 0, which its documentation calls "no suspension", makes the
-# body's pose NaN in the second step. With frequencyHz 1e-9 the body slides on the line, as expected.
-# One would guess a joint without a spring, as in Box2D, of which planck is a translation.
+# planck 1.5.0: the documentation of WheelJoint calls frequencyHz 0 "no suspension", but the body's pose is NaN in the second step.
+# With frequencyHz 1e-9 the body slides on the line, as expected. One would expect a joint without a spring, as in Box2D, of which
+# planck is a translation.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# pymunk 7.3.1: a copy of a space does not keep the length of a PinJoint whose `distance` was set.
-# One would guess that Space.copy() copies every property. The copy takes the distance at which the bodies stand.
+# pymunk 7.3.1: a copy of a space does not keep the length of a PinJoint whose `distance` was set. The copy uses the distance
+# between the bodies. One would expect that Space.copy() copies every property.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# pymunk 7.3.1: GearJoint and RotaryLimitJoint measure the angle of body b relative to body a; SimpleMotor and
-# DampedRotarySpring measure that of a relative to b, so that a positive rate or rest angle turns b backwards. The documentation
-# calls both "relative angle". One would guess one convention for the four constraints of one library.
+# pymunk 7.3.1: GearJoint and RotaryLimitJoint measure the angle of body b relative to body a. SimpleMotor and DampedRotarySpring
+# measure the angle of a relative to b, so a positive rate or rest angle turns b backwards. The documentation calls both "relative
+# angle". One would expect the same convention for all four constraints.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

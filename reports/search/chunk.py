@@ -52,7 +52,6 @@ class Chunk(Task):
         return self.subject.engine if isinstance(self.subject, Adapted) else None
 
     def draw(self, number: int) -> Any:
-        """The case of this number."""
         return self.subject.draw(self.seed, number, self.kinds, self.decades)
 
     def run(self) -> Values:

@@ -62,6 +62,5 @@ DEFAULT_ORACLES = tuple(name for name, oracle in ORACLES.items() if oracle.is_de
 
 
 def column_of(check: str) -> str:
-    """The column in which the page counts a check."""
     named = (oracle.column for oracle in ORACLES.values() if check in oracle.checks)
     return next(named, ORACLES[MOTION_ORACLE].column)

@@ -134,7 +134,6 @@ def render_page(
 
 
 def _shown_oracles(cases: Sequence[CaseResult]) -> list[Oracle]:
-    """The default oracles and those with which these cases were run."""
     used = {name for case in cases for name in case.chunk.oracles}
     return [oracle for name, oracle in ORACLES.items() if oracle.is_default or name in used]
 
@@ -187,7 +186,6 @@ def _command(case: CaseResult) -> str:
 
 
 def _planted_rows(answers: Mapping[PlantedControl, Answer]) -> list[list[str]]:
-    """A row for each fault with a cell for each engine."""
     cells = {(task.fault, task.name): _control_cell(answer) for task, answer in answers.items()}
     names = dict.fromkeys(task.name for task in answers)
     return [[fault, *(cells.get((fault, name), "") for name in names)] for fault in PLANTED_FAULTS if answers]

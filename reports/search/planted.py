@@ -69,16 +69,9 @@ class Misbuilt(Mechanism):
     def _refuse_a_bad_start(self) -> None:
         """Accept joints that are open at the start."""
 
-    def reaction(
-        self,
-        pose: Array,
-        acceleration: Array,
-        inertias: Array | None = None,
-        gravity: Array | None = None,
-        twist: Array | None = None,
-    ) -> Array:
+    def reaction(self, *arguments: Any, **options: Any) -> Array:
         """Reactions on the rows of the right mechanism."""
-        return self.right.reaction(pose, acceleration, inertias, gravity, twist)
+        return self.right.reaction(*arguments, **options)
 
     def closed(self, twist: Array) -> Misbuilt:
         """A copy with closed joints; poses and velocities are projected in the metric of the masses.
@@ -105,7 +98,6 @@ class PlantedFault:
 
     @property
     def is_relation(self) -> bool:
-        """Whether the fault depends on the description of the mechanism."""
         return self.kind in relations.RELATIONS
 
     @property
@@ -250,7 +242,6 @@ def search_with_fault(engines: tuple[Engine, ...], change: PlantedFault, cases: 
 
 
 def all_controls() -> list[PlantedControl]:
-    """A control for each fault and engine."""
     out = []
     for (name, engines), fault in product(CONTROL_ENGINES.items(), PLANTED_FAULTS):
         shaped = any(engine.build_time for engine in engines)

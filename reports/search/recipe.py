@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from decimal import Decimal
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -234,7 +233,7 @@ class Standing:
         """The mechanism with these joints and forces; its velocities satisfy the joints."""
         joints = tuple(closed.joint for closed in held)
         twists = self.allowed(held).tolist()
-        bodies = tuple(_with(body, twist=tuple(twist)) for body, twist in zip(self.bodies, twists, strict=True))
+        bodies = tuple(replace(body, twist=tuple(twist)) for body, twist in zip(self.bodies, twists, strict=True))
         down_x, down_y = (float(pull * self._length / self._time**2) for pull in self._recipe.gravity)
         acting = tuple(self._force(link, number) for link, number in forces)
         return Mechanism(bodies, joints, (down_x, down_y), acting)
@@ -280,12 +279,6 @@ def dependence(rows: Array) -> float:
     """The ratio of the smallest to the largest singular value of the normalised rows."""
     sizes = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True), compute_uv=False)
     return float(sizes[-1] / sizes[0])
-
-
-def _with(value: Any, **changed: Any) -> Any:
-    """A copy with changed fields; unlike dataclasses.replace, it accepts classes with computed fields."""
-    fields_of_value = {field.name: getattr(value, field.name) for field in fields(value)}
-    return type(value)(**(fields_of_value | changed))
 
 
 def _beside(place: Point, tenths: tuple[int, int], size: Decimal) -> Point:

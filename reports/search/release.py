@@ -124,7 +124,6 @@ def release_of(name: str) -> str | None:
 
 
 def main() -> None:
-    """Check each model of the standard input."""
     for line in sys.stdin:
         try:
             result = check_accelerations(case_from_json(line, RawModel))

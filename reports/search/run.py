@@ -43,7 +43,6 @@ Progress = Callable[..., AbstractContextManager[tuple[Sequence[Any], Callable[..
 def quietly(
     store: Store, tasks: Sequence[Task], limit: float, label: str, size: Callable[[Any], int] | None = None
 ) -> Iterator[tuple[Sequence[Any], Callable[..., None], Any]]:
-    """Run without a progress display."""
     yield missing(tasks, store, limit), lambda *_: None, None
 
 
@@ -141,7 +140,6 @@ class Search:
         return f"{self.cases} cases were asked in {self.spent:.0f} s.{self.first}"
 
     def run_controls(self) -> None:
-        """Run the controls with planted faults that are not stored."""
         with self.progress(self.store, all_controls(), PLANTED_LIMIT, "planted faults") as (waiting, done, watch):
             self._run_tasks(waiting, PLANTED_LIMIT, done, watch)
 

@@ -115,7 +115,6 @@ def _motion(engine: Any, title: str, mechanism: Mechanism, dt: float, steps: int
 
 
 def _of_velocities(engine: Any, mechanism: Mechanism) -> str:
-    """Velocities after one step of pymunk."""
     dt = INSTANT_STEP * mechanism.time_scale
     model = engine.model(mechanism, dt)
     for update in model.before_step:
@@ -127,7 +126,6 @@ def _of_velocities(engine: Any, mechanism: Mechanism) -> str:
 
 
 def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
-    """Accelerations by MuJoCo or MJX at two instants."""
     import mujoco
 
     by_mjx = engine.name == "mjx"

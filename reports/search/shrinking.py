@@ -188,7 +188,6 @@ def choose_worst(cases: Iterable[CaseResult], most: int = FINDINGS_SHRUNK) -> li
 
 
 def line_of(answer: Answer) -> str:
-    """A finding in one line."""
     return str(answer.values["line"]) if answer.finished else f"not reduced: {answer.sentence}"
 
 
@@ -204,6 +203,5 @@ def files_of(task: Shrink, answer: Answer) -> dict[str, str]:
 
 
 def replay_finding(finding: dict[str, Any], subject: Subject) -> OracleResult:
-    """Run the case of a stored finding again."""
     case: Any = case_from_json(json.dumps(finding["case"]), subject.case)
     return subject.ask(case, finding["number"], tuple(finding["oracles"]))

@@ -47,14 +47,11 @@ class Adapted:
 
     engine: Engine
     case: ClassVar[type] = Recipe
+    kinds: ClassVar[tuple[str, ...]] = ALL_KINDS
 
     @property
     def name(self) -> str:
         return f"{self.engine.name} {self.engine.variant}"
-
-    @property
-    def kinds(self) -> tuple[str, ...]:
-        return ALL_KINDS
 
     def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
         if is_shaped(self):
@@ -77,14 +74,11 @@ class Alone:
 
     release: str = ""
     case: ClassVar[type] = mujoco_alone.RawModel
+    kinds: ClassVar[tuple[str, ...]] = mujoco_alone.EQUALITY_KINDS
 
     @property
     def name(self) -> str:
         return f"mujoco alone {self.release}".strip()
-
-    @property
-    def kinds(self) -> tuple[str, ...]:
-        return mujoco_alone.EQUALITY_KINDS
 
     def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> mujoco_alone.RawModel:
         return mujoco_alone.draw_model(seed, number, kinds)

@@ -70,7 +70,6 @@ class Take(Look):
         return self.scene.samples if self.samples is None else self.samples
 
     def motions(self) -> dict[str, Motion]:
-        """The tasks by label."""
         return {
             label: Motion(Cell(self.scene, engine, every, "failure", self.samples))
             for label, engine, every in self.methods

@@ -125,7 +125,6 @@ def _json(value: object) -> bytes:
 
 
 def _documents(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
-    """Return the documents for Sphinx."""
     texts = {f"results/{name}": inert_page(text) for name, text in source.pages.items()}
     guides = {path.stem: path.read_text(encoding="utf-8") for path in sorted((HERE / "howto").glob("*.md"))}
     quoted = {
@@ -233,7 +232,6 @@ def _with_drags(text: str, values: Mapping[str, str]) -> Markup:
 
 
 def _front_picture(source: SiteSource) -> str:
-    """Return an animated SVG of the first lesson."""
     live = LESSONS[0].scene("let go")
     stored = live.stored()
     cells = {label: stored[name, 0].cell for name, label in NAMES.items()}

@@ -56,7 +56,6 @@ class Stroke:
         return np.vstack([self.points, self.points[:1]]) if self.closed else self.points
 
     def svg(self) -> str:
-        """Return the SVG element."""
         return f'<path class="{self.kind}" d="{path(self.points, self.closed)}"/>'
 
 

@@ -12,6 +12,7 @@ from typing import Any
 from reports.model.ending import BadInput, FileTrouble
 from reports.run.files import folder_for, temporary_folder
 from reports.site.build import MARKER
+from reports.site.generator import write_files
 
 REMEDY = "give another --output"
 
@@ -34,10 +35,7 @@ def write_site(output: Path, files: Mapping[str, bytes]) -> int:
     try:
         with temporary_folder(parent) as aside:
             new = aside / "new"
-            for name, content in files.items():
-                path = new / name
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_bytes(content)
+            write_files(new, files)
             if output.exists():
                 output.replace(aside / "old")
             new.replace(output)
@@ -84,6 +82,5 @@ def server(folder: Path, port: int) -> ThreadingHTTPServer:
 
 
 def serve_folder(folder: Path, port: int) -> None:
-    """Serve until Ctrl-C."""
     with server(folder, port) as running:
         running.serve_forever()

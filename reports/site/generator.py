@@ -61,11 +61,8 @@ def build_html(documents: Documents) -> tuple[dict[str, bytes], list[str]]:
     with TemporaryDirectory() as folder, docutils_namespace(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # deprecations of Sphinx that its theme and MyST still use
         source, extra, out = (Path(folder) / name for name in ("source", "extra", "out"))
-        for folder_of_files, files in ((source, documents.sources), (extra, documents.extra)):
-            for name, content in files.items():
-                path = folder_of_files / name
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_bytes(content)
+        write_files(source, documents.sources)
+        write_files(extra, documents.extra)
         log = io.StringIO()
         settings = {**configure(extra), "html_context": dict(documents.context)}
         app = Sphinx(source, None, out, Path(folder) / "trees", "html", settings, status=None, warning=log)
@@ -78,13 +75,19 @@ def build_html(documents: Documents) -> tuple[dict[str, bytes], list[str]]:
     return built, [line for line in ours if "docstring of" not in line]
 
 
+def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+
 def setup(app: Any) -> None:
     """Register the renderer of formulas; Sphinx calls this function for each of its extensions."""
     app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))
 
 
 def configure(extra: Path) -> dict[str, Any]:
-    """The settings of Sphinx."""
     return {
         "project": "crosscheck",
         "extensions": ["myst_parser", "sphinx.ext.autodoc", __name__],
@@ -145,7 +148,6 @@ def colours() -> str:
 
 
 def visit_inline(translator: Any, node: Any) -> None:
-    """Write an inline formula."""
     from docutils.nodes import SkipNode  # pyright: ignore[reportMissingImports]
 
     translator.body.append(mathml(node.astext()))
@@ -153,7 +155,6 @@ def visit_inline(translator: Any, node: Any) -> None:
 
 
 def visit_block(translator: Any, node: Any) -> None:
-    """Write a displayed formula."""
     from docutils.nodes import SkipNode  # pyright: ignore[reportMissingImports]
 
     translator.body.append(f'<div class="math">{mathml(" ".join(node.astext().split()), True)}</div>')

@@ -53,7 +53,6 @@ def render_html(text: str) -> str:
 
 
 def title(text: str) -> str:
-    """Return the first heading of a Markdown page."""
     return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), "")
 
 
@@ -72,7 +71,6 @@ def section(text: str, heading: str) -> str | None:
 
 
 def cards(links: list[tuple[str, str]]) -> str:
-    """Return a list of links (address, text) as HTML."""
     items = "".join(f'<li><a href="{address}">{escape(text)}</a></li>' for address, text in links)
     return f'<ul class="cards">{items}</ul>'
 

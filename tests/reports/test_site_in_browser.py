@@ -57,11 +57,7 @@ def moved(live: Live) -> dict[str, Any]:
     return {"steps": live.steps[2], **engines, **way, **{slider.field: slider.values[-1] for slider in live.sliders}}
 
 
-GIVEN = {
-    "as shipped": lambda live: {},
-    "documented": lambda live: dict.fromkeys(ENGINES, DOCUMENTED),
-    "moved": moved,
-}
+GIVEN = {"as shipped": lambda live: {}, "documented": lambda live: dict.fromkeys(ENGINES, DOCUMENTED), "moved": moved}
 
 
 @pytest.mark.parametrize("variant", GIVEN)

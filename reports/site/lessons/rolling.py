@@ -53,11 +53,7 @@ ROLLING = Lesson(
     ),
     (
         Experiment("a cam", overlays=CENTRE, section="The contact"),
-        Experiment(
-            "an ellipse",
-            overlays=("friction",),
-            section="Friction demanded, friction given",
-        ),
+        Experiment("an ellipse", overlays=("friction",), section="Friction demanded, friction given"),
         Experiment(
             "an ellipse",
             after={"steps": 2000},
@@ -65,12 +61,7 @@ ROLLING = Lesson(
             causes=(({"munk": MANY}, Claim("munk", most=0.25)),),
             section="Errors that no smaller step removes",
         ),
-        Experiment(
-            "a disc",
-            after={"steps": 2000},
-            claims=(Claim("munk", 0.05, 0.15),),
-            section="Roulettes",
-        ),
+        Experiment("a disc", after={"steps": 2000}, claims=(Claim("munk", 0.05, 0.15),), section="Roulettes"),
         Experiment(
             "an ellipse",
             {"munk": MANY, "steps": 2000},
@@ -103,12 +94,7 @@ GEARS = Lesson(
             "two gears", after=BOTH, claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.5)), overlays=FORCES
         ),
         Experiment(
-            "two gears",
-            BOTH,
-            {"munk": FEW},
-            (Claim("munk", least=10),),
-            overlays=FORCES,
-            section="The contact",
+            "two gears", BOTH, {"munk": FEW}, (Claim("munk", least=10),), overlays=FORCES, section="The contact"
         ),
     ),
 )

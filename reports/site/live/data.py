@@ -62,7 +62,6 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
 
 
 def _place(live: Live, scene: Scene, mechanism: Mechanism) -> dict[str, Any]:
-    """Return the data of one position of the sliders."""
     pinned = all(isinstance(joint, Pin | Slot | Drive) for joint in mechanism.joints)
     has_motion = not pinned or scene == live.scene
     truth = (scene if has_motion else live.scene).motion(np.arange(live.frames + 1) * (scene.duration / live.frames))

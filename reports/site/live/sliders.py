@@ -117,7 +117,6 @@ class Live(Look):
 
     @property
     def key(self) -> str:
-        """The name of the data file."""
         return f"{self.scene.name}-{self.word}".replace(" ", "-")
 
     def places(self) -> Iterator[Scene]:
@@ -128,7 +127,6 @@ class Live(Look):
             yield replace(self.scene, **changed)  # type: ignore[type-var]
 
     def samples(self, steps: int) -> int:
-        """Return the number of sampling intervals of a motion of `steps` steps."""
         return min(self.frames, steps)
 
     def ways(self, name: Name) -> Sequence[tuple[str, Engine | str]]:
